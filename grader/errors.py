@@ -1,0 +1,28 @@
+"""The exceptions that a user can meet. Each prints as one clear line."""
+
+
+class GraderError(Exception):
+    """Anything that stops a command before it has graded: exit code 2."""
+
+
+class InputError(GraderError):
+    """What was named cannot be read: missing, a directory without a URDF, too large, not a file."""
+
+
+class RubricError(GraderError):
+    """A rubric that cannot be used. `complaints` holds one line for each mistake in it."""
+
+    def __init__(self, complaints: tuple[str, ...]) -> None:
+        super().__init__("\n".join(complaints))
+        self.complaints = complaints
+
+
+class MissingElement(LookupError):
+    """Something that was asked for is not there. `known` names what there is instead."""
+
+    def __init__(self, kind: str, name: str, known: tuple[str, ...] = (), *, message: str = "") -> None:
+        self.kind = kind
+        self.name = name
+        self.known = known
+        listed = ", ".join(repr(each) for each in known) or "none"
+        super().__init__(message or f"there is no {kind} {name!r}; the file has: {listed}")

@@ -1,0 +1,185 @@
+"""A robot as plain values: what is left of a URDF once ROS 2 has read it.
+
+Lengths are metres, angles radians about fixed axes x, y, z (REP 103). `None` stands for a value that the file gives but
+that cannot be read; a value that the file leaves out has ROS 2's default.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import TypeVar
+
+from grader.errors import MissingElement
+from grader.robot.source import Mark
+
+Vector = tuple[float, float, float]
+Element = TypeVar("Element")
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where a child frame stands in its parent: `xyz` in metres, then `rpy` in radians about fixed axes."""
+
+    xyz: Vector = (0.0, 0.0, 0.0)
+    rpy: Vector = (0.0, 0.0, 0.0)
+    mark: Mark | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """A box about its centre; `size` holds the full edge lengths along x, y, z."""
+
+    size: Vector
+    mark: Mark | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Cylinder:
+    """A cylinder about its centre, its axis along z."""
+
+    radius: float
+    length: float
+    mark: Mark | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Sphere:
+    """A sphere about its centre."""
+
+    radius: float
+    mark: Mark | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Mesh:
+    """A mesh file. Its name is kept as text and never opened, so its extent is unknown."""
+
+    filename: str
+    scale: Vector = (1.0, 1.0, 1.0)
+    mark: Mark | None = field(default=None, compare=False, repr=False)
+
+
+Geometry = Box | Cylinder | Sphere | Mesh
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """A colour with channels in 0..1, red, green, blue, alpha; `texture` is a file name, never opened."""
+
+    name: str
+    rgba: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
+    texture: str = ""
+    mark: Mark | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Visual:
+    """One shape that a link shows. `material` is the resolved one; None where ROS 2 knows of no colour."""
+
+    geometry: Geometry
+    origin: Origin = Origin()
+    material: Material | None = None
+    material_name: str = ""
+    mark: Mark | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Collision:
+    """One shape that a link collides with."""
+
+    geometry: Geometry
+    origin: Origin = Origin()
+    mark: Mark | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Inertial:
+    """Mass in kilograms, centre of mass, and ixx, ixy, ixz, iyy, iyz, izz in kg m^2."""
+
+    mass: float
+    inertia: tuple[float, float, float, float, float, float]
+    origin: Origin = Origin()
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """A rigid body and its frame."""
+
+    name: str
+    visuals: tuple[Visual, ...] = ()
+    collisions: tuple[Collision, ...] = ()
+    inertial: Inertial | None = None
+    mark: Mark | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """A joint's range (rad or m), largest effort (N m or N) and largest speed (rad/s or m/s)."""
+
+    lower: float
+    upper: float
+    effort: float
+    velocity: float
+
+
+@dataclass(frozen=True, slots=True)
+class Mimic:
+    """This joint's position is `multiplier` times the named joint's, plus `offset`."""
+
+    joint: str
+    multiplier: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """What holds `child` to `parent`; the joint's frame is the child link's frame.
+
+    `type` is the file's text, so a misspelt one can be quoted. `origin` and `axis` are None where they are given but
+    cannot be read. `parent` and `child` are empty where the file does not say.
+    """
+
+    name: str
+    type: str
+    parent: str
+    child: str
+    origin: Origin | None = Origin()
+    axis: Vector | None = (1.0, 0.0, 0.0)
+    limit: Limit | None = None
+    mimic: Mimic | None = None
+    mark: Mark | None = field(default=None, compare=False, repr=False)
+    axis_mark: Mark | None = field(default=None, compare=False, repr=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Robot:
+    """Links and joints in file order. Two with one name cannot both be looked up: the first of them counts."""
+
+    name: str
+    links: tuple[Link, ...] = ()
+    joints: tuple[Joint, ...] = ()
+    materials: tuple[Material, ...] = ()
+    _links: dict[str, Link] = field(init=False, compare=False, repr=False, hash=False)
+    _joints: dict[str, Joint] = field(init=False, compare=False, repr=False, hash=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "_links", {link.name: link for link in reversed(self.links)})
+        object.__setattr__(self, "_joints", {joint.name: joint for joint in reversed(self.joints)})
+
+    def link(self, name: str) -> Link:
+        """The link of this name; raises MissingElement, which lists the names that there are."""
+        return _named(self._links, "link", name, self.links)
+
+    def joint(self, name: str) -> Joint:
+        """The joint of this name; raises MissingElement, which lists the names that there are."""
+        return _named(self._joints, "joint", name, self.joints)
+
+    def has_link(self, name: str) -> bool:
+        """Whether a link of this name was read."""
+        return name in self._links
+
+
+def _named(found: dict[str, Element], kind: str, name: str, order: Iterable[Link | Joint]) -> Element:
+    try:
+        return found[name]
+    except KeyError:
+        raise MissingElement(kind, name, tuple(each.name for each in order)) from None

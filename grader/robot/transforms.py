@@ -1,0 +1,146 @@
+"""Rigid motions as plain floats.
+
+At 4 x 4 a product of Python floats costs no more than a numpy call, and saves the import; `numpy.asarray(transform)`
+gives the homogeneous matrix.
+"""
+
+from dataclasses import dataclass
+from math import cos, hypot, sin
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import numpy as np
+
+Vector = tuple[float, float, float]
+Rotation = tuple[float, float, float, float, float, float, float, float, float]  # rows of a 3 x 3 matrix, one by one
+
+IDENTITY_ROTATION: Rotation = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Transform:
+    """T_a_b: maps points given in frame b to frame a. `translation` is b's origin in a, metres."""
+
+    rotation: Rotation = IDENTITY_ROTATION
+    translation: Vector = (0.0, 0.0, 0.0)
+
+    def __matmul__(self, other: "Transform") -> "Transform":
+        """T_a_c = T_a_b @ T_b_c."""
+        a, b, c, d, e, f, g, h, i = self.rotation
+        j, k, l, m, n, o, p, q, r = other.rotation
+        return Transform(
+            (
+                a * j + b * m + c * p,
+                a * k + b * n + c * q,
+                a * l + b * o + c * r,
+                d * j + e * m + f * p,
+                d * k + e * n + f * q,
+                d * l + e * o + f * r,
+                g * j + h * m + i * p,
+                g * k + h * n + i * q,
+                g * l + h * o + i * r,
+            ),
+            self.apply(other.translation),
+        )
+
+    def apply(self, point: Vector) -> Vector:
+        """A point in b, seen in a."""
+        x, y, z = self.rotate(point)
+        u, v, w = self.translation
+        return (x + u, y + v, z + w)
+
+    def rotate(self, direction: Vector) -> Vector:
+        """A direction in b, seen in a: no translation."""
+        a, b, c, d, e, f, g, h, i = self.rotation
+        x, y, z = direction
+        return (a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z)
+
+    def unrotate(self, direction: Vector) -> Vector:
+        """A direction in a, seen in b."""
+        a, b, c, d, e, f, g, h, i = self.rotation
+        x, y, z = direction
+        return (a * x + d * y + g * z, b * x + e * y + h * z, c * x + f * y + i * z)
+
+    def inverse(self) -> "Transform":
+        """T_b_a."""
+        a, b, c, d, e, f, g, h, i = self.rotation
+        x, y, z = self.unrotate(self.translation)
+        return Transform((a, d, g, b, e, h, c, f, i), (-x, -y, -z))
+
+    @property
+    def matrix(self) -> tuple[tuple[float, float, float, float], ...]:
+        """The 4 x 4 homogeneous matrix, row by row."""
+        a, b, c, d, e, f, g, h, i = self.rotation
+        x, y, z = self.translation
+        return ((a, b, c, x), (d, e, f, y), (g, h, i, z), (0.0, 0.0, 0.0, 1.0))
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> "np.ndarray[Any, Any]":
+        """The 4 x 4 homogeneous matrix for numpy, shape (4, 4)."""
+        import numpy as np  # only callers that already have numpy come here
+
+        return np.array(self.matrix, dtype=dtype)
+
+
+IDENTITY = Transform()
+
+
+def rotation_from_rpy(rpy: Vector) -> Rotation:
+    """Roll about x, then pitch about y, then yaw about z, all fixed: Rz(yaw) Ry(pitch) Rx(roll) (REP 103)."""
+    if rpy == (0.0, 0.0, 0.0):
+        return IDENTITY_ROTATION
+    roll, pitch, yaw = rpy
+    sr, cr, sp, cp, sy, cy = sin(roll), cos(roll), sin(pitch), cos(pitch), sin(yaw), cos(yaw)
+    return (
+        cy * cp,
+        cy * sp * sr - sy * cr,
+        cy * sp * cr + sy * sr,
+        sy * cp,
+        sy * sp * sr + cy * cr,
+        sy * sp * cr - cy * sr,
+        -sp,
+        cp * sr,
+        cp * cr,
+    )
+
+
+def rotation_about(axis: Vector, angle: float) -> Rotation:
+    """The turn by `angle` radians about a unit axis, right-handed (Rodrigues)."""
+    x, y, z = axis
+    s, c = sin(angle), cos(angle)
+    t = 1.0 - c
+    return (
+        t * x * x + c,
+        t * x * y - s * z,
+        t * x * z + s * y,
+        t * x * y + s * z,
+        t * y * y + c,
+        t * y * z - s * x,
+        t * x * z - s * y,
+        t * y * z + s * x,
+        t * z * z + c,
+    )
+
+
+def unit(vector: Vector) -> Vector | None:
+    """The direction of a vector, or None where it has none. Safe from overflow and underflow."""
+    largest = max(abs(vector[0]), abs(vector[1]), abs(vector[2]))
+    if largest == 0.0 or largest == float("inf") or largest != largest:
+        return None
+    x, y, z = vector[0] / largest, vector[1] / largest, vector[2] / largest
+    norm = hypot(x, y, z)
+    return (x / norm, y / norm, z / norm)
+
+
+def dot(a: Vector, b: Vector) -> float:
+    """The scalar product."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def cross(a: Vector, b: Vector) -> Vector:
+    """The vector product, right-handed."""
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def minus(a: Vector, b: Vector) -> Vector:
+    """The vector from b to a."""
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
