@@ -18,11 +18,17 @@ class RubricError(GraderError):
 
 
 class MissingElement(LookupError):
-    """Something that was asked for is not there. `known` names what there is instead."""
+    """Something that a question needs is not there: a link, a shape, a chain of joints, a defined pose.
 
-    def __init__(self, kind: str, name: str, known: tuple[str, ...] = (), *, message: str = "") -> None:
+    `kind` and `name` tell two questions apart that fail for the same reason; `known` names what there is instead.
+    """
+
+    def __init__(
+        self, kind: str, name: str, known: tuple[str, ...] = (), *, message: str = "", location: object = None
+    ) -> None:
         self.kind = kind
         self.name = name
         self.known = known
-        listed = ", ".join(repr(each) for each in known) or "none"
+        self.location = location
+        listed = ", ".join(repr(each) for each in known[:20]) or "none"
         super().__init__(message or f"there is no {kind} {name!r}; the file has: {listed}")

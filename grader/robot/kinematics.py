@@ -1,0 +1,264 @@
+"""Forward kinematics: where every link is when the joints are at given positions."""
+
+from collections.abc import Mapping, Sequence
+from math import atan2, isfinite
+
+from grader.errors import MissingElement
+from grader.robot.joints import MOVING_TYPES
+from grader.robot.model import Joint, Link, Origin, Robot
+from grader.robot.transforms import (
+    IDENTITY,
+    Transform,
+    Vector,
+    cross,
+    dot,
+    rotation_about,
+    rotation_from_rpy,
+    unit,
+)
+from grader.robot.tree import holding_joints
+
+Position = float | Sequence[float]
+
+# How many numbers the position of a joint has; the types that are not named here do not move.
+DEGREES_OF_FREEDOM = {"continuous": 1, "revolute": 1, "prismatic": 1, "planar": 3, "floating": 6}
+
+
+def transform(origin: Origin) -> Transform:
+    """T_parent_child of an origin."""
+    return Transform(rotation_from_rpy(origin.rpy), origin.xyz)
+
+
+class Configuration:
+    """A robot with its joints at `positions`: radians or metres; the joints that are not named are at 0.
+
+    A planar joint takes x, y (metres in the plane across its axis) and an angle; a floating joint takes x, y, z, roll,
+    pitch, yaw. A mimic joint follows, unless it is named itself. Links that no joint leads to are roots, so a forest is
+    solved tree by tree. Every link is solved once, root first: linear in the number of links, without recursion.
+    """
+
+    def __init__(self, robot: Robot, positions: Mapping[str, Position] | None = None) -> None:
+        """Raises MissingElement for a joint that is not there, ValueError for a position of the wrong shape."""
+        self.robot = robot
+        self.positions = dict(positions or {})
+        self.holding = holding_joints(robot)
+        for name, position in self.positions.items():
+            _check_position(robot.joint(name), position)
+        self._placed: dict[str, tuple[str, Transform | Joint]] | None = None  # link: its root, its pose or what spoils it
+        self._inverses: dict[str, Transform] = {}
+
+    def link(self, name: str) -> Link:
+        """The link of this name; raises MissingElement."""
+        return self.robot.link(name)
+
+    def joint(self, name: str) -> Joint:
+        """The joint of this name; raises MissingElement."""
+        return self.robot.joint(name)
+
+    @property
+    def roots(self) -> tuple[str, ...]:
+        """The links that no joint holds, in file order."""
+        return tuple(link.name for link in self.robot.links if link.name not in self.holding)
+
+    def root_of(self, link: str) -> str:
+        """The root of the tree that a link belongs to; raises MissingElement for a link on a loop of joints."""
+        return self._place(link)[0]
+
+    def pose(self, link: str, *, relative_to: str | None = None) -> Transform:
+        """T_root_link, or T_relative_link: the link's frame in another link's frame.
+
+        Raises MissingElement where there is no such link, no chain of joints between the two, or no defined pose
+        (an axis of length zero, an origin that cannot be read).
+        """
+        T_root_link = self._pose(link)
+        if relative_to is None:
+            return T_root_link
+        if relative_to == link:
+            return IDENTITY
+        T_root_relative = self._pose(relative_to)
+        ours, theirs = self.root_of(link), self.root_of(relative_to)
+        if ours != theirs:
+            message = f"no chain of joints leads from {relative_to!r} to {link!r}"
+            raise MissingElement(
+                "connection", " and ".join(sorted((ours, theirs))), message=message, location=_place(self.link(link))
+            )
+        if relative_to == theirs:
+            return T_root_link
+        inverse = self._inverses.get(relative_to)
+        if inverse is None:
+            inverse = self._inverses[relative_to] = T_root_relative.inverse()
+        return inverse @ T_root_link
+
+    def axis(self, joint: str) -> Vector:
+        """The unit axis of a joint in its child link's frame; raises MissingElement where it has no direction."""
+        found = self.joint(joint)
+        direction = unit(found.axis) if found.axis is not None else None
+        if direction is None:
+            raise _undefined(found)
+        return direction
+
+    def chain(self, link: str, *, above: str | None = None) -> tuple[Joint, ...] | None:
+        """The joints that lead to a link, top down, from its root or from the link `above`; None if that is not above."""
+        self.link(link)
+        joints: list[Joint] = []
+        name = link
+        while name != above and name in self.holding and len(joints) <= len(self.holding):
+            joints.append(self.holding[name])
+            name = self.holding[name].parent
+        if above is not None and name != above:
+            self.link(above)
+            return None
+        return tuple(reversed(joints))
+
+    def between(self, one: str, other: str) -> tuple[Joint, ...]:
+        """The joints on the way from one link to another; raises MissingElement where there is no way."""
+        up, down = self.chain(one) or (), self.chain(other) or ()
+        if self.root_of(one) != self.root_of(other):
+            self.pose(other, relative_to=one)
+        shared = 0
+        while shared < min(len(up), len(down)) and up[shared] is down[shared]:
+            shared += 1
+        return (*reversed(up[shared:]), *down[shared:])
+
+    def moved(self, joint: str, position: Position) -> "Configuration":
+        """The same robot with one joint elsewhere."""
+        return Configuration(self.robot, {**self.positions, joint: position})
+
+    def position(self, joint: Joint) -> Position:
+        """Where a joint is: its own position, that of the joint that it mimics, or 0."""
+        own = self.positions.get(joint.name)
+        if own is not None or joint.mimic is None:
+            return 0.0 if own is None else own
+        return self._mimicked(joint)
+
+    def _mimicked(self, joint: Joint) -> float:
+        factor, offset = 1.0, 0.0
+        followed: set[str] = set()
+        while joint.mimic is not None and joint.name not in self.positions:
+            offset += factor * joint.mimic.offset
+            factor *= joint.mimic.multiplier
+            followed.add(joint.name)
+            if joint.mimic.joint in followed:
+                return 0.0  # joints that follow each other in a circle are moved by nobody
+            try:
+                joint = self.joint(joint.mimic.joint)
+            except MissingElement:
+                return offset
+        own = self.positions.get(joint.name, 0.0)
+        return factor * own + offset if isinstance(own, int | float) else offset
+
+    def _pose(self, link: str) -> Transform:
+        placed = self._place(link)[1]
+        if isinstance(placed, Joint):
+            raise _undefined(placed)
+        return placed
+
+    def _place(self, link: str) -> tuple[str, Transform | Joint]:
+        if self._placed is None:
+            self._placed = self._solve()
+        found = self._placed.get(link)
+        if found is None:
+            at = _place(self.link(link))
+            message = f"link {link!r} hangs on a loop of joints: it is in no tree"
+            raise MissingElement("connection", link, message=message, location=at)
+        return found
+
+    def _solve(self) -> dict[str, tuple[str, Transform | Joint]]:
+        below: dict[str, list[Joint]] = {}
+        for joint in self.holding.values():
+            below.setdefault(joint.parent, []).append(joint)
+        placed: dict[str, tuple[str, Transform | Joint]] = {}
+        for root in self.roots:
+            placed[root] = (root, IDENTITY)
+            waiting = [root]
+            while waiting:
+                parent = waiting.pop()
+                for joint in below.get(parent, ()):
+                    placed[joint.child] = (root, self._step(placed[parent][1], joint))
+                    waiting.append(joint.child)
+        return placed
+
+    def _step(self, T_root_parent: Transform | Joint, joint: Joint) -> Transform | Joint:
+        """T_root_child, or the joint that keeps it from being defined."""
+        if isinstance(T_root_parent, Joint):
+            return T_root_parent
+        motion = motion_of(joint, self.position(joint))
+        if joint.origin is None or motion is None:
+            return joint
+        T_root_child = T_root_parent @ transform(joint.origin)
+        if motion is not IDENTITY:
+            T_root_child = T_root_child @ motion
+        return T_root_child if isfinite(sum(T_root_child.translation)) else joint
+
+
+def motion_of(joint: Joint, position: Position) -> Transform | None:
+    """What a joint adds behind its origin; None where it is undefined, as it is for any position about a zero axis (KDL)."""
+    if joint.type not in MOVING_TYPES:
+        return IDENTITY
+    if joint.type == "floating":
+        return _floating(position)
+    direction = unit(joint.axis) if joint.axis is not None else None
+    if direction is None:
+        # KDL divides by the axis' length before it looks at the position. An unreadable axis matters to motion only.
+        return IDENTITY if joint.axis is None and not position else None
+    if joint.type == "planar":
+        return _planar(direction, position)
+    if not position:
+        return IDENTITY
+    assert isinstance(position, int | float)  # _check_position has seen to it
+    if joint.type == "prismatic":
+        x, y, z = direction
+        return Transform(translation=(x * position, y * position, z * position))
+    return Transform(rotation_about(direction, position))
+
+
+def _floating(position: Position) -> Transform:
+    if isinstance(position, int | float):
+        return IDENTITY
+    x, y, z, roll, pitch, yaw = position
+    return Transform(rotation_from_rpy((roll, pitch, yaw)), (x, y, z))
+
+
+def _planar(normal: Vector, position: Position) -> Transform:
+    """Slide in the plane across `normal`, then turn about it; x and y are the frame's where the normal is its z axis."""
+    if isinstance(position, int | float):
+        return IDENTITY
+    x, y, angle = position
+    around = cross((0.0, 0.0, 1.0), normal)
+    turn = unit(around)
+    if turn is None:
+        slide: Vector = (x, y, 0.0) if normal[2] > 0 else (x, -y, 0.0)
+    else:
+        cosine = dot((0.0, 0.0, 1.0), normal)
+        sine = dot(turn, around)
+        tilt = rotation_about(turn, atan2(sine, cosine))
+        slide = Transform(tilt).rotate((x, y, 0.0))
+    return Transform(rotation_about(normal, angle), slide)
+
+
+def _check_position(joint: Joint, position: Position) -> None:
+    wanted = DEGREES_OF_FREEDOM.get(joint.type, 0)
+    given = 1 if isinstance(position, int | float) else len(position)
+    if wanted == 0:
+        raise ValueError(f"joint {joint.name!r} is {joint.type or 'without type'}: it has no position")
+    if given != wanted or (wanted > 1 and isinstance(position, int | float)):
+        raise ValueError(f"joint {joint.name!r} is {joint.type}: its position has {wanted} number(s), not {given}")
+
+
+def _undefined(joint: Joint) -> MissingElement:
+    at = joint.mark.location() if joint.mark else None
+    if joint.origin is None:
+        reason = "its origin cannot be read"
+    elif joint.axis is None:
+        reason = "its axis cannot be read"
+    elif unit(joint.axis) is None:
+        reason = "its axis is 0 0 0"
+        at = joint.axis_mark.location("xyz") if joint.axis_mark else at
+    else:
+        reason = "its numbers are too large"
+    message = f"the pose behind joint {joint.name!r} is undefined: {reason}"
+    return MissingElement("pose behind joint", joint.name, message=message, location=at)
+
+
+def _place(link: Link) -> object:
+    return link.mark.location() if link.mark else None

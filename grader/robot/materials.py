@@ -1,0 +1,93 @@
+"""Which colour a visual ends up with (`model.cpp`: assignMaterial, `link.cpp`: parseMaterial)."""
+
+from dataclasses import replace
+
+from grader.robot import catalogue
+from grader.robot.model import Material, Visual
+from grader.robot.names import did_you_mean
+from grader.robot.notes import Element, Notes, shown
+from grader.robot.numbers import NumberError, rgba
+
+_BLACK = (0.0, 0.0, 0.0, 1.0)
+
+
+class Materials:
+    """The materials that ROS 2 knows so far. Those under <robot> come first, then those in links, in file order."""
+
+    def __init__(self, notes: Notes) -> None:
+        self._notes = notes
+        self.known: dict[str, Material] = {}
+
+    def define(self, element: Element) -> None:
+        """Read a material directly under <robot>; without a readable colour it is black."""
+        notes = self._notes
+        name = element.get("name")
+        if name is None:
+            notes.add(catalogue.UNNAMED_MATERIAL, "this material has no name; no link can use it", element)
+        material, _ = self._read(element, name or "", "ROS 2 shows black")
+        if name is not None and material is None:
+            message = f"material {name!r} has no readable colour; ROS 2 makes it black"
+            if element.find("color[@rgba]") is None:
+                notes.add(catalogue.COLOURLESS_MATERIAL, message, element)
+            notes.printed(name, element, "name")
+        if (name or "") in self.known:
+            message = f"material {name or ''!r} is defined twice under <robot>; ROS 2 loads nothing"
+            notes.add(catalogue.DUPLICATE_MATERIAL, message, element, "name")
+            return
+        self.known[name or ""] = material or Material(name or "", mark=notes.mark(element))
+
+    def assign(self, visual: Visual, element: Element | None, link: str) -> Visual:
+        """The visual with its material: a registered name wins, else the definition in place registers it."""
+        if element is None:
+            return visual
+        name = element.get("name") or ""
+        if not len(element) and name in self.known and name:
+            return replace(visual, material=self.known[name], material_name=name)
+        fallback = "the definition above counts" if name in self.known else f"material {name!r} stays undefined here"
+        own, complained = self._read(element, name, f"ROS 2 logs an error: {fallback}")
+        found = self.known.get(name) if name else own
+        if found is None and own is None:
+            if name and not complained:
+                self._undefined(name, element, link)
+        elif found is None and own is not None:
+            found = self.known[name] = own
+        elif own is not None and found is not None and (own.rgba, own.texture) != (found.rgba, found.texture):
+            message = f"material {name!r} is already defined otherwise; ROS 2 ignores this definition"
+            self._notes.add(catalogue.REDEFINED_MATERIAL, message, element, "name")
+        return replace(visual, material=found, material_name=name)
+
+    def _read(self, element: Element, name: str, consequence: str) -> tuple[Material | None, bool]:
+        """The material defined in an element, if it is; and whether a complaint about its colour was noted."""
+        texture = element.find("texture")
+        filename = texture.get("filename") if texture is not None else None
+        colour = element.find("color")
+        text = colour.get("rgba") if colour is not None else None
+        channels, complained = None, False
+        if text is not None and colour is not None:
+            try:
+                channels = rgba(text)
+                if channels is None:
+                    message = f"rgba={shown(text)} needs four numbers; ROS 2 silently shows black"
+                    self._notes.add(catalogue.COLOUR_COUNT, message, colour, "rgba")
+                    channels = _BLACK
+            except NumberError as error:
+                complained = True
+                message = f"rgba={shown(text)} cannot be read: {error}; {consequence}"
+                self._notes.add(catalogue.BAD_COLOUR, message, colour, "rgba")
+                self._notes.printed(f"{name} {text}", colour, "rgba")
+        if channels is None and filename is None:
+            return None, complained
+        mark = self._notes.mark(element if colour is None else colour)
+        return Material(name, channels or _BLACK, filename or "", mark), complained
+
+    def _undefined(self, name: str, element: Element, link: str) -> None:
+        notes = self._notes
+        defined = [each for each in notes.root.iter("material") if len(each) and each.get("name")]
+        later = next((each for each in defined if each.get("name") == name), None)
+        if later is not None:
+            line = notes.mark(later).location().line
+            hint = f" before its definition in line {line}; define it directly under <robot>"
+        else:
+            hint = f", which is defined nowhere{did_you_mean(name, [str(each.get('name')) for each in defined])}"
+        message = f"link {link!r} uses material {name!r}{hint}; ROS 2 shows it without the colour"
+        notes.add(catalogue.UNDEFINED_MATERIAL, message, element, "name")

@@ -1,0 +1,165 @@
+"""Read a URDF as ROS 2 (Jazzy) does, and say everything that is wrong with it."""
+
+import re
+from dataclasses import dataclass
+from typing import Literal
+
+from lxml import etree
+
+from grader.robot import catalogue, dialect
+from grader.robot.catalogue import Problem
+from grader.robot.joints import read_joint
+from grader.robot.links import read_link
+from grader.robot.materials import Materials
+from grader.robot.model import Joint, Link, Robot
+from grader.robot.notes import Element, Notes
+from grader.robot.numbers import is_version_one
+from grader.robot.source import Source
+from grader.robot.spelling import check_spelling
+from grader.robot.tree import check_tree
+
+Verdict = Literal["clean", "degraded", "rejected"]
+
+# The reader hands over bytes that it has capped itself: no file, no network and no entity is opened by lxml.
+_PARSER = etree.XMLParser(
+    resolve_entities=False,
+    no_network=True,
+    load_dtd=False,
+    dtd_validation=False,
+    huge_tree=False,
+    remove_comments=True,
+    remove_pis=True,
+)
+_XACRO = re.compile(r"<!--.*?-->|(<xacro:|\$\{|\$\()", re.DOTALL)
+_COMMENT_TRAP = re.compile(r"<!--(?:(?!-->)[^\t])*?(?:\t|: )")
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """What ROS 2 makes of a URDF. `robot` holds what could be read, also of a rejected file; None where nothing could."""
+
+    verdict: Verdict
+    robot: Robot | None
+    problems: tuple[Problem, ...]
+    source: Source
+
+
+def read_urdf(data: bytes, path: str = "robot.urdf") -> Reading:
+    """Read the bytes of a URDF; `path` is only quoted in places.
+
+    The verdict is ROS 2 Jazzy's (urdfdom on TinyXML2): `clean`; `degraded`, if content was dropped or links are left out
+    of the tree; `rejected`. Every problem is reported, sorted by place. Never raises for any input.
+    """
+    text = data.decode("utf-8", "surrogateescape")
+    if dialect.is_plain(data):
+        try:
+            root = etree.fromstring(data, _PARSER)
+        except etree.XMLSyntaxError:
+            pass
+        else:
+            return _read_plain(root, Source(path, text))
+    return _read_dialect(text, path)
+
+
+def _read_plain(root: Element, source: Source) -> Reading:
+    notes = Notes(source, root)
+    if root.tag != "robot":
+        message = f"the file holds <{etree.QName(root).localname}>, no <robot>; ROS 2 loads nothing"
+        return _judge(None, [Problem(catalogue.NO_ROBOT, message, source.tag(0))], source)
+    robot = _read_robot(root, notes)
+    return _judge(robot, notes.problems, source)
+
+
+def _read_dialect(text: str, path: str) -> Reading:
+    scan = dialect.translate(text)
+    source = Source(path, text, scan.offsets)
+    problems = [Problem(each.kind, each.message, source.at(each.offset)) for each in scan.findings]
+    if not scan.xml:
+        if not any(problem.kind.effect == "rejects" for problem in problems):
+            message = "there is no <robot> at the top level of the file; ROS 2 loads nothing"
+            problems.append(Problem(catalogue.NO_ROBOT, message, source.at(0)))
+        return _judge(None, problems, source)
+    root = etree.fromstring(scan.xml, _PARSER)
+    notes = Notes(source, root)
+    robot = _read_robot(root, notes)
+    return _judge(robot, problems + notes.problems, source)
+
+
+def _judge(robot: Robot | None, problems: list[Problem], source: Source) -> Reading:
+    effects = {problem.kind.effect for problem in problems}
+    verdict: Verdict = "rejected" if "rejects" in effects else "degraded" if "drops" in effects else "clean"
+    ordered = sorted(problems, key=lambda each: (each.location.line, each.location.column, each.code))
+    return Reading(verdict, robot, tuple(ordered), source)
+
+
+def _read_robot(root: Element, notes: Notes) -> Robot:
+    _check_robot(root, notes)
+    materials = Materials(notes)
+    for element in root.iterchildren("material"):
+        materials.define(element)
+    links: dict[str, tuple[Link, Element]] = {}
+    for element in root.iterchildren("link"):
+        link = read_link(element, notes, materials)
+        if link.name in links:
+            line = notes.mark(links[link.name][1]).location().line
+            message = f"there is a link {link.name!r} already, in line {line}; ROS 2 loads nothing of the file"
+            notes.add(catalogue.DUPLICATE_LINK, message, element, "name")
+        else:
+            links[link.name] = (link, element)
+    if not links:
+        notes.add(catalogue.NO_LINKS, "the robot has no <link>; ROS 2 loads nothing", root)
+    joints = _read_joints(root, notes)
+    robot = Robot(
+        root.get("name") or "",
+        tuple(link for link, _ in links.values()),
+        tuple(joint for joint, _ in joints.values()),
+        tuple(materials.known.values()),
+    )
+    link_elements = {name: element for name, (_, element) in links.items()}
+    check_tree(robot, link_elements, {name: element for name, (_, element) in joints.items()}, notes)
+    check_spelling(root, notes)
+    _check_root_inertia(robot, link_elements, notes)
+    _check_text(root, notes)
+    return robot
+
+
+def _read_joints(root: Element, notes: Notes) -> dict[str, tuple[Joint, Element]]:
+    joints: dict[str, tuple[Joint, Element]] = {}
+    for element in root.iterchildren("joint"):
+        joint = read_joint(element, notes)
+        if joint.name in joints:
+            line = notes.mark(joints[joint.name][1]).location().line
+            message = f"there is a joint {joint.name!r} already, in line {line}; ROS 2 loads nothing of the file"
+            notes.add(catalogue.DUPLICATE_JOINT, message, element, "name")
+        else:
+            joints[joint.name] = (joint, element)
+    return joints
+
+
+def _check_robot(root: Element, notes: Notes) -> None:
+    if root.get("name") is None:
+        notes.add(catalogue.ROBOT_WITHOUT_NAME, "<robot> has no name; ROS 2 loads nothing of the file", root)
+    version = root.get("version")
+    if version is not None and not is_version_one(version):
+        message = f'version="{version[:40]}" is not one that ROS 2 knows (1.0); it loads nothing of the file'
+        notes.add(catalogue.BAD_VERSION, message, root, "version")
+
+
+def _check_root_inertia(robot: Robot, links: dict[str, Element], notes: Notes) -> None:
+    children = {joint.child for joint in robot.joints}
+    for link in robot.links:
+        if link.inertial is not None and link.name not in children:
+            message = f"the root link {link.name!r} has an inertia: robot_state_publisher warns, and KDL ignores it"
+            notes.add(catalogue.ROOT_INERTIA, message, links[link.name].find("inertial"))
+
+
+def _check_text(root: Element, notes: Notes) -> None:
+    text = notes.source.text
+    xacro = next(filter(lambda found: found[1], _XACRO.finditer(text)), None) if "$" in text or "xacro:" in text else None
+    if xacro:
+        message = "this is xacro, which ROS 2 does not evaluate in a .urdf: expand it first (ros2 run xacro xacro FILE)"
+        notes.problems.append(Problem(catalogue.RAW_XACRO, message, notes.source.at(xacro.start())))
+    trap = _COMMENT_TRAP.search(text) if "<!--" in text else None
+    if trap:
+        message = "a comment with a colon and a space, or a tab, can stop a launch file that passes the URDF as YAML"
+        notes.problems.append(Problem(catalogue.COMMENT_TRAP, message, notes.source.at(trap.start())))

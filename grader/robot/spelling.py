@@ -1,0 +1,106 @@
+"""Names that ROS 2 does not know and skips in silence, where they look like misspelt ones; and elements given twice."""
+
+from grader.robot import catalogue
+from grader.robot.names import closest
+from grader.robot.notes import Element, Notes
+
+# What urdfdom reads: the attributes of each element, and the elements that may stand in it.
+_ATTRIBUTES: dict[str, tuple[str, ...]] = {
+    "robot": ("name", "version"),
+    "link": ("name",),
+    "joint": ("name", "type"),
+    "material": ("name",),
+    "visual": ("name",),
+    "collision": ("name",),
+    "inertial": (),
+    "geometry": (),
+    "origin": ("xyz", "rpy"),
+    "box": ("size",),
+    "cylinder": ("radius", "length"),
+    "sphere": ("radius",),
+    "mesh": ("filename", "scale"),
+    "color": ("rgba",),
+    "texture": ("filename",),
+    "mass": ("value",),
+    "inertia": ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"),
+    "parent": ("link",),
+    "child": ("link",),
+    "axis": ("xyz",),
+    "limit": ("lower", "upper", "effort", "velocity"),
+    "dynamics": ("damping", "friction"),
+    "mimic": ("joint", "multiplier", "offset"),
+    "safety_controller": ("soft_lower_limit", "soft_upper_limit", "k_position", "k_velocity"),
+    "calibration": ("rising", "falling"),
+}
+_CHILDREN: dict[str, tuple[str, ...]] = {
+    "robot": ("link", "joint", "material"),
+    "link": ("inertial", "visual", "collision"),
+    "visual": ("origin", "geometry", "material"),
+    "collision": ("origin", "geometry"),
+    "inertial": ("origin", "mass", "inertia"),
+    "geometry": ("box", "cylinder", "sphere", "mesh"),
+    "material": ("color", "texture"),
+    "joint": ("origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "safety_controller", "calibration"),
+}
+# Correct in their place, though urdfdom does not read them: no hint may call them a misspelling.
+_EXTENSIONS = frozenset(
+    {"gazebo", "transmission", "ros2_control", "sensor", "plugin", "drake", "mujoco", "capsule", "verbose", "hardwareInterface"}
+)
+_SINGLE = frozenset({"origin", "geometry", "parent", "child", "axis", "limit", "inertial", "mass", "inertia", "mimic", "dynamics"})
+_SWAPPED = {("cylinder", "height"): "length", ("color", "rgb"): "rgba", ("origin", "pos"): "xyz"}
+_KNOWN_NAMES = frozenset(_ATTRIBUTES)
+_KNOWN_ATTRIBUTES = {tag: frozenset(names) for tag, names in _ATTRIBUTES.items()}
+
+
+def check_spelling(root: Element, notes: Notes) -> None:
+    """Note misspelt names and repeated elements in what urdfdom reads; extensions of other tools are left alone."""
+    waiting = [root]
+    while waiting:
+        element = waiting.pop()
+        if not _KNOWN_ATTRIBUTES[element.tag].issuperset(element.keys()):
+            _check_attributes(element, notes)
+        allowed = _CHILDREN.get(element.tag)
+        if not allowed or not len(element):
+            continue
+        tags = [child.tag for child in element]
+        if len(set(tags)) != len(tags) or element.tag == "geometry":
+            _check_repeated(element, tags, notes)
+        for child in element:
+            if child.tag in allowed:
+                waiting.append(child)
+            elif child.tag not in _EXTENSIONS:
+                _check_tag(child, element.tag, allowed, notes)
+
+
+def _check_attributes(element: Element, notes: Notes) -> None:
+    known = _ATTRIBUTES[element.tag]
+    for name in element.keys():
+        if name in known or name.startswith("{"):
+            continue
+        meant = _SWAPPED.get((element.tag, name)) or closest(name, [each for each in known if element.get(each) is None])
+        if meant:
+            message = f"<{element.tag}> has no attribute {name!r}, and ROS 2 ignores it; did you mean {meant!r}?"
+            notes.add(catalogue.MISSPELT, message, element, name)
+
+
+def _check_tag(child: Element, parent: str, allowed: tuple[str, ...], notes: Notes) -> None:
+    meant = closest(child.tag, allowed)
+    if meant:
+        message = f"ROS 2 ignores <{child.tag}> in <{parent}>; did you mean <{meant}>?"
+    elif child.tag in _KNOWN_NAMES:
+        message = f"ROS 2 ignores <{child.tag}> in <{parent}>: it does not belong there"
+    else:
+        return
+    notes.add(catalogue.MISSPELT, message, child)
+
+
+def _check_repeated(element: Element, tags: list[str], notes: Notes) -> None:
+    seen: set[str] = set()
+    for child, tag in zip(element, tags, strict=True):
+        if element.tag == "geometry":
+            if seen:
+                notes.add(catalogue.REPEATED_ELEMENT, "a <geometry> has one shape: ROS 2 reads the first only", child)
+        elif tag in seen and (tag in _SINGLE or (element.tag == "visual" and tag == "material")):
+            message = f"<{tag}> stands twice in this <{element.tag}>: ROS 2 reads the first only"
+            notes.add(catalogue.REPEATED_ELEMENT, message, child)
+        seen.add(tag)
