@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from math import atan2, isfinite
+from typing import NamedTuple
 
 from grader.errors import MissingElement
 from grader.robot.joints import MOVING_TYPES
@@ -44,7 +45,8 @@ class Configuration:
         self.holding = holding_joints(robot)
         for name, position in self.positions.items():
             _check_position(robot.joint(name), position)
-        self._placed: dict[str, tuple[str, Transform | Joint]] | None = None  # link: its root, its pose or what spoils it
+        self._placed: dict[str, _Placed] = {}
+        self._solved = False
         self._inverses: dict[str, Transform] = {}
 
     def link(self, name: str) -> Link:
@@ -62,7 +64,7 @@ class Configuration:
 
     def root_of(self, link: str) -> str:
         """The root of the tree that a link belongs to; raises MissingElement for a link on a loop of joints."""
-        return self._place(link)[0]
+        return self._place(link).root
 
     def pose(self, link: str, *, relative_to: str | None = None) -> Transform:
         """T_root_link, or T_relative_link: the link's frame in another link's frame.
@@ -70,24 +72,23 @@ class Configuration:
         Raises MissingElement where there is no such link, no chain of joints between the two, or no defined pose
         (an axis of length zero, an origin that cannot be read).
         """
-        T_root_link = self._pose(link)
-        if relative_to is None:
-            return T_root_link
+        ours = self._place(link)
+        theirs = self._place(relative_to) if relative_to is not None else self._place(ours.root)
         if relative_to == link:
             return IDENTITY
-        T_root_relative = self._pose(relative_to)
-        ours, theirs = self.root_of(link), self.root_of(relative_to)
-        if ours != theirs:
+        if ours.root != theirs.root:
+            roots = " and ".join(sorted((ours.root, theirs.root)))
             message = f"no chain of joints leads from {relative_to!r} to {link!r}"
-            raise MissingElement(
-                "connection", " and ".join(sorted((ours, theirs))), message=message, location=_place(self.link(link))
-            )
-        if relative_to == theirs:
-            return T_root_link
+            raise MissingElement("connection", roots, message=message, location=_location(self.link(link)))
+        if ours.island != theirs.island:
+            way = self.between(relative_to or ours.root, link)
+            raise _undefined(next((joint for joint in way if _step(joint, self.position(joint)) is None), way[-1]))
+        if relative_to is None or relative_to == ours.island:
+            return ours.pose
         inverse = self._inverses.get(relative_to)
         if inverse is None:
-            inverse = self._inverses[relative_to] = T_root_relative.inverse()
-        return inverse @ T_root_link
+            inverse = self._inverses[relative_to] = theirs.pose.inverse()
+        return inverse @ ours.pose
 
     def axis(self, joint: str) -> Vector:
         """The unit axis of a joint in its child link's frame; raises MissingElement where it has no direction."""
@@ -147,48 +148,57 @@ class Configuration:
         own = self.positions.get(joint.name, 0.0)
         return factor * own + offset if isinstance(own, int | float) else offset
 
-    def _pose(self, link: str) -> Transform:
-        placed = self._place(link)[1]
-        if isinstance(placed, Joint):
-            raise _undefined(placed)
-        return placed
-
-    def _place(self, link: str) -> tuple[str, Transform | Joint]:
-        if self._placed is None:
-            self._placed = self._solve()
+    def _place(self, link: str) -> "_Placed":
+        if not self._solved:
+            self._solve()
         found = self._placed.get(link)
         if found is None:
-            at = _place(self.link(link))
+            at = _location(self.link(link))
             message = f"link {link!r} hangs on a loop of joints: it is in no tree"
             raise MissingElement("connection", link, message=message, location=at)
         return found
 
-    def _solve(self) -> dict[str, tuple[str, Transform | Joint]]:
+    def _solve(self) -> None:
+        """Place every link, root first. Behind a joint with an undefined pose a new island begins.
+
+        So the poses behind such a joint are still known relative to each other, and one defect does not hide another.
+        """
+        self._solved = True
         below: dict[str, list[Joint]] = {}
         for joint in self.holding.values():
             below.setdefault(joint.parent, []).append(joint)
-        placed: dict[str, tuple[str, Transform | Joint]] = {}
+        placed = self._placed
         for root in self.roots:
-            placed[root] = (root, IDENTITY)
+            placed[root] = _Placed(root, root, IDENTITY)
             waiting = [root]
             while waiting:
                 parent = waiting.pop()
+                above = placed[parent]
                 for joint in below.get(parent, ()):
-                    placed[joint.child] = (root, self._step(placed[parent][1], joint))
+                    step = _step(joint, self.position(joint))
+                    pose = above.pose @ step if step is not None else None
+                    if pose is not None and isfinite(sum(pose.translation)):
+                        placed[joint.child] = _Placed(root, above.island, pose)
+                    else:
+                        placed[joint.child] = _Placed(root, joint.child, IDENTITY)
                     waiting.append(joint.child)
-        return placed
 
-    def _step(self, T_root_parent: Transform | Joint, joint: Joint) -> Transform | Joint:
-        """T_root_child, or the joint that keeps it from being defined."""
-        if isinstance(T_root_parent, Joint):
-            return T_root_parent
-        motion = motion_of(joint, self.position(joint))
-        if joint.origin is None or motion is None:
-            return joint
-        T_root_child = T_root_parent @ transform(joint.origin)
-        if motion is not IDENTITY:
-            T_root_child = T_root_child @ motion
-        return T_root_child if isfinite(sum(T_root_child.translation)) else joint
+
+class _Placed(NamedTuple):
+    """Where a link is: the root of its tree, the link from which its pose is measured, and T_island_link."""
+
+    root: str
+    island: str
+    pose: Transform
+
+
+def _step(joint: Joint, position: Position) -> Transform | None:
+    """T_parent_child of a joint, or None where it is undefined."""
+    motion = motion_of(joint, position)
+    if joint.origin is None or motion is None:
+        return None
+    step = transform(joint.origin)
+    return step if motion is IDENTITY else step @ motion
 
 
 def motion_of(joint: Joint, position: Position) -> Transform | None:
@@ -260,5 +270,5 @@ def _undefined(joint: Joint) -> MissingElement:
     return MissingElement("pose behind joint", joint.name, message=message, location=at)
 
 
-def _place(link: Link) -> object:
+def _location(link: Link) -> object:
     return link.mark.location() if link.mark else None

@@ -1,0 +1,145 @@
+"""Checks of what a link shows: its shape, its size, its colour."""
+
+from itertools import permutations
+from math import cos, radians
+
+from grader.checks.outcome import (
+    Outcome,
+    failed,
+    measured,
+    passed,
+    place,
+    point,
+    rounded,
+    rounded_point,
+    within,
+)
+from grader.checks.shown import body, shape_name, visuals
+from grader.errors import MissingElement
+from grader.robot.kinematics import Configuration, transform
+from grader.robot.model import Box, Cylinder, Sphere, Visual
+from grader.robot.transforms import Vector
+
+_ALIGNED = cos(radians(1.0))
+
+
+def shows_box(robot: Configuration, *, link: str, size: Vector, tolerance: float) -> Outcome:
+    """A link shows a box whose edges along the link's x, y and z axes have the given lengths in metres."""
+    found = [visual for visual in visuals(robot, link) if isinstance(visual.geometry, Box)]
+    if not found:
+        return _other_shape(robot, link, "box")
+    edges = [(_edges(visual), visual) for visual in found]
+    actual, visual = min(edges, key=lambda each: _largest_gap(each[0], size))
+    at = place(visual.geometry.mark, "size")
+    if actual is None:
+        return failed(f"the box of {link!r} is turned: its edges are not along the axes of {link!r}", at)
+    fine = all(within(a, b, tolerance) for a, b in zip(actual, size, strict=True))
+    message = f"{link!r} shows a box {point(actual)} m{'' if fine else f', expected {point(size)} m (x, y, z)'}"
+    status = "passed" if fine else "failed"
+    return Outcome(status, message, rounded_point(actual), rounded_point(size), tolerance, "m", at)
+
+
+def shows_cylinder(robot: Configuration, *, link: str, radius: float, length: float, tolerance: float) -> Outcome:
+    """A link shows a cylinder of the given radius and length in metres."""
+    found = [visual.geometry for visual in visuals(robot, link) if isinstance(visual.geometry, Cylinder)]
+    if not found:
+        return _other_shape(robot, link, "cylinder")
+    best = min(found, key=lambda shape: max(abs(shape.radius - radius), abs(shape.length - length)))
+    actual, expected = (best.radius, best.length), (radius, length)
+    fine = within(best.radius, radius, tolerance) and within(best.length, length, tolerance)
+    message = f"{link!r} shows a cylinder of radius {point(actual[:1])} m and length {point(actual[1:])} m"
+    at = place(best.mark)
+    if not fine:
+        message += f", expected radius {point((radius,))} m and length {point((length,))} m"
+        at = place(best.mark, "length" if within(best.radius, radius, tolerance) else "radius")
+    status = "passed" if fine else "failed"
+    return Outcome(status, message, rounded_point(actual), rounded_point(expected), tolerance, "m", at)
+
+
+def shows_sphere(robot: Configuration, *, link: str, radius: float, tolerance: float) -> Outcome:
+    """A link shows a sphere of the given radius in metres."""
+    found = [visual.geometry for visual in visuals(robot, link) if isinstance(visual.geometry, Sphere)]
+    if not found:
+        return _other_shape(robot, link, "sphere")
+    best = min(found, key=lambda shape: abs(shape.radius - radius))
+    what = f"the radius of the sphere that {link!r} shows"
+    at = place(best.mark, "radius")
+    return measured(what, actual=best.radius, expected=radius, tolerance=tolerance, unit="m", at=at)
+
+
+def shows_colour(robot: Configuration, *, link: str, colour: tuple[float, ...], tolerance: float) -> Outcome:
+    """A link is shown in a colour: red, green, blue and, where a fourth channel is given, opacity, each in 0..1."""
+    visual = body(robot, link)
+    if visual.material is None:
+        return _colourless(link, visual)
+    actual = visual.material.rgba[: len(colour)]
+    fine = all(within(a, b, tolerance) for a, b in zip(actual, colour, strict=True))
+    message = f"{link!r} is shown in {_channels(colour)} {point(actual)}"
+    if not fine:
+        message += f", expected {point(colour)}"
+    at = place(visual.material.mark, "rgba")
+    status = "passed" if fine else "failed"
+    return Outcome(status, message, rounded_point(actual), rounded_point(colour), tolerance, None, at)
+
+
+def shows_grey(robot: Configuration, *, link: str, at_least: float, tolerance: float) -> Outcome:
+    """A link is shown in a grey (red = green = blue) of at least the given level in 0..1; opacity does not matter."""
+    visual = body(robot, link)
+    if visual.material is None:
+        return _colourless(link, visual)
+    red, green, blue = actual = visual.material.rgba[:3]
+    at = place(visual.material.mark, "rgba")
+    message = f"{link!r} is shown in rgb {point(actual)}"
+    if max(actual) - min(actual) > tolerance + 1e-9:
+        message += ", which is no grey: red, green and blue differ"
+    elif min(actual) < at_least - 1e-9:
+        message += f", darker than {at_least:g} in all three channels"
+    else:
+        return Outcome("passed", message, rounded_point(actual), rounded(at_least), tolerance, None, at)
+    return Outcome("failed", message, rounded_point((red, green, blue)), rounded(at_least), tolerance, None, at)
+
+
+def shows_nothing(robot: Configuration, *, link: str) -> Outcome:
+    """A link exists and shows nothing: no visual, or only invisible ones (without a size, or fully transparent)."""
+    at = place(robot.link(link).mark)
+    try:
+        shown = [visual for visual in visuals(robot, link) if visual.material is None or visual.material.rgba[3] > 0]
+    except MissingElement:
+        shown = []
+    if not shown:
+        return passed(f"{link!r} shows nothing", at)
+    message = f"{link!r} shows {shape_name(shown[0].geometry)}, expected a link without a visual"
+    return failed(message, place(shown[0].mark))
+
+
+def _edges(visual: Visual) -> Vector | None:
+    """The edge lengths of a box along its link's axes; None where they are not along them."""
+    assert isinstance(visual.geometry, Box)
+    rotation = transform(visual.origin).rotation
+    size = visual.geometry.size
+    for order in permutations((0, 1, 2)):
+        if all(abs(rotation[3 * row + column]) >= _ALIGNED for row, column in enumerate(order)):
+            return (abs(size[order[0]]), abs(size[order[1]]), abs(size[order[2]]))
+    return None
+
+
+def _largest_gap(actual: Vector | None, expected: Vector) -> float:
+    return float("inf") if actual is None else max(abs(a - b) for a, b in zip(actual, expected, strict=True))
+
+
+def _other_shape(robot: Configuration, link: str, wanted: str) -> Outcome:
+    visual = body(robot, link)
+    message = f"{link!r} shows {shape_name(visual.geometry)}, expected a {wanted}"
+    raise MissingElement(wanted, link, message=message, location=place(visual.geometry.mark))
+
+
+def _colourless(link: str, visual: Visual) -> Outcome:
+    if visual.material_name:
+        message = f"{link!r} has no colour: its material {visual.material_name!r} is not defined where it is used"
+    else:
+        message = f"{link!r} has no material, so RViz shows its default red"
+    return failed(message, place(visual.mark))
+
+
+def _channels(colour: tuple[float, ...]) -> str:
+    return "rgba" if len(colour) == 4 else "rgb"

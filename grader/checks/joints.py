@@ -1,0 +1,86 @@
+"""Checks of how links are held together."""
+
+from collections.abc import Mapping
+
+from grader.checks.outcome import Outcome, failed, listing, passed, place
+from grader.errors import MissingElement
+from grader.robot.joints import JOINT_TYPES, MOVING_TYPES
+from grader.robot.kinematics import Configuration
+from grader.robot.model import Joint
+from grader.robot.names import did_you_mean
+
+
+def held_by(robot: Configuration, *, link: str, parent: str, joint_type: str) -> Outcome:
+    """Joints lead from the parent down to the link, one of the given type and otherwise only fixed ones."""
+    chain = robot.chain(link, above=parent)
+    if chain is None:
+        return _not_below(robot, link, parent)
+    held = robot.holding[link]
+    at = place(held.mark, "type")
+    moving = [joint for joint in chain if joint.type != "fixed"]
+    wanted = [] if joint_type == "fixed" else [joint_type]
+    if [joint.type for joint in moving] == wanted:
+        return passed(f"a {joint_type} joint, {(moving or [held])[0].name!r}, holds {link!r} to {parent!r}", at)
+    if not moving:
+        message = f"{link!r} cannot move: joint {held.name!r} is fixed, expected {joint_type}"
+        raise MissingElement("moving joint", link, message=message, location=at)
+    if not any(joint.type in MOVING_TYPES for joint in moving):
+        wrong = moving[0]
+        guess = did_you_mean(wrong.type, JOINT_TYPES)
+        message = f"joint {wrong.name!r}, which holds {link!r}, has the type {wrong.type!r}, which does not exist{guess}"
+        if not wanted:
+            return failed(message, place(wrong.mark, "type"))
+        raise MissingElement("moving joint", link, message=message, location=place(wrong.mark, "type"))
+    if len(moving) > 1:
+        names = listing([joint.name for joint in moving])
+        return failed(f"several joints move {link!r}: {names}; expected one {joint_type} joint", at)
+    at = place(moving[0].mark, "type")
+    return failed(f"joint {moving[0].name!r}, which holds {link!r}, is {moving[0].type}, expected {joint_type}", at)
+
+
+def joints_named(robot: Configuration, *, parent: str, joints: Mapping[str, str]) -> Outcome:
+    """The joints that hold links to a parent have the given names (joint name: link name)."""
+    wrong: list[str] = []
+    at = None
+    for name, link in joints.items():
+        chain = robot.chain(link, above=parent) if robot.robot.has_link(link) else None
+        if chain is not None and any(joint.name == name for joint in chain):
+            continue
+        actual = robot.holding[link].name if chain else None
+        at = at or (place(robot.holding[link].mark, "name") if chain else None)
+        wrong.append(f"{link!r} is held by {actual!r}, not {name!r}" if actual else f"no joint {name!r} holds {link!r}")
+    if wrong:
+        return failed("; ".join(wrong), at)
+    return passed(f"the joints are named {listing(list(joints))}")
+
+
+def root_of_tree(robot: Configuration, *, link: str, holds: str) -> Outcome:
+    """A link is the root of the tree, and fixed joints lead from it to another link."""
+    at = place(robot.link(link).mark)
+    chain = robot.chain(holds, above=link)
+    if link in robot.holding:
+        held = robot.holding[link]
+        return failed(f"{link!r} is not the root: joint {held.name!r} makes it a child of {held.parent!r}", place(held.mark))
+    if chain is None:
+        return _not_below(robot, holds, link)
+    loose = [joint for joint in chain if joint.type != "fixed"]
+    if loose:
+        message = f"joint {loose[0].name!r} between {link!r} and {holds!r} is {loose[0].type}, expected fixed"
+        return failed(message, place(loose[0].mark, "type"))
+    return passed(f"{link!r} is the root, and {holds!r} is fixed to it", at)
+
+
+def _not_below(robot: Configuration, link: str, parent: str) -> Outcome:
+    robot.pose(link, relative_to=parent)  # raises where nothing joins the two
+    held = robot.holding.get(link)
+    if held is None:
+        above = _last(robot.chain(parent, above=link))
+        message = f"{link!r} is above {parent!r}: joint {above.name!r} has them as parent and child the other way round"
+        return failed(message, place(above.mark))
+    message = f"joint {held.name!r} holds {link!r} to {held.parent!r}, expected {parent!r} as the parent"
+    return failed(message, place(held.mark))
+
+
+def _last(chain: tuple[Joint, ...] | None) -> Joint:
+    assert chain  # two links of one tree, neither held from above the other, are above and below
+    return chain[0]

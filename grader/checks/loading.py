@@ -1,0 +1,17 @@
+"""Checks of the file as a whole."""
+
+from grader.checks.outcome import Outcome, passed, failed
+from grader.robot.reader import Reading
+
+_UNLOADED = {"URDF083"}
+
+
+def urdf_loads(urdf: Reading) -> Outcome:
+    """ROS 2 loads the URDF, and every link is in its one tree."""
+    spoiling = [each for each in urdf.problems if each.kind.effect == "rejects" or each.code in _UNLOADED]
+    if not spoiling:
+        return passed("ROS 2 loads the file and every link is in its one tree")
+    first = spoiling[0]
+    more = len(spoiling) - 1
+    others = f" (and {more} more problem{'s' if more > 1 else ''} that keep{'' if more > 1 else 's'} it from loading)"
+    return failed(f"{first.message}{others if more else ''}", first.location)

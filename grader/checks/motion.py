@@ -1,0 +1,127 @@
+"""Checks of what moves when a joint is turned."""
+
+from math import atan2, degrees, hypot
+
+from grader.checks.outcome import Outcome, place, point, rounded, rounded_point
+from grader.checks.shown import body, pose_of, visuals
+from grader.errors import MissingElement
+from grader.robot.joints import MOVING_TYPES
+from grader.robot.kinematics import Configuration
+from grader.robot.model import Cylinder, Joint
+from grader.robot.shapes import extent, farthest
+from grader.robot.transforms import Vector, cross, dot, minus, unit
+
+_SMALL_ANGLE = 1e-3  # rad; also metres for a sliding joint
+_STANDSTILL = 1e-9  # metres
+
+
+def rolls_forward(
+    robot: Configuration,
+    *,
+    link: str,
+    base: str,
+    forward: Vector = (1.0, 0.0, 0.0),
+    up: Vector = (0.0, 0.0, 1.0),
+    tolerance: float,
+) -> Outcome:
+    """Turning a wheel's joint by a small positive angle drives the base forward, if the wheel rolls without slip.
+
+    The lowest point of the wheel must move opposite to `forward`, a direction in the base's frame, within `tolerance`
+    degrees in the ground plane across `up`.
+    """
+    joint = _moving_joint(robot, link, base)
+    ahead, upward = unit(forward) or forward, unit(up) or up
+    T_base_wheel = robot.pose(link, relative_to=base)
+    contact = _lowest_point(robot, link, base, upward)
+    T_base_turned = robot.moved(joint.name, _SMALL_ANGLE).pose(link, relative_to=base)
+    moved = minus(T_base_turned.apply(T_base_wheel.inverse().apply(contact)), contact)
+    lifted = dot(moved, upward)
+    slide = (moved[0] - lifted * upward[0], moved[1] - lifted * upward[1], moved[2] - lifted * upward[2])
+    travel = unit((-slide[0], -slide[1], -slide[2])) if max(map(abs, slide)) > _STANDSTILL else None
+    at = place(joint.axis_mark, "xyz") or place(joint.mark)
+    if travel is None:
+        message = f"turning joint {joint.name!r} does not roll {link!r}: its lowest point stays where it is"
+        return Outcome("failed", message, None, rounded_point(ahead), tolerance, "deg", at)
+    off = _angle(travel, ahead)
+    message = f"a small positive turn of joint {joint.name!r} {_heading(off, travel, base)}"
+    status = "passed" if off <= tolerance + 1e-9 else "failed"
+    return Outcome(status, message, rounded_point(travel), rounded_point(ahead), tolerance, "deg", at)
+
+
+def axis_along(
+    robot: Configuration, *, link: str, axis: Vector, relative_to: str, direction: Vector, tolerance: float
+) -> Outcome:
+    """An axis of a link's frame lies along a direction of another link's frame, within `tolerance` degrees."""
+    pose = robot.pose(link, relative_to=relative_to)
+    actual, expected = pose.rotate(unit(axis) or axis), unit(direction) or direction
+    off = _angle(actual, expected)
+    message = f"{_axis_name(axis)} of the frame {link!r} points along {point(actual)} in {relative_to!r}"
+    fine = off <= tolerance + 1e-9
+    if not fine:
+        message += f", expected {point(expected)}: {point((off,))} degrees off"
+    joint = robot.holding.get(link)
+    at = place(joint.origin.mark if joint and joint.origin else None, "rpy") or place(robot.link(link).mark)
+    status = "passed" if fine else "failed"
+    return Outcome(status, message, rounded_point(actual), rounded_point(expected), tolerance, "deg", at)
+
+
+def turns_about_itself(robot: Configuration, *, link: str, base: str, tolerance: float, angle: float) -> Outcome:
+    """A cylinder turns about its own axis: the joint's axis has its direction (`angle`, degrees) and place (metres)."""
+    visual = body(robot, link)
+    if not isinstance(visual.geometry, Cylinder):
+        message = f"{link!r} shows no cylinder, so it has no axis to turn about"
+        raise MissingElement("cylinder", link, message=message, location=place(visual.geometry.mark))
+    joint = _moving_joint(robot, link, base)
+    T_joint_wheel = pose_of(robot, link, visual, joint.child)
+    turning, own = robot.axis(joint.name), T_joint_wheel.rotate((0.0, 0.0, 1.0))
+    tilt = min(_angle(turning, own), 180.0 - _angle(turning, own))
+    away = hypot(*cross(turning, T_joint_wheel.translation))
+    at = place(joint.axis_mark, "xyz") or place(joint.mark)
+    if tilt > angle + 1e-9:
+        message = f"{link!r} wobbles: the axis of joint {joint.name!r} is {point((tilt,))} degrees off the cylinder's axis"
+        return Outcome("failed", message, rounded(tilt), 0.0, angle, "deg", at)
+    if away > tolerance + 1e-9:
+        at = place(visual.origin.mark, "xyz") or at
+        message = (
+            f"{link!r} turns off its centre: the axis of joint {joint.name!r} passes {point((away * 1000,))} mm from the"
+            " cylinder's centre"
+        )
+        return Outcome("failed", message, rounded(away), 0.0, tolerance, "m", at)
+    message = f"{link!r} turns about its own axis"
+    return Outcome("passed", message, rounded(away), 0.0, tolerance, "m", at)
+
+
+def _moving_joint(robot: Configuration, link: str, base: str) -> Joint:
+    """The moving joint next to a link on the way to the base; raises MissingElement where nothing moves."""
+    way = robot.between(base, link)
+    moving = [joint for joint in way if joint.type in MOVING_TYPES]
+    if not moving:
+        message = f"no joint between {base!r} and {link!r} moves"
+        raise MissingElement("moving joint", link, message=message, location=place(way[-1].mark if way else None))
+    return moving[-1]
+
+
+def _lowest_point(robot: Configuration, link: str, base: str, up: Vector) -> Vector:
+    down = (-up[0], -up[1], -up[2])
+    poses = [(visual.geometry, pose_of(robot, link, visual, base)) for visual in visuals(robot, link)]
+    geometry, pose = min(poses, key=lambda each: extent(each[0], each[1], up)[0])
+    return farthest(geometry, pose, down)
+
+
+def _heading(off: float, travel: Vector, base: str) -> str:
+    if off <= 45.0:
+        slant = f", {point((off,))} degrees off straight ahead" if off > 0.05 else ""
+        return f"drives {base!r} forward{slant}"
+    if off >= 135.0:
+        return f"drives {base!r} backward, expected forward"
+    return f"drives {base!r} sideways, along {point(travel)}, expected forward"
+
+
+def _axis_name(axis: Vector) -> str:
+    names = {(1.0, 0.0, 0.0): "the x axis", (0.0, 1.0, 0.0): "the y axis", (0.0, 0.0, 1.0): "the z axis"}
+    return names.get(axis, f"the direction {point(axis)}")
+
+
+def _angle(one: Vector, other: Vector) -> float:
+    """The angle between two unit vectors in degrees; as exact near 0 as it is elsewhere."""
+    return degrees(atan2(hypot(*cross(one, other)), dot(one, other)))

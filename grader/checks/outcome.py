@@ -1,0 +1,125 @@
+"""What a check found, and the ways to say it: measured against expected, how far off, in which unit and frame."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from grader.robot.source import Location, Mark
+from grader.robot.transforms import Vector
+
+Status = Literal["passed", "failed", "skipped", "pending", "errored"]
+Value = bool | float | str | tuple[float, ...] | tuple[str, ...] | Mapping[str, str] | None
+
+# A tolerance includes its end: 0.152 is within 0.002 of 0.15, though the floats differ by a hair more.
+_SLACK = 1e-9
+_AXES = "xyz"
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """What one check found: a sentence, and where it measured something, the values in `unit`."""
+
+    status: Status
+    message: str
+    measured: Value = None
+    expected: Value = None
+    tolerance: float | None = None
+    unit: str | None = None
+    location: Location | None = None
+
+
+def passed(message: str, at: Location | None = None) -> Outcome:
+    """The fact is true of the submission."""
+    return Outcome("passed", message, location=at)
+
+
+def failed(message: str, at: Location | None = None) -> Outcome:
+    """The fact is not true of the submission."""
+    return Outcome("failed", message, location=at)
+
+
+def within(actual: float, expected: float, tolerance: float) -> bool:
+    """Whether a value is within a tolerance of another; never true of NaN."""
+    return abs(actual - expected) <= tolerance + _SLACK
+
+
+def measured(
+    what: str,
+    *,
+    actual: float,
+    expected: float,
+    tolerance: float,
+    unit: str,
+    sides: tuple[str, str] = ("too large", "too small"),
+    at: Location | None = None,
+) -> Outcome:
+    """One number against the one that is expected, as in "the bottom is at -0.1 m, expected 0 m: 100 mm too low"."""
+    fine = within(actual, expected, tolerance)
+    message = f"{what} is {quantity(actual, unit)}"
+    if not fine:
+        message += f", expected {quantity(expected, unit)}: {difference(actual - expected, unit, *sides)}"
+    return Outcome(
+        "passed" if fine else "failed", message, rounded(actual), rounded(expected), tolerance, unit, at
+    )
+
+
+def measured_point(
+    what: str, *, actual: Vector, expected: Vector, tolerance: float, frame: str, at: Location | None = None
+) -> Outcome:
+    """A point in metres against the one that is expected; each coordinate must be within the tolerance."""
+    off = [
+        f"{axis} is {difference(a - b, 'm')}"
+        for axis, a, b in zip(_AXES, actual, expected, strict=True)
+        if not within(a, b, tolerance)
+    ]
+    message = f"{what} is at {point(actual)} m in {frame!r}"
+    if off:
+        message += f", expected {point(expected)} m: {', '.join(off)}"
+    status: Status = "failed" if off else "passed"
+    return Outcome(status, message, rounded_point(actual), rounded_point(expected), tolerance, "m", at)
+
+
+def difference(off: float, unit: str, over: str = "too large", under: str = "too small") -> str:
+    """How far a value is off, and to which side."""
+    return f"{size(off, unit)} {over if off > 0 else under}"
+
+
+def size(value: float, unit: str) -> str:
+    """The size of a difference in the unit that reads best: millimetres for lengths."""
+    return f"{_short(abs(value) * 1000)} mm" if unit == "m" else quantity(abs(value), unit)
+
+
+def quantity(value: float, unit: str) -> str:
+    """A value with its unit, rounded for reading."""
+    return f"{_short(value)} {'degrees' if unit == 'deg' else unit}".rstrip()
+
+
+def point(values: tuple[float, ...]) -> str:
+    """Coordinates for reading, as a URDF writes them."""
+    return " ".join(map(_short, values))
+
+
+def rounded(value: float) -> float:
+    """A measured value for the report: to 1e-6, so that no machine's last digit shows, and never -0."""
+    return round(value, 6) + 0.0
+
+
+def rounded_point(values: tuple[float, ...]) -> tuple[float, ...]:
+    """Measured values for the report."""
+    return tuple(map(rounded, values))
+
+
+def place(mark: Mark | None, attribute: str | None = None) -> Location | None:
+    """Where an element stands in the file, if it stands there at all."""
+    return mark.location(attribute) if mark is not None else None
+
+
+def listing(names: tuple[str, ...] | list[str]) -> str:
+    """Names for a sentence: 'a', 'b' and 'c'."""
+    quoted = [repr(each) for each in names]
+    return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} and {quoted[-1]}" if quoted else "none"
+
+
+def _short(value: float) -> str:
+    text = f"{value:.4f}".rstrip("0").rstrip(".")
+    return "0" if text in ("-0", "") else text

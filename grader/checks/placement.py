@@ -1,0 +1,213 @@
+"""Checks of where things are, measured by forward kinematics with every joint at 0."""
+
+from collections.abc import Callable, Sequence
+from math import acos, degrees
+
+from grader.checks.outcome import (
+    Outcome,
+    difference,
+    failed,
+    measured,
+    measured_point,
+    place,
+    point,
+    rounded,
+    rounded_point,
+    size,
+    within,
+)
+from grader.checks.shown import body, pose_of, span
+from grader.errors import MissingElement
+from grader.robot.kinematics import Configuration
+from grader.robot.model import Box, Mesh
+from grader.robot.separation import penetration
+from grader.robot.shapes import UnknownShape, extent
+from grader.robot.source import Location
+from grader.robot.transforms import Transform, Vector
+
+_UP: Vector = (0.0, 0.0, 1.0)
+
+
+def frame_at(robot: Configuration, *, link: str, relative_to: str, xyz: Vector, tolerance: float) -> Outcome:
+    """The origin of a link's frame is at a point in another link's frame, in metres."""
+    pose = robot.pose(link, relative_to=relative_to)
+    return measured_point(
+        f"the frame {link!r}",
+        actual=pose.translation,
+        expected=xyz,
+        tolerance=tolerance,
+        frame=relative_to,
+        at=_origin_place(robot, link),
+    )
+
+
+def centre_at(
+    robot: Configuration, *, link: str, relative_to: str, xyz: Vector, tolerance: float, rigid: bool = False
+) -> Outcome:
+    """The centre of what a link shows is at a point in another link's frame; if rigid, no moving joint lies between."""
+    visual = body(robot, link)
+    pose = pose_of(robot, link, visual, relative_to)
+    if rigid:
+        loose = [joint for joint in robot.between(relative_to, link) if joint.type != "fixed"]
+        if loose:
+            message = f"joint {loose[0].name!r} between {relative_to!r} and {link!r} is {loose[0].type}, expected fixed"
+            return failed(message, place(loose[0].mark, "type"))
+    at = place(visual.origin.mark, "xyz") if any(visual.origin.xyz) else _origin_place(robot, link)
+    return measured_point(
+        f"the centre of what {link!r} shows",
+        actual=pose.translation,
+        expected=xyz,
+        tolerance=tolerance,
+        frame=relative_to,
+        at=at or place(visual.mark),
+    )
+
+
+def bottom_at_height(
+    robot: Configuration, *, link: str, relative_to: str, height: float, tolerance: float
+) -> Outcome:
+    """The lowest point of what a link shows is at a height (z) in another link's frame, in metres."""
+    lowest, _ = span(robot, link, relative_to, _UP)
+    visual = body(robot, link)
+    return measured(
+        f"the bottom of {link!r} in the frame {relative_to!r}",
+        actual=lowest,
+        expected=height,
+        tolerance=tolerance,
+        unit="m",
+        sides=("too high", "too low"),
+        at=place(visual.origin.mark, "xyz") or place(visual.mark),
+    )
+
+
+def bottoms_at_height(
+    robot: Configuration, *, links: list[str], relative_to: str, height: float, tolerance: float
+) -> Outcome:
+    """Several links all reach down to the same height (z) in another link's frame, in metres."""
+    robot.link(relative_to)
+    lowest, missing = _each(links, lambda link: span(robot, link, relative_to, _UP)[0])
+    wrong = {link: value for link, value in lowest.items() if not within(value, height, tolerance)}
+    actual = tuple(rounded(value) for value in lowest.values())
+    if not wrong and missing is not None:
+        raise missing
+    message = f"the bottoms of {', '.join(map(repr, lowest))} are at z = {point(actual)} m in {relative_to!r}"
+    if wrong:
+        off = [f"{link!r} is {difference(value - height, 'm', 'too high', 'too low')}" for link, value in wrong.items()]
+        message += f", expected {height:g} m: {', '.join(off)}"
+    at = place(robot.link(next(iter(wrong), relative_to)).mark)
+    return Outcome("failed" if wrong else "passed", message, actual, rounded(height), tolerance, "m", at)
+
+
+def stands_on(robot: Configuration, *, link: str, on: str, tolerance: float) -> Outcome:
+    """What a link shows stands on the top of what another shows: no gap, no overlap, within its outline."""
+    support = body(robot, on)
+    T_on_support = pose_of(robot, on, support, on)
+    bottom, _ = span(robot, link, on, _UP)
+    _, top = extent(support.geometry, T_on_support, _UP)
+    at = _origin_place(robot, link)
+    if not within(bottom, top, tolerance):
+        fault = "floats above it" if bottom > top else "is sunk into it"
+        message = (
+            f"the bottom of {link!r} is at z = {point((bottom,))} m in {on!r} and the top of {on!r} at {point((top,))} m:"
+            f" {link!r} {fault} by {size(bottom - top, 'm')}"
+        )
+        return Outcome("failed", message, rounded(bottom), rounded(top), tolerance, "m", at)
+    over = _overhang(robot, link, on, tolerance)
+    if over:
+        return Outcome("failed", over, rounded(bottom), rounded(top), tolerance, "m", at)
+    message = f"{link!r} stands on the top of {on!r}, at z = {point((top,))} m in {on!r}"
+    return Outcome("passed", message, rounded(bottom), rounded(top), tolerance, "m", at)
+
+
+def clear_of(robot: Configuration, *, link: str, of: str, tolerance: float) -> Outcome:
+    """What a link shows does not cut into what another shows; touching is fine. Depths in metres."""
+    one, other = body(robot, link), body(robot, of)
+    if isinstance(one.geometry, Mesh):
+        raise UnknownShape(one.geometry)
+    if isinstance(other.geometry, Mesh):
+        raise UnknownShape(other.geometry)
+    T_of_one, T_of_other = pose_of(robot, link, one, of), pose_of(robot, of, other, of)
+    depth = penetration(one.geometry, T_of_one, other.geometry, T_of_other, allowed=tolerance)
+    fine = depth <= tolerance
+    if fine:
+        message = f"{link!r} does not cut into {of!r}"
+        return Outcome("passed", message, 0.0, 0.0, tolerance, "m", place(one.mark))
+    message = f"{link!r} cuts {size(depth, 'm')} deep into {of!r}"
+    at = place(one.origin.mark, "xyz") or place(one.mark)
+    return Outcome("failed", message, round(depth, 4), 0.0, tolerance, "m", at)
+
+
+def under_the_base(
+    robot: Configuration, *, link: str, base: str, wheels: list[str], tolerance: float, angle: float
+) -> Outcome:
+    """A frame has the x, y and orientation of a base's frame and is level with the lowest points of the wheels.
+
+    `tolerance` in metres, `angle` in degrees.
+    """
+    T_link_base = robot.pose(base, relative_to=link)
+    x, y, _ = T_link_base.translation
+    at = _origin_place(robot, base)
+    turned = _turned(T_link_base)
+    lowest, missing = _each(wheels, lambda wheel: span(robot, wheel, link, _UP)[0])
+    faults = []
+    if not (within(x, 0.0, tolerance) and within(y, 0.0, tolerance)):
+        faults.append(f"{base!r} is at x, y = {point((x, y))} m in it, expected 0 0")
+    if turned > angle:
+        faults.append(f"{base!r} is turned by {point((turned,))} degrees in it, expected 0")
+    for wheel, value in lowest.items():
+        if not within(value, 0.0, tolerance):
+            side = "above" if value > 0 else "below"
+            faults.append(f"the lowest point of {wheel!r} is {size(value, 'm')} {side} it")
+    measured_values = rounded_point((x, y, *lowest.values()))
+    if faults:
+        message = f"the frame {link!r} is not level with the bottoms of the wheels under {base!r}: {'; '.join(faults)}"
+        return Outcome("failed", message, measured_values, 0.0, tolerance, "m", at)
+    if missing is not None:
+        raise missing
+    message = f"the frame {link!r} is under {base!r}, level with the bottoms of the wheels"
+    return Outcome("passed", message, measured_values, 0.0, tolerance, "m", at)
+
+
+def _each(
+    links: Sequence[str], measure: Callable[[str], float]
+) -> tuple[dict[str, float], MissingElement | UnknownShape | None]:
+    """What can be measured of each link; and the reason why one cannot, so that it does not hide the others."""
+    found: dict[str, float] = {}
+    missing: MissingElement | UnknownShape | None = None
+    for link in links:
+        try:
+            found[link] = measure(link)
+        except (MissingElement, UnknownShape) as error:
+            missing = missing or error
+    return found, missing
+
+
+def _overhang(robot: Configuration, link: str, on: str, tolerance: float) -> str | None:
+    support = body(robot, on)
+    T_on_support = pose_of(robot, on, support, on)
+    directions = [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
+    if isinstance(support.geometry, Box):
+        axes = [T_on_support.rotate(axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), _UP)]
+        directions = sorted(axes, key=lambda axis: abs(axis[2]))[:2]
+    beyond = 0.0
+    for direction in directions:
+        low, high = extent(support.geometry, T_on_support, direction)
+        our_low, our_high = span(robot, link, on, direction)
+        beyond = max(beyond, low - our_low, our_high - high)
+    if beyond <= tolerance + 1e-9:
+        return None
+    return f"{link!r} reaches {size(beyond, 'm')} beyond the edge of the top of {on!r}"
+
+
+def _turned(pose: Transform) -> float:
+    """The angle of a rotation in degrees."""
+    a, e, i = pose.rotation[0], pose.rotation[4], pose.rotation[8]
+    return degrees(acos(max(-1.0, min(1.0, (a + e + i - 1.0) / 2.0))))
+
+
+def _origin_place(robot: Configuration, link: str) -> Location | None:
+    """Where the origin is written that puts a link into its parent."""
+    joint = robot.holding.get(link)
+    if joint is None:
+        return place(robot.link(link).mark)
+    return place(joint.origin.mark if joint.origin else None, "xyz") or place(joint.mark)

@@ -1,0 +1,107 @@
+"""The checks that a rubric can name: an explicit list. Other packages add theirs by entry points."""
+
+import inspect
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Literal, get_type_hints
+
+from grader.checks.appearance import shows_box, shows_colour, shows_cylinder, shows_grey, shows_nothing, shows_sphere
+from grader.checks.joints import held_by, joints_named, root_of_tree
+from grader.checks.loading import urdf_loads
+from grader.checks.motion import axis_along, rolls_forward, turns_about_itself
+from grader.checks.outcome import Outcome
+from grader.checks.placement import (
+    bottom_at_height,
+    bottoms_at_height,
+    centre_at,
+    clear_of,
+    frame_at,
+    stands_on,
+    under_the_base,
+)
+
+ENTRY_POINTS = "grader.checks"
+
+CHECKS: tuple[Callable[..., Outcome], ...] = (
+    urdf_loads,
+    shows_box,
+    shows_cylinder,
+    shows_sphere,
+    shows_colour,
+    shows_grey,
+    shows_nothing,
+    held_by,
+    joints_named,
+    root_of_tree,
+    frame_at,
+    centre_at,
+    bottom_at_height,
+    bottoms_at_height,
+    stands_on,
+    clear_of,
+    under_the_base,
+    rolls_forward,
+    axis_along,
+    turns_about_itself,
+)
+
+Subject = Literal["urdf", "robot"]
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One argument that a rubric gives a check: its annotation, and its default if it has one."""
+
+    name: str
+    type: Any
+    required: bool
+    default: object = None
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """A check as a rubric sees it. `subject` is what it is asked of: the file as read, or the robot in it."""
+
+    name: str
+    function: Callable[..., Outcome]
+    subject: Subject
+    parameters: Mapping[str, Parameter]
+
+    @property
+    def fact(self) -> str:
+        """The first line of its docstring: what is true of a submission that passes."""
+        return (inspect.getdoc(self.function) or "").split("\n\n")[0].replace("\n", " ")
+
+
+def describe(function: Callable[..., Outcome]) -> Check:
+    """The check that a function is: its signature is the schema of the rubric's `with` table."""
+    hints = get_type_hints(function)
+    signature = inspect.signature(function)
+    subject, *rest = signature.parameters.values()
+    parameters = {
+        each.name: Parameter(
+            each.name, hints[each.name], each.default is each.empty, None if each.default is each.empty else each.default
+        )
+        for each in rest
+    }
+    return Check(function.__name__, function, "urdf" if subject.name == "urdf" else "robot", parameters)
+
+
+def check_names() -> list[str]:
+    """The names of all checks, those of other packages included."""
+    return [each.__name__ for each in CHECKS] + sorted(_entry_points())
+
+
+def find_check(name: str) -> Check | None:
+    """The check of this name; other packages are asked only for names that are not our own."""
+    for function in CHECKS:
+        if function.__name__ == name:
+            return describe(function)
+    entry = _entry_points().get(name)
+    return describe(entry.load()) if entry is not None else None
+
+
+def _entry_points() -> dict[str, Any]:
+    from importlib.metadata import entry_points  # reading every installed package's metadata costs more than a grading
+
+    return {entry.name: entry for entry in entry_points(group=ENTRY_POINTS)}

@@ -1,0 +1,47 @@
+"""What a link shows, for the checks that measure it."""
+
+from grader.errors import MissingElement
+from grader.checks.outcome import place
+from grader.robot.kinematics import Configuration, transform
+from grader.robot.model import Geometry, Mesh, Visual
+from grader.robot.shapes import extent, is_empty, volume
+from grader.robot.transforms import Transform, Vector
+
+
+def visuals(robot: Configuration, link: str) -> tuple[Visual, ...]:
+    """The visuals of a link that have a size; raises MissingElement where there is none."""
+    found = robot.link(link)
+    shown = tuple(visual for visual in found.visuals if not is_empty(visual.geometry))
+    if not shown:
+        message = f"link {link!r} shows nothing: ROS 2 finds no visual with a size in it"
+        raise MissingElement("visual", link, message=message, location=place(found.mark))
+    return shown
+
+
+def body(robot: Configuration, link: str) -> Visual:
+    """The visual that counts for a link: its only one, else the largest; the first mesh where sizes are unknown."""
+    shown = visuals(robot, link)
+    if len(shown) == 1:
+        return shown[0]
+    for visual in shown:
+        if isinstance(visual.geometry, Mesh):
+            return visual
+    return max(shown, key=lambda visual: volume(visual.geometry))
+
+
+def pose_of(robot: Configuration, link: str, visual: Visual, relative_to: str) -> Transform:
+    """T_relative_visual; raises MissingElement where it is not defined."""
+    return robot.pose(link, relative_to=relative_to) @ transform(visual.origin)
+
+
+def span(robot: Configuration, link: str, relative_to: str, direction: Vector) -> tuple[float, float]:
+    """The lowest and highest coordinate of all that a link shows, along a unit direction of another link's frame."""
+    spans = [
+        extent(visual.geometry, pose_of(robot, link, visual, relative_to), direction) for visual in visuals(robot, link)
+    ]
+    return min(low for low, _ in spans), max(high for _, high in spans)
+
+
+def shape_name(geometry: Geometry) -> str:
+    """A shape in words: a box, a cylinder, a sphere, a mesh."""
+    return f"a {type(geometry).__name__.lower()}"

@@ -1,0 +1,79 @@
+"""The `with` table of a criterion against the signature of its check, which is its schema."""
+
+from collections.abc import Mapping
+from decimal import Decimal
+from types import GenericAlias
+from typing import Any, get_args, get_origin
+
+from grader.checks.registry import Check
+from grader.robot.names import did_you_mean
+
+Fault = tuple[tuple[str, ...], str]
+
+
+def bind(check: Check, given: Mapping[str, Any]) -> tuple[dict[str, Any], list[Fault]]:
+    """The arguments for a check, and one fault for each that is unknown, missing or of another type."""
+    arguments: dict[str, Any] = {}
+    faults: list[Fault] = []
+    for name, value in given.items():
+        parameter = check.parameters.get(name)
+        if parameter is None:
+            known = [each for each in check.parameters if each not in given]
+            guess = did_you_mean(name, known) or f"; it takes: {', '.join(check.parameters) or 'nothing'}"
+            faults.append(((name,), f"the check {check.name} takes no {name!r}{guess}"))
+            continue
+        try:
+            arguments[name] = convert(value, parameter.type)
+        except TypeError:
+            faults.append(((name,), f"{name} of {check.name} must be {type_words(parameter.type)}, not {_shown(value)}"))
+    for name, parameter in check.parameters.items():
+        if parameter.required and name not in given:
+            faults.append(((), f"the check {check.name} needs {name}: {type_words(parameter.type)}"))
+    return arguments, faults
+
+
+def convert(value: Any, wanted: Any) -> Any:
+    """A TOML value as the Python value of an annotation; raises TypeError where it is another type."""
+    if wanted is bool or wanted is str:
+        if isinstance(value, wanted):
+            return value
+    elif wanted is float:
+        if isinstance(value, int | Decimal) and not isinstance(value, bool) and Decimal(value).is_finite():
+            return float(value)
+    elif wanted is int:
+        if isinstance(value, int) and not isinstance(value, bool):
+            return value
+    elif get_origin(wanted) in (list, tuple):
+        return _convert_list(value, wanted)
+    elif isinstance(value, dict):
+        return {key: convert(each, get_args(wanted)[1]) for key, each in value.items()}
+    raise TypeError
+
+
+def type_words(wanted: Any) -> str:
+    """An annotation in words, for messages and listings."""
+    words = {float: "a number", int: "a whole number", str: "a text", bool: "true or false"}
+    if wanted in words:
+        return words[wanted]
+    inner = get_args(wanted)
+    if get_origin(wanted) is tuple and Ellipsis not in inner:
+        return f"{len(inner)} numbers"
+    kind = {float: "numbers", str: "texts"}
+    if get_origin(wanted) in (list, tuple):
+        return f"a list of {kind.get(inner[0], 'values')}"
+    return "a table of texts"
+
+
+def _convert_list(value: Any, wanted: GenericAlias) -> Any:
+    inner = get_args(wanted)
+    if not isinstance(value, list) or not value:
+        raise TypeError
+    if get_origin(wanted) is tuple and Ellipsis not in inner and len(inner) != len(value):
+        raise TypeError
+    made = [convert(each, inner[0]) for each in value]
+    return tuple(made) if get_origin(wanted) is tuple else made
+
+
+def _shown(value: Any) -> str:
+    text = repr(value) if isinstance(value, str) else str(value).replace("Decimal", "")
+    return text if len(text) <= 40 else text[:37] + "..."

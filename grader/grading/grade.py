@@ -1,0 +1,80 @@
+"""Grade a submission: run the rubric's checks in order and say whose fault each miss is."""
+
+from collections.abc import Sequence
+
+from grader.checks.outcome import Outcome
+from grader.errors import MissingElement
+from grader.grading.report import Report, Result
+from grader.grading.rubric import Criterion, Rubric
+from grader.robot.kinematics import Configuration
+from grader.robot.shapes import UnknownShape
+from grader.robot.source import Location
+from grader.submission.submission import Submission
+
+
+def grade(rubric: Rubric, submission: Submission, parts: Sequence[str] = ()) -> Report:
+    """The report on a submission, for all parts of the rubric or those that are named (raises InputError for others)."""
+    chosen = tuple(part.id for part in rubric.parts if not parts or part.id in parts)
+    for name in parts:
+        rubric.part(name)
+    run = _Run(submission)
+    for criterion in rubric.criteria:
+        if criterion.part in chosen:
+            run.decide(criterion)
+    return Report(submission, rubric, chosen, tuple(run.results.values()))
+
+
+class _Run:
+    """The criteria decided so far, and which of them was the first to miss a thing."""
+
+    def __init__(self, submission: Submission) -> None:
+        self.urdf = submission.urdf
+        self.robot = Configuration(self.urdf.robot) if self.urdf.robot is not None else None
+        self.results: dict[str, Result] = {}
+        self.missed: dict[tuple[str, str], str] = {}
+
+    def decide(self, criterion: Criterion) -> None:
+        cause = self._cause(criterion)
+        result = Result(criterion, _skipped(cause), cause) if cause else self._ask(criterion)
+        self.results[criterion.id] = result
+
+    def _cause(self, criterion: Criterion) -> str | None:
+        """The criterion whose failure keeps this one from being decided."""
+        for name in criterion.requires:
+            required = self.results.get(name)
+            if required is not None and required.outcome.status not in ("passed", "pending"):
+                return required.because or name
+        if self.robot is None and criterion.check.subject == "robot":
+            asked = (each for each in self.results.values() if each.criterion.check.subject == "urdf")
+            return next((each.criterion.id for each in asked if each.outcome.status == "failed"), None)
+        return None
+
+    def _ask(self, criterion: Criterion) -> Result:
+        check = criterion.check
+        if check.subject == "robot" and self.robot is None:
+            return Result(criterion, Outcome("failed", "ROS 2 cannot read the file, so there is no robot to look at"))
+        subject = self.robot if check.subject == "robot" else self.urdf
+        try:
+            return Result(criterion, check.function(subject, **criterion.arguments))
+        except MissingElement as missing:
+            return self._miss(criterion, missing)
+        except UnknownShape as unknown:
+            return Result(criterion, Outcome("pending", f"{unknown}; a person has to look at it"))
+        except Exception as error:  # a fault of ours must cost the student nothing else
+            from traceback import format_exc  # only ever needed here
+
+            message = f"the grader itself failed here ({type(error).__name__}); please report it"
+            return Result(criterion, Outcome("errored", message), traceback=format_exc())
+
+    def _miss(self, criterion: Criterion, missing: MissingElement) -> Result:
+        """The first criterion that misses a thing fails; those after it would only repeat it, and are skipped."""
+        key = (missing.kind, missing.name)
+        first = self.missed.setdefault(key, criterion.id)
+        if first != criterion.id:
+            return Result(criterion, _skipped(first), first)
+        at = missing.location if isinstance(missing.location, Location) else None
+        return Result(criterion, Outcome("failed", str(missing), location=at))
+
+
+def _skipped(cause: str) -> Outcome:
+    return Outcome("skipped", f"not decided, because {cause} failed")

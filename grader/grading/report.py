@@ -1,0 +1,59 @@
+"""The report: every criterion with what was found and what it is worth. Renderers only lay it out."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from decimal import Decimal
+
+from grader.checks.outcome import Outcome
+from grader.grading.rubric import Criterion, Rubric
+from grader.submission.submission import Submission
+
+_NOTHING = Decimal(0)
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """One criterion's outcome. `because` is the criterion that a skip is due to; `traceback` is for the maintainers."""
+
+    criterion: Criterion
+    outcome: Outcome
+    because: str | None = None
+    traceback: str = ""
+
+    @property
+    def points(self) -> Decimal:
+        """What the criterion earns: all or nothing."""
+        return self.criterion.points if self.outcome.status == "passed" else _NOTHING
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """What one submission earns under one rubric, part by part."""
+
+    submission: Submission
+    rubric: Rubric
+    parts: tuple[str, ...]
+    results: tuple[Result, ...]
+
+    @property
+    def score(self) -> Decimal:
+        """The points earned; what a person still has to decide is not in it."""
+        return _sum(result.points for result in self.results)
+
+    @property
+    def max_score(self) -> Decimal:
+        """The points that can be earned in the graded parts."""
+        return _sum(result.criterion.points for result in self.results)
+
+    @property
+    def pending(self) -> Decimal:
+        """The points that a person still has to give or refuse."""
+        return _sum(result.criterion.points for result in self.results if result.outcome.status == "pending")
+
+    def counts(self, *statuses: str) -> int:
+        """How many criteria have one of these statuses."""
+        return sum(result.outcome.status in statuses for result in self.results)
+
+
+def _sum(points: Iterable[Decimal]) -> Decimal:
+    return sum(points, _NOTHING)

@@ -1,0 +1,116 @@
+"""How far the shapes of a robot reach: support points, extents, volumes.
+
+Lengths are metres. A negative size means its absolute value: urdfdom reads one without complaint, and a shape that is
+symmetric about its centre does not change when it is mirrored.
+"""
+
+from math import hypot, pi
+
+from grader.robot.model import Box, Cylinder, Geometry, Mesh, Sphere
+from grader.robot.transforms import Transform, Vector, dot, unit
+
+Shape = Box | Cylinder | Sphere
+
+_TIE = 1e-9  # how far, relative to its length, a direction may lean from a face's normal and still mean all of the face
+
+
+class UnknownShape(ValueError):
+    """A question about the size of a shape whose size is not known; `geometry` is that shape."""
+
+    def __init__(self, geometry: Mesh) -> None:
+        super().__init__(f"the size of mesh {geometry.filename!r} is unknown: mesh files are not opened")
+        self.geometry = geometry
+
+
+def half_width(geometry: Geometry, direction: Vector) -> float:
+    """How far a shape reaches from its centre along a unit direction of its own frame, metres; UnknownShape for a mesh.
+
+    This is the shape's support function (Ericson, Real-Time Collision Detection, 2004, section 4.3). The cylinder's
+    `hypot` has no cancellation near its axis, which `sqrt(1 - z * z)` would have.
+    """
+    x, y, z = direction
+    if isinstance(geometry, Box):
+        a, b, c = geometry.size
+        return (abs(a * x) + abs(b * y) + abs(c * z)) / 2.0
+    if isinstance(geometry, Cylinder):
+        return abs(geometry.length * z) / 2.0 + abs(geometry.radius) * hypot(x, y)
+    if isinstance(geometry, Sphere):
+        return abs(geometry.radius)
+    raise UnknownShape(geometry)
+
+
+def support(geometry: Geometry, direction: Vector) -> Vector:
+    """The farthest point of a shape along a direction of its own frame; the middle of all of them where many tie.
+
+    Metres, in the shape's frame; the direction need not be unit, and a zero one gives the centre. Raises UnknownShape
+    for a mesh.
+    """
+    x, y, z = direction
+    tie = _TIE * max(abs(x), abs(y), abs(z))
+    if isinstance(geometry, Box):
+        a, b, c = geometry.size
+        return (_end(a, x, tie), _end(b, y, tie), _end(c, z, tie))
+    if isinstance(geometry, Cylinder):
+        outward = unit((x, y, 0.0)) if hypot(x, y) > tie else None
+        radius = abs(geometry.radius)
+        x, y, _ = outward or (0.0, 0.0, 0.0)
+        return (radius * x, radius * y, _end(geometry.length, z, tie))
+    if isinstance(geometry, Sphere):
+        radius = abs(geometry.radius)
+        x, y, z = unit(direction) or (0.0, 0.0, 0.0)
+        return (radius * x, radius * y, radius * z)
+    raise UnknownShape(geometry)
+
+
+def reach(geometry: Geometry, T_frame_shape: Transform, direction: Vector) -> float:
+    """The largest coordinate of a shape along a unit direction of the frame, metres; UnknownShape for a mesh."""
+    return dot(T_frame_shape.translation, direction) + half_width(geometry, T_frame_shape.unrotate(direction))
+
+
+def extent(geometry: Geometry, T_frame_shape: Transform, direction: Vector) -> tuple[float, float]:
+    """The smallest and the largest coordinate of a shape along a unit direction of the frame, metres.
+
+    Raises UnknownShape for a mesh.
+    """
+    middle = dot(T_frame_shape.translation, direction)
+    half = half_width(geometry, T_frame_shape.unrotate(direction))
+    return (middle - half, middle + half)
+
+
+def farthest(geometry: Geometry, T_frame_shape: Transform, direction: Vector) -> Vector:
+    """The farthest point of a shape along a direction of the frame; the middle of all of them where many tie.
+
+    Metres, in the frame. Raises UnknownShape for a mesh.
+    """
+    return T_frame_shape.apply(support(geometry, T_frame_shape.unrotate(direction)))
+
+
+def volume(geometry: Geometry) -> float:
+    """The volume of a shape in cubic metres; UnknownShape for a mesh."""
+    if isinstance(geometry, Box):
+        a, b, c = geometry.size
+        return abs(a * b * c)
+    if isinstance(geometry, Cylinder):
+        return pi * geometry.radius * geometry.radius * abs(geometry.length)
+    if isinstance(geometry, Sphere):
+        return 4.0 / 3.0 * pi * geometry.radius * geometry.radius * abs(geometry.radius)
+    raise UnknownShape(geometry)
+
+
+def is_empty(geometry: Geometry) -> bool:
+    """Whether there is nothing to see of a shape, because it has neither a volume nor an area.
+
+    That is a box with two or three zero edges (with one it is a plate, which RViz shows), a cylinder or sphere of zero
+    radius (a cylinder of zero length is a disc), and a mesh scaled by zero along all three axes.
+    """
+    if isinstance(geometry, Box):
+        return sorted(map(abs, geometry.size))[1] == 0.0
+    if isinstance(geometry, Mesh):
+        return not any(geometry.scale)
+    return geometry.radius == 0.0
+
+
+def _end(size: float, component: float, tie: float) -> float:
+    if abs(component) <= tie:
+        return 0.0
+    return abs(size) / 2.0 if component > 0.0 else -abs(size) / 2.0

@@ -1,0 +1,44 @@
+"""Reading a student's files: regular files only, never more than a limit, never outside the submission."""
+
+import os
+import stat
+import sys
+from pathlib import Path
+
+from grader.errors import InputError
+
+URDF_LIMIT = 1024 * 1024  # bytes
+
+
+def read_capped(path: Path, limit: int = URDF_LIMIT) -> bytes:
+    """The bytes of a regular file of at most `limit` bytes; raises InputError, in one plain sentence, for anything else."""
+    shown = printable_path(path)
+    try:
+        # A FIFO would block at open and a device could be endless: both are recognised without reading.
+        handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
+        with os.fdopen(handle, "rb") as file:
+            if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+                raise InputError(f"{shown} is not a regular file")
+            data = file.read(limit + 1)
+    except OSError as error:
+        raise InputError(f"cannot read {shown}: {error.strerror or error}") from None
+    return _capped(data, limit, shown)
+
+
+def read_standard_input(limit: int = URDF_LIMIT) -> bytes:
+    """All of standard input, at most `limit` bytes; raises InputError."""
+    if sys.stdin is None:
+        raise InputError("standard input is closed")
+    return _capped(sys.stdin.buffer.read(limit + 1), limit, "standard input")
+
+
+def printable_path(path: Path | str) -> str:
+    """A path for a message: bytes that are no UTF-8 are replaced, control characters are spelt out."""
+    text = os.fsencode(path).decode("utf-8", "replace")
+    return "".join(c if c.isprintable() else f"\\x{ord(c):02x}" for c in text)
+
+
+def _capped(data: bytes, limit: int, shown: str) -> bytes:
+    if len(data) > limit:
+        raise InputError(f"{shown} is larger than {limit} bytes, the limit for a URDF (--max-size raises it)")
+    return data

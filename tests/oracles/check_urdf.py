@@ -1,0 +1,91 @@
+"""ROS 2's own verdict on a URDF: urdfdom's `check_urdf`, as the `test` extra installs it."""
+
+import os
+import re
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import PackageNotFoundError, distribution
+from pathlib import Path
+from threading import Event, Timer
+from typing import Literal
+
+import pytest
+
+_MISSING = "check_urdf is not installed: pip install 'grader[test]'"
+
+# A cycle prints one line a link for ever, each longer than the last, and overflows the stack only after gigabytes.
+# A chain of 2,000 links, the longest tree of the tests, prints 8 MB.
+_RUNAWAY = 16 * 1024 * 1024
+
+# `check_urdf` never reports a link that the root does not reach: it is only not printed. Each link but the root of an
+# accepted file is the child of a joint, so these two say which links should have been printed.
+_MARKUP = re.compile(rb"""<!--.*?-->|<!\[CDATA\[.*?\]\]>|<((?:"[^"]*"|'[^']*'|[^"'<>])*)>""", re.DOTALL)
+_LINK = re.compile(rb"""\s*link\s(?:.*?[\s"'])??name\s*=\s*(["'])(.*?)\1""", re.DOTALL)
+_CHILD = re.compile(rb"""\s*child\s(?:.*?[\s"'])??link\s*=\s*(["'])(.*?)\1""", re.DOTALL)
+_PRINTED = re.compile(rb"^ *child\(\d+\):  (.*?)\n(?= *child\(|\Z)", re.DOTALL | re.MULTILINE)
+_LINE_END = re.compile(rb"\r\n|\n\r|\r")
+
+
+@dataclass(frozen=True, slots=True)
+class OracleVerdict:
+    """What `check_urdf` said of one file, how it ended, and the errors that it printed."""
+
+    verdict: Literal["clean", "degraded", "rejected"]
+    ending: Literal["finished", "hung", "aborted"]
+    stderr: str
+
+
+@cache
+def check_urdf_path() -> Path | None:
+    """The path of the program; None if the distribution is not installed or holds none for this platform."""
+    try:
+        path = Path(str(distribution("cmeel-urdfdom").locate_file("cmeel.prefix/bin/check_urdf")))
+    except PackageNotFoundError:
+        return None
+    return path if os.access(path, os.X_OK) else None
+
+
+def check_urdf(text: bytes, timeout: float = 5.0) -> OracleVerdict:
+    """Run `check_urdf` on a file with this content. Skips the test that asks if the program is not installed."""
+    binary = check_urdf_path()
+    if binary is None:
+        pytest.skip(_MISSING)
+    late = Event()
+    with tempfile.NamedTemporaryFile(suffix=".urdf") as file, tempfile.TemporaryFile() as errors:
+        file.write(text)
+        file.flush()
+        environment = {"LD_LIBRARY_PATH": str(binary.parent.parent / "lib")}
+        command = [str(binary), file.name]
+        with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=errors) as process:
+            timer = Timer(timeout, _stop, (process, late))
+            timer.start()
+            assert process.stdout is not None
+            printed = process.stdout.read(_RUNAWAY + 1)
+            if len(printed) > _RUNAWAY:
+                _stop(process, late)
+            code = process.wait()
+            timer.cancel()
+        errors.seek(0)
+        stderr = errors.read().decode(errors="replace")
+    if late.is_set():
+        return OracleVerdict("rejected", "hung", stderr)
+    if code < 0:
+        return OracleVerdict("rejected", "aborted", stderr)
+    if code > 0:
+        return OracleVerdict("rejected", "finished", stderr)
+    return OracleVerdict("degraded" if stderr or _left_out(text, printed) else "clean", "finished", stderr)
+
+
+def _stop(process: subprocess.Popen[bytes], late: Event) -> None:
+    late.set()
+    process.kill()
+
+
+def _left_out(text: bytes, printed: bytes) -> set[bytes]:
+    tags = [match[1] or b"" for match in _MARKUP.finditer(text)]
+    links, children = ({found[2] for tag in tags if (found := each.match(tag))} for each in (_LINK, _CHILD))
+    # How a name with an entity is printed is for the oracle to say.
+    expected = {_LINE_END.sub(b"\n", name) for name in links & children if b"&" not in name}
+    return expected - {match[1] for match in _PRINTED.finditer(printed)}

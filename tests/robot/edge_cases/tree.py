@@ -1,0 +1,86 @@
+"""How the joints tie the links together: roots, cycles, second parents."""
+
+from itertools import pairwise
+
+from tests.robot.edge_cases.case import EdgeCase, clean, degraded, joint, links, rejected, robot
+
+_ONE = "one root"
+_TWO = "two roots"
+_NONE = "no root"
+_DETACHED = "what hangs on a detached cycle is left out"
+_REACHED = "a cycle that the root reaches is walked for ever"
+_PARENTS = "a link may have two parents"
+_DEEP = "a tree may be deep or wide"
+
+
+def _tree(*joints: str, extra: str = "") -> str:
+    """A robot of joints written `ab`, for one from a to b, and named in this order; `extra` names more links."""
+    names = "".join(dict.fromkeys("".join(joints) + extra))
+    return robot(links(*names) + "".join(joint(ends[0], ends[1], f"j{index}") for index, ends in enumerate(joints)))
+
+
+def _chain(length: int) -> str:
+    names = [f"l{index}" for index in range(length)]
+    ends = pairwise(names)
+    return robot(links(*names) + "".join(joint(parent, child, f"j{child}") for parent, child in ends))
+
+
+def _diamonds(count: int) -> str:
+    names = [chr(ord("a") + index) for index in range(count + 1)]
+    return _tree(*(f"{parent}{child}" for parent, child in pairwise(names) for _ in range(2)))
+
+
+CASES: tuple[EdgeCase, ...] = (
+    clean("tree-chain", _ONE, _tree("ab", "bc", "cd")),
+    clean("tree-star", _ONE, _tree("ab", "ac", "ad")),
+    clean("tree-branches", _ONE, _tree("ab", "ac", "bd", "be", "cf")),
+    clean("tree-joints-from-leaf-to-root", _ONE, _tree("cd", "bc", "ab")),
+    clean("tree-root-last-in-file", _ONE, _tree("za", "zb")),
+    clean("tree-world-root", _ONE, robot(links("world", "base") + joint("world", "base"))),
+    clean("tree-chain-of-300", _DEEP, _chain(300)),
+    clean("tree-chain-of-2000", _DEEP, _chain(2000)),
+    clean("tree-star-of-25", _DEEP, _tree(*(f"a{leaf}" for leaf in "bcdefghijklmnopqrstuvwxyz"))),
+    rejected("roots-two", _TWO, robot(links("a", "b"))),
+    rejected("roots-three", _TWO, robot(links("a", "b", "c"))),
+    rejected("roots-two-trees", _TWO, _tree("ab", "cd")),
+    rejected("roots-one-loose-link", _TWO, _tree("ab", extra="c")),
+    rejected("roots-ends-swapped", _TWO, _tree("ab", "cb")),
+    rejected("roots-two-and-detached-cycle", _TWO, _tree("cd", "dc", extra="ab")),
+    rejected("roots-two-meet", _TWO, _tree("ac", "bc")),
+    rejected("roots-none-self-joint", _NONE, _tree("aa")),
+    rejected("roots-none-cycle-of-two", _NONE, _tree("ab", "ba")),
+    rejected("roots-none-cycle-of-three", _NONE, _tree("ab", "bc", "ca")),
+    rejected("roots-none-tail-on-cycle", _NONE, _tree("ab", "ba", "bc")),
+    rejected("roots-none-self-joint-on-root", _NONE, _tree("aa", "ab")),
+    rejected("roots-none-leaf-back-to-root", _NONE, _tree("ab", "bc", "ca", "cd")),
+    rejected("roots-none-two-cycles", _NONE, _tree("ab", "ba", "cd", "dc")),
+    degraded("detached-self-joint", _DETACHED, _tree("bb", extra="a")),
+    degraded("detached-cycle-of-two", _DETACHED, _tree("bc", "cb", extra="a")),
+    degraded("detached-cycle-of-three", _DETACHED, _tree("bc", "cd", "db", extra="a")),
+    degraded("detached-cycle-beside-tree", _DETACHED, _tree("ab", "ac", "de", "ed")),
+    degraded("detached-cycle-with-tail", _DETACHED, _tree("ab", "cd", "dc", "de", "ef")),
+    degraded("detached-two-cycles", _DETACHED, _tree("bc", "cb", "de", "ed", extra="a")),
+    degraded("detached-cycles-joined", _DETACHED, _tree("bc", "cb", "cd", "de", "ed", extra="a")),
+    degraded("detached-cycle-leads-into-tree", _DETACHED, _tree("ad", "bc", "cb", "bd")),
+    degraded("detached-cycle-leads-into-tree-first", _DETACHED, _tree("bd", "bc", "cb", "ad")),
+    degraded("detached-self-joint-leads-into-tree", _DETACHED, _tree("ab", "cc", "cb")),
+    degraded("detached-cycle-with-two-joints", _DETACHED, _tree("bc", "bc", "cb", extra="a")),
+    rejected("reached-self-joint-on-leaf", _REACHED, _tree("ab", "bb"), "hangs"),
+    rejected("reached-self-joint-first", _REACHED, _tree("bb", "ab"), "hangs"),
+    rejected("reached-self-joint-in-middle", _REACHED, _tree("ab", "bb", "bc"), "hangs"),
+    rejected("reached-cycle-of-two", _REACHED, _tree("ab", "bc", "cb"), "hangs"),
+    rejected("reached-cycle-of-three", _REACHED, _tree("ab", "bc", "cd", "db"), "hangs"),
+    rejected("reached-cycle-at-far-end", _REACHED, _tree("ab", "bc", "cd", "de", "ef", "fe"), "hangs"),
+    rejected("reached-cycle-and-branch", _REACHED, _tree("ab", "ac", "cd", "dc"), "hangs"),
+    rejected("reached-cycle-and-detached-cycle", _REACHED, _tree("ab", "bb", "cd", "dc"), "hangs"),
+    rejected("reached-cycle-twice", _REACHED, _tree("ab", "bb", "ac", "cc"), "hangs"),
+    rejected(
+        "reached-cycle-with-bad-visual", _REACHED, _tree("ab", "bb").replace("/>", "><visual/></link>", 1), "hangs"
+    ),
+    clean("parents-two", _PARENTS, _tree("ab", "ac", "bd", "cd")),
+    clean("parents-three", _PARENTS, _tree("ab", "ac", "ad", "be", "ce", "de")),
+    clean("parents-root-and-its-child", _PARENTS, _tree("ab", "bc", "ac")),
+    clean("parents-two-joints-between-two-links", _PARENTS, _tree("ab", "ab")),
+    clean("parents-two-with-subtree", _PARENTS, _tree("ab", "ac", "bd", "cd", "de", "ef")),
+    clean("parents-ten-diamonds", _PARENTS, _diamonds(10)),
+)

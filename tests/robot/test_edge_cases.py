@@ -1,0 +1,55 @@
+"""The reader gives ROS 2's verdict on each edge case, and ROS 2 really gives that verdict."""
+
+import re
+from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+
+from grader.robot.reader import read_urdf
+from tests.oracles.check_urdf import OracleVerdict, check_urdf
+from tests.robot.edge_cases import EDGE_CASES, EdgeCase
+
+_ENDINGS = {"agrees": "finished", "hangs": "hung", "aborts": "aborted"}
+
+each_case = pytest.mark.parametrize("case", EDGE_CASES, ids=lambda case: case.name)
+
+
+@pytest.fixture(scope="session")
+def oracle_verdicts() -> Mapping[str, OracleVerdict]:
+    """What `check_urdf` says of every case, by the case's name."""
+    with ThreadPoolExecutor() as pool:
+        verdicts = pool.map(check_urdf, (case.text for case in EDGE_CASES))
+        return dict(zip((case.name for case in EDGE_CASES), verdicts, strict=True))
+
+
+@each_case
+def test_reader_gives_recorded_verdict(case: EdgeCase) -> None:
+    """The reader's verdict is the recorded one."""
+    assert read_urdf(case.text, "case.urdf").verdict == case.verdict, case.rule
+
+
+@each_case
+def test_ros_gives_recorded_verdict(case: EdgeCase, oracle_verdicts: Mapping[str, OracleVerdict]) -> None:
+    """ROS 2's verdict is the recorded one, and its program ends as recorded."""
+    oracle = oracle_verdicts[case.name]
+    assert (oracle.verdict, oracle.ending) == (case.verdict, _ENDINGS[case.oracle]), f"{case.rule}\n{oracle.stderr}"
+
+
+def test_corpus_is_large() -> None:
+    """There are enough cases to cover the rules, and each verdict is well represented."""
+    verdicts = [case.verdict for case in EDGE_CASES]
+    assert len(verdicts) >= 150
+    assert min(verdicts.count(verdict) for verdict in ("clean", "degraded", "rejected")) >= 40
+
+
+def test_names_are_unique() -> None:
+    """No two cases share a name, and each name is kebab-case."""
+    names = [case.name for case in EDGE_CASES]
+    assert len(set(names)) == len(names)
+    assert [name for name in names if not re.fullmatch("[a-z0-9]+(-[a-z0-9]+)*", name)] == []
+
+
+def test_texts_are_unique() -> None:
+    """No two cases hold the same file."""
+    assert len({case.text for case in EDGE_CASES}) == len(EDGE_CASES)
