@@ -3,17 +3,7 @@
 from itertools import permutations
 from math import cos, radians
 
-from grader.checks.outcome import (
-    Outcome,
-    failed,
-    measured,
-    passed,
-    place,
-    point,
-    rounded,
-    rounded_point,
-    within,
-)
+from grader.checks.outcome import SLACK, Outcome, failed, judged, measured, passed, place, point, within
 from grader.checks.shown import body, shape_name, visuals
 from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration, transform
@@ -35,8 +25,7 @@ def shows_box(robot: Configuration, *, link: str, size: Vector, tolerance: float
         return failed(f"the box of {link!r} is turned: its edges are not along the axes of {link!r}", at)
     fine = all(within(a, b, tolerance) for a, b in zip(actual, size, strict=True))
     message = f"{link!r} shows a box {point(actual)} m{'' if fine else f', expected {point(size)} m (x, y, z)'}"
-    status = "passed" if fine else "failed"
-    return Outcome(status, message, rounded_point(actual), rounded_point(size), tolerance, "m", at)
+    return judged(fine, message, actual=actual, expected=size, tolerance=tolerance, unit="m", at=at)
 
 
 def shows_cylinder(robot: Configuration, *, link: str, radius: float, length: float, tolerance: float) -> Outcome:
@@ -52,8 +41,7 @@ def shows_cylinder(robot: Configuration, *, link: str, radius: float, length: fl
     if not fine:
         message += f", expected radius {point((radius,))} m and length {point((length,))} m"
         at = place(best.mark, "length" if within(best.radius, radius, tolerance) else "radius")
-    status = "passed" if fine else "failed"
-    return Outcome(status, message, rounded_point(actual), rounded_point(expected), tolerance, "m", at)
+    return judged(fine, message, actual=actual, expected=expected, tolerance=tolerance, unit="m", at=at)
 
 
 def shows_sphere(robot: Configuration, *, link: str, radius: float, tolerance: float) -> Outcome:
@@ -78,8 +66,7 @@ def shows_colour(robot: Configuration, *, link: str, colour: tuple[float, ...], 
     if not fine:
         message += f", expected {point(colour)}"
     at = place(visual.material.mark, "rgba")
-    status = "passed" if fine else "failed"
-    return Outcome(status, message, rounded_point(actual), rounded_point(colour), tolerance, None, at)
+    return judged(fine, message, actual=actual, expected=colour, tolerance=tolerance, at=at)
 
 
 def shows_grey(robot: Configuration, *, link: str, at_least: float, tolerance: float) -> Outcome:
@@ -87,27 +74,27 @@ def shows_grey(robot: Configuration, *, link: str, at_least: float, tolerance: f
     visual = body(robot, link)
     if visual.material is None:
         return _colourless(link, visual)
-    red, green, blue = actual = visual.material.rgba[:3]
-    at = place(visual.material.mark, "rgba")
+    actual = visual.material.rgba[:3]
     message = f"{link!r} is shown in rgb {point(actual)}"
-    if max(actual) - min(actual) > tolerance + 1e-9:
+    is_grey = within(max(actual), min(actual), tolerance)
+    is_light = min(actual) >= at_least - SLACK
+    if not is_grey:
         message += ", which is no grey: red, green and blue differ"
-    elif min(actual) < at_least - 1e-9:
-        message += f", darker than {at_least:g} in all three channels"
-    else:
-        return Outcome("passed", message, rounded_point(actual), rounded(at_least), tolerance, None, at)
-    return Outcome("failed", message, rounded_point((red, green, blue)), rounded(at_least), tolerance, None, at)
+    elif not is_light:
+        message += f", darker than {at_least:g}"
+    at = place(visual.material.mark, "rgba")
+    return judged(is_grey and is_light, message, actual=actual, expected=at_least, tolerance=tolerance, at=at)
 
 
 def shows_nothing(robot: Configuration, *, link: str) -> Outcome:
     """A link exists and shows nothing: no visual, or only invisible ones (without a size, or fully transparent)."""
-    at = place(robot.link(link).mark)
+    robot.link(link)
     try:
         shown = [visual for visual in visuals(robot, link) if visual.material is None or visual.material.rgba[3] > 0]
     except MissingElement:
         shown = []
     if not shown:
-        return passed(f"{link!r} shows nothing", at)
+        return passed(f"{link!r} shows nothing")
     message = f"{link!r} shows {shape_name(shown[0].geometry)}, expected a link without a visual"
     return failed(message, place(shown[0].mark))
 

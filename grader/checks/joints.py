@@ -20,7 +20,7 @@ def held_by(robot: Configuration, *, link: str, parent: str, joint_type: str) ->
     moving = [joint for joint in chain if joint.type != "fixed"]
     wanted = [] if joint_type == "fixed" else [joint_type]
     if [joint.type for joint in moving] == wanted:
-        return passed(f"a {joint_type} joint, {(moving or [held])[0].name!r}, holds {link!r} to {parent!r}", at)
+        return passed(f"a {joint_type} joint, {(moving or [held])[0].name!r}, holds {link!r} to {parent!r}")
     if not moving:
         message = f"{link!r} cannot move: joint {held.name!r} is fixed, expected {joint_type}"
         raise MissingElement("moving joint", link, message=message, location=at)
@@ -56,7 +56,7 @@ def joints_named(robot: Configuration, *, parent: str, joints: Mapping[str, str]
 
 def root_of_tree(robot: Configuration, *, link: str, holds: str) -> Outcome:
     """A link is the root of the tree, and fixed joints lead from it to another link."""
-    at = place(robot.link(link).mark)
+    robot.link(link)
     chain = robot.chain(holds, above=link)
     if link in robot.holding:
         held = robot.holding[link]
@@ -67,7 +67,7 @@ def root_of_tree(robot: Configuration, *, link: str, holds: str) -> Outcome:
     if loose:
         message = f"joint {loose[0].name!r} between {link!r} and {holds!r} is {loose[0].type}, expected fixed"
         return failed(message, place(loose[0].mark, "type"))
-    return passed(f"{link!r} is the root, and {holds!r} is fixed to it", at)
+    return passed(f"{link!r} is the root, and {holds!r} is fixed to it")
 
 
 def _not_below(robot: Configuration, link: str, parent: str) -> Outcome:

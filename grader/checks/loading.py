@@ -1,6 +1,6 @@
 """Checks of the file as a whole."""
 
-from grader.checks.outcome import Outcome, passed, failed
+from grader.checks.outcome import Outcome, passed
 from grader.robot.reader import Reading
 
 _UNLOADED = {"URDF083"}
@@ -14,4 +14,4 @@ def urdf_loads(urdf: Reading) -> Outcome:
     first = spoiling[0]
     more = len(spoiling) - 1
     others = f" (and {more} more problem{'s' if more > 1 else ''} that keep{'' if more > 1 else 's'} it from loading)"
-    return failed(f"{first.message}{others if more else ''}", first.location)
+    return Outcome("failed", f"{first.message}{others if more else ''}", location=first.location)

@@ -2,7 +2,7 @@
 
 from math import atan2, degrees, hypot
 
-from grader.checks.outcome import Outcome, place, point, rounded, rounded_point
+from grader.checks.outcome import SLACK, Outcome, judged, place, point, size
 from grader.checks.shown import body, pose_of, visuals
 from grader.errors import MissingElement
 from grader.robot.joints import MOVING_TYPES
@@ -41,11 +41,11 @@ def rolls_forward(
     at = place(joint.axis_mark, "xyz") or place(joint.mark)
     if travel is None:
         message = f"turning joint {joint.name!r} does not roll {link!r}: its lowest point stays where it is"
-        return Outcome("failed", message, None, rounded_point(ahead), tolerance, "deg", at)
+        return judged(False, message, actual=None, expected=ahead, tolerance=tolerance, unit="deg", at=at)
     off = _angle(travel, ahead)
     message = f"a small positive turn of joint {joint.name!r} {_heading(off, travel, base)}"
-    status = "passed" if off <= tolerance + 1e-9 else "failed"
-    return Outcome(status, message, rounded_point(travel), rounded_point(ahead), tolerance, "deg", at)
+    fine = off <= tolerance + SLACK
+    return judged(fine, message, actual=travel, expected=ahead, tolerance=tolerance, unit="deg", at=at)
 
 
 def axis_along(
@@ -56,13 +56,12 @@ def axis_along(
     actual, expected = pose.rotate(unit(axis) or axis), unit(direction) or direction
     off = _angle(actual, expected)
     message = f"{_axis_name(axis)} of the frame {link!r} points along {point(actual)} in {relative_to!r}"
-    fine = off <= tolerance + 1e-9
+    fine = off <= tolerance + SLACK
     if not fine:
         message += f", expected {point(expected)}: {point((off,))} degrees off"
     joint = robot.holding.get(link)
     at = place(joint.origin.mark if joint and joint.origin else None, "rpy") or place(robot.link(link).mark)
-    status = "passed" if fine else "failed"
-    return Outcome(status, message, rounded_point(actual), rounded_point(expected), tolerance, "deg", at)
+    return judged(fine, message, actual=actual, expected=expected, tolerance=tolerance, unit="deg", at=at)
 
 
 def turns_about_itself(robot: Configuration, *, link: str, base: str, tolerance: float, angle: float) -> Outcome:
@@ -77,18 +76,15 @@ def turns_about_itself(robot: Configuration, *, link: str, base: str, tolerance:
     tilt = min(_angle(turning, own), 180.0 - _angle(turning, own))
     away = hypot(*cross(turning, T_joint_wheel.translation))
     at = place(joint.axis_mark, "xyz") or place(joint.mark)
-    if tilt > angle + 1e-9:
+    if tilt > angle + SLACK:
         message = f"{link!r} wobbles: the axis of joint {joint.name!r} is {point((tilt,))} degrees off the cylinder's axis"
-        return Outcome("failed", message, rounded(tilt), 0.0, angle, "deg", at)
-    if away > tolerance + 1e-9:
-        at = place(visual.origin.mark, "xyz") or at
-        message = (
-            f"{link!r} turns off its centre: the axis of joint {joint.name!r} passes {point((away * 1000,))} mm from the"
-            " cylinder's centre"
-        )
-        return Outcome("failed", message, rounded(away), 0.0, tolerance, "m", at)
+        return judged(False, message, actual=tilt, expected=0.0, tolerance=angle, unit="deg", at=at)
+    fine = away <= tolerance + SLACK
     message = f"{link!r} turns about its own axis"
-    return Outcome("passed", message, rounded(away), 0.0, tolerance, "m", at)
+    if not fine:
+        message = f"{link!r} turns off its centre: joint {joint.name!r} turns it about a line {size(away, 'm')} beside it"
+    at = place(visual.origin.mark, "xyz") or at
+    return judged(fine, message, actual=away, expected=0.0, tolerance=tolerance, unit="m", at=at)
 
 
 def _moving_joint(robot: Configuration, link: str, base: str) -> Joint:

@@ -4,14 +4,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-from grader.robot.source import Location, Mark
+from grader.robot.source import Location, Mark, Spot
 from grader.robot.transforms import Vector
 
 Status = Literal["passed", "failed", "skipped", "pending", "errored"]
 Value = bool | float | str | tuple[float, ...] | tuple[str, ...] | Mapping[str, str] | None
 
 # A tolerance includes its end: 0.152 is within 0.002 of 0.15, though the floats differ by a hair more.
-_SLACK = 1e-9
+SLACK = 1e-9
 _AXES = "xyz"
 
 
@@ -28,19 +28,34 @@ class Outcome:
     location: Location | None = None
 
 
-def passed(message: str, at: Location | None = None) -> Outcome:
+def passed(message: str) -> Outcome:
     """The fact is true of the submission."""
-    return Outcome("passed", message, location=at)
+    return Outcome("passed", message)
 
 
-def failed(message: str, at: Location | None = None) -> Outcome:
-    """The fact is not true of the submission."""
-    return Outcome("failed", message, location=at)
+def failed(message: str, at: Spot | None = None) -> Outcome:
+    """The fact is not true of the submission; `at` is where to look."""
+    return Outcome("failed", message, location=at.location() if at else None)
+
+
+def judged(
+    fine: bool,
+    message: str,
+    *,
+    actual: Value,
+    expected: Value,
+    tolerance: float | None = None,
+    unit: str | None = None,
+    at: Spot | None = None,
+) -> Outcome:
+    """A measurement that passes or fails; only a failure has a place to look at."""
+    location = at.location() if at and not fine else None
+    return Outcome("passed" if fine else "failed", message, actual, expected, tolerance, unit, location)
 
 
 def within(actual: float, expected: float, tolerance: float) -> bool:
     """Whether a value is within a tolerance of another; never true of NaN."""
-    return abs(actual - expected) <= tolerance + _SLACK
+    return abs(actual - expected) <= tolerance + SLACK
 
 
 def measured(
@@ -51,20 +66,18 @@ def measured(
     tolerance: float,
     unit: str,
     sides: tuple[str, str] = ("too large", "too small"),
-    at: Location | None = None,
+    at: Spot | None = None,
 ) -> Outcome:
     """One number against the one that is expected, as in "the bottom is at -0.1 m, expected 0 m: 100 mm too low"."""
     fine = within(actual, expected, tolerance)
     message = f"{what} is {quantity(actual, unit)}"
     if not fine:
         message += f", expected {quantity(expected, unit)}: {difference(actual - expected, unit, *sides)}"
-    return Outcome(
-        "passed" if fine else "failed", message, rounded(actual), rounded(expected), tolerance, unit, at
-    )
+    return judged(fine, message, actual=actual, expected=expected, tolerance=tolerance, unit=unit, at=at)
 
 
 def measured_point(
-    what: str, *, actual: Vector, expected: Vector, tolerance: float, frame: str, at: Location | None = None
+    what: str, *, actual: Vector, expected: Vector, tolerance: float, frame: str, at: Spot | None = None
 ) -> Outcome:
     """A point in metres against the one that is expected; each coordinate must be within the tolerance."""
     off = [
@@ -75,8 +88,7 @@ def measured_point(
     message = f"{what} is at {point(actual)} m in {frame!r}"
     if off:
         message += f", expected {point(expected)} m: {', '.join(off)}"
-    status: Status = "failed" if off else "passed"
-    return Outcome(status, message, rounded_point(actual), rounded_point(expected), tolerance, "m", at)
+    return judged(not off, message, actual=actual, expected=expected, tolerance=tolerance, unit="m", at=at)
 
 
 def difference(off: float, unit: str, over: str = "too large", under: str = "too small") -> str:
@@ -99,19 +111,9 @@ def point(values: tuple[float, ...]) -> str:
     return " ".join(map(_short, values))
 
 
-def rounded(value: float) -> float:
-    """A measured value for the report: to 1e-6, so that no machine's last digit shows, and never -0."""
-    return round(value, 6) + 0.0
-
-
-def rounded_point(values: tuple[float, ...]) -> tuple[float, ...]:
-    """Measured values for the report."""
-    return tuple(map(rounded, values))
-
-
-def place(mark: Mark | None, attribute: str | None = None) -> Location | None:
+def place(mark: Mark | None, attribute: str | None = None) -> Spot | None:
     """Where an element stands in the file, if it stands there at all."""
-    return mark.location(attribute) if mark is not None else None
+    return Spot(mark, attribute) if mark is not None else None
 
 
 def listing(names: tuple[str, ...] | list[str]) -> str:

@@ -4,15 +4,15 @@ from collections.abc import Callable, Sequence
 from math import acos, degrees
 
 from grader.checks.outcome import (
+    SLACK,
     Outcome,
     difference,
     failed,
+    judged,
     measured,
     measured_point,
     place,
     point,
-    rounded,
-    rounded_point,
     size,
     within,
 )
@@ -22,7 +22,7 @@ from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Mesh
 from grader.robot.separation import penetration
 from grader.robot.shapes import UnknownShape, extent
-from grader.robot.source import Location
+from grader.robot.source import Spot
 from grader.robot.transforms import Transform, Vector
 
 _UP: Vector = (0.0, 0.0, 1.0)
@@ -87,7 +87,7 @@ def bottoms_at_height(
     robot.link(relative_to)
     lowest, missing = _each(links, lambda link: span(robot, link, relative_to, _UP)[0])
     wrong = {link: value for link, value in lowest.items() if not within(value, height, tolerance)}
-    actual = tuple(rounded(value) for value in lowest.values())
+    actual = tuple(lowest.values())
     if not wrong and missing is not None:
         raise missing
     message = f"the bottoms of {', '.join(map(repr, lowest))} are at z = {point(actual)} m in {relative_to!r}"
@@ -95,7 +95,7 @@ def bottoms_at_height(
         off = [f"{link!r} is {difference(value - height, 'm', 'too high', 'too low')}" for link, value in wrong.items()]
         message += f", expected {height:g} m: {', '.join(off)}"
     at = place(robot.link(next(iter(wrong), relative_to)).mark)
-    return Outcome("failed" if wrong else "passed", message, actual, rounded(height), tolerance, "m", at)
+    return judged(not wrong, message, actual=actual, expected=height, tolerance=tolerance, unit="m", at=at)
 
 
 def stands_on(robot: Configuration, *, link: str, on: str, tolerance: float) -> Outcome:
@@ -104,19 +104,20 @@ def stands_on(robot: Configuration, *, link: str, on: str, tolerance: float) -> 
     T_on_support = pose_of(robot, on, support, on)
     bottom, _ = span(robot, link, on, _UP)
     _, top = extent(support.geometry, T_on_support, _UP)
-    at = _origin_place(robot, link)
-    if not within(bottom, top, tolerance):
+    beyond = _overhang(robot, link, on)
+    message = f"{link!r} stands on the top of {on!r}, at z = {point((top,))} m in {on!r}"
+    fine = within(bottom, top, tolerance)
+    if not fine:
         fault = "floats above it" if bottom > top else "is sunk into it"
         message = (
             f"the bottom of {link!r} is at z = {point((bottom,))} m in {on!r} and the top of {on!r} at {point((top,))} m:"
             f" {link!r} {fault} by {size(bottom - top, 'm')}"
         )
-        return Outcome("failed", message, rounded(bottom), rounded(top), tolerance, "m", at)
-    over = _overhang(robot, link, on, tolerance)
-    if over:
-        return Outcome("failed", over, rounded(bottom), rounded(top), tolerance, "m", at)
-    message = f"{link!r} stands on the top of {on!r}, at z = {point((top,))} m in {on!r}"
-    return Outcome("passed", message, rounded(bottom), rounded(top), tolerance, "m", at)
+    elif beyond > tolerance + SLACK:
+        fine = False
+        message = f"{link!r} reaches {size(beyond, 'm')} beyond the edge of the top of {on!r}"
+    at = _origin_place(robot, link)
+    return judged(fine, message, actual=bottom, expected=top, tolerance=tolerance, unit="m", at=at)
 
 
 def clear_of(robot: Configuration, *, link: str, of: str, tolerance: float) -> Outcome:
@@ -129,12 +130,9 @@ def clear_of(robot: Configuration, *, link: str, of: str, tolerance: float) -> O
     T_of_one, T_of_other = pose_of(robot, link, one, of), pose_of(robot, of, other, of)
     depth = penetration(one.geometry, T_of_one, other.geometry, T_of_other, allowed=tolerance)
     fine = depth <= tolerance
-    if fine:
-        message = f"{link!r} does not cut into {of!r}"
-        return Outcome("passed", message, 0.0, 0.0, tolerance, "m", place(one.mark))
-    message = f"{link!r} cuts {size(depth, 'm')} deep into {of!r}"
+    message = f"{link!r} does not cut into {of!r}" if fine else f"{link!r} cuts {size(depth, 'm')} deep into {of!r}"
     at = place(one.origin.mark, "xyz") or place(one.mark)
-    return Outcome("failed", message, round(depth, 4), 0.0, tolerance, "m", at)
+    return judged(fine, message, actual=round(depth, 4), expected=0.0, tolerance=tolerance, unit="m", at=at)
 
 
 def under_the_base(
@@ -158,14 +156,13 @@ def under_the_base(
         if not within(value, 0.0, tolerance):
             side = "above" if value > 0 else "below"
             faults.append(f"the lowest point of {wheel!r} is {size(value, 'm')} {side} it")
-    measured_values = rounded_point((x, y, *lowest.values()))
-    if faults:
-        message = f"the frame {link!r} is not level with the bottoms of the wheels under {base!r}: {'; '.join(faults)}"
-        return Outcome("failed", message, measured_values, 0.0, tolerance, "m", at)
-    if missing is not None:
+    if missing is not None and not faults:
         raise missing
     message = f"the frame {link!r} is under {base!r}, level with the bottoms of the wheels"
-    return Outcome("passed", message, measured_values, 0.0, tolerance, "m", at)
+    if faults:
+        message = f"the frame {link!r} is not level with the bottoms of the wheels under {base!r}: {'; '.join(faults)}"
+    actual = (x, y, *lowest.values())
+    return judged(not faults, message, actual=actual, expected=0.0, tolerance=tolerance, unit="m", at=at)
 
 
 def _each(
@@ -182,7 +179,8 @@ def _each(
     return found, missing
 
 
-def _overhang(robot: Configuration, link: str, on: str, tolerance: float) -> str | None:
+def _overhang(robot: Configuration, link: str, on: str) -> float:
+    """How far what a link shows reaches beyond the outline of what another shows, seen from above, in metres."""
     support = body(robot, on)
     T_on_support = pose_of(robot, on, support, on)
     directions = [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
@@ -194,9 +192,7 @@ def _overhang(robot: Configuration, link: str, on: str, tolerance: float) -> str
         low, high = extent(support.geometry, T_on_support, direction)
         our_low, our_high = span(robot, link, on, direction)
         beyond = max(beyond, low - our_low, our_high - high)
-    if beyond <= tolerance + 1e-9:
-        return None
-    return f"{link!r} reaches {size(beyond, 'm')} beyond the edge of the top of {on!r}"
+    return beyond
 
 
 def _turned(pose: Transform) -> float:
@@ -205,7 +201,7 @@ def _turned(pose: Transform) -> float:
     return degrees(acos(max(-1.0, min(1.0, (a + e + i - 1.0) / 2.0))))
 
 
-def _origin_place(robot: Configuration, link: str) -> Location | None:
+def _origin_place(robot: Configuration, link: str) -> Spot | None:
     """Where the origin is written that puts a link into its parent."""
     joint = robot.holding.get(link)
     if joint is None:

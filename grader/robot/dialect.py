@@ -30,14 +30,14 @@ _KEPT_DEPTH = 32  # urdfdom never looks deeper than robot/link/visual/geometry/b
 _MOST_ERRORS = 20
 _LONGEST_NAME = 60
 _AMPERSAND = ord("&")
-_LAST_CODE_POINT = 0x10FFFF
-_MOST_DIGITS = 10
+_FIRST_SURROGATE, _LAST_SURROGATE, _LAST_CODE_POINT, _FIVE_BYTES = 0xD800, 0xDFFF, 0x10FFFF, 0x200000
 
-# What lxml would accept, but read otherwise than TinyXML2.
-_SUSPECT = re.compile(
-    rb"""<![^-\[]|(?<!\A)<\?|\0|xmlns\s*=|=\s*"[^"\n\r\t]*[\n\r\t]|=\s*'[^'\n\r\t]*[\n\r\t]|\A(?:\xff\xfe|\xfe\xff)"""
+# lxml turns a line break or tab in a value into a space, TinyXML2 keeps it.
+_BROKEN_VALUE = re.compile(rb"""=[ \t\r\n]*(?:"[^"\n\r\t]*[\n\r\t]|'[^'\n\r\t]*[\n\r\t])""")
+_DEFAULT_NAMESPACE = re.compile(rb"xmlns[ \t\r\n]*=")
+_PLAIN_START = re.compile(
+    rb"""(?:\xef\xbb\xbf)?(?!<\?|\xff\xfe|\xfe\xff)|<\?xml\s+version\s*=\s*["']1\.0["'](?:\s+encoding\s*=\s*["'](?i:utf-8)["'])?\s*\?>"""
 )
-_PLAIN_START = re.compile(rb"""(?:\xef\xbb\xbf)?(?!<\?)|<\?xml\s+version\s*=\s*["']1\.0["'](?:\s+encoding\s*=\s*["'](?i:utf-8)["'])?\s*\?>""")
 
 
 class Finding(NamedTuple):
@@ -68,7 +68,14 @@ class Scan:
 
 def is_plain(data: bytes) -> bool:
     """Whether a text that lxml accepts means the same to TinyXML2: then no translation is needed."""
-    return _PLAIN_START.match(data) is not None and _SUSPECT.search(data) is None
+    return (
+        b"\0" not in data
+        and data.find(b"<?", 1) < 0
+        and data.count(b"<!") == data.count(b"<!--")
+        and _PLAIN_START.match(data) is not None
+        and _BROKEN_VALUE.search(data) is None
+        and (b"xmlns" not in data or _DEFAULT_NAMESPACE.search(data) is None)
+    )
 
 
 def translate(text: str) -> Scan:
@@ -396,11 +403,28 @@ def _reference(source: bytes, at: int) -> tuple[bytes | None, int]:
     found = _CHARACTER.match(source, at + 1)
     if found is None:
         return b"&", 1
-    digits = (found[2] if found[1] is None else found[1]).lstrip(b"0") or b"0"
-    code = int(digits[:10], 16 if found[2] is None else 10)
-    if code > _LAST_CODE_POINT or len(digits) > _MOST_DIGITS:
-        return b"&", 1
-    return chr(code).encode("utf-8", "surrogatepass"), len(found[0]) + 1
+    code = _code_point(found[2] if found[1] is None else found[1], 10 if found[1] is None else 16)
+    return _encoded(code), len(found[0]) + 1
+
+
+def _code_point(digits: bytes, radix: int) -> int:
+    # TinyXML2 10 multiplies in 32 bits and adds in 64, so that very long numbers come out as others.
+    code, factor = 0, 1
+    for digit in reversed(digits):
+        code += factor * int(chr(digit), radix) % 2**32
+        factor = factor * radix % 2**32
+    return code
+
+
+def _encoded(code: int) -> bytes:
+    """UTF-8, past the last code point and over surrogates as well; nothing for what takes more than four bytes."""
+    if code < _FIRST_SURROGATE or _LAST_SURROGATE < code <= _LAST_CODE_POINT:
+        return chr(code).encode()
+    if code < _LAST_CODE_POINT:
+        return chr(code).encode("utf-8", "surrogatepass")
+    if code < _FIVE_BYTES:
+        return bytes((0xF0 | code >> 18, 0x80 | code >> 12 & 0x3F, 0x80 | code >> 6 & 0x3F, 0x80 | code & 0x3F))
+    return b""
 
 
 def _is_plain_name(name: str) -> bool:

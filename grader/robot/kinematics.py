@@ -35,7 +35,7 @@ class Configuration:
 
     A planar joint takes x, y (metres in the plane across its axis) and an angle; a floating joint takes x, y, z, roll,
     pitch, yaw. A mimic joint follows, unless it is named itself. Links that no joint leads to are roots, so a forest is
-    solved tree by tree. Every link is solved once, root first: linear in the number of links, without recursion.
+    solved tree by tree. Every link is solved once: linear in the number of links, without recursion.
     """
 
     def __init__(self, robot: Robot, positions: Mapping[str, Position] | None = None) -> None:
@@ -46,7 +46,6 @@ class Configuration:
         for name, position in self.positions.items():
             _check_position(robot.joint(name), position)
         self._placed: dict[str, _Placed] = {}
-        self._solved = False
         self._inverses: dict[str, Transform] = {}
 
     def link(self, name: str) -> Link:
@@ -123,7 +122,12 @@ class Configuration:
 
     def moved(self, joint: str, position: Position) -> "Configuration":
         """The same robot with one joint elsewhere."""
-        return Configuration(self.robot, {**self.positions, joint: position})
+        other = Configuration.__new__(Configuration)
+        _check_position(self.joint(joint), position)
+        other.robot, other.holding = self.robot, self.holding
+        other.positions = {**self.positions, joint: position}
+        other._placed, other._inverses = {}, {}
+        return other
 
     def position(self, joint: Joint) -> Position:
         """Where a joint is: its own position, that of the joint that it mimics, or 0."""
@@ -149,39 +153,36 @@ class Configuration:
         return factor * own + offset if isinstance(own, int | float) else offset
 
     def _place(self, link: str) -> "_Placed":
-        if not self._solved:
-            self._solve()
-        found = self._placed.get(link)
-        if found is None:
-            at = _location(self.link(link))
-            message = f"link {link!r} hangs on a loop of joints: it is in no tree"
-            raise MissingElement("connection", link, message=message, location=at)
-        return found
+        """Where a link is. Links are placed when they are asked for, each once, from the nearest placed link above.
 
-    def _solve(self) -> None:
-        """Place every link, root first. Behind a joint with an undefined pose a new island begins.
-
-        So the poses behind such a joint are still known relative to each other, and one defect does not hide another.
+        Behind a joint with an undefined pose a new island begins: the poses behind it are still known relative to each
+        other, and one defect does not hide another.
         """
-        self._solved = True
-        below: dict[str, list[Joint]] = {}
-        for joint in self.holding.values():
-            below.setdefault(joint.parent, []).append(joint)
-        placed = self._placed
-        for root in self.roots:
-            placed[root] = _Placed(root, root, IDENTITY)
-            waiting = [root]
-            while waiting:
-                parent = waiting.pop()
-                above = placed[parent]
-                for joint in below.get(parent, ()):
-                    step = _step(joint, self.position(joint))
-                    pose = above.pose @ step if step is not None else None
-                    if pose is not None and isfinite(sum(pose.translation)):
-                        placed[joint.child] = _Placed(root, above.island, pose)
-                    else:
-                        placed[joint.child] = _Placed(root, joint.child, IDENTITY)
-                    waiting.append(joint.child)
+        found = self._placed.get(link)
+        return found if found is not None else self._solve(link)
+
+    def _solve(self, link: str) -> "_Placed":
+        self.link(link)
+        holding, placed = self.holding, self._placed
+        way: list[Joint] = []
+        name = link
+        while name not in placed and name in holding:
+            way.append(holding[name])
+            name = holding[name].parent
+            if len(way) > len(holding):
+                at = _location(self.link(link))
+                message = f"link {link!r} hangs on a loop of joints: it is in no tree"
+                raise MissingElement("connection", link, message=message, location=at)
+        above = placed.get(name) or placed.setdefault(name, _Placed(name, name, IDENTITY))
+        for joint in reversed(way):
+            step = _step(joint, self.position(joint))
+            pose = above.pose @ step if step is not None else None
+            if pose is not None and isfinite(sum(pose.translation)):
+                above = _Placed(above.root, above.island, pose)
+            else:
+                above = _Placed(above.root, joint.child, IDENTITY)
+            placed[joint.child] = above
+        return above
 
 
 class _Placed(NamedTuple):

@@ -16,6 +16,7 @@ Element = etree._Element
 Default = TypeVar("Default")
 
 _FORMAT_DIRECTIVE = re.compile(r"%[-+ #0-9.$*'hlLqjzt]*n")
+_PRINTED = frozenset({"origin", "box", "cylinder", "sphere", "mass"})  # whose values urdfdom uses as printf's format
 _FULL_TURN = 6.2832
 
 
@@ -89,7 +90,6 @@ class Part:
             return vector(text)
         except NumberError as error:
             self._unreadable(element, attribute, text, error)
-            self._notes.printed(text, element, attribute)
             return None
 
     def origin(self, element: Element | None) -> Origin | None:
@@ -105,6 +105,8 @@ class Part:
 
     def _unreadable(self, element: Element, attribute: str, text: str, error: NumberError) -> None:
         self.fail(f"{attribute}={shown(text)} of <{element.tag}> cannot be read: {error}", element, attribute)
+        if element.tag in _PRINTED:
+            self._notes.printed(text, element, attribute)
 
     def _suspect_degrees(self, element: Element, rpy: Vector) -> None:
         for angle in rpy:

@@ -10,8 +10,11 @@ from math import isinf
 from grader.robot.transforms import Vector
 
 _NUMBER = re.compile(r"[ \t\n\v\f\r]*[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_PLAIN = r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))"
+_PLAIN_VECTOR = re.compile(f" *{_PLAIN} +{_PLAIN} +{_PLAIN} *")  # what most vectors look like, in one go
 _VERSION = re.compile(r"[ \t\n\v\f\r]*([+-]?[0-9]+)")
 _LONG = 2**63
+_SURELY_FINITE = 300  # characters: too few for the digits of an overflow
 
 
 class NumberError(ValueError):
@@ -35,6 +38,10 @@ def numbers(text: str) -> list[float]:
 
 def vector(text: str) -> Vector:
     """Three numbers, as urdfdom's Vector3::init gives them; raises NumberError."""
+    plain = _PLAIN_VECTOR.fullmatch(text)
+    if plain is not None and len(text) < _SURELY_FINITE:
+        x, y, z = plain.groups()
+        return (float(x), float(y), float(z))
     values = numbers(text)
     if len(values) != 3:
         raise NumberError(f"it has {len(values)} number{'' if len(values) == 1 else 's'} where 3 are needed")

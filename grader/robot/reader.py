@@ -31,7 +31,6 @@ _PARSER = etree.XMLParser(
     remove_pis=True,
 )
 _XACRO = re.compile(r"<!--.*?-->|(<xacro:|\$\{|\$\()", re.DOTALL)
-_COMMENT_TRAP = re.compile(r"<!--(?:(?!-->)[^\t])*?(?:\t|: )")
 
 
 @dataclass(frozen=True, slots=True)
@@ -159,7 +158,12 @@ def _check_text(root: Element, notes: Notes) -> None:
     if xacro:
         message = "this is xacro, which ROS 2 does not evaluate in a .urdf: expand it first (ros2 run xacro xacro FILE)"
         notes.problems.append(Problem(catalogue.RAW_XACRO, message, notes.source.at(xacro.start())))
-    trap = _COMMENT_TRAP.search(text) if "<!--" in text else None
-    if trap:
-        message = "a comment with a colon and a space, or a tab, can stop a launch file that passes the URDF as YAML"
-        notes.problems.append(Problem(catalogue.COMMENT_TRAP, message, notes.source.at(trap.start())))
+    opening = text.find("<!--")
+    while opening >= 0:
+        closing = text.find("-->", opening + 4)
+        comment = text[opening : closing if closing >= 0 else len(text)]
+        if ": " in comment or "\t" in comment:
+            message = "a comment with a colon and a space, or a tab, can stop a launch file that passes the URDF as YAML"
+            notes.problems.append(Problem(catalogue.COMMENT_TRAP, message, notes.source.at(opening)))
+            break
+        opening = text.find("<!--", closing) if closing >= 0 else -1

@@ -22,11 +22,11 @@ if TYPE_CHECKING:
     Array = np.ndarray[Any, np.dtype[np.float64]]
 
 _ROUNDING = 1e-9  # metres; what sums of coordinates may lose, so that shapes set side by side count as touching
-_GAP_ERROR = 1e-7  # metres; how far the bounds on a gap may stay apart
-_GAP_STEPS = 200  # pairs of robot parts need fewer than 40 steps; the cap is for what rounding may do
-_SAGITTA = 4e-5  # metres from a rim to the polygon that stands for it; two rims together stay below 0.1 mm
-_BEND = 4e-6  # the same, relative to the radius: beyond 10 m a rim takes no more lines than at 10 m
-_LARGEST = 1e6  # metres; longer lengths are scaled down, for the product of four of them may overflow
+_GAP_ERROR = 1e-7  # metres; how far the two bounds on a gap may stay apart
+_GAP_STEPS = 200  # pairs of robot parts take fewer than 40; the cap is for what rounding may do
+_SAGITTA = 4e-5  # metres from a rim to the polygon that stands for it; two of these are less than 0.1 mm
+_BEND = 4e-6  # the same relative to the radius, so that a rim of more than 10 m has no more corners than one of 10 m
+_LARGEST = 1e6  # metres; longer lengths are scaled down, for products of four of them could overflow
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,49 +132,48 @@ def _straight_edges(shape: Shape) -> list[Vector]:
 
 
 def _widest_gap(a: Shape, b: Shape, T_a_b: Transform) -> Vector | None:
-    """The unit direction of the gap between the cores of two shapes, or None where they touch or cut into each other.
+    """The unit direction from a to b of the widest gap between their cores; None where these touch or cut into each other.
 
     It points to what is nearest the origin among all differences between points of b and of a (Gilbert, Johnson and
     Keerthi, IEEE Journal of Robotics and Automation 4(2), 1988). Each step bounds the gap from both sides.
     """
     corners: Sequence[Vector] = ()
-    nearest = T_a_b.translation
-    length, least, best = hypot(*nearest), 0.0, None
+    nearest, shortest = T_a_b.translation, inf
+    gap, best = 0.0, None
     for _ in range(_GAP_STEPS):
+        length = hypot(*nearest)
         if length <= _GAP_ERROR:
             return None
         direction = (nearest[0] / length, nearest[1] / length, nearest[2] / length)
         corner = _near_end(a, b, T_a_b, direction)
-        if dot(direction, corner) > least:
-            least, best = dot(direction, corner), direction
-        if length - least <= _GAP_ERROR:
+        if dot(direction, corner) > gap:
+            gap, best = dot(direction, corner), direction
+        if length - gap <= _GAP_ERROR:
             break
         corners, nearest = _nearest_to_origin((corner, *corners))
-        previous, length = length, hypot(*nearest)
-        if len(corners) > 1 and length >= previous:
-            import os
-            if os.environ.get("STALL"): print("STALL",length-least, len(corners), length, previous-length)
+        if hypot(*nearest) >= shortest:
             break  # the corners lie too close together for rounding to let them tell more
+        shortest = hypot(*nearest)
     return best
 
 
 def _near_end(a: Shape, b: Shape, T_a_b: Transform, direction: Vector) -> Vector:
-    """The difference between points of the cores of b and a that lies least far along a direction."""
+    """The difference between points of the cores of b and of a that lies least far along a direction.
+
+    The core of a sphere is its centre: its radius shortens every gap alike.
+    """
     x, y, z = T_a_b.translation
     if not isinstance(a, Sphere):
-        p, q, r = support(a, direction)
-        x, y, z = x - p, y - q, z - r
+        u, v, w = support(a, direction)
+        x, y, z = x - u, y - v, z - w
     if not isinstance(b, Sphere):
-        p, q, r = T_a_b.rotate(support(b, T_a_b.unrotate(direction)))
-        x, y, z = x - p, y - q, z - r
+        u, v, w = T_a_b.rotate(support(b, T_a_b.unrotate(direction)))
+        x, y, z = x - u, y - v, z - w
     return (x, y, z)
 
 
 def _nearest_to_origin(corners: Sequence[Vector]) -> tuple[Sequence[Vector], Vector]:
-    """The point nearest the origin of the smallest convex set with up to four corners, and the corners it rests on.
-
-    The first corner is one of those that it rests on.
-    """
+    """What is nearest the origin between up to four corners, and the corners it rests on: the first is one of them."""
     first, *rest = corners
     best: tuple[Sequence[Vector], Vector] = ((first,), first)
     shortest = hypot(*first)
@@ -186,20 +185,19 @@ def _nearest_to_origin(corners: Sequence[Vector]) -> tuple[Sequence[Vector], Vec
 
 
 def _foot(first: Vector, others: Sequence[Vector]) -> Vector | None:
-    """The foot of the perpendicular from the origin onto a line, a plane or all space, if it lies between the corners."""
+    """The foot of the origin's perpendicular to the line, plane or space through some corners, if it is between them."""
     edges = [minus(other, first) for other in others]
     home = (-first[0], -first[1], -first[2])
-    if len(edges) == 1:
-        square, parts = dot(edges[0], edges[0]), [dot(home, edges[0])]
-    elif len(edges) == 2:
-        normal = cross(edges[0], edges[1])
-        square, parts = dot(normal, normal), [dot(cross(home, edges[1]), normal), dot(cross(edges[0], home), normal)]
-    else:
-        normals = [cross(edges[1], edges[2]), cross(edges[2], edges[0]), cross(edges[0], edges[1])]
-        square, parts = dot(edges[0], normals[0]), [dot(home, normal) for normal in normals]
-    if square == 0.0:
-        return None
-    weights = [part / square for part in parts]
+    match edges:
+        case [p]:
+            whole, parts = dot(p, p), [dot(home, p)]
+        case [p, q]:
+            normal = cross(p, q)
+            whole, parts = dot(normal, normal), [dot(cross(home, q), normal), dot(cross(p, home), normal)]
+        case _:
+            p, q, r = edges
+            whole, parts = dot(p, cross(q, r)), [dot(home, cross(q, r)), dot(home, cross(r, p)), dot(home, cross(p, q))]
+    weights = [part / whole for part in parts] if whole else [-1.0]
     if min(weights) < 0.0 or sum(weights) > 1.0:
         return None
     x, y, z = first
@@ -209,61 +207,71 @@ def _foot(first: Vector, others: Sequence[Vector]) -> Vector | None:
 
 
 def _least_overlap(a: Shape, b: Shape, T_a_b: Transform) -> Vector:
-    """The unit direction from a to b along which two shapes that cut into each other overlap least."""
-    directions = list(_likely_directions(a, b, T_a_b))
-    if not isinstance(a, Sphere) and not isinstance(b, Sphere) and (isinstance(a, Cylinder) or isinstance(b, Cylinder)):
-        directions.append(_least_overlap_at_rims(a, b, T_a_b))
-    x, y, z = min(directions, key=lambda direction: _overlap(a, b, T_a_b, direction))
-    return (x, y, z) if dot((x, y, z), T_a_b.translation) >= 0.0 else (-x, -y, -z)
+    """The unit direction from a to b along which two shapes that touch or cut into each other overlap least."""
+
+    def overlap(direction: Vector) -> float:
+        return _overlap(a, b, T_a_b, direction)
+
+    best = min(_likely_directions(a, b, T_a_b), key=overlap)
+    round_one = isinstance(a, Cylinder) or isinstance(b, Cylinder)
+    if round_one and not isinstance(a, Sphere) and not isinstance(b, Sphere) and overlap(best) > _ROUNDING:
+        best = min(best, _least_overlap_at_rims(a, b, T_a_b), key=overlap)
+    x, y, z = best
+    return best if dot(best, T_a_b.translation) >= 0.0 else (-x, -y, -z)
 
 
 def _least_overlap_at_rims(a: Box | Cylinder, b: Box | Cylinder, T_a_b: Transform) -> Vector:
-    """The direction of the smallest overlap among the normals that two straight edges, or an edge and a rim, or two rims span.
+    """The unit normal of least overlap among those that two straight edges, an edge and a rim, or two rims span.
 
-    With polygons for rims these and the normals of flat faces are all that the separating axis test needs; a rim
-    stands out from its polygon by less than `_SAGITTA`. The second and third round look closer at what was found.
+    Were the rims polygons, these and the normals of flat faces would be all that the separating axis test needs; a rim
+    stands out from its polygon by no more than `_SAGITTA`. Two more rounds look closer about the best normal.
     """
-    # Imported here because loading numpy takes longer than grading a robot, and most robots' parts stay clear.
-    import numpy as np  # noqa: PLC0415
+    import numpy as np  # not at the top: loading it takes longer than a grading run, and most robots' parts stay clear
 
     rotation = np.array(T_a_b.rotation).reshape(3, 3)
-    frames = [frame for shape, frame in ((a, np.eye(3)), (b, rotation)) if isinstance(shape, Cylinder)]
-    edges = np.array(_straight_edges(a) + [T_a_b.rotate(edge) for edge in _straight_edges(b)])
-    angles, steps = [], []
-    for shape in (a, b):
-        if isinstance(shape, Cylinder):
-            radius = abs(shape.radius)
-            count = 1 + ceil(pi / 2.0 * sqrt(radius / 2.0 / max(_SAGITTA, _BEND * radius)))
-            angles.append(np.arange(count) * pi / count)
-            steps.append(pi / count)
-    least, best = inf, (0.0, 0.0, 1.0)
+    straight = np.array([*_straight_edges(a), *map(T_a_b.rotate, _straight_edges(b))])
+    sides = ((a, np.eye(3)), (b, rotation))
+    rims = [(frame, _around(shape.radius)) for shape, frame in sides if isinstance(shape, Cylinder)]
+    best = straight[0]
     for _ in range(3):
-        lines = [np.outer(np.cos(t), f[:, 0]) + np.outer(np.sin(t), f[:, 1]) for t, f in zip(angles, frames, strict=True)]
-        normals = _normals([edges, *lines])
-        overlaps = _half_widths(a, normals) + _half_widths(b, normals @ rotation) - np.abs(normals @ T_a_b.translation)
-        if len(overlaps) and overlaps.min() < least:
-            best, least = normals[overlaps.argmin()], overlaps.min()
-        angles = [np.arctan2(best @ f[:, 0], -(best @ f[:, 1])) + s * np.linspace(-1.0, 1.0, 17) for f, s in zip(frames, steps)]
-        steps = [s / 8.0 for s in steps]
-    x, y, z = best
-    return (float(x), float(y), float(z))
+        lines = [np.outer(np.cos(turn), f[:, 0]) + np.outer(np.sin(turn), f[:, 1]) for f, turn in rims]
+        normals = _normals([straight, *lines])
+        overlaps = _half_widths(a, normals) + _half_widths(b, normals @ rotation) - abs(normals @ T_a_b.translation)
+        best = normals[overlaps.argmin()]
+        rims = [(f, _closer(turn, np.arctan2(best @ f[:, 0], -(best @ f[:, 1])))) for f, turn in rims]
+    x, y, z = best.tolist()
+    return (x, y, z)
 
 
-def _normals(lines: "list[Array]") -> "Array":
-    import numpy as np  # noqa: PLC0415
+def _around(radius: float) -> "Array":
+    """The directions of a rim's edges, as angles from its x axis over half a turn; the other half has the same lines."""
+    import numpy as np
 
-    pairs = [np.cross(p[:, None], q[None]).reshape(-1, 3) for p, q in combinations(lines, 2)]
-    normals = np.concatenate(pairs)
+    sagitta = max(_SAGITTA, _BEND * abs(radius))
+    count = max(2, ceil(pi / 2.0 * sqrt(abs(radius) / sagitta / 2.0)))  # 1 - cos(x) is less than x**2 / 2
+    return np.arange(count) * pi / count
+
+
+def _closer(turns: "Array", middle: float) -> "Array":
+    import numpy as np
+
+    return middle + (turns[1] - turns[0]) * np.linspace(-1.0, 1.0, 17)
+
+
+def _normals(lines: "Sequence[Array]") -> "Array":
+    """The unit normals, shape (n, 3), to each two lines from different sets; lines have shape (m, 3)."""
+    import numpy as np
+
+    normals = np.concatenate([np.cross(p[:, None], q).reshape(-1, 3) for p, q in combinations(lines, 2)])
     lengths = np.linalg.norm(normals, axis=1)
-    kept = lengths > _ROUNDING
-    return normals[kept] / lengths[kept, None]
+    return normals[lengths > _ROUNDING] / lengths[lengths > _ROUNDING, None]
 
 
 def _half_widths(shape: Box | Cylinder, directions: "Array") -> "Array":
-    import numpy as np  # noqa: PLC0415
+    """`half_width` for directions of shape (n, 3)."""
+    import numpy as np
 
-    x, y, z = directions.T
     if isinstance(shape, Box):
-        a, b, c = shape.size
-        return (abs(a * x) + abs(b * y) + abs(c * z)) / 2.0
+        return abs(directions) @ np.abs(shape.size) / 2.0
+    x, y, z = directions.T
     return abs(shape.radius) * np.hypot(x, y) + abs(shape.length / 2.0 * z)

@@ -4,6 +4,7 @@ import re
 from bisect import bisect_right
 from dataclasses import dataclass
 from itertools import accumulate
+from typing import NamedTuple
 
 # In text that an XML parser has accepted, `<` and a name outside comments and CDATA opens a tag.
 _START_TAG = re.compile(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<(?![/!?])", re.DOTALL)
@@ -72,3 +73,14 @@ class Mark:
     def location(self, attribute: str | None = None) -> Location:
         """The place of the tag, or of one of its attributes."""
         return self.source.tag(self.index, attribute)
+
+
+class Spot(NamedTuple):
+    """An element or one of its attributes, whose place is worked out on demand."""
+
+    mark: Mark
+    attribute: str | None = None
+
+    def location(self) -> Location:
+        """The place of the attribute if it is there, else of the tag."""
+        return self.mark.location(self.attribute)

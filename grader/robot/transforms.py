@@ -5,7 +5,7 @@ gives the homogeneous matrix.
 """
 
 from dataclasses import dataclass
-from math import cos, hypot, sin
+from math import atan2, cos, hypot, sin
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -28,6 +28,8 @@ class Transform:
         """T_a_c = T_a_b @ T_b_c."""
         a, b, c, d, e, f, g, h, i = self.rotation
         j, k, l, m, n, o, p, q, r = other.rotation
+        x, y, z = other.translation
+        u, v, w = self.translation
         return Transform(
             (
                 a * j + b * m + c * p,
@@ -40,14 +42,15 @@ class Transform:
                 g * k + h * n + i * q,
                 g * l + h * o + i * r,
             ),
-            self.apply(other.translation),
+            (a * x + b * y + c * z + u, d * x + e * y + f * z + v, g * x + h * y + i * z + w),
         )
 
     def apply(self, point: Vector) -> Vector:
         """A point in b, seen in a."""
-        x, y, z = self.rotate(point)
+        a, b, c, d, e, f, g, h, i = self.rotation
+        x, y, z = point
         u, v, w = self.translation
-        return (x + u, y + v, z + w)
+        return (a * x + b * y + c * z + u, d * x + e * y + f * z + v, g * x + h * y + i * z + w)
 
     def rotate(self, direction: Vector) -> Vector:
         """A direction in b, seen in a: no translation."""
@@ -73,6 +76,15 @@ class Transform:
         a, b, c, d, e, f, g, h, i = self.rotation
         x, y, z = self.translation
         return ((a, b, c, x), (d, e, f, y), (g, h, i, z), (0.0, 0.0, 0.0, 1.0))
+
+    @property
+    def rpy(self) -> Vector:
+        """Roll, pitch and yaw in radians about fixed axes; where pitch is a quarter turn, roll is given as 0."""
+        a, b, _, d, e, _, g, h, i = self.rotation
+        flat = hypot(a, d)
+        if flat < 1e-9:
+            return (0.0, atan2(-g, flat), atan2(-b, e))
+        return (atan2(h, i), atan2(-g, flat), atan2(d, a))
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> "np.ndarray[Any, Any]":
         """The 4 x 4 homogeneous matrix for numpy, shape (4, 4)."""

@@ -10,6 +10,7 @@ _NONE = "no root"
 _DETACHED = "what hangs on a detached cycle is left out"
 _REACHED = "a cycle that the root reaches is walked for ever"
 _PARENTS = "a link may have two parents"
+_WAYS = "a link is walked once for each way to it"
 _DEEP = "a tree may be deep or wide"
 
 
@@ -82,5 +83,6 @@ CASES: tuple[EdgeCase, ...] = (
     clean("parents-root-and-its-child", _PARENTS, _tree("ab", "bc", "ac")),
     clean("parents-two-joints-between-two-links", _PARENTS, _tree("ab", "ab")),
     clean("parents-two-with-subtree", _PARENTS, _tree("ab", "ac", "bd", "cd", "de", "ef")),
-    clean("parents-ten-diamonds", _PARENTS, _diamonds(10)),
+    clean("parents-ten-diamonds", _WAYS, _diamonds(10)),
+    rejected("parents-28-diamonds", _WAYS, _diamonds(28), "hangs"),
 )

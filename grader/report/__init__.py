@@ -1,0 +1,1 @@
+"""A report in one format each. Renderers lay out what was found; they never grade."""

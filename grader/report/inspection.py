@@ -1,0 +1,161 @@
+"""What `grader inspect` shows of a URDF: problems, tree, joints, poses."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from rich.console import Console
+from rich.text import Text
+
+from grader.errors import MissingElement
+from grader.report.layout import show_problems, symbol, wrapped
+from grader.report.plain import problem, rounded, to_json
+from grader.report.text import printable
+from grader.robot.kinematics import Configuration
+from grader.robot.model import Joint
+from grader.robot.reader import Reading
+from grader.robot.transforms import Transform
+
+_VERDICTS = {"clean": "green", "degraded": "yellow", "rejected": "bold red"}
+_SAYS = {
+    "clean": "ROS 2 loads it",
+    "degraded": "ROS 2 loads it, but drops some of it",
+    "rejected": "ROS 2 rejects it",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Inspection:
+    """A URDF as read, with its joints at the positions that were asked for; `robot` is None where nothing could be read."""
+
+    path: str
+    reading: Reading
+    robot: Configuration | None
+    relative_to: str | None
+
+    def poses(self) -> Iterator[tuple[str, Transform | str]]:
+        """Every link's pose in the frame that was asked for, in file order, or the reason why it has none."""
+        if self.robot is None or self.relative_to is None:
+            return
+        for link in self.robot.robot.links:
+            try:
+                yield link.name, self.robot.pose(link.name, relative_to=self.relative_to)
+            except MissingElement as missing:
+                yield link.name, str(missing)
+
+
+def main_root(robot: Configuration) -> str | None:
+    """The root of the largest tree; None where every link hangs on a loop."""
+    sizes = dict.fromkeys(robot.roots, 0)
+    for link in robot.robot.links:
+        try:
+            sizes[robot.root_of(link.name)] += 1
+        except MissingElement:
+            continue
+    return max(sizes, key=lambda root: sizes[root]) if sizes else None
+
+
+def inspection_json(inspection: Inspection) -> str:
+    """The inspection as JSON, schema grader/inspect/v1. A pose that is undefined is null."""
+    poses = {
+        name: rounded_matrix(pose) if isinstance(pose, Transform) else None for name, pose in inspection.poses()
+    }
+    return to_json(
+        {
+            "schema": "grader/inspect/v1",
+            "path": inspection.path,
+            "verdict": inspection.reading.verdict,
+            "problems": [problem(each) for each in inspection.reading.problems],
+            "robot": _robot(inspection.robot) if inspection.robot is not None else None,
+            "relative_to": inspection.relative_to,
+            "poses": poses,
+        }
+    )
+
+
+def rounded_matrix(pose: Transform) -> list[list[float]]:
+    """A pose as rows of numbers, rounded to 1e-12: beyond that, machines differ."""
+    return [[round(value, 12) + 0.0 for value in row] for row in pose.matrix]
+
+
+def inspection_terminal(inspection: Inspection, console: Console) -> None:
+    """Print the inspection for a person."""
+    reading, robot = inspection.reading, inspection.robot
+    name = f"robot {robot.robot.name!r}" if robot is not None else "no robot"
+    says = (_SAYS[reading.verdict], _VERDICTS[reading.verdict])
+    console.print(Text.assemble((printable(inspection.path), "bold"), ": ", says, f", {printable(name)}"))
+    if reading.problems:
+        console.print()
+        console.print(Text("Problems", style="bold"))
+        show_problems(console, reading.problems, reading.source)
+    if robot is None:
+        return
+    console.print()
+    console.print(Text("Tree", style="bold"))
+    _show_tree(robot, console)
+    console.print()
+    frame = printable(inspection.relative_to or "")
+    console.print(Text(f"Poses in {frame!r} (x y z in m, roll pitch yaw in rad)", style="bold"))
+    for link, pose in inspection.poses():
+        text = _pose_words(pose) if isinstance(pose, Transform) else printable(pose)
+        wrapped(console, Text.assemble((f"{printable(link)}  ", ""), (text, "cyan" if isinstance(pose, Transform) else "red")), 2)
+
+
+def _show_tree(robot: Configuration, console: Console) -> None:
+    below: dict[str, list[Joint]] = {}
+    for joint in robot.holding.values():
+        below.setdefault(joint.parent, []).append(joint)
+    branch, last = symbol(console, "\u251c\u2500 ", "|- "), symbol(console, "\u2514\u2500 ", "`- ")
+    bar = symbol(console, "\u2502  ", "|  ")
+    for root in robot.roots:
+        console.print(Text(f"  {printable(root)}"), overflow="ignore", no_wrap=True)
+        waiting: list[tuple[Joint, str, bool]] = _branches(below.get(root, []), "")
+        while waiting:
+            joint, indent, is_last = waiting.pop()
+            line = Text.assemble(
+                f"  {indent}{last if is_last else branch}{printable(joint.child)}  ",
+                (f"{printable(joint.name)}: {_joint_words(joint)}", "dim"),
+            )
+            console.print(line, overflow="ignore", no_wrap=True)
+            waiting += _branches(below.get(joint.child, []), (indent + ("   " if is_last else bar))[-60:])
+
+
+def _branches(joints: list[Joint], indent: str) -> list[tuple[Joint, str, bool]]:
+    return [(joint, indent, index == 0) for index, joint in enumerate(reversed(joints))]
+
+
+def _joint_words(joint: Joint) -> str:
+    words = printable(joint.type) or "no type"
+    if joint.type not in ("fixed", "floating"):
+        words += f" about {_numbers(joint.axis)}" if joint.axis is not None else " about an unreadable axis"
+    if joint.limit is not None:
+        words += f", {joint.limit.lower:g}..{joint.limit.upper:g}"
+    if joint.mimic is not None:
+        words += f", mimics {printable(joint.mimic.joint)}"
+    return words
+
+
+def _pose_words(pose: Transform) -> str:
+    return f"{_numbers(pose.translation)}  rpy {_numbers(pose.rpy)}"
+
+
+def _numbers(values: tuple[float, ...]) -> str:
+    return " ".join(f"{round(value, 4) + 0.0:g}" for value in values)
+
+
+def _robot(robot: Configuration) -> dict[str, Any]:
+    return {
+        "name": robot.robot.name,
+        "root": main_root(robot),
+        "links": [link.name for link in robot.robot.links],
+        "joints": [
+            {
+                "name": joint.name,
+                "type": joint.type,
+                "parent": joint.parent,
+                "child": joint.child,
+                "axis": rounded(joint.axis),
+            }
+            for joint in robot.robot.joints
+        ],
+    }

@@ -1,0 +1,73 @@
+"""The pieces that reports in the terminal are made of: source excerpts, lists of problems, lines that wrap."""
+
+import re
+
+from rich.console import Console
+from rich.padding import Padding
+from rich.text import Text
+
+from grader.report.text import printable
+from grader.robot.catalogue import Problem
+from grader.robot.source import Location, Source
+
+SEVERITY_STYLES = {"error": "bold red", "warning": "yellow", "note": "cyan"}
+_MEANT = re.compile(r"""[^\s=<>"'/]+\s*=\s*(?:"[^"]*"?|'[^']*'?)|<[^\s>]*[^>]*>?""")
+_MOST_SHOWN = 30
+
+
+def wrapped(console: Console, text: Text, indent: int) -> None:
+    """Print text that keeps its indent when it wraps."""
+    console.print(Padding(text, (0, 0, 0, indent)))
+
+
+def show_excerpt(console: Console, source: Source, where: Location, indent: int, style: str = "red") -> None:
+    """Print the source line of a place, with what is meant underlined."""
+    line = source.line(where.line)
+    start = where.column - 1
+    found = _MEANT.match(line, start)
+    width = len(found[0].rstrip()) if found else 1
+    cut = len(line) - len(line.lstrip())
+    room = max(20, console.width - indent - len(str(where.line)) - 4)
+    if start + width - cut > room:
+        cut = max(0, min(start - 4, len(line)))
+    before, meant = printable(line[cut:start]), printable(line[start : start + width])
+    shown = (before + meant + printable(line[start + width :]))[:room]
+    number = str(where.line)
+    gutter = " " * len(number)
+    mark = "\u2500" if _unicode(console) else "-"
+    bar = "\u2502" if _unicode(console) else "|"
+    console.print(Text(f"{' ' * indent}{number} {bar} ", style="dim") + Text(shown), overflow="ignore", no_wrap=True)
+    under = mark * max(1, min(len(meant), room - len(before)))
+    console.print(
+        Text(f"{' ' * indent}{gutter} {bar} ", style="dim") + Text(" " * len(before) + under, style=style),
+        overflow="ignore",
+        no_wrap=True,
+    )
+
+
+def show_problems(console: Console, problems: tuple[Problem, ...], source: Source) -> None:
+    """Print every problem of a file with its code and place; the errors with their source line."""
+    for problem in problems[:_MOST_SHOWN]:
+        style = SEVERITY_STYLES[problem.severity]
+        head = Text.assemble(
+            (f"{problem.code} ", style), (f"{problem.severity} ", style), (f"line {problem.location.line}  ", "dim")
+        )
+        wrapped(console, head + Text(printable(problem.message)), 2)
+        if problem.severity == "error":
+            show_excerpt(console, source, problem.location, 6)
+    if len(problems) > _MOST_SHOWN:
+        wrapped(console, Text(f"... and {len(problems) - _MOST_SHOWN} more"), 2)
+
+
+def place_words(where: Location) -> str:
+    """A place as editors take it: path:line:column."""
+    return f"{printable(where.path)}:{where.line}:{where.column}"
+
+
+def _unicode(console: Console) -> bool:
+    return console.encoding.lower().startswith("utf")
+
+
+def symbol(console: Console, fancy: str, plain: str) -> str:
+    """A symbol, or its stand-in where the terminal cannot show it."""
+    return fancy if _unicode(console) else plain

@@ -1,0 +1,48 @@
+"""Values as plain JSON data, the same bytes on every machine."""
+
+import json
+from collections.abc import Mapping
+from decimal import Decimal
+from typing import Any
+
+from grader.robot.catalogue import Problem
+from grader.robot.source import Location
+
+
+def to_json(data: Mapping[str, Any]) -> str:
+    """Data as JSON text with a final newline; what is not valid Unicode is escaped."""
+    text = json.dumps(data, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+    return text.encode("utf-8", "backslashreplace").decode()
+
+
+def exact(points: Decimal) -> int | float:
+    """Points as a JSON number: 58.5, and 70 rather than 70.0."""
+    return int(points) if points == points.to_integral_value() else float(points)
+
+
+def rounded(value: Any) -> Any:
+    """A measured value to 1e-6, so that no machine's last digit shows; never -0, null where it is not finite."""
+    match value:
+        case bool() | str() | None:
+            return value
+        case int() | float():
+            return round(value, 6) + 0.0 if value - value == 0 else None
+        case Mapping():
+            return dict(value)
+        case _:
+            return [rounded(each) for each in value]
+
+
+def location(where: Location | None) -> dict[str, Any] | None:
+    """A place, or null."""
+    return None if where is None else {"path": where.path, "line": where.line, "column": where.column}
+
+
+def problem(found: Problem) -> dict[str, Any]:
+    """A problem of a URDF."""
+    return {
+        "code": found.code,
+        "severity": found.severity,
+        "message": found.message,
+        "location": location(found.location),
+    }

@@ -1,0 +1,105 @@
+"""A report for a person at a terminal: the score first, failures explained, the rest short."""
+
+from collections.abc import Iterable, Iterator
+from decimal import Decimal
+from itertools import groupby
+
+from rich.console import Console
+from rich.text import Text
+
+from grader.grading.report import Report, Result
+from grader.report.layout import place_words, show_excerpt, show_problems, symbol, wrapped
+from grader.report.text import printable
+from grader.robot.reader import Reading
+
+_STYLES = {"passed": "green", "failed": "bold red", "skipped": "yellow", "pending": "cyan", "errored": "bold magenta"}
+_SYMBOLS = {
+    "passed": ("\u2713", "ok"),
+    "failed": ("\u2717", "X "),
+    "skipped": ("\u2212", "- "),
+    "pending": ("?", "? "),
+    "errored": ("!", "! "),
+}
+_VERDICTS = {
+    "clean": "ROS 2 loads the file",
+    "degraded": "ROS 2 loads the file, but drops some of it",
+    "rejected": "ROS 2 rejects the file",
+}
+
+
+def render_terminal(report: Report, console: Console) -> None:
+    """Print a report. Nothing of the submission is taken for markup or control codes."""
+    _show_head(report, console)
+    shown: set[str] = set()
+    for about, results in groupby(report.results, key=lambda result: result.criterion.about or result.criterion.part):
+        _show_group(about, tuple(results), report.submission.urdf, console, shown)
+    problems = report.submission.urdf.problems
+    if problems:
+        console.print()
+        console.print(Text("Problems of the file", style="bold"))
+        show_problems(console, problems, report.submission.urdf.source)
+    if report.counts("failed"):
+        console.print()
+        wrapped(console, Text(_advice(report), style="dim"), 0)
+
+
+def points_words(points: Decimal) -> str:
+    """Points as they are, without trailing zeros."""
+    return format(points.normalize(), "f") if points else "0"
+
+
+def _show_head(report: Report, console: Console) -> None:
+    score = f"{points_words(report.score)} / {points_words(report.max_score)} points"
+    style = "bold green" if report.score == report.max_score else "bold"
+    console.print(Text.assemble((score, style), "  ", (printable(report.rubric.title), "bold")))
+    urdf = report.submission.urdf
+    counted = [
+        f"{report.counts(status)} {status}" for status in ("passed", "failed", "skipped", "pending", "errored")
+        if report.counts(status)
+    ]  # fmt: skip
+    wrapped(console, Text(f"{printable(report.submission.path)}: {_VERDICTS[urdf.verdict]}; {', '.join(counted)}"), 0)
+    if report.pending:
+        wrapped(console, Text(f"{points_words(report.pending)} points wait for a person", style="cyan"), 0)
+
+
+def _show_group(about: str, results: tuple[Result, ...], urdf: Reading, console: Console, shown: set[str]) -> None:
+    earned = points_words(sum((result.points for result in results), Decimal(0)))
+    most = points_words(sum((result.criterion.points for result in results), Decimal(0)))
+    console.print()
+    console.print(Text.assemble((about, "bold"), (f"  {earned}/{most}", "dim")))
+    for result in results:
+        _show_result(result, urdf, console, shown)
+
+
+def _show_result(result: Result, urdf: Reading, console: Console, shown: set[str]) -> None:
+    criterion, outcome = result.criterion, result.outcome
+    style = _STYLES[outcome.status]
+    points = f"{points_words(result.points)}/{points_words(criterion.points)}"
+    head = Text.assemble((symbol(console, *_SYMBOLS[outcome.status]) + " ", style), f"{points:<5}", printable(criterion.title))
+    if outcome.status == "passed":
+        wrapped(console, head, 2)
+        return
+    wrapped(console, head + Text(f"  {criterion.id}", style="dim"), 2)
+    wrapped(console, Text(_sentence(outcome.message), style=style if outcome.status == "errored" else ""), 9)
+    if outcome.status != "failed":
+        return
+    if outcome.location is not None:
+        wrapped(console, Text(place_words(outcome.location), style="dim"), 9)
+        show_excerpt(console, urdf.source, outcome.location, 9)
+    if criterion.feedback and criterion.feedback not in shown:
+        shown.add(criterion.feedback)
+        wrapped(console, Text(criterion.feedback, style="italic"), 9)
+
+
+def _sentence(message: str) -> str:
+    text = printable(message)
+    return text if text.endswith((".", "?")) else f"{text}."
+
+
+def _advice(report: Report) -> str:
+    first = next(_failed(report.results))
+    return f"`grader explain {first}` says more about a criterion, `grader inspect` shows the whole robot."
+
+
+def _failed(results: Iterable[Result]) -> Iterator[str]:
+    return (result.criterion.id for result in results if result.outcome.status == "failed")
