@@ -2,7 +2,7 @@
 
 from math import atan2, degrees, hypot
 
-from grader.checks.outcome import SLACK, Outcome, judged, place, point, size
+from grader.checks.outcome import SLACK, Outcome, judged, place, point, quantity, size
 from grader.checks.shown import body, pose_of, visuals
 from grader.errors import MissingElement
 from grader.robot.joints import MOVING_TYPES
@@ -58,7 +58,7 @@ def axis_along(
     message = f"{_axis_name(axis)} of the frame {link!r} points along {point(actual)} in {relative_to!r}"
     fine = off <= tolerance + SLACK
     if not fine:
-        message += f", expected {point(expected)}: {point((off,))} degrees off"
+        message += f", expected {point(expected)}: {quantity(off, 'deg')} off"
     joint = robot.holding.get(link)
     at = place(joint.origin.mark if joint and joint.origin else None, "rpy") or place(robot.link(link).mark)
     return judged(fine, message, actual=actual, expected=expected, tolerance=tolerance, unit="deg", at=at)
@@ -77,7 +77,7 @@ def turns_about_itself(robot: Configuration, *, link: str, base: str, tolerance:
     away = hypot(*cross(turning, T_joint_wheel.translation))
     at = place(joint.axis_mark, "xyz") or place(joint.mark)
     if tilt > angle + SLACK:
-        message = f"{link!r} wobbles: the axis of joint {joint.name!r} is {point((tilt,))} degrees off the cylinder's axis"
+        message = f"{link!r} wobbles: the axis of joint {joint.name!r} is {quantity(tilt, 'deg')} off the cylinder's axis"
         return judged(False, message, actual=tilt, expected=0.0, tolerance=angle, unit="deg", at=at)
     fine = away <= tolerance + SLACK
     message = f"{link!r} turns about its own axis"
@@ -106,7 +106,7 @@ def _lowest_point(robot: Configuration, link: str, base: str, up: Vector) -> Vec
 
 def _heading(off: float, travel: Vector, base: str) -> str:
     if off <= 45.0:
-        slant = f", {point((off,))} degrees off straight ahead" if off > 0.05 else ""
+        slant = f", {quantity(off, 'deg')} off straight ahead" if off > 0.05 else ""
         return f"drives {base!r} forward{slant}"
     if off >= 135.0:
         return f"drives {base!r} backward, expected forward"

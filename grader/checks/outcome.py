@@ -103,7 +103,7 @@ def size(value: float, unit: str) -> str:
 
 def quantity(value: float, unit: str) -> str:
     """A value with its unit, rounded for reading."""
-    return f"{_short(value)} {'degrees' if unit == 'deg' else unit}".rstrip()
+    return f"{round(value, 1):g} degrees" if unit == "deg" else f"{_short(value)} {unit}".rstrip()
 
 
 def point(values: tuple[float, ...]) -> str:

@@ -13,6 +13,7 @@ from grader.checks.outcome import (
     measured_point,
     place,
     point,
+    quantity,
     size,
     within,
 )
@@ -151,7 +152,7 @@ def under_the_base(
     if not (within(x, 0.0, tolerance) and within(y, 0.0, tolerance)):
         faults.append(f"{base!r} is at x, y = {point((x, y))} m in it, expected 0 0")
     if turned > angle:
-        faults.append(f"{base!r} is turned by {point((turned,))} degrees in it, expected 0")
+        faults.append(f"{base!r} is turned by {quantity(turned, 'deg')} in it, expected 0")
     for wheel, value in lowest.items():
         if not within(value, 0.0, tolerance):
             side = "above" if value > 0 else "below"

@@ -71,6 +71,11 @@ class Rubric:
     sha256: str
     path: Path = field(compare=False)
 
+    @property
+    def points(self) -> Decimal:
+        """All that can be earned."""
+        return sum((criterion.points for criterion in self.criteria), Decimal(0))
+
     def part(self, name: str) -> Part:
         """The part of this id; raises InputError, which names those that there are."""
         for part in self.parts:

@@ -3,7 +3,6 @@
 import re
 
 from rich.console import Console
-from rich.padding import Padding
 from rich.text import Text
 
 from grader.report.text import printable
@@ -15,9 +14,12 @@ _MEANT = re.compile(r"""[^\s=<>"'/]+\s*=\s*(?:"[^"]*"?|'[^']*'?)|<[^\s>]*[^>]*>?
 _MOST_SHOWN = 30
 
 
-def wrapped(console: Console, text: Text, indent: int) -> None:
-    """Print text that keeps its indent when it wraps."""
-    console.print(Padding(text, (0, 0, 0, indent)))
+def wrapped(console: Console, text: Text, indent: int, head: Text | None = None) -> None:
+    """Print text that keeps its indent when it wraps; `head` stands in the indent of the first line."""
+    for number, line in enumerate(text.wrap(console, max(20, console.width - indent))):
+        line.rstrip()
+        start = head if head is not None and number == 0 else Text(" " * indent)
+        console.print(start + line, overflow="ignore", no_wrap=True, crop=False)
 
 
 def show_excerpt(console: Console, source: Source, where: Location, indent: int, style: str = "red") -> None:
@@ -36,12 +38,13 @@ def show_excerpt(console: Console, source: Source, where: Location, indent: int,
     gutter = " " * len(number)
     mark = "\u2500" if _unicode(console) else "-"
     bar = "\u2502" if _unicode(console) else "|"
-    console.print(Text(f"{' ' * indent}{number} {bar} ", style="dim") + Text(shown), overflow="ignore", no_wrap=True)
+    console.print(Text(f"{' ' * indent}{number} {bar} ", style="dim") + Text(shown), overflow="ignore", no_wrap=True, crop=False)
     under = mark * max(1, min(len(meant), room - len(before)))
     console.print(
         Text(f"{' ' * indent}{gutter} {bar} ", style="dim") + Text(" " * len(before) + under, style=style),
         overflow="ignore",
         no_wrap=True,
+        crop=False,
     )
 
 
@@ -49,12 +52,11 @@ def show_problems(console: Console, problems: tuple[Problem, ...], source: Sourc
     """Print every problem of a file with its code and place; the errors with their source line."""
     for problem in problems[:_MOST_SHOWN]:
         style = SEVERITY_STYLES[problem.severity]
-        head = Text.assemble(
-            (f"{problem.code} ", style), (f"{problem.severity} ", style), (f"line {problem.location.line}  ", "dim")
-        )
-        wrapped(console, head + Text(printable(problem.message)), 2)
+        head = Text.assemble("  ", (f"{problem.code} {problem.severity:<8}", style))
+        place = Text(f"line {problem.location.line}: ", style="dim")
+        wrapped(console, place + Text(printable(problem.message)), 19, head)
         if problem.severity == "error":
-            show_excerpt(console, source, problem.location, 6)
+            show_excerpt(console, source, problem.location, 19)
     if len(problems) > _MOST_SHOWN:
         wrapped(console, Text(f"... and {len(problems) - _MOST_SHOWN} more"), 2)
 

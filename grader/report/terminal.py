@@ -9,17 +9,19 @@ from rich.text import Text
 
 from grader.grading.report import Report, Result
 from grader.report.layout import place_words, show_excerpt, show_problems, symbol, wrapped
+from grader.report.points import points_words
 from grader.report.text import printable
 from grader.robot.reader import Reading
 
 _STYLES = {"passed": "green", "failed": "bold red", "skipped": "yellow", "pending": "cyan", "errored": "bold magenta"}
 _SYMBOLS = {
-    "passed": ("\u2713", "ok"),
-    "failed": ("\u2717", "X "),
-    "skipped": ("\u2212", "- "),
-    "pending": ("?", "? "),
-    "errored": ("!", "! "),
+    "passed": ("\u2713", "+"),
+    "failed": ("\u2717", "X"),
+    "skipped": ("\u2212", "-"),
+    "pending": ("?", "?"),
+    "errored": ("!", "!"),
 }
+_INDENT = 10
 _VERDICTS = {
     "clean": "ROS 2 loads the file",
     "degraded": "ROS 2 loads the file, but drops some of it",
@@ -41,11 +43,6 @@ def render_terminal(report: Report, console: Console) -> None:
     if report.counts("failed"):
         console.print()
         wrapped(console, Text(_advice(report), style="dim"), 0)
-
-
-def points_words(points: Decimal) -> str:
-    """Points as they are, without trailing zeros."""
-    return format(points.normalize(), "f") if points else "0"
 
 
 def _show_head(report: Report, console: Console) -> None:
@@ -75,24 +72,26 @@ def _show_result(result: Result, urdf: Reading, console: Console, shown: set[str
     criterion, outcome = result.criterion, result.outcome
     style = _STYLES[outcome.status]
     points = f"{points_words(result.points)}/{points_words(criterion.points)}"
-    head = Text.assemble((symbol(console, *_SYMBOLS[outcome.status]) + " ", style), f"{points:<5}", printable(criterion.title))
+    head = Text.assemble("  ", (symbol(console, *_SYMBOLS[outcome.status]), style), f" {points:<5}")
+    title = Text(printable(criterion.title))
     if outcome.status == "passed":
-        wrapped(console, head, 2)
+        wrapped(console, title, _INDENT, head.append(" "))
         return
-    wrapped(console, head + Text(f"  {criterion.id}", style="dim"), 2)
-    wrapped(console, Text(_sentence(outcome.message), style=style if outcome.status == "errored" else ""), 9)
+    wrapped(console, title + Text(f"  {criterion.id}", style="dim"), _INDENT, head.append(" "))
+    wrapped(console, Text(_sentence(outcome.message), style=style if outcome.status == "errored" else ""), _INDENT)
     if outcome.status != "failed":
         return
     if outcome.location is not None:
-        wrapped(console, Text(place_words(outcome.location), style="dim"), 9)
-        show_excerpt(console, urdf.source, outcome.location, 9)
+        wrapped(console, Text(place_words(outcome.location), style="dim"), _INDENT)
+        show_excerpt(console, urdf.source, outcome.location, _INDENT)
     if criterion.feedback and criterion.feedback not in shown:
         shown.add(criterion.feedback)
-        wrapped(console, Text(criterion.feedback, style="italic"), 9)
+        wrapped(console, Text(criterion.feedback, style="italic"), _INDENT)
 
 
 def _sentence(message: str) -> str:
     text = printable(message)
+    text = text[:1].upper() + text[1:]
     return text if text.endswith((".", "?")) else f"{text}."
 
 

@@ -52,8 +52,8 @@ def _check_type(element: Element, kind: str | None, label: str, notes: Notes) ->
         guess = did_you_mean(kind.strip(), JOINT_TYPES)
         if kind.strip().lower() in JOINT_TYPES:
             guess = f"; write {kind.strip().lower()!r}, in lower case and without spaces"
-        message = f"joint {label} has the unknown type {kind!r}{guess or ', which does not exist'}; {_REJECTED}"
-        notes.add(catalogue.TYPE_UNKNOWN, message.replace("?;", "?"), element, "type")
+        message = f"joint {label} has the type {kind!r}, which does not exist: {_REJECTED}{guess}"
+        notes.add(catalogue.TYPE_UNKNOWN, message, element, "type")
 
 
 def _linked(element: Element, inside: dict[str, Element], role: str, label: str, notes: Notes) -> str:

@@ -59,7 +59,7 @@ def _check_names(robot: Robot, links: dict[str, Element], joints: dict[str, Elem
             if name and not robot.has_link(name):
                 element = joints[joint.name].find(role)
                 guess = did_you_mean(name, links) or f"; the links are: {', '.join(map(repr, list(links)[:12]))}"
-                message = f"{role} link {name!r} of joint {joint.name!r} does not exist{guess} {_REJECTED}"
+                message = f"the {role} link {name!r} of joint {joint.name!r} does not exist: {_REJECTED}{guess}"
                 notes.add(catalogue.UNKNOWN_LINK, message, joints[joint.name] if element is None else element, "link")
         if joint.mimic is not None and joint.mimic.joint not in joints:
             guess = did_you_mean(joint.mimic.joint, joints)

@@ -1,0 +1,70 @@
+"""The `grader` command and its subcommands."""
+
+from collections.abc import Sequence
+from typing import Annotated
+
+import typer
+
+from grader.cli.explain import explain
+from grader.cli.grade import grade
+from grader.cli.inspect import inspect
+from grader.cli.output import complain
+from grader.cli.rubric import rubric
+from grader.cli.schema import schema
+from grader.errors import GraderError, RubricError
+
+FAULT_OF_USE, FAULT_OF_OURS = 2, 3
+
+app = typer.Typer(
+    name="grader",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,  # plain help: it is read in a third of the time
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+@app.callback()
+def _main(
+    version: Annotated[bool, typer.Option("--version", help="Print the version and exit.")] = False,
+) -> None:
+    """Grade robotics lab submissions by what the robot does.
+
+    Start with: grader grade my_robot.urdf
+    """
+
+
+app.command()(grade)
+app.command()(inspect)
+app.command()(explain)
+app.command()(schema)
+app.add_typer(rubric, name="rubric")
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run one command; the exit code. Whatever goes wrong is one clear line on standard error."""
+    try:
+        result = app(list(arguments), standalone_mode=False, prog_name="grader")
+    except RubricError as error:
+        for line in error.complaints:
+            complain(line)
+        return FAULT_OF_USE
+    except GraderError as error:
+        complain(str(error))
+        return FAULT_OF_USE
+    except KeyboardInterrupt:
+        complain("interrupted")
+        return FAULT_OF_USE
+    except Exception as error:  # no traceback ever reaches a user
+        return _other(error)
+    return result if isinstance(result, int) else 0
+
+
+def _other(error: Exception) -> int:
+    usage = getattr(error, "format_message", None)
+    if usage is not None:  # wrong usage, as typer says it
+        complain(f"{usage()} (grader --help shows the usage)".replace("\n", " "))
+        return FAULT_OF_USE
+    complain(f"a fault of the grader itself, please report it: {type(error).__name__}: {error}".replace("\n", " "))
+    return FAULT_OF_OURS

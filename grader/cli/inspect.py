@@ -1,0 +1,92 @@
+"""grader inspect: what ROS 2 makes of a URDF."""
+
+from enum import StrEnum
+from functools import partial
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from grader.cli.output import complain, draw, emit
+from grader.errors import GraderError, MissingElement
+
+if TYPE_CHECKING:
+    from grader.robot.kinematics import Configuration, Position
+    from grader.robot.reader import Reading
+
+_MEBIBYTE = 1024 * 1024
+_ANY_URDF = "robot.urdf"
+
+
+class InspectFormat(StrEnum):
+    """The formats of an inspection."""
+
+    TERMINAL = "terminal"
+    JSON = "json"
+
+
+def inspect(
+    path: Annotated[str, typer.Argument(metavar="PATH", help="A .urdf file, a folder with one in it, or - for standard input.")],
+    joint: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME=VALUE", help="Put a joint at this position, in radians or metres; repeatable."),
+    ] = None,
+    relative_to: Annotated[
+        str | None, typer.Option(metavar="LINK", help="The frame that poses are given in; the root unless told.")
+    ] = None,
+    output_format: Annotated[
+        InspectFormat, typer.Option("--format", help="The format on standard output.")
+    ] = InspectFormat.TERMINAL,
+    max_size: Annotated[int, typer.Option(metavar="BYTES", min=1, help="The largest URDF that is read.")] = _MEBIBYTE,
+) -> int:
+    """Show a URDF as ROS 2 reads it: every problem, the tree, the joints, all poses.
+
+    Exits 1 if ROS 2 rejects the file. A planar joint takes x,y,angle and a floating one x,y,z,roll,pitch,yaw.
+
+    Example:
+
+      grader inspect my_robot.urdf --joint base_left_wheel_joint=1.57 --relative-to base_link
+    """
+    from grader.report.inspection import Inspection, inspection_json, inspection_terminal, main_root
+    from grader.submission.submission import open_submission
+
+    submission = open_submission(path, wanted=_ANY_URDF, limit=max_size)
+    if submission.passed_over:
+        complain(f"inspected {submission.path}; passed over {', '.join(submission.passed_over)}")
+    robot = _configure(submission.urdf, joint or [])
+    frame = relative_to
+    if robot is not None and frame is None:
+        frame = main_root(robot)
+    elif robot is not None and frame is not None and not robot.robot.has_link(frame):
+        known = ", ".join(repr(link.name) for link in robot.robot.links[:20])
+        raise GraderError(f"--relative-to: there is no link {frame!r}; the file has: {known}")
+    inspection = Inspection(submission.path, submission.urdf, robot, frame)
+    if output_format is InspectFormat.JSON:
+        emit(inspection_json(inspection))
+    else:
+        emit(draw(partial(inspection_terminal, inspection)))
+    return 1 if submission.urdf.verdict == "rejected" else 0
+
+
+def _configure(urdf: "Reading", given: list[str]) -> "Configuration | None":
+    from grader.robot.kinematics import Configuration
+
+    positions = dict(_position(each) for each in given)
+    if urdf.robot is None:
+        return None
+    try:
+        return Configuration(urdf.robot, positions)
+    except (MissingElement, ValueError) as error:
+        raise GraderError(f"--joint: {error}") from None
+
+
+def _position(text: str) -> "tuple[str, Position]":
+    from math import isfinite
+
+    name, equals, value = text.rpartition("=")
+    try:
+        values = tuple(float(each) for each in value.split(","))
+    except ValueError:
+        values = (float("nan"),)
+    if not equals or not all(map(isfinite, values)):
+        raise GraderError(f"--joint takes NAME=VALUE with a number in radians or metres, not {text!r}")
+    return name, values if len(values) > 1 else values[0]

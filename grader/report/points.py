@@ -1,0 +1,8 @@
+"""Points in words: exact, without trailing zeros, never rounded up."""
+
+from decimal import Decimal
+
+
+def points_words(points: Decimal) -> str:
+    """Points as they are: 58.5, and 70 rather than 70.0."""
+    return format(points.normalize(), "f") if points else "0"

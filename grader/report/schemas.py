@@ -1,0 +1,158 @@
+"""The JSON Schemas (draft 2020-12) of what the grader writes, and of the rubrics that it reads."""
+
+from typing import Any, get_args, get_origin
+
+from grader.checks.registry import CHECKS, Check, describe
+
+_DIALECT = "https://json-schema.org/draft/2020-12/schema"
+_TEXT: dict[str, Any] = {"type": "string"}
+_NUMBER: dict[str, Any] = {"type": "number"}
+_COUNT: dict[str, Any] = {"type": "integer", "minimum": 1}
+_POINTS: dict[str, Any] = {"type": "number", "minimum": 0}
+_HASH: dict[str, Any] = {"type": "string", "pattern": "^[0-9a-f]{64}$"}
+
+
+def _object(properties: dict[str, Any], optional: tuple[str, ...] = ()) -> dict[str, Any]:
+    required = [name for name in properties if name not in optional]
+    return {"type": "object", "properties": properties, "required": required, "additionalProperties": False}
+
+
+def _array(items: dict[str, Any]) -> dict[str, Any]:
+    return {"type": "array", "items": items}
+
+
+def _nullable(schema: dict[str, Any]) -> dict[str, Any]:
+    return {"anyOf": [schema, {"type": "null"}]}
+
+
+_LOCATION = _object({"path": _TEXT, "line": _COUNT, "column": _COUNT})
+_PROBLEM = _object(
+    {
+        "code": {"type": "string", "pattern": "^[A-Z]+[0-9]{3}$"},
+        "severity": {"enum": ["error", "warning", "note"]},
+        "message": _TEXT,
+        "location": _LOCATION,
+    }
+)
+_VALUE: dict[str, Any] = {"type": ["null", "boolean", "number", "string", "array", "object"]}
+_RESULT = _object(
+    {
+        "id": _TEXT,
+        "part": _TEXT,
+        "title": _TEXT,
+        "status": {"enum": ["passed", "failed", "skipped", "pending", "errored"]},
+        "points": _POINTS,
+        "max_points": _POINTS,
+        "message": _TEXT,
+        "measured": _VALUE,
+        "expected": _VALUE,
+        "tolerance": _nullable(_POINTS),
+        "unit": _nullable(_TEXT),
+        "because": _nullable(_TEXT),
+        "location": _nullable(_LOCATION),
+        "feedback": _TEXT,
+        "hints": _array(_object({"message": _TEXT, "edit": {"type": "object"}, "verified": {"type": "boolean"}})),
+    }
+)
+
+REPORT_SCHEMA: dict[str, Any] = {
+    "$schema": _DIALECT,
+    "title": "grader report",
+    **_object(
+        {
+            "schema": {"const": "grader/report/v1"},
+            "grader": _object({"version": _TEXT}),
+            "rubric": _object({"id": _TEXT, "title": _TEXT, "sha256": _HASH}),
+            "submission": _object({"id": _TEXT, "path": _TEXT, "sha256": _HASH}),
+            "parts": _array(_TEXT),
+            "score": _POINTS,
+            "max_score": _POINTS,
+            "pending": _POINTS,
+            "problems": _array(_PROBLEM),
+            "results": _array(_RESULT),
+        }
+    ),
+}
+
+_VECTOR = {**_array(_NUMBER), "minItems": 3, "maxItems": 3}
+_ROW = {**_array(_NUMBER), "minItems": 4, "maxItems": 4}
+_JOINT = _object({"name": _TEXT, "type": _TEXT, "parent": _TEXT, "child": _TEXT, "axis": _nullable(_VECTOR)})
+
+INSPECT_SCHEMA: dict[str, Any] = {
+    "$schema": _DIALECT,
+    "title": "grader inspection",
+    **_object(
+        {
+            "schema": {"const": "grader/inspect/v1"},
+            "path": _TEXT,
+            "verdict": {"enum": ["clean", "degraded", "rejected"]},
+            "problems": _array(_PROBLEM),
+            "robot": _nullable(
+                _object({"name": _TEXT, "root": _nullable(_TEXT), "links": _array(_TEXT), "joints": _array(_JOINT)})
+            ),
+            "relative_to": _nullable(_TEXT),
+            "poses": {
+                "type": "object",
+                "additionalProperties": _nullable({**_array(_ROW), "minItems": 4, "maxItems": 4}),
+            },
+        }
+    ),
+}
+
+
+def rubric_schema() -> dict[str, Any]:
+    """The schema of a rubric file, with the arguments of every check that comes with the grader."""
+    checks = [describe(function) for function in CHECKS]
+    criterion = _object(
+        {
+            "id": _TEXT,
+            "part": _TEXT,
+            "about": _TEXT,
+            "title": _TEXT,
+            "points": _POINTS,
+            "check": _TEXT,
+            "with": {"type": "object"},
+            "requires": _array(_TEXT),
+            "feedback": _TEXT,
+        },
+        optional=("about", "with", "requires", "feedback"),
+    )
+    criterion["allOf"] = [_arguments_rule(check) for check in checks]
+    part = _object({"id": _TEXT, "title": _TEXT, "needs": {"enum": ["urdf"]}, "points": _POINTS}, ("needs", "points"))
+    rubric = _object(
+        {
+            "id": _TEXT,
+            "title": _TEXT,
+            "reference": _TEXT,
+            "urdf": _TEXT,
+            "points": _POINTS,
+            "part": {**_array(part), "minItems": 1},
+            "criterion": {**_array(criterion), "minItems": 1},
+        },
+        optional=("reference", "urdf", "points"),
+    )
+    return {"$schema": _DIALECT, "title": "grader rubric", **rubric}
+
+
+def _arguments_rule(check: Check) -> dict[str, Any]:
+    optional = tuple(each.name for each in check.parameters.values() if not each.required)
+    arguments = _object({each.name: type_schema(each.type) for each in check.parameters.values()}, optional)
+    condition = {"properties": {"check": {"const": check.name}}, "required": ["check"]}
+    then: dict[str, Any] = {"properties": {"with": arguments}}
+    if arguments["required"]:
+        then["required"] = ["with"]
+    return {"if": condition, "then": then}
+
+
+def type_schema(annotation: Any) -> dict[str, Any]:
+    """The schema of a check's argument, from its annotation."""
+    simple = {float: _NUMBER, int: {"type": "integer"}, str: _TEXT, bool: {"type": "boolean"}}
+    if annotation in simple:
+        return simple[annotation]
+    inner = get_args(annotation)
+    if get_origin(annotation) in (list, tuple):
+        schema = {**_array(type_schema(inner[0])), "minItems": 1}
+        if get_origin(annotation) is tuple and Ellipsis not in inner:
+            schema |= {"minItems": len(inner), "maxItems": len(inner)}
+        return schema
+    return {"type": "object", "additionalProperties": type_schema(inner[1])}
