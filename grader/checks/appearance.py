@@ -6,9 +6,9 @@ from math import cos, radians
 from grader.checks.outcome import SLACK, Outcome, failed, judged, measured, passed, place, point, within
 from grader.checks.shown import body, shape_name, visuals
 from grader.errors import MissingElement
-from grader.robot.kinematics import Configuration, transform
+from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Cylinder, Sphere, Visual
-from grader.robot.transforms import Vector
+from grader.robot.transforms import IDENTITY_ROTATION, Vector, rotation_from_rpy
 
 _ALIGNED = cos(radians(1.0))
 
@@ -102,8 +102,10 @@ def shows_nothing(robot: Configuration, *, link: str) -> Outcome:
 def _edges(visual: Visual) -> Vector | None:
     """The edge lengths of a box along its link's axes; None where they are not along them."""
     assert isinstance(visual.geometry, Box)
-    rotation = transform(visual.origin).rotation
+    rotation = rotation_from_rpy(visual.origin.rpy)
     size = visual.geometry.size
+    if rotation is IDENTITY_ROTATION:
+        return (abs(size[0]), abs(size[1]), abs(size[2]))
     for order in permutations((0, 1, 2)):
         if all(abs(rotation[3 * row + column]) >= _ALIGNED for row, column in enumerate(order)):
             return (abs(size[order[0]]), abs(size[order[1]]), abs(size[order[2]]))

@@ -2,7 +2,7 @@
 
 from grader.errors import MissingElement
 from grader.checks.outcome import place
-from grader.robot.kinematics import Configuration, transform
+from grader.robot.kinematics import Configuration, behind
 from grader.robot.model import Geometry, Mesh, Visual
 from grader.robot.shapes import extent, is_empty, volume
 from grader.robot.transforms import Transform, Vector
@@ -11,7 +11,11 @@ from grader.robot.transforms import Transform, Vector
 def visuals(robot: Configuration, link: str) -> tuple[Visual, ...]:
     """The visuals of a link that have a size; raises MissingElement where there is none."""
     found = robot.link(link)
-    shown = tuple(visual for visual in found.visuals if not is_empty(visual.geometry))
+    shown = found.visuals
+    for visual in shown:
+        if is_empty(visual.geometry):
+            shown = tuple(each for each in shown if not is_empty(each.geometry))
+            break
     if not shown:
         message = f"link {link!r} shows nothing: ROS 2 finds no visual with a size in it"
         raise MissingElement("visual", link, message=message, location=place(found.mark))
@@ -31,15 +35,15 @@ def body(robot: Configuration, link: str) -> Visual:
 
 def pose_of(robot: Configuration, link: str, visual: Visual, relative_to: str) -> Transform:
     """T_relative_visual; raises MissingElement where it is not defined."""
-    return robot.pose(link, relative_to=relative_to) @ transform(visual.origin)
+    return behind(robot.pose(link, relative_to=relative_to), visual.origin)
 
 
 def span(robot: Configuration, link: str, relative_to: str, direction: Vector) -> tuple[float, float]:
     """The lowest and highest coordinate of all that a link shows, along a unit direction of another link's frame."""
-    spans = [
-        extent(visual.geometry, pose_of(robot, link, visual, relative_to), direction) for visual in visuals(robot, link)
-    ]
-    return min(low for low, _ in spans), max(high for _, high in spans)
+    pose = robot.pose(link, relative_to=relative_to)
+    spans = [extent(visual.geometry, behind(pose, visual.origin), direction) for visual in visuals(robot, link)]
+    lows, highs = zip(*spans, strict=True)
+    return min(lows), max(highs)
 
 
 def shape_name(geometry: Geometry) -> str:

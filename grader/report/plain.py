@@ -9,10 +9,22 @@ from grader.robot.catalogue import Problem
 from grader.robot.source import Location
 
 
+_ENCODER = json.JSONEncoder(ensure_ascii=False, allow_nan=False)
+
+
 def to_json(data: Mapping[str, Any]) -> str:
-    """Data as JSON text with a final newline; what is not valid Unicode is escaped."""
-    text = json.dumps(data, indent=2, ensure_ascii=False, allow_nan=False) + "\n"
-    return text.encode("utf-8", "backslashreplace").decode()
+    """Data as JSON text: a line for each key, and for each entry of a list of objects. Invalid Unicode is escaped.
+
+    `indent` of the standard library would leave its C encoder aside and take six times as long.
+    """
+    lines = ",\n".join(f" {_ENCODER.encode(key)}: {_lines(value)}" for key, value in data.items())
+    return f"{{\n{lines}\n}}\n".encode("utf-8", "backslashreplace").decode()
+
+
+def _lines(value: Any) -> str:
+    if isinstance(value, list) and value and isinstance(value[0], dict):
+        return "[\n  " + ",\n  ".join(map(_ENCODER.encode, value)) + "\n ]"
+    return _ENCODER.encode(value)
 
 
 def exact(points: Decimal) -> int | float:

@@ -290,7 +290,8 @@ class _Scanner:
                 message = f"<{shown}> is not closed with > before the next tag"
                 resume = at
             case _:
-                message = f"{_short(text[at : at + 12].split()[0])!r} in <{shown}> is not an attribute"
+                word = text[at : at + 12].split(" ")[0]
+                message = f"{word!r} in <{shown}> is not an attribute"
         return _Malformed(message, at if text[at] not in "=<" else start, resume)
 
     def _place(self, tag: Tag, end: int) -> int | None:

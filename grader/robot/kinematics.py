@@ -25,9 +25,14 @@ Position = float | Sequence[float]
 DEGREES_OF_FREEDOM = {"continuous": 1, "revolute": 1, "prismatic": 1, "planar": 3, "floating": 6}
 
 
-def transform(origin: Origin) -> Transform:
-    """T_parent_child of an origin."""
-    return Transform(rotation_from_rpy(origin.rpy), origin.xyz)
+_NO_TURN = (0.0, 0.0, 0.0)
+
+
+def behind(T_frame_parent: Transform, origin: Origin) -> Transform:
+    """T_frame_child: the frame that an origin puts into its parent."""
+    if origin.rpy == _NO_TURN:
+        return T_frame_parent.shifted(origin.xyz)
+    return T_frame_parent @ Transform(rotation_from_rpy(origin.rpy), origin.xyz)
 
 
 class Configuration:
@@ -81,7 +86,7 @@ class Configuration:
             raise MissingElement("connection", roots, message=message, location=_location(self.link(link)))
         if ours.island != theirs.island:
             way = self.between(relative_to or ours.root, link)
-            raise _undefined(next((joint for joint in way if _step(joint, self.position(joint)) is None), way[-1]))
+            raise _undefined(next((each for each in way if _past(IDENTITY, each, self.position(each)) is None), way[-1]))
         if relative_to is None or relative_to == ours.island:
             return ours.pose
         inverse = self._inverses.get(relative_to)
@@ -131,9 +136,8 @@ class Configuration:
 
     def position(self, joint: Joint) -> Position:
         """Where a joint is: its own position, that of the joint that it mimics, or 0."""
-        own = self.positions.get(joint.name)
-        if own is not None or joint.mimic is None:
-            return 0.0 if own is None else own
+        if joint.mimic is None or joint.name in self.positions:
+            return self.positions.get(joint.name, 0.0)
         return self._mimicked(joint)
 
     def _mimicked(self, joint: Joint) -> float:
@@ -175,8 +179,7 @@ class Configuration:
                 raise MissingElement("connection", link, message=message, location=at)
         above = placed.get(name) or placed.setdefault(name, _Placed(name, name, IDENTITY))
         for joint in reversed(way):
-            step = _step(joint, self.position(joint))
-            pose = above.pose @ step if step is not None else None
+            pose = _past(above.pose, joint, self.position(joint))
             if pose is not None and isfinite(sum(pose.translation)):
                 above = _Placed(above.root, above.island, pose)
             else:
@@ -193,13 +196,13 @@ class _Placed(NamedTuple):
     pose: Transform
 
 
-def _step(joint: Joint, position: Position) -> Transform | None:
-    """T_parent_child of a joint, or None where it is undefined."""
+def _past(T_root_parent: Transform, joint: Joint, position: Position) -> Transform | None:
+    """T_root_child behind a joint, or None where it is undefined."""
     motion = motion_of(joint, position)
     if joint.origin is None or motion is None:
         return None
-    step = transform(joint.origin)
-    return step if motion is IDENTITY else step @ motion
+    T_root_joint = behind(T_root_parent, joint.origin)
+    return T_root_joint if motion is IDENTITY else T_root_joint @ motion
 
 
 def motion_of(joint: Joint, position: Position) -> Transform | None:

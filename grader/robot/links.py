@@ -7,6 +7,7 @@ from grader.robot.names import did_you_mean
 from grader.robot.notes import Element, Notes, Part, children
 
 _SHAPES = ("box", "cylinder", "sphere", "mesh")
+_VISUAL_LOST = "ROS 2 drops this visual of link {}, those behind it and all its collisions"
 _INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
@@ -26,10 +27,10 @@ def read_link(element: Element, notes: Notes, materials: Materials) -> Link:
             inertial = _read_inertial(first, notes, name)
             dropping = inertial is None
         for each in element.iterchildren("visual"):
-            visual = _read_visual(each, notes, name)
+            visual = _read_visual(each, notes, name, materials if not dropping else None)
             dropping = dropping or visual is None
             if visual is not None and not dropping:
-                visuals.append(materials.assign(visual, each.find("material"), name))
+                visuals.append(visual)
         for each in element.iterchildren("collision"):
             collision = _read_collision(each, notes, name)
             dropping = dropping or collision is None
@@ -39,7 +40,7 @@ def read_link(element: Element, notes: Notes, materials: Materials) -> Link:
 
 
 def _read_inertial(element: Element, notes: Notes, link: str) -> Inertial | None:
-    part = Part(notes, catalogue.BAD_INERTIAL, f"ROS 2 drops all visuals and collisions of link {link!r}")
+    part = Part(notes, catalogue.BAD_INERTIAL, "ROS 2 drops all visuals and collisions of link {}", link)
     inside = children(element)
     origin = part.origin(inside.get("origin"))
     mass, values = float("nan"), [float("nan")] * len(_INERTIA)
@@ -56,9 +57,9 @@ def _read_inertial(element: Element, notes: Notes, link: str) -> Inertial | None
     return Inertial(mass, (values[0], values[1], values[2], values[3], values[4], values[5]), origin)
 
 
-def _read_visual(element: Element, notes: Notes, link: str) -> Visual | None:
-    consequence = f"ROS 2 drops this visual of link {link!r}, those behind it and all its collisions"
-    part = Part(notes, catalogue.BAD_VISUAL, consequence)
+def _read_visual(element: Element, notes: Notes, link: str, materials: Materials | None) -> Visual | None:
+    """A visual with its material resolved; a visual that is dropped anyway defines no material."""
+    part = Part(notes, catalogue.BAD_VISUAL, _VISUAL_LOST, link)
     inside = children(element)
     origin = part.origin(inside.get("origin"))
     geometry = _read_geometry(element, inside.get("geometry"), part, notes)
@@ -67,11 +68,13 @@ def _read_visual(element: Element, notes: Notes, link: str) -> Visual | None:
         part.fail("<material> in a visual has no name", material)
     if part.bad or geometry is None or origin is None:
         return None
-    return Visual(geometry, origin, mark=part.mark(element))
+    if material is None or materials is None:
+        return Visual(geometry, origin, mark=part.mark(element))
+    return Visual(geometry, origin, *materials.assign(material, link), part.mark(element))
 
 
 def _read_collision(element: Element, notes: Notes, link: str) -> Collision | None:
-    part = Part(notes, catalogue.BAD_COLLISION, f"ROS 2 drops this collision of link {link!r} and those behind it")
+    part = Part(notes, catalogue.BAD_COLLISION, "ROS 2 drops this collision of link {} and those behind it", link)
     inside = children(element)
     origin = part.origin(inside.get("origin"))
     geometry = _read_geometry(element, inside.get("geometry"), part, notes)

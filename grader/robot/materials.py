@@ -1,9 +1,7 @@
 """Which colour a visual ends up with (`model.cpp`: assignMaterial, `link.cpp`: parseMaterial)."""
 
-from dataclasses import replace
-
 from grader.robot import catalogue
-from grader.robot.model import Material, Visual
+from grader.robot.model import Material
 from grader.robot.names import did_you_mean
 from grader.robot.notes import Element, Notes, shown
 from grader.robot.numbers import NumberError, rgba
@@ -36,13 +34,11 @@ class Materials:
             return
         self.known[name or ""] = material or Material(name or "", mark=notes.mark(element))
 
-    def assign(self, visual: Visual, element: Element | None, link: str) -> Visual:
-        """The visual with its material: a registered name wins, else the definition in place registers it."""
-        if element is None:
-            return visual
+    def assign(self, element: Element, link: str) -> tuple[Material | None, str]:
+        """The material that a visual gets, and its name: a registered one wins, else the one in place is registered."""
         name = element.get("name") or ""
         if not len(element) and name in self.known and name:
-            return replace(visual, material=self.known[name], material_name=name)
+            return self.known[name], name
         fallback = "the definition above counts" if name in self.known else f"material {name!r} stays undefined here"
         own, complained = self._read(element, name, f"ROS 2 logs an error: {fallback}")
         found = self.known.get(name) if name else own
@@ -54,7 +50,7 @@ class Materials:
         elif own is not None and found is not None and (own.rgba, own.texture) != (found.rgba, found.texture):
             message = f"material {name!r} is already defined otherwise; ROS 2 ignores this definition"
             self._notes.add(catalogue.REDEFINED_MATERIAL, message, element, "name")
-        return replace(visual, material=found, material_name=name)
+        return found, name
 
     def _read(self, element: Element, name: str, consequence: str) -> tuple[Material | None, bool]:
         """The material defined in an element, if it is; and whether a complaint about its colour was noted."""

@@ -6,13 +6,12 @@ that cannot be read; a value that the file leaves out has ROS 2's default.
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import TypeVar
 
 from grader.errors import MissingElement
+from grader.robot.names import did_you_mean
 from grader.robot.source import Mark
 
 Vector = tuple[float, float, float]
-Element = TypeVar("Element")
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,19 +166,24 @@ class Robot:
 
     def link(self, name: str) -> Link:
         """The link of this name; raises MissingElement, which lists the names that there are."""
-        return _named(self._links, "link", name, self.links)
+        try:
+            return self._links[name]
+        except KeyError:
+            raise _missing("link", name, self.links) from None
 
     def joint(self, name: str) -> Joint:
         """The joint of this name; raises MissingElement, which lists the names that there are."""
-        return _named(self._joints, "joint", name, self.joints)
+        try:
+            return self._joints[name]
+        except KeyError:
+            raise _missing("joint", name, self.joints) from None
 
     def has_link(self, name: str) -> bool:
         """Whether a link of this name was read."""
         return name in self._links
 
 
-def _named(found: dict[str, Element], kind: str, name: str, order: Iterable[Link | Joint]) -> Element:
-    try:
-        return found[name]
-    except KeyError:
-        raise MissingElement(kind, name, tuple(each.name for each in order)) from None
+def _missing(kind: str, name: str, there: Iterable[Link | Joint]) -> MissingElement:
+    known = tuple(each.name for each in there)
+    guess = did_you_mean(name, known) or f"; the file has: {', '.join(map(repr, known[:20])) or 'none'}"
+    return MissingElement(kind, name, known, message=f"there is no {kind} {name!r}{guess}")

@@ -47,18 +47,21 @@ class Notes:
 class Part:
     """One element that ROS 2 keeps or loses as a whole: every defect in it is noted under one kind of problem."""
 
-    __slots__ = ("_consequence", "_kind", "_notes", "bad")
+    __slots__ = ("_consequence", "_kind", "_link", "_notes", "bad")
 
-    def __init__(self, notes: Notes, kind: Kind, consequence: str) -> None:
+    def __init__(self, notes: Notes, kind: Kind, consequence: str, link: str | None = None) -> None:
+        """`consequence` says what ROS 2 does then; `link` fills the place that it leaves for a name."""
         self._notes = notes
         self._kind = kind
         self._consequence = consequence
+        self._link = link
         self.bad = False
 
     def fail(self, reason: str, element: Element, attribute: str | None = None) -> None:
         """Note a defect: the part is lost."""
         self.bad = True
-        self._notes.add(self._kind, f"{reason}; {self._consequence}", element, attribute)
+        consequence = self._consequence if self._link is None else self._consequence.format(repr(self._link))
+        self._notes.add(self._kind, f"{reason}; {consequence}", element, attribute)
 
     def mark(self, element: Element) -> Mark:
         """The place of an element."""

@@ -9,7 +9,7 @@ test (Ericson, Real-Time Collision Detection, 2004, section 5.2.1). Everything i
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain, combinations, product
-from math import ceil, hypot, inf, pi, sqrt
+from math import atan2, ceil, copysign, hypot, inf, pi, sqrt
 from typing import TYPE_CHECKING, Any
 
 from grader.robot.model import Box, Cylinder, Sphere
@@ -104,7 +104,7 @@ def _overlap(a: Shape, b: Shape, T_a_b: Transform, direction: Vector) -> float:
 def _likely_directions(a: Shape, b: Shape, T_a_b: Transform) -> Iterator[Vector]:
     """Unit directions in which shapes that do not cut into each other are mostly seen to be apart.
 
-    Without rims, which need both a cylinder and another shape that is not a sphere, they are all that can matter.
+    Where no rim matters the least overlap of shapes that do cut into each other is along one of these.
     """
     c = T_a_b.translation
     edges_a = _straight_edges(a)
@@ -113,15 +113,24 @@ def _likely_directions(a: Shape, b: Shape, T_a_b: Transform) -> Iterator[Vector]
     yield from edges_b
     yield unit(c) or (0.0, 0.0, 1.0)
     if isinstance(a, Cylinder):
-        yield unit((c[0], c[1], 0.0)) or (1.0, 0.0, 0.0)
+        x, y, _ = T_a_b.rotate(_beyond(b, T_a_b.unrotate(c)))
+        yield unit((x, y, 0.0)) or (1.0, 0.0, 0.0)
     if isinstance(b, Cylinder):
-        x, y, _ = T_a_b.unrotate(c)
+        x, y, _ = T_a_b.unrotate(_beyond(a, c))
         yield T_a_b.rotate(unit((x, y, 0.0)) or (1.0, 0.0, 0.0))
     for p, q in product(edges_a, edges_b):
         normal = cross(p, q)
         length = hypot(*normal)
         if length > _ROUNDING:
             yield (normal[0] / length, normal[1] / length, normal[2] / length)
+
+
+def _beyond(shape: Shape, point: Vector) -> Vector:
+    """The way to a point from what is nearest to it of a box, or from the centre of a round shape."""
+    if not isinstance(shape, Box):
+        return point
+    x, y, z = (copysign(max(abs(p) - abs(size) / 2.0, 0.0), p) for p, size in zip(point, shape.size, strict=True))
+    return (x, y, z)
 
 
 def _straight_edges(shape: Shape) -> list[Vector]:
@@ -132,7 +141,7 @@ def _straight_edges(shape: Shape) -> list[Vector]:
 
 
 def _widest_gap(a: Shape, b: Shape, T_a_b: Transform) -> Vector | None:
-    """The unit direction from a to b of the widest gap between their cores; None where these touch or cut into each other.
+    """The unit direction from a to b of the gap between their cores, or None where these touch or cut into each other.
 
     It points to what is nearest the origin among all differences between points of b and of a (Gilbert, Johnson and
     Keerthi, IEEE Journal of Robotics and Automation 4(2), 1988). Each step bounds the gap from both sides.
@@ -185,7 +194,7 @@ def _nearest_to_origin(corners: Sequence[Vector]) -> tuple[Sequence[Vector], Vec
 
 
 def _foot(first: Vector, others: Sequence[Vector]) -> Vector | None:
-    """The foot of the origin's perpendicular to the line, plane or space through some corners, if it is between them."""
+    """The point nearest the origin on the line or plane, or in the space, through corners, if it lies between them."""
     edges = [minus(other, first) for other in others]
     home = (-first[0], -first[1], -first[2])
     match edges:
@@ -213,11 +222,22 @@ def _least_overlap(a: Shape, b: Shape, T_a_b: Transform) -> Vector:
         return _overlap(a, b, T_a_b, direction)
 
     best = min(_likely_directions(a, b, T_a_b), key=overlap)
-    round_one = isinstance(a, Cylinder) or isinstance(b, Cylinder)
-    if round_one and not isinstance(a, Sphere) and not isinstance(b, Sphere) and overlap(best) > _ROUNDING:
-        best = min(best, _least_overlap_at_rims(a, b, T_a_b), key=overlap)
+    if overlap(best) > _ROUNDING and not isinstance(a, Sphere) and not isinstance(b, Sphere):
+        if _rims_matter(a, b, T_a_b):
+            best = min(best, _least_overlap_at_rims(a, b, T_a_b), key=overlap)
     x, y, z = best
     return best if dot(best, T_a_b.translation) >= 0.0 else (-x, -y, -z)
+
+
+def _rims_matter(a: Box | Cylinder, b: Box | Cylinder, T_a_b: Transform) -> bool:
+    """Whether a cylinder leans against all edges of the other shape, by more than what `_SAGITTA` allows.
+
+    One that is parallel to an edge, as most are, makes the overlap a flat problem, which has no rims.
+    """
+    if isinstance(a, Box) and isinstance(b, Box):
+        return False
+    edges = product(_straight_edges(a), map(T_a_b.rotate, _straight_edges(b)))
+    return min(hypot(*cross(p, q)) for p, q in edges) * (_radius(a) + _radius(b)) > _SAGITTA / 4.0
 
 
 def _least_overlap_at_rims(a: Box | Cylinder, b: Box | Cylinder, T_a_b: Transform) -> Vector:
@@ -231,47 +251,38 @@ def _least_overlap_at_rims(a: Box | Cylinder, b: Box | Cylinder, T_a_b: Transfor
     rotation = np.array(T_a_b.rotation).reshape(3, 3)
     straight = np.array([*_straight_edges(a), *map(T_a_b.rotate, _straight_edges(b))])
     sides = ((a, np.eye(3)), (b, rotation))
-    rims = [(frame, _around(shape.radius)) for shape, frame in sides if isinstance(shape, Cylinder)]
+    rims = [(frame, _all_around(shape.radius)) for shape, frame in sides if isinstance(shape, Cylinder)]
     best = straight[0]
     for _ in range(3):
-        lines = [np.outer(np.cos(turn), f[:, 0]) + np.outer(np.sin(turn), f[:, 1]) for f, turn in rims]
-        normals = _normals([straight, *lines])
+        lines = [np.outer(np.cos(turns), f[:, 0]) + np.outer(np.sin(turns), f[:, 1]) for f, turns in rims]
+        spans = [np.cross(p[:, None], q).reshape(-1, 3) for p, q in combinations([straight, *lines], 2)]
+        normals = np.concatenate(spans)
+        lengths = np.linalg.norm(normals, axis=1)
+        normals = normals[lengths > _ROUNDING] / lengths[lengths > _ROUNDING, None]
         overlaps = _half_widths(a, normals) + _half_widths(b, normals @ rotation) - abs(normals @ T_a_b.translation)
         best = normals[overlaps.argmin()]
-        rims = [(f, _closer(turn, np.arctan2(best @ f[:, 0], -(best @ f[:, 1])))) for f, turn in rims]
+        rims = [(f, _closer(turns, atan2(best @ f[:, 0], -(best @ f[:, 1])))) for f, turns in rims]
     x, y, z = best.tolist()
     return (x, y, z)
 
 
-def _around(radius: float) -> "Array":
-    """The directions of a rim's edges, as angles from its x axis over half a turn; the other half has the same lines."""
-    import numpy as np
-
+def _all_around(radius: float) -> list[float]:
+    """The directions of a polygon's edges as angles over half a turn; across the polygon they come again."""
     sagitta = max(_SAGITTA, _BEND * abs(radius))
-    count = max(2, ceil(pi / 2.0 * sqrt(abs(radius) / sagitta / 2.0)))  # 1 - cos(x) is less than x**2 / 2
-    return np.arange(count) * pi / count
+    count = max(2, ceil(pi / 2.0 * sqrt(abs(radius) / sagitta / 2.0)))  # for 1 - cos(t) is no more than t**2 / 2
+    return [step * pi / count for step in range(count)]
 
 
-def _closer(turns: "Array", middle: float) -> "Array":
-    import numpy as np
-
-    return middle + (turns[1] - turns[0]) * np.linspace(-1.0, 1.0, 17)
-
-
-def _normals(lines: "Sequence[Array]") -> "Array":
-    """The unit normals, shape (n, 3), to each two lines from different sets; lines have shape (m, 3)."""
-    import numpy as np
-
-    normals = np.concatenate([np.cross(p[:, None], q).reshape(-1, 3) for p, q in combinations(lines, 2)])
-    lengths = np.linalg.norm(normals, axis=1)
-    return normals[lengths > _ROUNDING] / lengths[lengths > _ROUNDING, None]
+def _closer(turns: list[float], middle: float) -> list[float]:
+    return [middle + (turns[1] - turns[0]) * (step / 8.0 - 1.0) for step in range(17)]
 
 
 def _half_widths(shape: Box | Cylinder, directions: "Array") -> "Array":
     """`half_width` for directions of shape (n, 3)."""
-    import numpy as np
-
-    if isinstance(shape, Box):
-        return abs(directions) @ np.abs(shape.size) / 2.0
     x, y, z = directions.T
-    return abs(shape.radius) * np.hypot(x, y) + abs(shape.length / 2.0 * z)
+    if isinstance(shape, Box):
+        a, b, c = shape.size
+        widths: Array = (abs(a * x) + abs(b * y) + abs(c * z)) / 2.0
+    else:
+        widths = abs(shape.radius) * (x * x + y * y) ** 0.5 + abs(shape.length / 2.0 * z)
+    return widths

@@ -104,7 +104,7 @@ def is_empty(geometry: Geometry) -> bool:
     radius (a cylinder of zero length is a disc), and a mesh scaled by zero along all three axes.
     """
     if isinstance(geometry, Box):
-        return sorted(map(abs, geometry.size))[1] == 0.0
+        return geometry.size.count(0.0) >= 2
     if isinstance(geometry, Mesh):
         return not any(geometry.scale)
     return geometry.radius == 0.0

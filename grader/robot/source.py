@@ -63,8 +63,7 @@ class Source:
         return start
 
 
-@dataclass(frozen=True, slots=True)
-class Mark:
+class Mark(NamedTuple):
     """An element's place in a source, worked out on demand."""
 
     source: Source

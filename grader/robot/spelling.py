@@ -54,22 +54,25 @@ _KNOWN_ATTRIBUTES = {tag: frozenset(names) for tag, names in _ATTRIBUTES.items()
 
 def check_spelling(root: Element, notes: Notes) -> None:
     """Note misspelt names and repeated elements in what urdfdom reads; extensions of other tools are left alone."""
+    if not _KNOWN_ATTRIBUTES["robot"].issuperset(root.keys()):
+        _check_attributes(root, notes)
     waiting = [root]
     while waiting:
         element = waiting.pop()
-        if not _KNOWN_ATTRIBUTES[element.tag].issuperset(element.keys()):
-            _check_attributes(element, notes)
-        allowed = _CHILDREN.get(element.tag)
-        if not allowed or not len(element):
-            continue
-        tags = [child.tag for child in element]
-        if len(set(tags)) != len(tags) or element.tag == "geometry":
-            _check_repeated(element, tags, notes)
+        allowed = _CHILDREN[element.tag]
+        tags = []
         for child in element:
-            if child.tag in allowed:
-                waiting.append(child)
-            elif child.tag not in _EXTENSIONS:
+            tag = child.tag
+            tags.append(tag)
+            if tag in allowed:
+                if not _KNOWN_ATTRIBUTES[tag].issuperset(child.keys()):
+                    _check_attributes(child, notes)
+                if tag in _CHILDREN and len(child):
+                    waiting.append(child)
+            elif tag not in _EXTENSIONS:
                 _check_tag(child, element.tag, allowed, notes)
+        if element is not root and len(tags) > 1 and (len(set(tags)) < len(tags) or element.tag == "geometry"):
+            _check_repeated(element, tags, notes)
 
 
 def _check_attributes(element: Element, notes: Notes) -> None:

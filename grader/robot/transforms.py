@@ -64,6 +64,10 @@ class Transform:
         x, y, z = direction
         return (a * x + d * y + g * z, b * x + e * y + h * z, c * x + f * y + i * z)
 
+    def shifted(self, offset: Vector) -> "Transform":
+        """T_a_c for a frame c that stands at `offset` in b and is turned as b is."""
+        return Transform(self.rotation, self.apply(offset))
+
     def inverse(self) -> "Transform":
         """T_b_a."""
         a, b, c, d, e, f, g, h, i = self.rotation

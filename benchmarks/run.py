@@ -1,0 +1,205 @@
+"""What the speed claims rest on: `python benchmarks/run.py`. Quote the ratios; absolute times are the machine's.
+
+Every pair is timed in turn, A B A B, so that a machine whose speed drifts does not favour either.
+"""
+
+import os
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from importlib.metadata import PackageNotFoundError, distribution
+from importlib.util import find_spec
+from pathlib import Path
+
+from lxml import etree
+
+from grader.grading.grade import grade
+from grader.grading.rubric import load_rubric
+from grader.report.as_json import render_json
+from grader.robot.kinematics import Configuration
+from grader.robot.reader import read_urdf
+from grader.submission.submission import read_submission
+
+ROOT = Path(__file__).resolve().parent.parent
+SAMPLE = ROOT / "submissions" / "reference"
+URDF = SAMPLE / "my_robot" / "urdf" / "my_robot.urdf"
+BARE = "import typer, lxml, numpy, rich"
+BARE_USED = "import typer, lxml.etree, numpy, rich.console"
+CHAIN = (10, 100, 1_000, 10_000)
+
+
+def main() -> None:
+    """Print every figure of the page."""
+    whole_process()
+    warm_grading()
+    inspecting()
+    forward_kinematics()
+
+
+def whole_process(runs: int = 15) -> None:
+    """The whole process against importing the packages that it is built on in a bare interpreter."""
+    python, module = sys.executable, [sys.executable, "-m", "grader"]
+    commands = {
+        "bare imports": [python, "-c", BARE],
+        "bare imports, submodules": [python, "-c", BARE_USED],
+        "grade": [*module, "grade", str(SAMPLE)],
+        "grade --format json": [*module, "grade", str(SAMPLE), "--format", "json"],
+        "inspect": [*module, "inspect", str(URDF)],
+        "--help": [*module, "--help"],
+        "--version": [*module, "--version"],
+    }
+    times = in_turn({name: process(command) for name, command in commands.items()}, runs)
+    table("The whole process", times, "bare imports", f"python -c '{BARE}'")
+
+
+def warm_grading(runs: int = 40) -> None:
+    """Grading in a running process against lxml's own parse of the same bytes."""
+    rubric, data = load_rubric("lab6"), URDF.read_bytes()
+
+    def grade_once() -> None:
+        grade(rubric, read_submission(data, identity="a", path="my_robot.urdf"))
+
+    def to_json() -> None:
+        render_json(grade(rubric, read_submission(data, identity="a", path="my_robot.urdf")))
+
+    times = in_turn(
+        {
+            "lxml.etree.fromstring": repeated(lambda: etree.fromstring(data), 200),
+            "read_urdf": repeated(lambda: read_urdf(data), 20),
+            "grade, bytes to report": repeated(grade_once, 20),
+            "grade, bytes to JSON": repeated(to_json, 20),
+            **{name: repeated(run, 10) for name, run in other_parsers(data)},
+        },
+        runs,
+    )
+    table(f"Warm, the reference of {len(data)} bytes", times, "lxml.etree.fromstring", "lxml.etree.fromstring")
+
+
+def inspecting(runs: int = 10) -> None:
+    """inspect as a whole process against other readers of URDF, where they are installed."""
+    commands = {"grader inspect": process([sys.executable, "-m", "grader", "inspect", str(URDF), "--format", "json"])}
+    program = check_urdf()
+    if program is not None:
+        environment = {**os.environ, "LD_LIBRARY_PATH": str(program.parent.parent / "lib")}
+        commands["check_urdf"] = process([str(program), str(URDF)], environment)
+    scripts = {
+        "pinocchio": "import pinocchio as p; m = p.buildModelFromUrdf({0!r}); p.forwardKinematics(m, m.createData(), p.neutral(m))",
+        "yourdfpy": "import yourdfpy; yourdfpy.URDF.load({0!r}, load_meshes=False)",
+        "urdf_parser_py": "from urdf_parser_py.urdf import URDF; URDF.from_xml_string(open({0!r}, 'rb').read())",
+    }
+    for name, script in scripts.items():
+        if find_spec(name) is not None:
+            commands[name] = process([sys.executable, "-W", "ignore", "-c", script.format(str(URDF))])
+    table("inspect as a whole process", in_turn(commands, runs), "grader inspect", "grader inspect")
+
+
+def forward_kinematics() -> None:
+    """Every pose of a chain of revolute joints, read once and solved anew."""
+    print("\nForward kinematics, every link's pose in the root")
+    for count in CHAIN:
+        reading = read_urdf(chain(count), "chain.urdf")
+        assert reading.robot is not None
+        robot = reading.robot
+        names = [link.name for link in robot.links]
+        positions = {joint.name: 0.1 for joint in robot.joints}
+
+        def solve() -> None:
+            configuration = Configuration(robot, positions)  # noqa: B023  called at once
+            for name in names:  # noqa: B023
+                configuration.pose(name)
+
+        best = min(once(solve) for _ in range(max(3, 3_000 // count)))
+        print(f"  {count:>6} links  {best * 1e3:9.3f} ms  {best / count * 1e6:6.2f} us a link")
+
+
+def chain(count: int) -> bytes:
+    """The URDF of a chain of so many links."""
+    lines = ['<robot name="chain">', '<link name="l0"/>']
+    for index in range(1, count):
+        lines.append(
+            f'<link name="l{index}"/><joint name="j{index}" type="continuous"><parent link="l{index - 1}"/>'
+            f'<child link="l{index}"/><origin xyz="0.1 0 0.01" rpy="0.1 0.2 0.3"/><axis xyz="0 1 0"/></joint>'
+        )
+    return "\n".join([*lines, "</robot>"]).encode()
+
+
+def other_parsers(data: bytes) -> list[tuple[str, Callable[[], object]]]:
+    """urdf_parser_py in the same process, where it is installed."""
+    if find_spec("urdf_parser_py") is None:
+        return []
+    import contextlib
+    import io
+
+    from urdf_parser_py.urdf import URDF as Parser
+
+    def parse() -> None:
+        with contextlib.redirect_stderr(io.StringIO()):
+            Parser.from_xml_string(data)
+
+    return [("urdf_parser_py, parse only", parse)]
+
+
+def check_urdf() -> Path | None:
+    """urdfdom's own program, where the test extra is installed."""
+    try:
+        return Path(str(distribution("cmeel-urdfdom").locate_file("cmeel.prefix/bin/check_urdf")))
+    except PackageNotFoundError:
+        return None
+
+
+def process(command: list[str], environment: dict[str, str] | None = None) -> Callable[[], float]:
+    """A run of a whole process; what it takes in seconds."""
+    if environment is None:
+        environment = {**os.environ, "PYTHONPYCACHEPREFIX": str(Path(tempfile.gettempdir()) / "grader-benchmark")}
+        environment.pop("PYTHONDONTWRITEBYTECODE", None)  # an installed package has its bytecode
+
+    def run() -> float:
+        return once(lambda: subprocess.run(command, capture_output=True, env=environment, check=False))
+
+    return run
+
+
+def repeated(run: Callable[[], object], count: int) -> Callable[[], float]:
+    """Several runs in one; seconds for each."""
+
+    def batch() -> float:
+        return once(lambda: [run() for _ in range(count)]) / count
+
+    return batch
+
+
+def once(run: Callable[[], object]) -> float:
+    """Seconds that a call takes."""
+    start = time.perf_counter()
+    run()
+    return time.perf_counter() - start
+
+
+def in_turn(runs: dict[str, Callable[[], float]], count: int) -> dict[str, list[float]]:
+    """So many rounds of all, one after the other, behind a round that does not count."""
+    times: dict[str, list[float]] = {name: [] for name in runs}
+    for number in range(count + 1):
+        for name, run in runs.items():
+            seconds = run()
+            if number:
+                times[name].append(seconds)
+    return times
+
+
+def table(title: str, times: dict[str, list[float]], base: str, base_words: str) -> None:
+    """Print medians and minima, and each as a multiple of the base's."""
+    print(f"\n{title} (1 = {base_words})")
+    median, least = statistics.median(times[base]), min(times[base])
+    for name, values in times.items():
+        middle, best = statistics.median(values), min(values)
+        print(
+            f"  {name:<28} median {middle * 1e3:9.3f} ms  {middle / median:6.2f} x   least {best * 1e3:9.3f} ms"
+            f"  {best / least:6.2f} x"
+        )
+
+
+if __name__ == "__main__":
+    main()

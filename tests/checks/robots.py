@@ -1,0 +1,124 @@
+"""Small robots as text: builders for the parts of a URDF, and the robot that ROS 2 makes of them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import radians
+
+from grader.robot.kinematics import Configuration
+from grader.robot.reader import Reading, read_urdf
+from grader.robot.source import Location
+
+PATH = "urdf/robot.urdf"
+
+Numbers = str | Sequence[float]
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """The text of a URDF, each element in a line of its own, and what ROS 2 makes of it."""
+
+    text: str
+
+    @property
+    def reading(self) -> Reading:
+        """The file as ROS 2 reads it."""
+        return read_urdf(self.text.encode(), PATH)
+
+    @property
+    def robot(self) -> Configuration:
+        """The robot in the file, its joints at 0."""
+        found = self.reading.robot
+        assert found is not None, self.text
+        return Configuration(found)
+
+    def place(self, fragment: str) -> Location:
+        """Where a fragment begins, which must stand in the text just once."""
+        assert self.text.count(fragment) == 1, f"{fragment!r} stands {self.text.count(fragment)} times in\n{self.text}"
+        before = self.text[: self.text.index(fragment)]
+        return Location(PATH, before.count("\n") + 1, len(before) - before.rfind("\n"))
+
+
+def scene(*parts: str) -> Scene:
+    """The file that some links, joints and materials make."""
+    return Scene("\n".join(('<robot name="test">', *parts, "</robot>", "")))
+
+
+def link(name: str, *visuals: str) -> str:
+    """A link with its visuals."""
+    if not visuals:
+        return f'<link name="{name}"/>'
+    return "\n".join((f'<link name="{name}">', *visuals, "</link>"))
+
+
+def visual(shape: str, *, xyz: Numbers = "", rpy: Numbers = "", material: str = "") -> str:
+    """A visual; its origin and material are left out where they are not given."""
+    inside = (_origin(xyz, rpy), f"<geometry>\n{shape}\n</geometry>", material)
+    return "\n".join(("<visual>", *filter(None, inside), "</visual>"))
+
+
+def box(x: float, y: float, z: float) -> str:
+    """A box by its edges in metres."""
+    return f'<box size="{numbers((x, y, z))}"/>'
+
+
+def cylinder(radius: float = 0.1, length: float = 0.05) -> str:
+    """A cylinder in metres; unless told, the lab's wheel."""
+    return f'<cylinder radius="{radius!r}" length="{length!r}"/>'
+
+
+def sphere(radius: float) -> str:
+    """A sphere in metres."""
+    return f'<sphere radius="{radius!r}"/>'
+
+
+def mesh(filename: str = "package://my_robot/meshes/part.stl", scale: Numbers = "") -> str:
+    """A mesh, whose size nobody knows."""
+    return f'<mesh filename="{filename}"{_attribute("scale", scale)}/>'
+
+
+def colour(rgba: Numbers, name: str = "paint") -> str:
+    """A material that is defined where it is used."""
+    return f'<material name="{name}">\n<color rgba="{numbers(rgba)}"/>\n</material>'
+
+
+def joint(
+    name: str,
+    kind: str,
+    parent: str,
+    child: str,
+    *,
+    xyz: Numbers = "",
+    rpy: Numbers = "",
+    axis: Numbers = "",
+    more: str = "",
+) -> str:
+    """A joint; revolute and prismatic ones have a limit, so that ROS 2 takes them."""
+    limit = '<limit lower="-1" upper="1" effort="1" velocity="1"/>' if kind in ("revolute", "prismatic") else ""
+    inside = (
+        f'<parent link="{parent}"/>',
+        f'<child link="{child}"/>',
+        _origin(xyz, rpy),
+        f'<axis xyz="{numbers(axis)}"/>' if axis else "",
+        limit,
+        more,
+    )
+    return "\n".join((f'<joint name="{name}" type="{kind}">', *filter(None, inside), "</joint>"))
+
+
+def turned(*, roll: float = 0.0, pitch: float = 0.0, yaw: float = 0.0) -> str:
+    """The rpy of an origin for angles in degrees."""
+    return numbers((radians(roll), radians(pitch), radians(yaw)))
+
+
+def numbers(values: Numbers) -> str:
+    """Numbers as a URDF writes them, none of their digits lost; text is left as it is."""
+    return values if isinstance(values, str) else " ".join(map(repr, values))
+
+
+def _origin(xyz: Numbers, rpy: Numbers) -> str:
+    given = _attribute("xyz", xyz) + _attribute("rpy", rpy)
+    return f"<origin{given}/>" if given else ""
+
+
+def _attribute(name: str, value: Numbers) -> str:
+    return f' {name}="{numbers(value)}"' if value else ""
