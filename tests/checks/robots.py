@@ -1,5 +1,6 @@
 """Small robots as text: builders for the parts of a URDF, and the robot that ROS 2 makes of them."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import radians
@@ -11,6 +12,10 @@ from grader.robot.source import Location
 PATH = "urdf/robot.urdf"
 
 Numbers = str | Sequence[float]
+
+_JOINT = re.compile(r"<joint .*?</joint>\n", re.DOTALL)
+_SHAPE = re.compile(r"<(box|cylinder|sphere|mesh) [^>]*>")
+_LINK = re.compile(r'<link name="([^"]*)"')
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,11 +36,24 @@ class Scene:
         assert found is not None, self.text
         return Configuration(found)
 
+    @property
+    def links(self) -> tuple[str, ...]:
+        """The names of the links in file order."""
+        return tuple(_LINK.findall(self.text))
+
     def place(self, fragment: str) -> Location:
         """Where a fragment begins, which must stand in the text just once."""
         assert self.text.count(fragment) == 1, f"{fragment!r} stands {self.text.count(fragment)} times in\n{self.text}"
         before = self.text[: self.text.index(fragment)]
         return Location(PATH, before.count("\n") + 1, len(before) - before.rfind("\n"))
+
+    def without_joints(self) -> "Scene":
+        """The same links, none joined to another."""
+        return Scene(_JOINT.sub("", self.text))
+
+    def with_shape(self, shape: str) -> "Scene":
+        """The same robot, but each of its shapes is this one."""
+        return Scene(_SHAPE.sub(shape, self.text))
 
 
 def scene(*parts: str) -> Scene:
@@ -76,21 +94,13 @@ def mesh(filename: str = "package://my_robot/meshes/part.stl", scale: Numbers = 
     return f'<mesh filename="{filename}"{_attribute("scale", scale)}/>'
 
 
-def colour(rgba: Numbers, name: str = "paint") -> str:
-    """A material that is defined where it is used."""
+def paint(rgba: Numbers, name: str = "paint") -> str:
+    """A material with a colour: for all links under <robot>, or where it is used."""
     return f'<material name="{name}">\n<color rgba="{numbers(rgba)}"/>\n</material>'
 
 
 def joint(
-    name: str,
-    kind: str,
-    parent: str,
-    child: str,
-    *,
-    xyz: Numbers = "",
-    rpy: Numbers = "",
-    axis: Numbers = "",
-    more: str = "",
+    name: str, kind: str, parent: str, child: str, *, xyz: Numbers = "", rpy: Numbers = "", axis: Numbers = "", more: str = ""
 ) -> str:
     """A joint; revolute and prismatic ones have a limit, so that ROS 2 takes them."""
     limit = '<limit lower="-1" upper="1" effort="1" velocity="1"/>' if kind in ("revolute", "prismatic") else ""

@@ -1,0 +1,56 @@
+"""Ways to ask a check: alone, as a criterion of a rubric, and where it cannot answer."""
+
+from collections.abc import Callable
+from decimal import Decimal
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from grader.checks.outcome import Outcome
+from grader.checks.registry import describe
+from grader.errors import MissingElement
+from grader.grading.grade import grade
+from grader.grading.rubric import Criterion, Part, Rubric
+from grader.robot.source import Location
+from grader.submission.submission import read_submission
+from tests.checks.robots import PATH, Scene
+
+AnyCheck = Callable[..., Outcome]
+
+
+def ask(check: AnyCheck, scene: Scene, **arguments: Any) -> Outcome:
+    """What a check finds."""
+    return check(scene.reading if describe(check).subject == "urdf" else scene.robot, **arguments)
+
+
+def missing(check: AnyCheck, scene: Scene, **arguments: Any) -> MissingElement:
+    """What a check misses; fails the test if it finds an answer."""
+    with pytest.raises(MissingElement) as caught:
+        ask(check, scene, **arguments)
+    return caught.value
+
+
+def graded(check: AnyCheck, scene: Scene, **arguments: Any) -> Outcome:
+    """The outcome of a rubric's only criterion, which names this check."""
+    criterion = Criterion("only", "The only one", "all", Decimal(1), describe(check), arguments)
+    rubric = Rubric("test", "Test", (Part("all", "All"),), (criterion,), "robot.urdf", "", "", Path("test.toml"))
+    report = grade(rubric, read_submission(scene.text.encode(), identity="test", path=PATH))
+    return report.results[0].outcome
+
+
+def passes(check: AnyCheck, scene: Scene, **arguments: Any) -> str:
+    """The message of a check, which must pass and point to no place."""
+    outcome = ask(check, scene, **arguments)
+    assert outcome.status == "passed", outcome
+    assert outcome.location is None
+    return outcome.message
+
+
+def fails(check: AnyCheck, scene: Scene, *, at: str | None = None, **arguments: Any) -> str:
+    """The message of a check, which must fail; `at` begins at the place that it must point to."""
+    outcome = graded(check, scene, **arguments)
+    assert outcome.status == "failed", outcome
+    expected: Location | None = scene.place(at) if at is not None else outcome.location
+    assert outcome.location == expected
+    return outcome.message

@@ -1,0 +1,176 @@
+"""Bad input: one clear line on standard error, the right exit code, nothing on standard output, no traceback."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.golden.cases import ROOT, run
+
+REFERENCE = ROOT / "submissions/reference/my_robot/urdf/my_robot.urdf"
+MEBIBYTE = 1024 * 1024
+
+
+def refuse(*arguments: str, words: str, code: int = 2) -> None:
+    """A command must fail with one line that holds the words."""
+    done = run(arguments)
+    message = done.stderr.decode()
+    assert done.returncode == code
+    assert done.stdout == b""
+    assert message.count("\n") == 1, message
+    assert message.startswith("grader: ")
+    assert words in message
+    assert "Traceback" not in message
+
+
+@pytest.mark.parametrize("command", ["grade", "inspect"])
+class TestPaths:
+    """What a path can lead to."""
+
+    def test_missing(self, command: str, tmp_path: Path) -> None:
+        """A path that is not there."""
+        refuse(command, str(tmp_path / "nothing.urdf"), words="does not exist")
+
+    def test_folder_without_urdf(self, command: str, tmp_path: Path) -> None:
+        """A folder without a URDF, and one whose only URDFs are products of a build."""
+        (tmp_path / "build").mkdir()
+        (tmp_path / "build" / "old.urdf").write_bytes(REFERENCE.read_bytes())
+        refuse(command, str(tmp_path), words="holds no .urdf file")
+
+    def test_too_large(self, command: str, tmp_path: Path) -> None:
+        """A file over the limit."""
+        (tmp_path / "large.urdf").write_bytes(b" " * (2 * MEBIBYTE))
+        refuse(command, str(tmp_path / "large.urdf"), words="larger than 1048576 bytes")
+
+    @pytest.mark.skipif(os.geteuid() == 0, reason="root may read every file")
+    def test_unreadable(self, command: str, tmp_path: Path) -> None:
+        """A file without permission to read it."""
+        (tmp_path / "secret.urdf").touch(mode=0o000)
+        refuse(command, str(tmp_path / "secret.urdf"), words="Permission denied")
+
+    def test_fifo(self, command: str, tmp_path: Path) -> None:
+        """A named pipe that nobody writes to."""
+        os.mkfifo(tmp_path / "pipe.urdf")
+        refuse(command, str(tmp_path / "pipe.urdf"), words="not a regular file")
+
+    def test_device(self, command: str, tmp_path: Path) -> None:
+        """A device without end."""
+        refuse(command, "/dev/zero", words="not a regular file")
+
+    def test_link_loop(self, command: str, tmp_path: Path) -> None:
+        """A symbolic link to itself."""
+        (tmp_path / "loop.urdf").symlink_to(tmp_path / "loop.urdf")
+        refuse(command, str(tmp_path / "loop.urdf"), words="ymbolic link")
+
+    def test_link_out_of_a_folder(self, command: str, tmp_path: Path) -> None:
+        """A link that leads out of the folder that was handed in is not followed."""
+        folder = tmp_path / "submission"
+        folder.mkdir()
+        (folder / "my_robot.urdf").symlink_to(REFERENCE)
+        refuse(command, str(folder), words="holds no .urdf file")
+
+    def test_name_with_nul_or_too_long(self, command: str, tmp_path: Path) -> None:
+        """A name that no file can have."""
+        refuse(command, str(tmp_path / ("x" * 5000)), words="cannot read")
+
+    def test_control_characters_in_a_name(self, command: str, tmp_path: Path) -> None:
+        """A name with an escape sequence is spelt out."""
+        refuse(command, str(tmp_path / "\x1b[31m\nred.urdf"), words="\\x1b[31m\\x0ared.urdf")
+
+
+CONTENTS = {
+    "empty": b"",
+    "blank": b" \n\t\n",
+    "binary": bytes(range(256)) * 40,
+    "utf-16": '<robot name="a"><link name="b"/></robot>'.encode("utf-16"),
+    "external-entity": b'<!DOCTYPE r [<!ENTITY x SYSTEM "file:///etc/passwd">]><robot name="a"><link name="&x;"/>',
+    "bomb": b'<!DOCTYPE r [<!ENTITY a "aaaaaaaa"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;">]><robot name="&b;">',
+    "deep": b"<robot name='a'>" + b"<a>" * 100_000,
+    "deep-and-closed": b"<robot name='a'>" + b"<a>" * 100_000 + b"</a>" * 100_000 + b"</robot>",
+    "gzip": b"\x1f\x8b\x08\x00" + b"\x00" * 50,
+}
+
+
+@pytest.mark.parametrize("name", CONTENTS)
+def test_unreadable_content_is_a_report_like_any_other(name: str, tmp_path: Path) -> None:
+    """A file that ROS 2 cannot read loses urdf-loads, the rest is skipped because of it; the exit code is 1."""
+    import json
+
+    (tmp_path / "my_robot.urdf").write_bytes(CONTENTS[name])
+    done = run(("grade", str(tmp_path / "my_robot.urdf"), "--format", "json"))
+    assert (done.returncode, done.stderr) == (1, b"")
+    report = json.loads(done.stdout)
+    assert report["score"] == 0
+    assert report["results"][0]["status"] == "failed"
+    assert {result["because"] for result in report["results"][1:]} == {"urdf-loads"}
+    assert b"root:" not in done.stdout
+    assert run(("inspect", str(tmp_path / "my_robot.urdf"))).returncode == 1
+
+
+def test_a_doctype_that_ros_loads_is_graded_and_opens_nothing(tmp_path: Path) -> None:
+    """ROS 2 leaves entities as they stand, and so do we."""
+    text = b'<!DOCTYPE r [<!ENTITY x SYSTEM "file:///etc/passwd">]>\n<robot name="a"><link name="&x;"/></robot>'
+    (tmp_path / "a.urdf").write_bytes(text)
+    done = run(("inspect", str(tmp_path / "a.urdf"), "--format", "json"))
+    assert done.returncode == 0
+    assert b'"links": ["&x;"]' in done.stdout
+
+
+def test_usage() -> None:
+    """Wrong options, formats, parts, thresholds, joints and names."""
+    reference = str(REFERENCE)
+    refuse("grade", reference, "--rubric", "lab66", words="did you mean 'lab6'?")
+    refuse("grade", reference, "--rubric", "nowhere/lab.toml", words="No such file")
+    refuse("grade", reference, "--part", "task11", words="did you mean 'task1'?")
+    refuse("grade", reference, "--fail-under", "many", words="--fail-under takes points or a percentage")
+    refuse("grade", reference, "--format", "html", words="html")
+    refuse("grade", reference, "--save", "json", words="--save takes FORMAT=FILE")
+    refuse("grade", reference, "--save", "html=x.html", words="terminal, json")
+    refuse("grade", reference, "--save", "json=/nowhere/at/all.json", words="cannot write")
+    refuse("grade", reference, "--hints", words="--hints")
+    refuse("grade", words="PATH")
+    refuse("grad", reference, words="grad")
+    refuse("inspect", reference, "--joint", "base_left_wheel_joint", words="--joint takes NAME=VALUE")
+    refuse("inspect", reference, "--joint", "base_left_wheel_joint=fast", words="--joint takes NAME=VALUE")
+    refuse("inspect", reference, "--joint", "left_wheel_joint=1", words="did you mean 'base_left_wheel_joint'?")
+    refuse("inspect", reference, "--joint", "base_lidar_joint=1", words="is fixed")
+    refuse("inspect", reference, "--relative-to", "chassis", words="there is no link 'chassis'")
+    refuse("explain", "URDF999", words="nothing to explain")
+    refuse("schema", "gradebook", words="gradebook")
+    refuse("rubric", "test", "lab6", words="test")
+
+
+def test_a_rubric_with_mistakes_is_refused_with_all_of_them(tmp_path: Path) -> None:
+    """Every mistake has a line of its own, and nothing is graded."""
+    text = 'id = "x"\ntitel = "y"\n[[part]]\nid = "p"\n[[criterion]]\nid = "a"\npart = "q"\npoints = -1\ncheck = "urdf_load"\n'
+    (tmp_path / "bad.toml").write_text(text)
+    done = run(("grade", str(REFERENCE), "--rubric", str(tmp_path / "bad.toml")))
+    lines = done.stderr.decode().splitlines()
+    assert (done.returncode, done.stdout) == (2, b"")
+    assert len(lines) == 7
+    assert all(line.startswith("grader: ") and "bad.toml:" in line for line in lines)
+    (tmp_path / "bad.toml").write_text("id = [\n")
+    refuse("rubric", "check", str(tmp_path / "bad.toml"), words="not readable as TOML")
+
+
+@pytest.mark.parametrize("form", ["terminal", "json"])
+def test_closed_standard_output(form: str) -> None:
+    """One line on standard error and exit code 2, whether it was closed before or breaks on the way."""
+    command = f'"{sys.executable}" -m grader grade submissions/reference --format {form}'
+    for redirected in (f"{command} >&-", f"({command}; echo $? >&2) | true", f"{command} > /dev/full"):
+        done = subprocess.run(["bash", "-c", redirected], cwd=ROOT, capture_output=True, check=False, timeout=60)
+        assert b"standard output" in done.stderr or b"| true" in redirected.encode(), done.stderr
+        assert b"Traceback" not in done.stderr
+        if "|" not in redirected:
+            assert done.returncode == 2
+            assert done.stderr.count(b"\n") == 1
+
+
+def test_standard_input() -> None:
+    """A URDF can come from a pipe."""
+    command = [sys.executable, "-m", "grader", "grade", "-", "--format", "json"]
+    done = subprocess.run(command, input=REFERENCE.read_bytes(), cwd=ROOT, capture_output=True, check=False, timeout=60)
+    assert done.returncode == 0
+    assert b'"id": "stdin", "path": "-"' in done.stdout

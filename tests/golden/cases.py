@@ -1,0 +1,54 @@
+"""Golden cases: a command line, and beside it what it must print, byte for byte."""
+
+import os
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+HERE = Path(__file__).parent
+ROOT = HERE.parent.parent
+
+
+@dataclass(frozen=True, slots=True)
+class Golden:
+    """One command with its exit code; standard output is kept in the file of its name."""
+
+    name: str
+    arguments: tuple[str, ...]
+    exit_code: int
+
+    @property
+    def file(self) -> Path:
+        """Where the expected output stands."""
+        return HERE / f"{self.name}.{'json' if 'json' in self.arguments or 'schema' in self.arguments else 'txt'}"
+
+
+GOLDEN = (
+    Golden("reference", ("grade", "submissions/reference"), 0),
+    Golden("reference-json", ("grade", "submissions/reference", "--format", "json"), 0),
+    Golden("several-mistakes", ("grade", "submissions/several-mistakes"), 1),
+    Golden("several-mistakes-json", ("grade", "submissions/several-mistakes", "--format", "json"), 1),
+    Golden("lidar-without-joint", ("grade", "submissions/lidar-without-joint"), 1),
+    Golden("broken-tag-parent", ("grade", "submissions/broken-tag-parent"), 1),
+    Golden("broken-tag-parent-json", ("grade", "submissions/broken-tag-parent", "--format", "json"), 1),
+    Golden("inspect-raw-xacro", ("inspect", "submissions/raw-xacro"), 1),
+    Golden("inspect-reference", ("inspect", "submissions/reference", "--relative-to", "base_link"), 0),
+    Golden(
+        "inspect-turned-json",
+        ("inspect", "submissions/reference", "--joint", "base_left_wheel_joint=1.57", "--format", "json"),
+        0,
+    ),
+    Golden("explain-criterion", ("explain", "lidar-frame"), 0),
+    Golden("explain-code", ("explain", "URDF012"), 0),
+    Golden("explain-check", ("explain", "bottom_at_height"), 0),
+    Golden("rubric-show", ("rubric", "show", "lab6"), 0),
+)
+
+
+def run(arguments: tuple[str, ...], **variables: str) -> subprocess.CompletedProcess[bytes]:
+    """Run the command line as a user does, 80 columns wide, from the project's root."""
+    environment = {**os.environ, "COLUMNS": "80", "PYTHONIOENCODING": "utf-8", **variables}
+    return subprocess.run(
+        [sys.executable, "-m", "grader", *arguments], cwd=ROOT, env=environment, capture_output=True, check=False, timeout=60
+    )

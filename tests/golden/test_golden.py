@@ -1,0 +1,21 @@
+"""The golden cases, run through the real command line."""
+
+import pytest
+
+from tests.golden.cases import GOLDEN, Golden, run
+
+
+@pytest.mark.parametrize("case", GOLDEN, ids=lambda case: case.name)
+def test_a_command_prints_what_it_always_printed(case: Golden) -> None:
+    """Output and exit code are those that were approved; standard error stays empty."""
+    done = run(case.arguments)
+    assert done.stdout.decode() == case.file.read_text(encoding="utf-8")
+    assert (done.returncode, done.stderr) == (case.exit_code, b"")
+
+
+def test_the_same_run_gives_the_same_bytes() -> None:
+    """Hash seeds, time zones and locales change nothing."""
+    arguments = ("grade", "submissions/several-mistakes", "--format", "json")
+    one = run(arguments, PYTHONHASHSEED="1", TZ="UTC", LANG="C")
+    other = run(arguments, PYTHONHASHSEED="2", TZ="Asia/Tokyo", LANG="C.UTF-8")
+    assert one.stdout == other.stdout

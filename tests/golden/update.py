@@ -1,0 +1,15 @@
+"""Write what the golden commands print now: `python tests/golden/update.py`. Read the diff before you commit it."""
+
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent.parent))
+
+from tests.golden.cases import GOLDEN, run
+
+if __name__ == "__main__":
+    for case in GOLDEN:
+        done = run(case.arguments)
+        case.file.write_bytes(done.stdout)
+        if done.returncode != case.exit_code:
+            print(f"{case.name}: exit code {done.returncode}, not {case.exit_code}")
