@@ -3,6 +3,8 @@
 Every pair is timed in turn, A B A B, so that a machine whose speed drifts does not favour either.
 """
 
+import contextlib
+import io
 import os
 import statistics
 import subprocess
@@ -10,6 +12,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from importlib import import_module
 from importlib.metadata import PackageNotFoundError, distribution
 from importlib.util import find_spec
 from pathlib import Path
@@ -107,8 +110,8 @@ def forward_kinematics() -> None:
         positions = {joint.name: 0.1 for joint in robot.joints}
 
         def solve() -> None:
-            configuration = Configuration(robot, positions)  # noqa: B023  called at once
-            for name in names:  # noqa: B023
+            configuration = Configuration(robot, positions)
+            for name in names:
                 configuration.pose(name)
 
         best = min(once(solve) for _ in range(max(3, 3_000 // count)))
@@ -117,27 +120,23 @@ def forward_kinematics() -> None:
 
 def chain(count: int) -> bytes:
     """The URDF of a chain of so many links."""
-    lines = ['<robot name="chain">', '<link name="l0"/>']
-    for index in range(1, count):
-        lines.append(
-            f'<link name="l{index}"/><joint name="j{index}" type="continuous"><parent link="l{index - 1}"/>'
-            f'<child link="l{index}"/><origin xyz="0.1 0 0.01" rpy="0.1 0.2 0.3"/><axis xyz="0 1 0"/></joint>'
-        )
-    return "\n".join([*lines, "</robot>"]).encode()
+    lines = (
+        f'<link name="l{index}"/><joint name="j{index}" type="continuous"><parent link="l{index - 1}"/>'
+        f'<child link="l{index}"/><origin xyz="0.1 0 0.01" rpy="0.1 0.2 0.3"/><axis xyz="0 1 0"/></joint>'
+        for index in range(1, count)
+    )
+    return "\n".join(['<robot name="chain">', '<link name="l0"/>', *lines, "</robot>"]).encode()
 
 
 def other_parsers(data: bytes) -> list[tuple[str, Callable[[], object]]]:
     """urdf_parser_py in the same process, where it is installed."""
     if find_spec("urdf_parser_py") is None:
         return []
-    import contextlib
-    import io
-
-    from urdf_parser_py.urdf import URDF as Parser
+    parser = import_module("urdf_parser_py.urdf").URDF
 
     def parse() -> None:
         with contextlib.redirect_stderr(io.StringIO()):
-            Parser.from_xml_string(data)
+            parser.from_xml_string(data)
 
     return [("urdf_parser_py, parse only", parse)]
 

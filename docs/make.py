@@ -42,7 +42,9 @@ def problems() -> str:
         "| code | | problem |",
         "|---|---|---|",
     ]
-    lines += [f"| [{kind.code}](#{kind.code.lower()}) | {kind.severity} | {escaped(kind.title)} |" for kind in CATALOGUE]
+    lines += [
+        f"| [{kind.code}](#{kind.code.lower()}) | {kind.severity} | {escaped(kind.title)} |" for kind in CATALOGUE
+    ]
     for kind in CATALOGUE:
         lines += ["", f"## {kind.code}", "", f"**{escaped(kind.title)}** ({kind.severity}). {EFFECTS[kind.effect]}", ""]
         lines += [escaped(kind.explanation)]
@@ -75,7 +77,9 @@ def picture() -> str:
     """A real report as a terminal shows it."""
     rubric = load_rubric("lab6")
     report = grade(rubric, open_submission(str(SHOWN), wanted=rubric.urdf))
-    console = Console(record=True, width=80, file=StringIO(), force_terminal=True, color_system="truecolor", highlight=False)
+    console = Console(
+        record=True, width=80, file=StringIO(), force_terminal=True, color_system="truecolor", highlight=False
+    )
     render_terminal(report, console)
     drawing = console.export_svg(title="grader grade my_robot", unique_id="grader-report")
     return re.sub(r"\s*@font-face \{.*?\}", "", drawing, flags=re.DOTALL)  # nothing is fetched to look at it

@@ -27,7 +27,9 @@ def held_by(robot: Configuration, *, link: str, parent: str, joint_type: str) ->
     if not any(joint.type in MOVING_TYPES for joint in moving):
         wrong = moving[0]
         guess = did_you_mean(wrong.type, JOINT_TYPES)
-        message = f"joint {wrong.name!r}, which holds {link!r}, has the type {wrong.type!r}, which does not exist{guess}"
+        message = (
+            f"joint {wrong.name!r}, which holds {link!r}, has the type {wrong.type!r}, which does not exist{guess}"
+        )
         if not wanted:
             return failed(message, place(wrong.mark, "type"))
         raise MissingElement("moving joint", link, message=message, location=place(wrong.mark, "type"))
@@ -60,7 +62,9 @@ def root_of_tree(robot: Configuration, *, link: str, holds: str) -> Outcome:
     chain = robot.chain(holds, above=link)
     if link in robot.holding:
         held = robot.holding[link]
-        return failed(f"{link!r} is not the root: joint {held.name!r} makes it a child of {held.parent!r}", place(held.mark))
+        return failed(
+            f"{link!r} is not the root: joint {held.name!r} makes it a child of {held.parent!r}", place(held.mark)
+        )
     if chain is None:
         return _not_below(robot, holds, link)
     loose = [joint for joint in chain if joint.type != "fixed"]

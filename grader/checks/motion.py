@@ -77,12 +77,16 @@ def turns_about_itself(robot: Configuration, *, link: str, base: str, tolerance:
     away = hypot(*cross(turning, T_joint_wheel.translation))
     at = place(joint.axis_mark, "xyz") or place(joint.mark)
     if tilt > angle + SLACK:
-        message = f"{link!r} wobbles: the axis of joint {joint.name!r} is {quantity(tilt, 'deg')} off the cylinder's axis"
+        message = (
+            f"{link!r} wobbles: the axis of joint {joint.name!r} is {quantity(tilt, 'deg')} off the cylinder's axis"
+        )
         return judged(False, message, actual=tilt, expected=0.0, tolerance=angle, unit="deg", at=at)
     fine = away <= tolerance + SLACK
     message = f"{link!r} turns about its own axis"
     if not fine:
-        message = f"{link!r} turns off its centre: joint {joint.name!r} turns it about a line {size(away, 'm')} beside it"
+        message = (
+            f"{link!r} turns off its centre: joint {joint.name!r} turns it about a line {size(away, 'm')} beside it"
+        )
     at = place(visual.origin.mark, "xyz") or at
     return judged(fine, message, actual=away, expected=0.0, tolerance=tolerance, unit="m", at=at)
 

@@ -64,9 +64,7 @@ def centre_at(
     )
 
 
-def bottom_at_height(
-    robot: Configuration, *, link: str, relative_to: str, height: float, tolerance: float
-) -> Outcome:
+def bottom_at_height(robot: Configuration, *, link: str, relative_to: str, height: float, tolerance: float) -> Outcome:
     """The lowest point of what a link shows is at a height (z) in another link's frame, in metres."""
     lowest, _ = span(robot, link, relative_to, _UP)
     visual = body(robot, link)

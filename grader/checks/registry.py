@@ -80,7 +80,10 @@ def describe(function: Callable[..., Outcome]) -> Check:
     subject, *rest = signature.parameters.values()
     parameters = {
         each.name: Parameter(
-            each.name, hints[each.name], each.default is each.empty, None if each.default is each.empty else each.default
+            each.name,
+            hints[each.name],
+            each.default is each.empty,
+            None if each.default is each.empty else each.default,
         )
         for each in rest
     }

@@ -1,7 +1,7 @@
 """What a link shows, for the checks that measure it."""
 
-from grader.errors import MissingElement
 from grader.checks.outcome import place
+from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration, behind
 from grader.robot.model import Geometry, Mesh, Visual
 from grader.robot.shapes import extent, is_empty, volume

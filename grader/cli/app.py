@@ -56,7 +56,7 @@ def run(arguments: Sequence[str]) -> int:
     except KeyboardInterrupt:
         complain("interrupted")
         return FAULT_OF_USE
-    except Exception as error:  # no traceback ever reaches a user
+    except Exception as error:  # noqa: BLE001  no traceback ever reaches a user
         return _other(error)
     return result if isinstance(result, int) else 0
 

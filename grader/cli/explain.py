@@ -9,7 +9,9 @@ from grader.cli.output import emit
 
 
 def explain(
-    name: Annotated[str, typer.Argument(metavar="CODE|CHECK|CRITERION", help="Such as URDF051, frame_at or lidar-frame.")],
+    name: Annotated[
+        str, typer.Argument(metavar="CODE|CHECK|CRITERION", help="Such as URDF051, frame_at or lidar-frame.")
+    ],
     rubric: Annotated[str, typer.Option(metavar="ID|FILE", help="The rubric of the criterion.")] = DEFAULT_RUBRIC,
 ) -> int:
     """Say more about a problem's code, a check, or a criterion of a rubric."""

@@ -26,12 +26,15 @@ class Format(StrEnum):
 
 
 def grade(
-    path: Annotated[str, typer.Argument(metavar="PATH", help="A .urdf file, a folder with one in it, or - for standard input.")],
+    path: Annotated[
+        str, typer.Argument(metavar="PATH", help="A .urdf file, a folder with one in it, or - for standard input.")
+    ],
     rubric: Annotated[str, typer.Option(metavar="ID|FILE", help="The rubric: an id or a .toml file.")] = DEFAULT_RUBRIC,
     part: Annotated[list[str] | None, typer.Option(metavar="ID", help="Grade only this part; repeatable.")] = None,
     output_format: Annotated[Format, typer.Option("--format", help="The format on standard output.")] = Format.TERMINAL,
     save_as: Annotated[
-        list[str] | None, typer.Option("--save", metavar="FORMAT=FILE", help="Also write a report to a file; repeatable.")
+        list[str] | None,
+        typer.Option("--save", metavar="FORMAT=FILE", help="Also write a report to a file; repeatable."),
     ] = None,
     fail_under: Annotated[
         str | None, typer.Option(metavar="N|N%", help="Exit 0 from this score on, in points or percent.")

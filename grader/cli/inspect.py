@@ -25,7 +25,9 @@ class InspectFormat(StrEnum):
 
 
 def inspect(
-    path: Annotated[str, typer.Argument(metavar="PATH", help="A .urdf file, a folder with one in it, or - for standard input.")],
+    path: Annotated[
+        str, typer.Argument(metavar="PATH", help="A .urdf file, a folder with one in it, or - for standard input.")
+    ],
     joint: Annotated[
         list[str] | None,
         typer.Option(metavar="NAME=VALUE", help="Put a joint at this position, in radians or metres; repeatable."),

@@ -4,6 +4,7 @@ import io
 import os
 import sys
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -35,10 +36,8 @@ def emit(text: str) -> None:
 def complain(message: str) -> None:
     """Write one line to standard error, if there is one."""
     if sys.stderr is not None:
-        try:
+        with suppress(OSError):
             print(f"grader: {message}", file=sys.stderr, flush=True)
-        except OSError:
-            pass
 
 
 def draw(render: Callable[["Console"], None], *, to_file: bool = False) -> str:
@@ -71,10 +70,8 @@ def save(path: Path, text: str) -> None:
         temporary.replace(path)
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else str(error)
-        try:
+        with suppress(OSError, ValueError):
             temporary.unlink(missing_ok=True)
-        except (OSError, ValueError):
-            pass
         raise InputError(f"cannot write {path}: {reason}") from None
 
 
@@ -95,10 +92,8 @@ def _width(is_terminal: bool) -> int:
     if columns.isdigit() and int(columns) > 0:
         return max(40, min(int(columns), 500))
     if is_terminal:
-        try:
+        with suppress(OSError):
             return max(40, os.get_terminal_size(sys.stdout.fileno()).columns)
-        except OSError:
-            pass
     return _DEFAULT_WIDTH
 
 

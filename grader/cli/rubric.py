@@ -22,7 +22,9 @@ def list_rubrics() -> int:
 
 
 @rubric.command("show")
-def show_rubric(name: Annotated[str, typer.Argument(metavar="ID|FILE", help="The rubric: an id or a .toml file.")]) -> int:
+def show_rubric(
+    name: Annotated[str, typer.Argument(metavar="ID|FILE", help="The rubric: an id or a .toml file.")],
+) -> int:
     """Show a rubric: its parts and criteria with their points."""
     from grader.grading.rubric import load_rubric
     from grader.report.rubrics import rubric_text
@@ -41,7 +43,9 @@ def list_checks() -> int:
 
 
 @rubric.command("check")
-def check_rubric(file: Annotated[str, typer.Argument(metavar="FILE", help="A .toml file, or the id of a rubric.")]) -> int:
+def check_rubric(
+    file: Annotated[str, typer.Argument(metavar="FILE", help="A .toml file, or the id of a rubric.")],
+) -> int:
     """Check a rubric: exits 2 and names every mistake in it with its line."""
     from grader.grading.rubric import load_rubric
     from grader.report.points import points_words

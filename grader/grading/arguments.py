@@ -25,7 +25,9 @@ def bind(check: Check, given: Mapping[str, Any]) -> tuple[dict[str, Any], list[F
         try:
             arguments[name] = convert(value, parameter.type)
         except TypeError:
-            faults.append(((name,), f"{name} of {check.name} must be {type_words(parameter.type)}, not {_shown(value)}"))
+            faults.append(
+                ((name,), f"{name} of {check.name} must be {type_words(parameter.type)}, not {_shown(value)}")
+            )
     for name, parameter in check.parameters.items():
         if parameter.required and name not in given:
             faults.append(((), f"the check {check.name} needs {name}: {type_words(parameter.type)}"))

@@ -164,7 +164,9 @@ class _Loader:
             path,
         )
 
-    def _criterion(self, index: int, row: dict[str, Any], parts: list[str], rows: list[dict[str, Any]]) -> Criterion | None:
+    def _criterion(
+        self, index: int, row: dict[str, Any], parts: list[str], rows: list[dict[str, Any]]
+    ) -> Criterion | None:
         where: KeyPath = ("criterion", index)
         self._keys(where, row, _CRITERION, "criterion")
         part = row.get("part")
@@ -238,7 +240,7 @@ class _Loader:
     def _totals(self, parts: list[dict[str, Any]], rows: list[dict[str, Any]]) -> None:
         """Compare declared totals with the sums, where all the points that they are made of can be read."""
         points = [(row.get("part"), row.get("points")) for row in rows]
-        if not all(_has_type(value, _NUMBER) and Decimal(value).is_finite() for _, value in points):
+        if not all(_has_type(value, _NUMBER) and Decimal(value or 0).is_finite() for _, value in points):
             return
         declared: list[tuple[KeyPath, Any, str, list[Any]]] = [
             (("points",), self.table.get("points"), "the rubric", [value for _, value in points])

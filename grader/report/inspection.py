@@ -57,9 +57,7 @@ def main_root(robot: Configuration) -> str | None:
 
 def inspection_json(inspection: Inspection) -> str:
     """The inspection as JSON, schema grader/inspect/v1. A pose that is undefined is null."""
-    poses = {
-        name: rounded_matrix(pose) if isinstance(pose, Transform) else None for name, pose in inspection.poses()
-    }
+    poses = {name: rounded_matrix(pose) if isinstance(pose, Transform) else None for name, pose in inspection.poses()}
     return to_json(
         {
             "schema": "grader/inspect/v1",
@@ -98,7 +96,11 @@ def inspection_terminal(inspection: Inspection, console: Console) -> None:
     console.print(Text(f"Poses in {frame!r} (x y z in m, roll pitch yaw in rad)", style="bold"))
     for link, pose in inspection.poses():
         text = _pose_words(pose) if isinstance(pose, Transform) else printable(pose)
-        wrapped(console, Text.assemble((f"{printable(link)}  ", ""), (text, "cyan" if isinstance(pose, Transform) else "red")), 2)
+        wrapped(
+            console,
+            Text.assemble((f"{printable(link)}  ", ""), (text, "cyan" if isinstance(pose, Transform) else "red")),
+            2,
+        )
 
 
 def _show_tree(robot: Configuration, console: Console) -> None:

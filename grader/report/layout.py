@@ -38,7 +38,9 @@ def show_excerpt(console: Console, source: Source, where: Location, indent: int,
     gutter = " " * len(number)
     mark = "\u2500" if _unicode(console) else "-"
     bar = "\u2502" if _unicode(console) else "|"
-    console.print(Text(f"{' ' * indent}{number} {bar} ", style="dim") + Text(shown), overflow="ignore", no_wrap=True, crop=False)
+    console.print(
+        Text(f"{' ' * indent}{number} {bar} ", style="dim") + Text(shown), overflow="ignore", no_wrap=True, crop=False
+    )
     under = mark * max(1, min(len(meant), room - len(before)))
     console.print(
         Text(f"{' ' * indent}{gutter} {bar} ", style="dim") + Text(" " * len(before) + under, style=style),

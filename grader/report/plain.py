@@ -8,7 +8,6 @@ from typing import Any
 from grader.robot.catalogue import Problem
 from grader.robot.source import Location
 
-
 _ENCODER = json.JSONEncoder(ensure_ascii=False, allow_nan=False)
 
 

@@ -13,7 +13,11 @@ from grader.robot.catalogue import CATALOGUE, Kind
 from grader.robot.names import did_you_mean
 
 _WIDTH = 80
-_EFFECTS = {"rejects": "ROS 2 rejects the file.", "drops": "ROS 2 drops content of the file.", "loads": "ROS 2 loads the file."}
+_EFFECTS = {
+    "rejects": "ROS 2 rejects the file.",
+    "drops": "ROS 2 drops content of the file.",
+    "loads": "ROS 2 loads the file.",
+}
 
 
 def rubric_text(rubric: Rubric) -> str:

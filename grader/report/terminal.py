@@ -35,10 +35,11 @@ def render_terminal(report: Report, console: Console) -> None:
     shown: set[str] = set()
     for about, results in groupby(report.results, key=lambda result: result.criterion.about or result.criterion.part):
         _show_group(about, tuple(results), report.submission.urdf, console, shown)
-    problems = report.submission.urdf.problems
+    told = " ".join(result.outcome.message for result in report.results if result.outcome.status == "failed")
+    problems = tuple(each for each in report.submission.urdf.problems if each.message not in told)
     if problems:
         console.print()
-        console.print(Text("Problems of the file", style="bold"))
+        console.print(Text("What else ROS 2 says of the file", style="bold"))
         show_problems(console, problems, report.submission.urdf.source)
     if report.counts("failed"):
         console.print()
@@ -76,6 +77,11 @@ def _show_result(result: Result, urdf: Reading, console: Console, shown: set[str
     title = Text(printable(criterion.title))
     if outcome.status == "passed":
         wrapped(console, title, _INDENT, head.append(" "))
+        return
+    if outcome.status == "skipped":
+        wrapped(
+            console, title + Text(f"  skipped, because {result.because} failed", style="dim"), _INDENT, head.append(" ")
+        )
         return
     wrapped(console, title + Text(f"  {criterion.id}", style="dim"), _INDENT, head.append(" "))
     wrapped(console, Text(_sentence(outcome.message), style=style if outcome.status == "errored" else ""), _INDENT)

@@ -132,5 +132,3 @@ def _check_numbers(element: Element, attributes: tuple[str, ...], kind: Kind, no
     for each in attributes:
         part.number(element, each, 0.0)
     return part
-
-

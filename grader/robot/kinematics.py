@@ -51,7 +51,7 @@ class Configuration:
         for name, position in self.positions.items():
             _check_position(robot.joint(name), position)
         self._placed: dict[str, _Placed] = {}
-        self._inverses: dict[str, Transform] = {}
+        self._relative: dict[tuple[str, str | None], Transform] = {}
 
     def link(self, name: str) -> Link:
         """The link of this name; raises MissingElement."""
@@ -76,6 +76,12 @@ class Configuration:
         Raises MissingElement where there is no such link, no chain of joints between the two, or no defined pose
         (an axis of length zero, an origin that cannot be read).
         """
+        known = self._relative.get((link, relative_to))
+        if known is None:
+            known = self._relative[link, relative_to] = self._solve_relative(link, relative_to)
+        return known
+
+    def _solve_relative(self, link: str, relative_to: str | None) -> Transform:
         ours = self._place(link)
         theirs = self._place(relative_to) if relative_to is not None else self._place(ours.root)
         if relative_to == link:
@@ -86,13 +92,12 @@ class Configuration:
             raise MissingElement("connection", roots, message=message, location=_location(self.link(link)))
         if ours.island != theirs.island:
             way = self.between(relative_to or ours.root, link)
-            raise _undefined(next((each for each in way if _past(IDENTITY, each, self.position(each)) is None), way[-1]))
+            raise _undefined(
+                next((each for each in way if _past(IDENTITY, each, self.position(each)) is None), way[-1])
+            )
         if relative_to is None or relative_to == ours.island:
             return ours.pose
-        inverse = self._inverses.get(relative_to)
-        if inverse is None:
-            inverse = self._inverses[relative_to] = theirs.pose.inverse()
-        return inverse @ ours.pose
+        return theirs.pose.inverse() @ ours.pose
 
     def axis(self, joint: str) -> Vector:
         """The unit axis of a joint in its child link's frame; raises MissingElement where it has no direction."""
@@ -117,6 +122,9 @@ class Configuration:
 
     def between(self, one: str, other: str) -> tuple[Joint, ...]:
         """The joints on the way from one link to another; raises MissingElement where there is no way."""
+        below = self.chain(other, above=one)
+        if below is not None:
+            return below
         up, down = self.chain(one) or (), self.chain(other) or ()
         if self.root_of(one) != self.root_of(other):
             self.pose(other, relative_to=one)
@@ -127,12 +135,7 @@ class Configuration:
 
     def moved(self, joint: str, position: Position) -> "Configuration":
         """The same robot with one joint elsewhere."""
-        other = Configuration.__new__(Configuration)
-        _check_position(self.joint(joint), position)
-        other.robot, other.holding = self.robot, self.holding
-        other.positions = {**self.positions, joint: position}
-        other._placed, other._inverses = {}, {}
-        return other
+        return Configuration(self.robot, {**self.positions, joint: position})
 
     def position(self, joint: Joint) -> Position:
         """Where a joint is: its own position, that of the joint that it mimics, or 0."""

@@ -12,7 +12,7 @@ from grader.robot.numbers import NumberError, number, vector
 from grader.robot.source import Mark, Source
 from grader.robot.transforms import Vector
 
-Element = etree._Element
+Element = etree._Element  # noqa: SLF001  lxml has no public name for it
 Default = TypeVar("Default")
 
 _FORMAT_DIRECTIVE = re.compile(r"%[-+ #0-9.$*'hlLqjzt]*n")

@@ -118,7 +118,7 @@ def _read_robot(root: Element, notes: Notes) -> Robot:
     check_tree(robot, link_elements, {name: element for name, (_, element) in joints.items()}, notes)
     check_spelling(root, notes)
     _check_root_inertia(robot, link_elements, notes)
-    _check_text(root, notes)
+    _check_text(notes)
     return robot
 
 
@@ -149,12 +149,16 @@ def _check_root_inertia(robot: Robot, links: dict[str, Element], notes: Notes) -
     for link in robot.links:
         if link.inertial is not None and link.name not in children:
             message = f"the root link {link.name!r} has an inertia: robot_state_publisher warns, and KDL ignores it"
-            notes.add(catalogue.ROOT_INERTIA, message, links[link.name].find("inertial"))
+            element = links[link.name]
+            inertial = element.find("inertial")
+            notes.add(catalogue.ROOT_INERTIA, message, element if inertial is None else inertial)
 
 
-def _check_text(root: Element, notes: Notes) -> None:
+def _check_text(notes: Notes) -> None:
     text = notes.source.text
-    xacro = next(filter(lambda found: found[1], _XACRO.finditer(text)), None) if "$" in text or "xacro:" in text else None
+    xacro = (
+        next(filter(lambda found: found[1], _XACRO.finditer(text)), None) if "$" in text or "xacro:" in text else None
+    )
     if xacro:
         message = "this is xacro, which ROS 2 does not evaluate in a .urdf: expand it first (ros2 run xacro xacro FILE)"
         notes.problems.append(Problem(catalogue.RAW_XACRO, message, notes.source.at(xacro.start())))
@@ -163,7 +167,9 @@ def _check_text(root: Element, notes: Notes) -> None:
         closing = text.find("-->", opening + 4)
         comment = text[opening : closing if closing >= 0 else len(text)]
         if ": " in comment or "\t" in comment:
-            message = "a comment with a colon and a space, or a tab, can stop a launch file that passes the URDF as YAML"
+            message = (
+                "a comment with a colon and a space, or a tab, can stop a launch file that passes the URDF as YAML"
+            )
             notes.problems.append(Problem(catalogue.COMMENT_TRAP, message, notes.source.at(opening)))
             break
         opening = text.find("<!--", closing) if closing >= 0 else -1

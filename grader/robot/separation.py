@@ -222,22 +222,23 @@ def _least_overlap(a: Shape, b: Shape, T_a_b: Transform) -> Vector:
         return _overlap(a, b, T_a_b, direction)
 
     best = min(_likely_directions(a, b, T_a_b), key=overlap)
-    if overlap(best) > _ROUNDING and not isinstance(a, Sphere) and not isinstance(b, Sphere):
-        if _rims_matter(a, b, T_a_b):
-            best = min(best, _least_overlap_at_rims(a, b, T_a_b), key=overlap)
+    leaning = overlap(best) > _ROUNDING and _rims_matter(a, b, T_a_b)
+    if leaning and not isinstance(a, Sphere) and not isinstance(b, Sphere):
+        best = min(best, _least_overlap_at_rims(a, b, T_a_b), key=overlap)
     x, y, z = best
     return best if dot(best, T_a_b.translation) >= 0.0 else (-x, -y, -z)
 
 
-def _rims_matter(a: Box | Cylinder, b: Box | Cylinder, T_a_b: Transform) -> bool:
-    """Whether a cylinder leans against all edges of the other shape, by more than what `_SAGITTA` allows.
+def _rims_matter(a: Shape, b: Shape, T_a_b: Transform) -> bool:
+    """Whether there is a cylinder that leans against all edges of the other shape by more than `_SAGITTA` allows.
 
-    One that is parallel to an edge, as most are, makes the overlap a flat problem, which has no rims.
+    A cylinder parallel to an edge, as most are, makes the overlap a flat problem, which has no rims.
     """
     if isinstance(a, Box) and isinstance(b, Box):
         return False
     edges = product(_straight_edges(a), map(T_a_b.rotate, _straight_edges(b)))
-    return min(hypot(*cross(p, q)) for p, q in edges) * (_radius(a) + _radius(b)) > _SAGITTA / 4.0
+    tilt = min((hypot(*cross(p, q)) for p, q in edges), default=0.0)
+    return tilt * (_radius(a) + _radius(b)) > _SAGITTA / 4.0
 
 
 def _least_overlap_at_rims(a: Box | Cylinder, b: Box | Cylinder, T_a_b: Transform) -> Vector:

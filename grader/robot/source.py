@@ -64,14 +64,14 @@ class Source:
 
 
 class Mark(NamedTuple):
-    """An element's place in a source, worked out on demand."""
+    """An element's place in a source, worked out on demand; `tag` counts its start tag in document order, from 0."""
 
     source: Source
-    index: int
+    tag: int
 
     def location(self, attribute: str | None = None) -> Location:
         """The place of the tag, or of one of its attributes."""
-        return self.source.tag(self.index, attribute)
+        return self.source.tag(self.tag, attribute)
 
 
 class Spot(NamedTuple):

@@ -44,9 +44,22 @@ _CHILDREN: dict[str, tuple[str, ...]] = {
 }
 # Correct in their place, though urdfdom does not read them: no hint may call them a misspelling.
 _EXTENSIONS = frozenset(
-    {"gazebo", "transmission", "ros2_control", "sensor", "plugin", "drake", "mujoco", "capsule", "verbose", "hardwareInterface"}
+    {
+        "gazebo",
+        "transmission",
+        "ros2_control",
+        "sensor",
+        "plugin",
+        "drake",
+        "mujoco",
+        "capsule",
+        "verbose",
+        "hardwareInterface",
+    }
 )
-_SINGLE = frozenset({"origin", "geometry", "parent", "child", "axis", "limit", "inertial", "mass", "inertia", "mimic", "dynamics"})
+_SINGLE = frozenset(
+    {"origin", "geometry", "parent", "child", "axis", "limit", "inertial", "mass", "inertia", "mimic", "dynamics"}
+)
 _SWAPPED = {("cylinder", "height"): "length", ("color", "rgb"): "rgba", ("origin", "pos"): "xyz"}
 _KNOWN_NAMES = frozenset(_ATTRIBUTES)
 _KNOWN_ATTRIBUTES = {tag: frozenset(names) for tag, names in _ATTRIBUTES.items()}
@@ -77,10 +90,12 @@ def check_spelling(root: Element, notes: Notes) -> None:
 
 def _check_attributes(element: Element, notes: Notes) -> None:
     known = _ATTRIBUTES[element.tag]
-    for name in element.keys():
+    for name in map(str, element.keys()):
         if name in known or name.startswith("{"):
             continue
-        meant = _SWAPPED.get((element.tag, name)) or closest(name, [each for each in known if element.get(each) is None])
+        meant = _SWAPPED.get((element.tag, name)) or closest(
+            name, [each for each in known if element.get(each) is None]
+        )
         if meant:
             message = f"<{element.tag}> has no attribute {name!r}, and ROS 2 ignores it; did you mean {meant!r}?"
             notes.add(catalogue.MISSPELT, message, element, name)

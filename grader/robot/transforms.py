@@ -27,7 +27,7 @@ class Transform:
     def __matmul__(self, other: "Transform") -> "Transform":
         """T_a_c = T_a_b @ T_b_c."""
         a, b, c, d, e, f, g, h, i = self.rotation
-        j, k, l, m, n, o, p, q, r = other.rotation
+        j, k, l, m, n, o, p, q, r = other.rotation  # noqa: E741  rows, letter by letter
         x, y, z = other.translation
         u, v, w = self.translation
         return Transform(

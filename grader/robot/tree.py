@@ -57,17 +57,21 @@ def _check_names(robot: Robot, links: dict[str, Element], joints: dict[str, Elem
     for joint in robot.joints:
         for role, name in (("parent", joint.parent), ("child", joint.child)):
             if name and not robot.has_link(name):
-                element = joints[joint.name].find(role)
                 guess = did_you_mean(name, links) or f"; the links are: {', '.join(map(repr, list(links)[:12]))}"
                 message = f"the {role} link {name!r} of joint {joint.name!r} does not exist: {_REJECTED}{guess}"
-                notes.add(catalogue.UNKNOWN_LINK, message, joints[joint.name] if element is None else element, "link")
+                notes.add(catalogue.UNKNOWN_LINK, message, _part(joints[joint.name], role), "link")
         if joint.mimic is not None and joint.mimic.joint not in joints:
             guess = did_you_mean(joint.mimic.joint, joints)
             message = f"joint {joint.name!r} mimics {joint.mimic.joint!r}, which does not exist{guess}"
-            notes.add(catalogue.MIMIC_TARGET, message, joints[joint.name].find("mimic"), "joint")
+            notes.add(catalogue.MIMIC_TARGET, message, _part(joints[joint.name], "mimic"), "joint")
     for loop in _mimic_loops(robot):
         message = f"joint {loop[0]!r} mimics itself: {' -> '.join((*loop, loop[0]))}"
-        notes.add(catalogue.MIMIC_TARGET, message, joints[loop[0]].find("mimic"), "joint")
+        notes.add(catalogue.MIMIC_TARGET, message, _part(joints[loop[0]], "mimic"), "joint")
+
+
+def _part(joint: Element, tag: str) -> Element:
+    part = joint.find(tag)
+    return joint if part is None else part
 
 
 def _mimic_loops(robot: Robot) -> list[list[str]]:
@@ -94,7 +98,9 @@ def _check_two_parents(edges: Edges, held: dict[str, Joint], joints: dict[str, E
     for child, rivals in claims.items():
         if len(rivals) > 1:
             names = " and ".join(repr(joint.name) for joint in rivals)
-            message = f"link {child!r} is the child of {names}; in ROS 2 {held[child].name!r} holds it (last in name order)"
+            message = (
+                f"link {child!r} is the child of {names}; in ROS 2 {held[child].name!r} holds it (last in name order)"
+            )
             notes.add(catalogue.TWO_PARENTS, message, joints[rivals[1].name])
 
 
@@ -191,7 +197,9 @@ def _check_roots(robot: Robot, roots: list[str], edges: Edges, links: dict[str, 
     others = [name for name in roots if name != main]
     named = ", ".join(map(repr, others[:50])) + (f" and {len(others) - 50} more" if len(others) > 50 else "")
     verb = "is" if len(others) == 1 else "are"
-    message = f"{named} {verb} not joined to the robot: no joint has {'it' if len(others) == 1 else 'them'} as its child"
+    message = (
+        f"{named} {verb} not joined to the robot: no joint has {'it' if len(others) == 1 else 'them'} as its child"
+    )
     all_roots = f"roots are {', '.join(map(repr, [main, *others][:50]))}"
     notes.add(catalogue.TWO_ROOTS, f"{message} ({all_roots}); {_REJECTED}", links[others[0]], "name")
 
@@ -200,7 +208,7 @@ def _check_paths(roots: list[str], edges: Edges, links: dict[str, Element], note
     into = dict.fromkeys(links, 0)
     for joint in (each for group in edges.values() for each in group):
         into[joint.child] += 1
-    paths = {name: 1 for name in roots}
+    paths = dict.fromkeys(roots, 1)
     waiting = list(roots)
     total = 0
     while waiting:

@@ -29,7 +29,10 @@ def read_standard_input(limit: int = URDF_LIMIT) -> bytes:
     """All of standard input, at most `limit` bytes; raises InputError."""
     if sys.stdin is None:
         raise InputError("standard input is closed")
-    return _capped(sys.stdin.buffer.read(limit + 1), limit, "standard input")
+    try:
+        return _capped(sys.stdin.buffer.read(limit + 1), limit, "standard input")
+    except OSError as error:
+        raise InputError(f"cannot read standard input: {error.strerror or error}") from None
 
 
 def printable_path(path: Path | str) -> str:

@@ -7,7 +7,9 @@ from grader.errors import InputError
 from grader.submission.files import printable_path
 
 # Products of a build, tools' folders and other people's code: what a student wrote is not in them.
-_IGNORED = frozenset({"build", "install", "log", "node_modules", "site-packages", "venv", "env", "__pycache__", "__MACOSX"})
+_IGNORED = frozenset(
+    {"build", "install", "log", "node_modules", "site-packages", "venv", "env", "__pycache__", "__MACOSX"}
+)
 _MOST_FILES = 50_000
 
 
@@ -20,7 +22,9 @@ def find_urdf(folder: Path, wanted: str) -> tuple[Path, tuple[Path, ...]]:
     """
     found = _urdfs(folder)
     if not found:
-        raise InputError(f"{printable_path(folder)} holds no .urdf file (build, install, log and hidden folders are skipped)")
+        raise InputError(
+            f"{printable_path(folder)} holds no .urdf file (build, install, log and hidden folders are skipped)"
+        )
     parts = Path(wanted).parts
 
     def rank(path: Path) -> tuple[bool, bool, int, str]:
@@ -43,10 +47,12 @@ def _urdfs(folder: Path) -> list[Path]:
         folders[:] = sorted(name for name in folders if name not in _IGNORED and not name.startswith("."))
         seen += len(files) + len(folders)
         if seen > _MOST_FILES:
-            raise InputError(f"{printable_path(folder)} holds more than {_MOST_FILES} files: name the package or the URDF")
+            raise InputError(
+                f"{printable_path(folder)} holds more than {_MOST_FILES} files: name the package or the URDF"
+            )
         for name in files:
             if name.lower().endswith(".urdf") and not name.startswith("."):
-                path = os.path.join(where, name)
+                path = Path(where, name)
                 if os.path.realpath(path).startswith(top + os.sep):  # a link that leads out is not theirs to hand in
-                    found.append(Path(os.path.relpath(path, folder)))
+                    found.append(path.relative_to(folder))
     return found

@@ -50,4 +50,6 @@ def open_submission(path: str, *, wanted: str, limit: int = URDF_LIMIT) -> Submi
     name = printable_path(chosen.as_posix())
     data = read_capped(place / chosen, limit)
     identity = printable_path(place.resolve().name or "submission")
-    return read_submission(data, identity=identity, path=name, passed_over=tuple(printable_path(each.as_posix()) for each in others))
+    return read_submission(
+        data, identity=identity, path=name, passed_over=tuple(printable_path(each.as_posix()) for each in others)
+    )

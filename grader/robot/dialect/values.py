@@ -1,0 +1,83 @@
+"""Attribute values: decoded as TinyXML2 decodes them, and spelt so that XML can hold them."""
+
+import re
+
+_ENTITIES = {b"quot;": b'"', b"amp;": b"&", b"apos;": b"'", b"lt;": b"<", b"gt;": b">"}
+_CHARACTER = re.compile(rb"#(?:x(?:[^;]*x)?([0-9a-fA-F]*)|(?!x)(?:[^;]*#)?([0-9]*));")
+_AMPERSAND = ord("&")
+_FIRST_SURROGATE, _LAST_SURROGATE, _LAST_CODE_POINT, _FIVE_BYTES = 0xD800, 0xDFFF, 0x10FFFF, 0x200000
+_ESCAPES = str.maketrans(
+    {"&": "&amp;", "<": "&lt;", '"': "&quot;", "\t": "&#9;", "\n": "&#10;", "\r": "&#13;", "\v": "&#9;", "\f": "&#9;"}
+)
+
+# What XML 1.0 cannot hold, not even as a reference; undecodable bytes are surrogates here.
+ILLEGAL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
+
+
+def decode(raw: str) -> str:
+    """An attribute's value as TinyXML2's StrPair::GetStr gives it, up to the first NUL."""
+    if "\r" in raw or "\n" in raw:
+        raw = re.sub("\r\n|\n\r|\r", "\n", raw)
+    if "&" not in raw:
+        return raw
+    source = raw.encode("utf-8", "surrogateescape")
+    target = bytearray(source)  # TinyXML2 decodes in place: what it passes over without writing stays as it was
+    read = write = 0
+    while read < len(source):
+        if source[read] != _AMPERSAND:
+            target[write] = source[read]
+            read, write = read + 1, write + 1
+            continue
+        piece, width = _reference(source, read)
+        if piece is not None:
+            target[write : write + len(piece)] = piece
+        read, write = read + width, write + (1 if piece is None else len(piece))
+    return bytes(target[:write]).split(b"\0")[0].decode("utf-8", "surrogateescape")
+
+
+def _reference(source: bytes, at: int) -> tuple[bytes | None, int]:
+    """What an & stands for (None: it is passed over), and how many bytes it takes (`XMLUtil::GetCharacterRef`)."""
+    for name, value in _ENTITIES.items():
+        if source.startswith(name, at + 1):
+            return value, len(name) + 1
+    if not source.startswith(b"#", at + 1):
+        return None, 1
+    if len(source) == at + 2:
+        return b"", 1
+    found = _CHARACTER.match(source, at + 1)
+    if found is None:
+        return b"&", 1
+    code = _code_point(found[2] if found[1] is None else found[1], 10 if found[1] is None else 16)
+    return _encoded(code), len(found[0]) + 1
+
+
+def _code_point(digits: bytes, radix: int) -> int:
+    # TinyXML2 10 multiplies in 32 bits and adds in 64, so that very long numbers come out as others.
+    code, factor = 0, 1
+    for digit in reversed(digits):
+        code += factor * int(chr(digit), radix) % 2**32
+        factor = factor * radix % 2**32
+    return code
+
+
+def _encoded(code: int) -> bytes:
+    """UTF-8, past the last code point and over surrogates as well; nothing for what takes more than four bytes."""
+    if code < _FIRST_SURROGATE or _LAST_SURROGATE < code <= _LAST_CODE_POINT:
+        return chr(code).encode()
+    if code < _LAST_CODE_POINT:
+        return chr(code).encode("utf-8", "surrogatepass")
+    if code < _FIVE_BYTES:
+        return bytes((0xF0 | code >> 18, 0x80 | code >> 12 & 0x3F, 0x80 | code >> 6 & 0x3F, 0x80 | code & 0x3F))
+    return b""
+
+
+def escape(value: str) -> str:
+    """A value between double quotes in XML; what XML cannot hold is spelt out, so that names stay apart."""
+    return ILLEGAL.sub(_spell, value.translate(_ESCAPES))
+
+
+def _spell(match: re.Match[str]) -> str:
+    code = ord(match[0])
+    if 0xDC80 <= code <= 0xDCFF:
+        return f"\\x{code - 0xDC00:02x}"
+    return chr(0x2400 + code) if code < 0x20 else f"\\u{code:04x}"
