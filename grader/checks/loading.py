@@ -9,9 +9,9 @@ _UNLOADED = {"URDF083"}
 def urdf_loads(urdf: Reading) -> Outcome:
     """ROS 2 loads the URDF, and every link is in its one tree."""
     spoiling = [each for each in urdf.problems if each.kind.effect == "rejects" or each.code in _UNLOADED]
-    if not spoiling:
+    if not spoiling and urdf.verdict != "rejected":
         return passed("ROS 2 loads the file and every link is in its one tree")
-    first = spoiling[0]
-    more = len(spoiling) - 1
+    first = spoiling[0] if spoiling else urdf.problems[-1]
+    more = max(0, len(spoiling) - 1)
     others = f" (and {more} more problem{'s' if more > 1 else ''} that keep{'' if more > 1 else 's'} it from loading)"
     return Outcome("failed", f"{first.message}{others if more else ''}", location=first.location)

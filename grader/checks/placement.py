@@ -17,15 +17,17 @@ from grader.checks.outcome import (
     size,
     within,
 )
-from grader.checks.shown import body, pose_of, span
+from grader.checks.shown import body, pose_of, span, visuals
 from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration
-from grader.robot.model import Box, Mesh
+from grader.robot.model import Box, Geometry, Mesh
 from grader.robot.separation import penetration
 from grader.robot.shapes import UnknownShape, extent
 from grader.robot.source import Spot
 from grader.robot.transforms import Transform, Vector
 
+_AHEAD: Vector = (1.0, 0.0, 0.0)
+_LEFT: Vector = (0.0, 1.0, 0.0)
 _UP: Vector = (0.0, 0.0, 1.0)
 
 
@@ -101,9 +103,10 @@ def stands_on(robot: Configuration, *, link: str, on: str, tolerance: float) -> 
     """What a link shows stands on the top of what another shows: no gap, no overlap, within its outline."""
     support = body(robot, on)
     T_on_support = pose_of(robot, on, support, on)
-    bottom, _ = span(robot, link, on, _UP)
+    placed = [(visual.geometry, pose_of(robot, link, visual, on)) for visual in visuals(robot, link)]
+    bottom = min(extent(geometry, pose, _UP)[0] for geometry, pose in placed)
     _, top = extent(support.geometry, T_on_support, _UP)
-    beyond = _overhang(robot, link, on)
+    beyond = _overhang(placed, support.geometry, T_on_support)
     message = f"{link!r} stands on the top of {on!r}, at z = {point((top,))} m in {on!r}"
     fine = within(bottom, top, tolerance)
     if not fine:
@@ -178,19 +181,18 @@ def _each(
     return found, missing
 
 
-def _overhang(robot: Configuration, link: str, on: str) -> float:
-    """How far what a link shows reaches beyond the outline of what another shows, seen from above, in metres."""
-    support = body(robot, on)
-    T_on_support = pose_of(robot, on, support, on)
-    directions = [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
-    if isinstance(support.geometry, Box):
-        axes = [T_on_support.rotate(axis) for axis in ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), _UP)]
+def _overhang(placed: list[tuple[Geometry, Transform]], support: Geometry, T_on_support: Transform) -> float:
+    """How far shapes reach beyond the outline of the one below, seen from above, in metres."""
+    directions = [_AHEAD, _LEFT]
+    if isinstance(support, Box):  # its own edges: it may be turned about the vertical
+        axes = [T_on_support.rotate(axis) for axis in (_AHEAD, _LEFT, _UP)]
         directions = sorted(axes, key=lambda axis: abs(axis[2]))[:2]
     beyond = 0.0
     for direction in directions:
-        low, high = extent(support.geometry, T_on_support, direction)
-        our_low, our_high = span(robot, link, on, direction)
-        beyond = max(beyond, low - our_low, our_high - high)
+        low, high = extent(support, T_on_support, direction)
+        for geometry, pose in placed:
+            our_low, our_high = extent(geometry, pose, direction)
+            beyond = max(beyond, low - our_low, our_high - high)
     return beyond
 
 

@@ -381,6 +381,12 @@ COMMENT_TRAP = _notes(
     "and a comment with a colon and a space, or with a tab, stops the launch.",
 )
 
+UNLISTED = _notes(
+    "URDF099",
+    "More problems than are listed",
+    "Only the first thousand problems of a file are listed. Mend these first; many of the others may go with them.",
+)
+
 CATALOGUE: tuple[Kind, ...] = tuple(
     sorted((each for each in list(globals().values()) if isinstance(each, Kind)), key=lambda kind: kind.code)
 )

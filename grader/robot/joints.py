@@ -3,7 +3,7 @@
 from grader.robot import catalogue
 from grader.robot.catalogue import Kind
 from grader.robot.model import Joint, Limit, Mimic
-from grader.robot.names import did_you_mean
+from grader.robot.names import quoted
 from grader.robot.notes import Element, Notes, Part, children
 from grader.robot.transforms import Vector, unit
 
@@ -18,7 +18,7 @@ _X_AXIS = (1.0, 0.0, 0.0)
 def read_joint(element: Element, notes: Notes) -> Joint:
     """One joint with all that can be read of it; what cannot is noted and left None, or out."""
     name, kind = element.get("name"), element.get("type")
-    label = repr(name or "")
+    label = quoted(name or "")
     if name is None:
         notes.add(catalogue.JOINT_WITHOUT_NAME, f"this joint has no name; {_REJECTED}", element)
     _check_type(element, kind, label, notes)
@@ -49,10 +49,10 @@ def _check_type(element: Element, kind: str | None, label: str, notes: Notes) ->
     if kind is None:
         notes.add(catalogue.TYPE_MISSING, f"joint {label} has no type; {_REJECTED}", element)
     elif kind not in JOINT_TYPES:
-        guess = did_you_mean(kind.strip(), JOINT_TYPES)
+        guess = notes.did_you_mean(kind.strip(), JOINT_TYPES)
         if kind.strip().lower() in JOINT_TYPES:
             guess = f"; write {kind.strip().lower()!r}, in lower case and without spaces"
-        message = f"joint {label} has the type {kind!r}, which does not exist: {_REJECTED}{guess}"
+        message = f"joint {label} has the type {quoted(kind)}, which does not exist: {_REJECTED}{guess}"
         notes.add(catalogue.TYPE_UNKNOWN, message, element, "type")
 
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 from grader.errors import MissingElement
 from grader.robot.joints import MOVING_TYPES
 from grader.robot.model import Joint, Link, Origin, Robot
+from grader.robot.names import quoted
 from grader.robot.transforms import (
     IDENTITY,
     Transform,
@@ -43,11 +44,20 @@ class Configuration:
     solved tree by tree. Every link is solved once: linear in the number of links, without recursion.
     """
 
-    def __init__(self, robot: Robot, positions: Mapping[str, Position] | None = None) -> None:
-        """Raises MissingElement for a joint that is not there, ValueError for a position of the wrong shape."""
+    def __init__(
+        self,
+        robot: Robot,
+        positions: Mapping[str, Position] | None = None,
+        *,
+        holding: Mapping[str, Joint] | None = None,
+    ) -> None:
+        """`holding` is holding_joints(robot), if it is known already.
+
+        Raises MissingElement for a joint that is not there, ValueError for a position of the wrong shape.
+        """
         self.robot = robot
         self.positions = dict(positions or {})
-        self.holding = holding_joints(robot)
+        self.holding = holding_joints(robot) if holding is None else holding
         for name, position in self.positions.items():
             _check_position(robot.joint(name), position)
         self._placed: dict[str, _Placed] = {}
@@ -88,7 +98,7 @@ class Configuration:
             return IDENTITY
         if ours.root != theirs.root:
             roots = " and ".join(sorted((ours.root, theirs.root)))
-            message = f"no chain of joints leads from {relative_to!r} to {link!r}"
+            message = f"no chain of joints leads from {quoted(theirs.root if relative_to is None else relative_to)} to {quoted(link)}"
             raise MissingElement("connection", roots, message=message, location=_location(self.link(link)))
         if ours.island != theirs.island:
             way = self.between(relative_to or ours.root, link)
@@ -135,7 +145,7 @@ class Configuration:
 
     def moved(self, joint: str, position: Position) -> "Configuration":
         """The same robot with one joint elsewhere."""
-        return Configuration(self.robot, {**self.positions, joint: position})
+        return Configuration(self.robot, {**self.positions, joint: position}, holding=self.holding)
 
     def position(self, joint: Joint) -> Position:
         """Where a joint is: its own position, that of the joint that it mimics, or 0."""
@@ -178,7 +188,7 @@ class Configuration:
             name = holding[name].parent
             if len(way) > len(holding):
                 at = _location(self.link(link))
-                message = f"link {link!r} hangs on a loop of joints: it is in no tree"
+                message = f"link {quoted(link)} hangs on a loop of joints: it is in no tree"
                 raise MissingElement("connection", link, message=message, location=at)
         above = placed.get(name) or placed.setdefault(name, _Placed(name, name, IDENTITY))
         for joint in reversed(way):
@@ -257,9 +267,11 @@ def _check_position(joint: Joint, position: Position) -> None:
     wanted = DEGREES_OF_FREEDOM.get(joint.type, 0)
     given = 1 if isinstance(position, int | float) else len(position)
     if wanted == 0:
-        raise ValueError(f"joint {joint.name!r} is {joint.type or 'without type'}: it has no position")
+        raise ValueError(f"joint {quoted(joint.name)} is {joint.type or 'without type'}: it has no position")
     if given != wanted or (wanted > 1 and isinstance(position, int | float)):
-        raise ValueError(f"joint {joint.name!r} is {joint.type}: its position has {wanted} number(s), not {given}")
+        raise ValueError(
+            f"joint {quoted(joint.name)} is {joint.type}: its position has {wanted} number(s), not {given}"
+        )
 
 
 def _undefined(joint: Joint) -> MissingElement:
@@ -273,7 +285,7 @@ def _undefined(joint: Joint) -> MissingElement:
         at = joint.axis_mark.location("xyz") if joint.axis_mark else at
     else:
         reason = "its numbers are too large"
-    message = f"the pose behind joint {joint.name!r} is undefined: {reason}"
+    message = f"the pose behind joint {quoted(joint.name)} is undefined: {reason}"
     return MissingElement("pose behind joint", joint.name, message=message, location=at)
 
 

@@ -3,7 +3,6 @@
 from grader.robot import catalogue
 from grader.robot.materials import Materials
 from grader.robot.model import Box, Collision, Cylinder, Geometry, Inertial, Link, Mesh, Sphere, Visual
-from grader.robot.names import did_you_mean
 from grader.robot.notes import Element, Notes, Part, children
 
 _SHAPES = ("box", "cylinder", "sphere", "mesh")
@@ -105,7 +104,7 @@ def _read_geometry(owner: Element, element: Element | None, part: Part, notes: N
         case "mesh":
             geometry = _read_mesh(shape, part)
         case unknown:
-            message = f"<{unknown}> is not a shape that ROS 2 knows{did_you_mean(str(unknown), _SHAPES)}"
+            message = f"<{unknown}> is not a shape that ROS 2 knows{notes.did_you_mean(str(unknown), _SHAPES)}"
             part.fail(message, shape)
             return None
     _note_negative(geometry, shape, notes)

@@ -2,7 +2,7 @@
 
 from grader.robot import catalogue
 from grader.robot.model import Material
-from grader.robot.names import did_you_mean
+from grader.robot.names import quoted
 from grader.robot.notes import Element, Notes, shown
 from grader.robot.numbers import NumberError, rgba
 
@@ -14,6 +14,7 @@ class Materials:
 
     def __init__(self, notes: Notes) -> None:
         self._notes = notes
+        self._defined: dict[str, Element] | None = None  # all definitions of the file, once one is looked for in vain
         self.known: dict[str, Material] = {}
 
     def define(self, element: Element) -> None:
@@ -24,12 +25,12 @@ class Materials:
             notes.add(catalogue.UNNAMED_MATERIAL, "this material has no name; no link can use it", element)
         material, _ = self._read(element, name or "", "ROS 2 shows black")
         if name is not None and material is None:
-            message = f"material {name!r} has no readable colour; ROS 2 makes it black"
+            message = f"material {quoted(name)} has no readable colour; ROS 2 makes it black"
             if element.find("color[@rgba]") is None:
                 notes.add(catalogue.COLOURLESS_MATERIAL, message, element)
             notes.printed(name, element, "name")
         if (name or "") in self.known:
-            message = f"material {name or ''!r} is defined twice under <robot>; ROS 2 loads nothing"
+            message = f"material {quoted(name or '')} is defined twice under <robot>; ROS 2 loads nothing"
             notes.add(catalogue.DUPLICATE_MATERIAL, message, element, "name")
             return
         self.known[name or ""] = material or Material(name or "", mark=notes.mark(element))
@@ -39,7 +40,9 @@ class Materials:
         name = element.get("name") or ""
         if not len(element) and name in self.known and name:
             return self.known[name], name
-        fallback = "the definition above counts" if name in self.known else f"material {name!r} stays undefined here"
+        fallback = (
+            "the definition above counts" if name in self.known else f"material {quoted(name)} stays undefined here"
+        )
         own, complained = self._read(element, name, f"ROS 2 logs an error: {fallback}")
         found = self.known.get(name) if name else own
         if found is None and own is None:
@@ -48,7 +51,7 @@ class Materials:
         elif found is None and own is not None:
             found = self.known[name] = own
         elif own is not None and found is not None and (own.rgba, own.texture) != (found.rgba, found.texture):
-            message = f"material {name!r} is already defined otherwise; ROS 2 ignores this definition"
+            message = f"material {quoted(name)} is already defined otherwise; ROS 2 ignores this definition"
             self._notes.add(catalogue.REDEFINED_MATERIAL, message, element, "name")
         return found, name
 
@@ -78,12 +81,14 @@ class Materials:
 
     def _undefined(self, name: str, element: Element, link: str) -> None:
         notes = self._notes
-        defined = [each for each in notes.root.iter("material") if len(each) and each.get("name")]
-        later = next((each for each in defined if each.get("name") == name), None)
+        if self._defined is None:
+            every = [each for each in notes.root.iter("material") if len(each) and each.get("name")]
+            self._defined = {each.get("name") or "": each for each in reversed(every)}
+        later = self._defined.get(name)
         if later is not None:
             line = notes.mark(later).location().line
             hint = f" before its definition in line {line}; define it directly under <robot>"
         else:
-            hint = f", which is defined nowhere{did_you_mean(name, [str(each.get('name')) for each in defined])}"
-        message = f"link {link!r} uses material {name!r}{hint}; ROS 2 shows it without the colour"
+            hint = f", which is defined nowhere{notes.did_you_mean(name, self._defined)}"
+        message = f"link {quoted(link)} uses material {quoted(name)}{hint}; ROS 2 shows it without the colour"
         notes.add(catalogue.UNDEFINED_MATERIAL, message, element, "name")

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from grader.errors import MissingElement
-from grader.robot.names import did_you_mean
+from grader.robot.names import did_you_mean, quoted
 from grader.robot.source import Mark
 
 Vector = tuple[float, float, float]
@@ -185,5 +185,5 @@ class Robot:
 
 def _missing(kind: str, name: str, there: Iterable[Link | Joint]) -> MissingElement:
     known = tuple(each.name for each in there)
-    guess = did_you_mean(name, known) or f"; the file has: {', '.join(map(repr, known[:20])) or 'none'}"
-    return MissingElement(kind, name, known, message=f"there is no {kind} {name!r}{guess}")
+    guess = did_you_mean(name, known) or f"; the file has: {', '.join(map(quoted, known[:20])) or 'none'}"
+    return MissingElement(kind, name, known, message=f"there is no {kind} {quoted(name)}{guess}")

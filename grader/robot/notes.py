@@ -1,13 +1,15 @@
 """What is noted of a URDF while it is read: problems with their places, and values read with a note where they fail."""
 
 import re
+from collections.abc import Iterable
 from typing import TypeVar
 
 from lxml import etree
 
 from grader.robot import catalogue
-from grader.robot.catalogue import Kind, Problem
+from grader.robot.catalogue import Effect, Kind, Problem
 from grader.robot.model import Origin
+from grader.robot.names import closest, did_you_mean, quoted
 from grader.robot.numbers import NumberError, number, vector
 from grader.robot.source import Mark, Source
 from grader.robot.transforms import Vector
@@ -18,6 +20,8 @@ Default = TypeVar("Default")
 _FORMAT_DIRECTIVE = re.compile(r"%[-+ #0-9.$*'hlLqjzt]*n")
 _PRINTED = frozenset({"origin", "box", "cylinder", "sphere", "mass"})  # whose values urdfdom uses as printf's format
 _FULL_TURN = 6.2832
+_MOST_PROBLEMS = 1000
+_MOST_GUESSES = 50
 
 
 class Notes:
@@ -27,6 +31,9 @@ class Notes:
         self.source = source
         self.root = root
         self.problems: list[Problem] = []
+        self.effects: set[Effect] = set()
+        self.unlisted = 0
+        self._guesses = _MOST_GUESSES
         self._indices = {element: index for index, element in enumerate(root.iter())}
 
     def mark(self, element: Element) -> Mark:
@@ -35,7 +42,21 @@ class Notes:
 
     def add(self, kind: Kind, message: str, element: Element, attribute: str | None = None) -> None:
         """Note a problem at an element, or at one of its attributes if it has it."""
-        self.problems.append(Problem(kind, message, self.source.tag(self._indices[element], attribute)))
+        self.effects.add(kind.effect)
+        if len(self.problems) < _MOST_PROBLEMS:
+            self.problems.append(Problem(kind, message, self.source.tag(self._indices[element], attribute)))
+        else:
+            self.unlisted += 1
+
+    def closest(self, name: str, known: Iterable[str]) -> str | None:
+        """The known name that is most like this one; only so often in one file, because it takes its time."""
+        self._guesses -= 1
+        return closest(name, known) if self._guesses >= 0 else None
+
+    def did_you_mean(self, name: str, known: Iterable[str]) -> str:
+        """`; did you mean 'x'?` to be put behind a message, or nothing where no known name is close."""
+        self._guesses -= 1
+        return did_you_mean(name, known) if self._guesses >= 0 else ""
 
     def printed(self, text: str, element: Element, attribute: str | None = None) -> None:
         """Note that ROS 2 puts this text into printf, if it holds a directive that can crash it."""
@@ -60,7 +81,7 @@ class Part:
     def fail(self, reason: str, element: Element, attribute: str | None = None) -> None:
         """Note a defect: the part is lost."""
         self.bad = True
-        consequence = self._consequence if self._link is None else self._consequence.format(repr(self._link))
+        consequence = self._consequence if self._link is None else self._consequence.format(quoted(self._link))
         self._notes.add(self._kind, f"{reason}; {consequence}", element, attribute)
 
     def mark(self, element: Element) -> Mark:

@@ -5,16 +5,16 @@ white space is skipped before a number and refused behind it; nan, inf, hex and 
 """
 
 import re
+from functools import lru_cache
 from math import isinf
 
+from grader.robot.names import quoted
 from grader.robot.transforms import Vector
 
-_NUMBER = re.compile(r"[ \t\n\v\f\r]*[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
-_PLAIN = r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))"
-_PLAIN_VECTOR = re.compile(f" *{_PLAIN} +{_PLAIN} +{_PLAIN} *")  # what most vectors look like, in one go
+_NUMBER = re.compile(r"[ \t\n\v\f\r]*[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_KEPT_LENGTH = 64  # longer texts are read anew each time, so that what is kept stays small
 _VERSION = re.compile(r"[ \t\n\v\f\r]*([+-]?[0-9]+)")
 _LONG = 2**63
-_SURELY_FINITE = 300  # characters: too few for the digits of an overflow
 
 
 class NumberError(ValueError):
@@ -23,12 +23,7 @@ class NumberError(ValueError):
 
 def number(text: str) -> float:
     """The value of one number, as urdfdom's strToDouble gives it; raises NumberError."""
-    if _NUMBER.fullmatch(text) is None:
-        raise NumberError(_why_not(text))
-    value = float(text)
-    if isinf(value):
-        raise NumberError(f"{text.strip()!r} is too large for a number")
-    return value
+    return _kept_number(text) if len(text) <= _KEPT_LENGTH else _number(text)
 
 
 def numbers(text: str) -> list[float]:
@@ -38,14 +33,7 @@ def numbers(text: str) -> list[float]:
 
 def vector(text: str) -> Vector:
     """Three numbers, as urdfdom's Vector3::init gives them; raises NumberError."""
-    plain = _PLAIN_VECTOR.fullmatch(text)
-    if plain is not None and len(text) < _SURELY_FINITE:
-        x, y, z = plain.groups()
-        return (float(x), float(y), float(z))
-    values = numbers(text)
-    if len(values) != 3:
-        raise NumberError(f"it has {len(values)} number{'' if len(values) == 1 else 's'} where 3 are needed")
-    return (values[0], values[1], values[2])
+    return _kept_vector(text) if len(text) <= _KEPT_LENGTH else _vector(text)
 
 
 def rgba(text: str) -> tuple[float, float, float, float] | None:
@@ -71,6 +59,27 @@ def is_version_one(text: str) -> bool:
     return all(value >= 0 for value in values) and [value % 2**32 for value in values] == [1, 0]
 
 
+def _number(text: str) -> float:
+    if _NUMBER.fullmatch(text) is None:
+        raise NumberError(_why_not(text))
+    value = float(text)
+    if isinf(value):
+        raise NumberError(f"{quoted(text.strip())} is too large for a number")
+    return value
+
+
+def _vector(text: str) -> Vector:
+    values = numbers(text)
+    if len(values) != 3:
+        raise NumberError(f"it has {len(values)} number{'' if len(values) == 1 else 's'} where 3 are needed")
+    return (values[0], values[1], values[2])
+
+
+# A class's files hold the same few texts thousands of times.
+_kept_number = lru_cache(maxsize=4096)(_number)
+_kept_vector = lru_cache(maxsize=4096)(_vector)
+
+
 def _strtol(digits: str) -> int:
     # C stops at the largest long; Python refuses to read thousands of digits.
     magnitude = digits.lstrip("+-0")[:20] or "0"
@@ -79,7 +88,7 @@ def _strtol(digits: str) -> int:
 
 
 def _why_not(text: str) -> str:
-    shown = repr(text)
+    shown = quoted(text)
     if not text.strip():
         return "it is empty"
     if "," in text:

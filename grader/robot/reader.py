@@ -12,6 +12,7 @@ from grader.robot.joints import read_joint
 from grader.robot.links import read_link
 from grader.robot.materials import Materials
 from grader.robot.model import Joint, Link, Robot
+from grader.robot.names import quoted
 from grader.robot.notes import Element, Notes
 from grader.robot.numbers import is_version_one
 from grader.robot.source import Source
@@ -66,7 +67,7 @@ def _read_plain(root: Element, source: Source) -> Reading:
         message = f"the file holds <{etree.QName(root).localname}>, no <robot>; ROS 2 loads nothing"
         return _judge(None, [Problem(catalogue.NO_ROBOT, message, source.tag(0))], source)
     robot = _read_robot(root, notes)
-    return _judge(robot, notes.problems, source)
+    return _judge(robot, notes.problems, source, notes)
 
 
 def _read_dialect(text: str, path: str) -> Reading:
@@ -81,11 +82,15 @@ def _read_dialect(text: str, path: str) -> Reading:
     root = etree.fromstring(scan.xml, _PARSER)
     notes = Notes(source, root)
     robot = _read_robot(root, notes)
-    return _judge(robot, problems + notes.problems, source)
+    return _judge(robot, problems + notes.problems, source, notes)
 
 
-def _judge(robot: Robot | None, problems: list[Problem], source: Source) -> Reading:
+def _judge(robot: Robot | None, problems: list[Problem], source: Source, notes: Notes | None = None) -> Reading:
     effects = {problem.kind.effect for problem in problems}
+    if notes is not None and notes.unlisted:
+        effects |= notes.effects
+        message = f"{notes.unlisted} more problems of this file are not listed"
+        problems = [*problems, Problem(catalogue.UNLISTED, message, source.at(len(source.text)))]
     verdict: Verdict = "rejected" if "rejects" in effects else "degraded" if "drops" in effects else "clean"
     ordered = sorted(problems, key=lambda each: (each.location.line, each.location.column, each.code))
     return Reading(verdict, robot, tuple(ordered), source)
@@ -101,7 +106,7 @@ def _read_robot(root: Element, notes: Notes) -> Robot:
         link = read_link(element, notes, materials)
         if link.name in links:
             line = notes.mark(links[link.name][1]).location().line
-            message = f"there is a link {link.name!r} already, in line {line}; ROS 2 loads nothing of the file"
+            message = f"there is a link {quoted(link.name)} already, in line {line}; ROS 2 loads nothing of the file"
             notes.add(catalogue.DUPLICATE_LINK, message, element, "name")
         else:
             links[link.name] = (link, element)
@@ -128,7 +133,7 @@ def _read_joints(root: Element, notes: Notes) -> dict[str, tuple[Joint, Element]
         joint = read_joint(element, notes)
         if joint.name in joints:
             line = notes.mark(joints[joint.name][1]).location().line
-            message = f"there is a joint {joint.name!r} already, in line {line}; ROS 2 loads nothing of the file"
+            message = f"there is a joint {quoted(joint.name)} already, in line {line}; ROS 2 loads nothing of the file"
             notes.add(catalogue.DUPLICATE_JOINT, message, element, "name")
         else:
             joints[joint.name] = (joint, element)
@@ -148,7 +153,9 @@ def _check_root_inertia(robot: Robot, links: dict[str, Element], notes: Notes) -
     children = {joint.child for joint in robot.joints}
     for link in robot.links:
         if link.inertial is not None and link.name not in children:
-            message = f"the root link {link.name!r} has an inertia: robot_state_publisher warns, and KDL ignores it"
+            message = (
+                f"the root link {quoted(link.name)} has an inertia: robot_state_publisher warns, and KDL ignores it"
+            )
             element = links[link.name]
             inertial = element.find("inertial")
             notes.add(catalogue.ROOT_INERTIA, message, element if inertial is None else inertial)

@@ -160,8 +160,8 @@ def _widest_gap(a: Shape, b: Shape, T_a_b: Transform) -> Vector | None:
         if length - gap <= _GAP_ERROR:
             break
         corners, nearest = _nearest_to_origin((corner, *corners))
-        if hypot(*nearest) >= shortest:
-            break  # the corners lie too close together for rounding to let them tell more
+        if len(corners) == 4 or hypot(*nearest) >= shortest:
+            break  # the origin is between four corners, or they are too close together for rounding to tell more
         shortest = hypot(*nearest)
     return best
 

@@ -7,6 +7,7 @@ symmetric about its centre does not change when it is mirrored.
 from math import hypot, pi
 
 from grader.robot.model import Box, Cylinder, Geometry, Mesh, Sphere
+from grader.robot.names import quoted
 from grader.robot.transforms import Transform, Vector, dot, unit
 
 Shape = Box | Cylinder | Sphere
@@ -18,7 +19,7 @@ class UnknownShape(ValueError):
     """A question about the size of a shape whose size is not known; `geometry` is that shape."""
 
     def __init__(self, geometry: Mesh) -> None:
-        super().__init__(f"the size of mesh {geometry.filename!r} is unknown: mesh files are not opened")
+        super().__init__(f"the size of mesh {quoted(geometry.filename)} is unknown: mesh files are not opened")
         self.geometry = geometry
 
 

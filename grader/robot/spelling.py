@@ -1,7 +1,7 @@
 """Names that ROS 2 does not know and skips in silence, where they look like misspelt ones; and elements given twice."""
 
 from grader.robot import catalogue
-from grader.robot.names import closest
+from grader.robot.names import quoted
 from grader.robot.notes import Element, Notes
 
 # What urdfdom reads: the attributes of each element, and the elements that may stand in it.
@@ -93,16 +93,18 @@ def _check_attributes(element: Element, notes: Notes) -> None:
     for name in map(str, element.keys()):
         if name in known or name.startswith("{"):
             continue
-        meant = _SWAPPED.get((element.tag, name)) or closest(
+        meant = _SWAPPED.get((element.tag, name)) or notes.closest(
             name, [each for each in known if element.get(each) is None]
         )
         if meant:
-            message = f"<{element.tag}> has no attribute {name!r}, and ROS 2 ignores it; did you mean {meant!r}?"
+            message = (
+                f"<{element.tag}> has no attribute {quoted(name)}, and ROS 2 ignores it; did you mean {quoted(meant)}?"
+            )
             notes.add(catalogue.MISSPELT, message, element, name)
 
 
 def _check_tag(child: Element, parent: str, allowed: tuple[str, ...], notes: Notes) -> None:
-    meant = closest(child.tag, allowed)
+    meant = notes.closest(child.tag, allowed)
     if meant:
         message = f"ROS 2 ignores <{child.tag}> in <{parent}>; did you mean <{meant}>?"
     elif child.tag in _KNOWN_NAMES:

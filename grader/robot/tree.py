@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 from grader.robot import catalogue
 from grader.robot.model import Joint, Robot
-from grader.robot.names import closest, did_you_mean
+from grader.robot.names import quoted
 from grader.robot.notes import Element, Notes
 
 _REJECTED = "ROS 2 loads nothing of the file"
@@ -57,15 +57,19 @@ def _check_names(robot: Robot, links: dict[str, Element], joints: dict[str, Elem
     for joint in robot.joints:
         for role, name in (("parent", joint.parent), ("child", joint.child)):
             if name and not robot.has_link(name):
-                guess = did_you_mean(name, links) or f"; the links are: {', '.join(map(repr, list(links)[:12]))}"
-                message = f"the {role} link {name!r} of joint {joint.name!r} does not exist: {_REJECTED}{guess}"
+                guess = (
+                    notes.did_you_mean(name, links) or f"; the links are: {', '.join(map(quoted, list(links)[:12]))}"
+                )
+                message = (
+                    f"the {role} link {quoted(name)} of joint {quoted(joint.name)} does not exist: {_REJECTED}{guess}"
+                )
                 notes.add(catalogue.UNKNOWN_LINK, message, _part(joints[joint.name], role), "link")
         if joint.mimic is not None and joint.mimic.joint not in joints:
-            guess = did_you_mean(joint.mimic.joint, joints)
-            message = f"joint {joint.name!r} mimics {joint.mimic.joint!r}, which does not exist{guess}"
+            guess = notes.did_you_mean(joint.mimic.joint, joints)
+            message = f"joint {quoted(joint.name)} mimics {quoted(joint.mimic.joint)}, which does not exist{guess}"
             notes.add(catalogue.MIMIC_TARGET, message, _part(joints[joint.name], "mimic"), "joint")
     for loop in _mimic_loops(robot):
-        message = f"joint {loop[0]!r} mimics itself: {' -> '.join((*loop, loop[0]))}"
+        message = f"joint {quoted(loop[0])} mimics itself: {' -> '.join(map(quoted, (*loop[:20], loop[0])))}"
         notes.add(catalogue.MIMIC_TARGET, message, _part(joints[loop[0]], "mimic"), "joint")
 
 
@@ -97,10 +101,8 @@ def _check_two_parents(edges: Edges, held: dict[str, Joint], joints: dict[str, E
         claims.setdefault(joint.child, []).append(joint)
     for child, rivals in claims.items():
         if len(rivals) > 1:
-            names = " and ".join(repr(joint.name) for joint in rivals)
-            message = (
-                f"link {child!r} is the child of {names}; in ROS 2 {held[child].name!r} holds it (last in name order)"
-            )
+            names = " and ".join(quoted(joint.name) for joint in rivals)
+            message = f"link {quoted(child)} is the child of {names}; in ROS 2 {quoted(held[child].name)} holds it (last in name order)"
             notes.add(catalogue.TWO_PARENTS, message, joints[rivals[1].name])
 
 
@@ -173,8 +175,8 @@ def _note_cycle(
     cycle: list[Joint], reachable: set[str], *, has_root: bool, joints: dict[str, Element], notes: Notes
 ) -> None:
     shown = [*cycle[:20], *cycle[-1:]] if len(cycle) > 20 else cycle
-    steps = " -> ".join(repr(joint.parent) for joint in shown) + f" -> {cycle[0].parent!r}"
-    names = ", ".join(repr(joint.name) for joint in shown)
+    steps = " -> ".join(quoted(joint.parent) for joint in shown) + f" -> {quoted(cycle[0].parent)}"
+    names = ", ".join(quoted(joint.name) for joint in shown)
     element = joints[cycle[0].name]
     if cycle[0].parent in reachable:
         message = f"the joints {names} form a loop: {steps}; ROS 2 follows it for ever and crashes"
@@ -189,18 +191,18 @@ def _note_cycle(
 
 def _check_roots(robot: Robot, roots: list[str], edges: Edges, links: dict[str, Element], notes: Notes) -> None:
     explained = {joint.child for joint in robot.joints if not robot.has_link(joint.parent)}
-    explained |= {closest(joint.child, links) or "" for joint in robot.joints if not robot.has_link(joint.child)}
+    explained |= {notes.closest(joint.child, links) or "" for joint in robot.joints if not robot.has_link(joint.child)}
     if len(roots) < 2 or len([name for name in roots if name not in explained]) < 2:
         return
     sizes = {name: len(_reachable([name], edges)) for name in roots} if len(roots) <= 50 else {}
     main = max(roots, key=lambda name: sizes.get(name, 0))
     others = [name for name in roots if name != main]
-    named = ", ".join(map(repr, others[:50])) + (f" and {len(others) - 50} more" if len(others) > 50 else "")
+    named = ", ".join(map(quoted, others[:50])) + (f" and {len(others) - 50} more" if len(others) > 50 else "")
     verb = "is" if len(others) == 1 else "are"
     message = (
         f"{named} {verb} not joined to the robot: no joint has {'it' if len(others) == 1 else 'them'} as its child"
     )
-    all_roots = f"roots are {', '.join(map(repr, [main, *others][:50]))}"
+    all_roots = f"roots are {', '.join(map(quoted, [main, *others][:50]))}"
     notes.add(catalogue.TWO_ROOTS, f"{message} ({all_roots}); {_REJECTED}", links[others[0]], "name")
 
 

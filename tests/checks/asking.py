@@ -17,6 +17,7 @@ from grader.submission.submission import read_submission
 from tests.checks.robots import PATH, Scene
 
 AnyCheck = Callable[..., Outcome]
+Arguments = dict[str, Any]
 
 
 def ask(check: AnyCheck, scene: Scene, **arguments: Any) -> Outcome:
@@ -43,7 +44,7 @@ def passes(check: AnyCheck, scene: Scene, **arguments: Any) -> str:
     """The message of a check, which must pass and point to no place."""
     outcome = ask(check, scene, **arguments)
     assert outcome.status == "passed", outcome
-    assert outcome.location is None
+    assert outcome.location is None, outcome
     return outcome.message
 
 
@@ -52,5 +53,5 @@ def fails(check: AnyCheck, scene: Scene, *, at: str | None = None, **arguments: 
     outcome = graded(check, scene, **arguments)
     assert outcome.status == "failed", outcome
     expected: Location | None = scene.place(at) if at is not None else outcome.location
-    assert outcome.location == expected
+    assert outcome.location == expected, (outcome, expected)
     return outcome.message

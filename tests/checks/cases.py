@@ -54,7 +54,9 @@ class Case:
         return self.check.__module__.rpartition(".")[2]
 
 
-def rolling(*, kind: str = "continuous", xyz: Numbers = (-0.15, 0.225, 0.0), rpy: Numbers = FORWARD, axis: Numbers = "0 0 1") -> Scene:
+def rolling(
+    *, kind: str = "continuous", xyz: Numbers = (-0.15, 0.225, 0.0), rpy: Numbers = FORWARD, axis: Numbers = "0 0 1"
+) -> Scene:
     """A base with one wheel at its left side; unless told, the wheel drives it forward."""
     return scene(BASE, WHEEL, joint("wheel_joint", kind, "base", "wheel", xyz=xyz, rpy=rpy, axis=axis))
 
@@ -224,7 +226,7 @@ CASES = (
         says="'wheel' does not cut into 'base'",
         failing=rolling(xyz=(-0.15, 0.2, 0.0)),
         complains="'wheel' cuts 25 mm deep into 'base'",
-        at='<visual>\n<geometry>\n<cylinder',
+        at="<visual>\n<geometry>\n<cylinder",
     ),
     Case(
         under_the_base,
@@ -247,7 +249,13 @@ CASES = (
     ),
     Case(
         axis_along,
-        {"link": "wheel", "axis": (0.0, 0.0, 1.0), "relative_to": "base", "direction": (0.0, 1.0, 0.0), "tolerance": 1.0},
+        {
+            "link": "wheel",
+            "axis": (0.0, 0.0, 1.0),
+            "relative_to": "base",
+            "direction": (0.0, 1.0, 0.0),
+            "tolerance": 1.0,
+        },
         passing=rolling(),
         says="the z axis of the frame 'wheel' points along 0 1 0 in 'base'",
         failing=rolling(rpy=turned(roll=90)),
@@ -263,7 +271,7 @@ CASES = (
         complains="'wheel' wobbles: the axis of joint 'wheel_joint' is 90 degrees off the cylinder's axis",
         at='xyz="0 1 0"',
     ),
-)  # fmt: skip
+)
 
 CASE = {case.name: case for case in CASES}
 

@@ -100,7 +100,15 @@ def paint(rgba: Numbers, name: str = "paint") -> str:
 
 
 def joint(
-    name: str, kind: str, parent: str, child: str, *, xyz: Numbers = "", rpy: Numbers = "", axis: Numbers = "", more: str = ""
+    name: str,
+    kind: str,
+    parent: str,
+    child: str,
+    *,
+    xyz: Numbers = "",
+    rpy: Numbers = "",
+    axis: Numbers = "",
+    more: str = "",
 ) -> str:
     """A joint; revolute and prismatic ones have a limit, so that ROS 2 takes them."""
     limit = '<limit lower="-1" upper="1" effort="1" velocity="1"/>' if kind in ("revolute", "prismatic") else ""

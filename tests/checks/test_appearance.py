@@ -1,0 +1,428 @@
+"""What a link shows: shapes, sizes and colours, just inside and just outside their tolerances."""
+
+from itertools import permutations, product
+from math import pi
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from grader.checks.appearance import shows_box, shows_colour, shows_cylinder, shows_grey, shows_nothing, shows_sphere
+from grader.robot.transforms import Vector
+from tests.checks.asking import AnyCheck, Arguments, ask, fails, graded, missing, passes
+from tests.checks.cases import BASE, CASE, LIDAR, Case, cases_of
+from tests.checks.robots import Numbers, Scene, box, cylinder, link, mesh, paint, scene, sphere, turned, visual
+
+SIZE = (0.6, 0.4, 0.2)
+BOX: Arguments = {"link": "base", "size": SIZE, "tolerance": 0.002}
+CYLINDER: Arguments = {"link": "lidar", "radius": 0.1, "length": 0.05, "tolerance": 0.002}
+SPHERE: Arguments = {"link": "caster", "radius": 0.05, "tolerance": 0.002}
+GREEN: Arguments = {"link": "base", "colour": (0.0, 0.6, 0.0, 1.0), "tolerance": 0.01}
+WHITE: Arguments = {"link": "lidar", "at_least": 0.75, "tolerance": 0.01}
+
+
+COLOURS: tuple[tuple[AnyCheck, Arguments], ...] = ((shows_colour, GREEN), (shows_grey, {**WHITE, "link": "base"}))
+
+
+def boxed(x: float, y: float, z: float, rpy: Numbers = "") -> Scene:
+    """A base that shows one box."""
+    return scene(link("base", visual(box(x, y, z), rpy=rpy)))
+
+
+def painted(rgba: str, name: str = "base") -> Scene:
+    """A link that shows a box in one colour."""
+    return scene(link(name, visual(box(1.0, 1.0, 1.0), material=paint(rgba))))
+
+
+@cases_of("appearance")
+def test_a_passing_robot_has_its_measure_in_the_outcome(case: Case) -> None:
+    """A measurement carries what was found, what was expected, the tolerance and the unit."""
+    outcome = ask(case.check, case.passing, **case.arguments)
+    assert outcome.tolerance == case.arguments.get("tolerance")
+    assert outcome.unit == (None if case.name in ("shows_colour", "shows_grey", "shows_nothing") else "m")
+    assert (outcome.measured is None) == (case.name == "shows_nothing")
+
+
+# --- Boxes ------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("axis", "sign"), list(product(range(3), (-1, 1))))
+def test_a_box_edge_has_a_tolerance(axis: int, sign: int) -> None:
+    """Each edge may be off by the tolerance, its end included, and by no more."""
+    for off, fine in ((0.0019, True), (0.002, True), (0.0021, False)):
+        edges = list(SIZE)
+        edges[axis] += sign * off
+        outcome = ask(shows_box, boxed(edges[0], edges[1], edges[2]), **BOX)
+        assert (outcome.status == "passed") == fine
+        assert outcome.measured == pytest.approx(tuple(edges))
+        assert (outcome.expected, outcome.tolerance, outcome.unit) == (SIZE, 0.002, "m")
+
+
+@pytest.mark.parametrize(
+    ("size", "rpy"),
+    [
+        ((0.4, 0.6, 0.2), turned(yaw=90)),
+        ((0.4, 0.6, 0.2), turned(yaw=-90)),
+        ((0.6, 0.2, 0.4), turned(roll=90)),
+        ((0.2, 0.4, 0.6), turned(pitch=90)),
+        ((0.2, 0.4, 0.6), turned(pitch=-90)),
+        ((0.6, 0.4, 0.2), turned(yaw=180)),
+        ((0.6, 0.4, 0.2), turned(roll=180, yaw=180)),
+        ((0.4, 0.2, 0.6), turned(roll=90, yaw=90)),
+        ((0.2, 0.6, 0.4), turned(roll=90, pitch=90)),
+        ((0.4, 0.6, 0.2), "0 0 1.57"),
+    ],
+)
+def test_a_box_on_its_side_is_measured_along_the_links_axes(size: Vector, rpy: str) -> None:
+    """Quarter turns of the visual put other edges along the link's axes, and these are what counts."""
+    assert passes(shows_box, boxed(*size, rpy=rpy), **BOX) == "'base' shows a box 0.6 0.4 0.2 m"
+
+
+def test_a_box_that_is_turned_the_wrong_way_is_measured_as_it_lies() -> None:
+    """The right numbers in `size` are wrong once the visual is turned."""
+    message = fails(shows_box, boxed(*SIZE, rpy=turned(yaw=90)), at="size=", **BOX)
+    assert message == "'base' shows a box 0.4 0.6 0.2 m, expected 0.6 0.4 0.2 m (x, y, z)"
+
+
+@pytest.mark.parametrize("angle", ["roll", "pitch", "yaw"])
+def test_a_box_may_be_turned_by_one_degree(angle: str) -> None:
+    """A slant of less than a degree is a rounded angle; beyond it the edges are not along the axes."""
+    for off in (0.99, -0.99, 90.99, 89.01):
+        flat = ask(shows_box, boxed(0.5, 0.5, 0.5, rpy=turned(**{angle: off})), **{**BOX, "size": (0.5, 0.5, 0.5)})
+        assert flat.status == "passed"
+    for off in (1.01, -1.01, 45.0, 88.99):
+        message = fails(shows_box, boxed(*SIZE, rpy=turned(**{angle: off})), at="size=", **BOX)
+        assert message == "the box of 'base' is turned: its edges are not along the axes of 'base'"
+
+
+@settings(deadline=None, max_examples=60)
+@given(order=st.permutations((0, 1, 2)), turns=st.tuples(*[st.integers(-2, 2)] * 3))
+def test_a_box_passes_in_every_orientation_that_lies_right(order: list[int], turns: tuple[int, int, int]) -> None:
+    """Whatever quarter turns a visual makes, a box passes just where one way to name its edges lies right."""
+    size = (SIZE[order[0]], SIZE[order[1]], SIZE[order[2]])
+    rpy = (turns[0] * pi / 2, turns[1] * pi / 2, turns[2] * pi / 2)
+    outcome = ask(shows_box, boxed(*size, rpy=rpy), **BOX)
+    assert outcome.measured in [pytest.approx(each) for each in permutations(SIZE)]
+    assert (outcome.status == "passed") == (outcome.measured == pytest.approx(SIZE))
+
+
+def test_of_several_boxes_the_nearest_counts() -> None:
+    """A link may show more than is asked for: one right box is enough, and the least wrong one is told."""
+    wrong, right = visual(box(1.0, 1.0, 1.0)), visual(box(*SIZE))
+    passes(shows_box, scene(link("base", wrong, right, visual(sphere(1.0)))), **BOX)
+    near = visual(box(0.6, 0.4, 0.1))
+    message = fails(shows_box, scene(link("base", wrong, near)), at='size="0.6 0.4 0.1"', **BOX)
+    assert message == "'base' shows a box 0.6 0.4 0.1 m, expected 0.6 0.4 0.2 m (x, y, z)"
+
+
+def test_a_slanted_box_does_not_hide_a_straight_one() -> None:
+    """A box that is not along the axes is farther off than any that is."""
+    slanted = visual(box(*SIZE), rpy=turned(yaw=30))
+    assert "shows a box 9 9 9 m" in fails(shows_box, scene(link("base", slanted, visual(box(9.0, 9.0, 9.0)))), **BOX)
+    passes(shows_box, scene(link("base", slanted, visual(box(*SIZE)))), **BOX)
+
+
+def test_a_plate_is_a_box() -> None:
+    """A box with one zero edge can be seen, so it is measured; one with two cannot."""
+    assert fails(shows_box, boxed(0.6, 0.4, 0.0), **BOX).startswith("'base' shows a box 0.6 0.4 0 m, expected")
+    assert missing(shows_box, boxed(0.6, 0.0, 0.0), **BOX).kind == "visual"
+
+
+def test_a_negative_edge_is_as_long_as_a_positive_one() -> None:
+    """ROS 2 does not look at the sign of a size, and the box looks the same."""
+    passes(shows_box, boxed(-0.6, 0.4, 0.2), **BOX)
+
+
+# --- Cylinders and spheres --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_a_cylinder_has_a_tolerance_in_both_lengths(sign: int) -> None:
+    """Radius and length may each be off by the tolerance, its end included; the one that is not is pointed to."""
+    for off in (0.0019, 0.002):
+        passes(shows_cylinder, scene(link("lidar", visual(cylinder(0.1 + sign * off, 0.05 - sign * off)))), **CYLINDER)
+    off = sign * 0.0021
+    fails(shows_cylinder, scene(link("lidar", visual(cylinder(0.1 + off, 0.05)))), at="radius=", **CYLINDER)
+    fails(shows_cylinder, scene(link("lidar", visual(cylinder(0.1, 0.05 + off)))), at="length=", **CYLINDER)
+    fails(shows_cylinder, scene(link("lidar", visual(cylinder(0.1 + off, 0.05 + off)))), at="radius=", **CYLINDER)
+
+
+def test_a_cylinder_is_told_with_both_lengths() -> None:
+    """The message names what was found and what was expected, so that a diameter is seen to be one."""
+    message = fails(shows_cylinder, scene(link("lidar", visual(cylinder(0.2, 0.05)))), **CYLINDER)
+    assert message == (
+        "'lidar' shows a cylinder of radius 0.2 m and length 0.05 m, expected radius 0.1 m and length 0.05 m"
+    )
+    outcome = ask(shows_cylinder, scene(link("lidar", visual(cylinder(0.2, 0.05)))), **CYLINDER)
+    assert (outcome.measured, outcome.expected, outcome.tolerance, outcome.unit) == (
+        (0.2, 0.05),
+        (0.1, 0.05),
+        0.002,
+        "m",
+    )
+
+
+def test_a_cylinder_may_lie_in_any_direction() -> None:
+    """The shape is what is asked for, not how it lies."""
+    passes(shows_cylinder, scene(link("lidar", visual(cylinder(), xyz="1 2 3", rpy="0.3 0.2 0.1"))), **CYLINDER)
+
+
+def test_of_several_cylinders_the_nearest_counts() -> None:
+    """One right cylinder among others is enough, and the least wrong one is told."""
+    others = (visual(cylinder(1.0, 1.0)), visual(box(9.0, 9.0, 9.0)))
+    passes(shows_cylinder, scene(link("lidar", *others, visual(cylinder()))), **CYLINDER)
+    fails(shows_cylinder, scene(link("lidar", *others, visual(cylinder(0.1, 0.06)))), at='length="0.06"', **CYLINDER)
+
+
+def test_a_disc_is_a_cylinder() -> None:
+    """A cylinder without length can be seen, and is measured; one without radius cannot."""
+    assert "length 0 m, expected" in fails(shows_cylinder, scene(link("lidar", visual(cylinder(0.1, 0.0)))), **CYLINDER)
+    assert missing(shows_cylinder, scene(link("lidar", visual(cylinder(0.0, 0.05)))), **CYLINDER).kind == "visual"
+
+
+@pytest.mark.parametrize(
+    ("radius", "side"),
+    [(0.0519, ""), (0.052, ""), (0.0481, ""), (0.048, ""), (0.0521, "2.1 mm too large"), (0.0479, "2.1 mm too small")],
+)
+def test_a_sphere_has_a_tolerance(radius: float, side: str) -> None:
+    """A radius may be off by the tolerance, its end included; beyond it the message says by how much and to which side."""
+    found = scene(link("caster", visual(sphere(radius))))
+    if side:
+        message = fails(shows_sphere, found, at="radius=", **SPHERE)
+        assert message == f"the radius of the sphere that 'caster' shows is {radius:g} m, expected 0.05 m: {side}"
+    else:
+        passes(shows_sphere, found, **SPHERE)
+
+
+def test_of_several_spheres_the_nearest_counts() -> None:
+    """One right sphere among others is enough, and the least wrong one is told."""
+    other = visual(sphere(1.0))
+    passes(shows_sphere, scene(link("caster", other, visual(sphere(0.05)))), **SPHERE)
+    fails(shows_sphere, scene(link("caster", other, visual(sphere(0.06)))), at='radius="0.06"', **SPHERE)
+
+
+SHAPES = {"box": box(0.6, 0.4, 0.2), "cylinder": cylinder(), "sphere": sphere(0.05), "mesh": mesh()}
+WANTED = {"box": shows_box, "cylinder": shows_cylinder, "sphere": shows_sphere}
+
+
+@pytest.mark.parametrize(("wanted", "shown"), [pair for pair in product(WANTED, SHAPES) if pair[0] != pair[1]])
+def test_another_shape_is_named(wanted: str, shown: str) -> None:
+    """A link that shows another shape than the one that is asked for fails, and both are named."""
+    case = CASE[f"shows_{wanted}"]
+    name = case.arguments["link"]
+    found = scene(link(name, visual(SHAPES[shown])))
+    error = missing(case.check, found, **case.arguments)
+    assert (error.kind, error.name) == (wanted, name)
+    assert (
+        fails(case.check, found, at=f"<{shown}", **case.arguments) == f"{name!r} shows a {shown}, expected a {wanted}"
+    )
+
+
+def test_a_link_without_a_visual_shows_no_shape() -> None:
+    """An empty link misses a visual, in the same words whatever is asked of it: the second criterion is skipped."""
+    checks: list[tuple[AnyCheck, Arguments]] = [
+        (shows_box, BOX), (shows_cylinder, CYLINDER), (shows_sphere, SPHERE), (shows_colour, GREEN), (shows_grey, WHITE)
+    ]  # fmt: skip
+    for check, arguments in checks:
+        error = missing(check, scene(link("empty")), **{**arguments, "link": "empty"})
+        assert (error.kind, error.name) == ("visual", "empty")
+        fails(check, scene(link("empty")), at="<link", **{**arguments, "link": "empty"})
+
+
+def test_an_empty_visual_beside_a_real_one_does_not_count() -> None:
+    """Visuals without a size are not there, wherever they stand."""
+    nothing = visual(box(0.0, 0.0, 0.0), material=paint("1 0 0 1", "red"))
+    real = visual(box(*SIZE), material=paint("0 0.6 0 1", "green"))
+    for found in (scene(link("base", nothing, real)), scene(link("base", real, nothing))):
+        passes(shows_box, found, **BOX)
+        passes(shows_colour, found, **GREEN)
+
+
+def test_a_mesh_scaled_to_nothing_is_not_there() -> None:
+    """A mesh scaled by zero shows nothing; one with its own scale is a mesh."""
+    assert missing(shows_colour, scene(link("base", visual(mesh(scale="0 0 0")))), **GREEN).kind == "visual"
+    assert missing(shows_box, scene(link("base", visual(mesh(scale="2 2 2")))), **BOX).kind == "box"
+
+
+# --- Colours ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("channel", range(4))
+def test_a_colour_has_a_tolerance_in_each_channel(channel: int) -> None:
+    """Each channel may be off by the tolerance, its end included, and by no more."""
+    for off, fine in ((0.009, True), (0.01, True), (0.011, False)):
+        rgba = [0.0, 0.6, 0.0, 1.0]
+        rgba[channel] += -off if rgba[channel] else off
+        outcome = ask(shows_colour, painted(" ".join(map(str, rgba))), **GREEN)
+        assert (outcome.status == "passed") == fine
+        assert outcome.measured == pytest.approx(tuple(rgba))
+        assert (outcome.expected, outcome.tolerance, outcome.unit) == ((0.0, 0.6, 0.0, 1.0), 0.01, None)
+
+
+def test_three_channels_leave_the_opacity_open() -> None:
+    """Opacity is graded only where the rubric gives a fourth channel."""
+    grey: Arguments = {"link": "base", "colour": (0.7, 0.7, 0.7), "tolerance": 0.01}
+    assert passes(shows_colour, painted("0.7 0.7 0.7 0.1"), **grey) == "'base' is shown in rgb 0.7 0.7 0.7"
+    message = fails(shows_colour, painted("0.7 0.7 0.6 0.1"), at="rgba=", **grey)
+    assert message == "'base' is shown in rgb 0.7 0.7 0.6, expected 0.7 0.7 0.7"
+    assert (
+        fails(shows_colour, painted("0 0.6 0 0.8"), **GREEN)
+        == "'base' is shown in rgba 0 0.6 0 0.8, expected 0 0.6 0 1"
+    )
+
+
+def test_a_colour_is_looked_at_where_it_is_defined() -> None:
+    """A material under <robot> is used by its name, and a wrong colour is shown where it is written."""
+    used = link("base", visual(box(*SIZE), material='<material name="green"/>'))
+    passes(shows_colour, scene(paint("0 0.6 0 1", "green"), used), **GREEN)
+    fails(shows_colour, scene(paint("0 1 0 1", "green"), used), at="rgba=", **GREEN)
+    fails(shows_colour, scene(used, paint("0 1 0 1", "green")), at="rgba=", **GREEN)
+
+
+def test_a_link_without_a_material_is_red() -> None:
+    """RViz shows what has no material in its own red, so no colour passes."""
+    found = scene(link("base", visual(box(*SIZE))))
+    for check, arguments in COLOURS:
+        message = fails(check, found, at="<visual>", **arguments)
+        assert message == "'base' has no material, so RViz shows its default red"
+
+
+def test_an_undefined_material_is_no_colour() -> None:
+    """A material that is named but defined nowhere is quoted."""
+    found = scene(link("base", visual(box(*SIZE), material='<material name="gren"/>')), paint("0 0.6 0 1", "green"))
+    message = fails(shows_colour, found, at="<visual>", **GREEN)
+    assert message == "'base' has no colour: its material 'gren' is not defined where it is used"
+
+
+def test_three_numbers_are_black() -> None:
+    """ROS 2 reads a colour with another count than four as black, and so does the check."""
+    assert "rgba 0 0 0 1" in fails(shows_colour, painted("0 0.6 0"), at="rgba=", **GREEN)
+
+
+def test_a_texture_with_a_colour_has_that_colour() -> None:
+    """A texture beside a colour does not change what is measured."""
+    both = '<material name="t">\n<color rgba="0 0.6 0 1"/>\n<texture filename="grass.png"/>\n</material>'
+    passes(shows_colour, scene(link("base", visual(box(*SIZE), material=both))), **GREEN)
+
+
+def test_a_texture_alone_is_never_the_asked_colour() -> None:
+    """A material of a picture only is not shown in green, nor in a grey."""
+    only = '<material name="t">\n<texture filename="grass.png"/>\n</material>'
+    found = scene(link("base", visual(box(*SIZE), material=only)))
+    for check, arguments in COLOURS:
+        assert graded(check, found, **arguments).status in ("failed", "pending")
+
+
+def test_the_largest_visual_has_the_colour() -> None:
+    """Of several visuals the largest one is what is seen of a link, in whatever order they stand."""
+    small = visual(sphere(0.01), material=paint("1 0 0 1", "red"))
+    large = visual(box(*SIZE), material=paint("0 0.6 0 1", "green"))
+    for found in (scene(link("base", small, large)), scene(link("base", large, small))):
+        passes(shows_colour, found, **GREEN)
+    assert "1 0 0 1" in fails(
+        shows_colour, scene(link("base", large, visual(sphere(9.0), material=paint("1 0 0 1")))), **GREEN
+    )
+
+
+def test_a_mesh_has_a_colour() -> None:
+    """The size of a mesh is unknown, its colour is not; beside other shapes the mesh is what counts."""
+    painted_mesh = visual(mesh(), material=paint("0 0.6 0 1", "green"))
+    passes(shows_colour, scene(link("base", painted_mesh)), **GREEN)
+    passes(shows_colour, scene(link("base", visual(box(9.0, 9.0, 9.0)), painted_mesh)), **GREEN)
+
+
+@pytest.mark.parametrize(
+    ("rgba", "complaint"),
+    [
+        ("0.75 0.75 0.75 1", ""),
+        ("1 1 1 1", ""),
+        ("0.75 0.76 0.76 0", ""),
+        ("0.8 0.809 0.8 1", ""),
+        ("0.8 0.81 0.8 1", ""),
+        ("0.749 0.749 0.749 1", ", darker than 0.75"),
+        ("0.749 0.755 0.755 1", ", darker than 0.75"),
+        ("0.7 0.7 0.7 1", ", darker than 0.75"),
+        ("0.8 0.811 0.8 1", ", which is no grey: red, green and blue differ"),
+        ("1 1 0.9 1", ", which is no grey: red, green and blue differ"),
+        ("1 0 0 1", ", which is no grey: red, green and blue differ"),
+    ],
+)
+def test_white_is_a_light_grey(rgba: str, complaint: str) -> None:
+    """White has equal channels, within the tolerance, none below the level; opacity does not matter."""
+    found = painted(rgba, "lidar")
+    if not complaint:
+        passes(shows_grey, found, **WHITE)
+        return
+    shown = " ".join(rgba.split()[:3])
+    assert fails(shows_grey, found, at="rgba=", **WHITE) == f"'lidar' is shown in rgb {shown}{complaint}"
+
+
+def test_a_grey_carries_its_measure() -> None:
+    """The outcome holds the three channels and the level."""
+    outcome = ask(shows_grey, painted("0.8 0.8 0.8 0.5", "lidar"), **WHITE)
+    assert (outcome.measured, outcome.expected, outcome.tolerance) == ((0.8, 0.8, 0.8), 0.75, 0.01)
+
+
+@settings(deadline=None, max_examples=100)
+@given(channels=st.tuples(*[st.integers(0, 100)] * 3), level=st.integers(0, 100))
+def test_grey_is_decided_by_the_channels_alone(channels: tuple[int, int, int], level: int) -> None:
+    """For every colour in hundredths the verdict is what exact arithmetic says, the tolerance's end included."""
+    rgba = " ".join(f"{each / 100:.2f}" for each in channels) + " 1"
+    outcome = ask(shows_grey, painted(rgba, "lidar"), link="lidar", at_least=level / 100, tolerance=0.01)
+    assert (outcome.status == "passed") == (max(channels) - min(channels) <= 1 and min(channels) >= level)
+
+
+# --- Nothing ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "visuals",
+    [
+        (),
+        (visual(box(0.0, 0.0, 0.0)),),
+        (visual(sphere(0.0)), visual(cylinder(0.0, 1.0))),
+        (visual(box(1.0, 1.0, 1.0), material=paint("1 1 1 0")),),
+        (visual(mesh(scale="0 0 0")),),
+    ],
+    ids=["no-visual", "zero-box", "zero-sphere-and-line", "fully-transparent", "mesh-scaled-to-nothing"],
+)
+def test_a_link_shows_nothing(visuals: tuple[str, ...]) -> None:
+    """No visual, only visuals without a size, or only fully transparent ones: there is nothing to see."""
+    assert passes(shows_nothing, scene(link("foot", *visuals)), link="foot") == "'foot' shows nothing"
+
+
+@pytest.mark.parametrize(
+    ("shape", "material", "name"),
+    [
+        (box(0.01, 0.01, 0.01), "", "a box"),
+        (cylinder(0.1, 0.0), "", "a cylinder"),
+        (sphere(0.01), paint("1 1 1 0.01"), "a sphere"),
+        (sphere(0.01), '<material name="undefined"/>', "a sphere"),
+        (mesh(), "", "a mesh"),
+    ],
+    ids=["box", "disc", "nearly-transparent", "undefined-material", "mesh"],
+)
+def test_a_link_shows_something(shape: str, material: str, name: str) -> None:
+    """Whatever can be seen is named, and pointed to."""
+    message = fails(shows_nothing, scene(link("foot", visual(shape, material=material))), at="<visual>", link="foot")
+    assert message == f"'foot' shows {name}, expected a link without a visual"
+
+
+def test_the_visible_one_of_several_visuals_is_named() -> None:
+    """An invisible visual before a visible one does not hide it."""
+    ghost = visual(box(1.0, 1.0, 1.0), material=paint("1 1 1 0"))
+    found = scene(link("foot", visual(box(0.0, 0.0, 0.0)), ghost, visual(sphere(0.5))))
+    assert "shows a sphere" in fails(shows_nothing, found, at="<visual>\n<geometry>\n<sphere", link="foot")
+
+
+def test_a_collision_is_not_shown() -> None:
+    """Only visuals are seen."""
+    bumper = '<collision>\n<geometry>\n<sphere radius="1"/>\n</geometry>\n</collision>'
+    passes(shows_nothing, scene(link("foot", bumper)), link="foot")
+    assert missing(shows_sphere, scene(link("caster", bumper)), **SPHERE).kind == "visual"
+
+
+def test_other_links_do_not_matter() -> None:
+    """A check looks at its own link."""
+    passes(shows_box, scene(LIDAR, BASE), **BOX)
+    passes(shows_nothing, scene(link("foot"), BASE), link="foot")

@@ -1,0 +1,311 @@
+"""How links are held together: the joints' types, names, and who is whose parent."""
+
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from grader.checks.joints import held_by, joints_named, root_of_tree
+from grader.robot.joints import JOINT_TYPES
+from tests.checks.asking import Arguments, ask, fails, graded, missing, passes
+from tests.checks.cases import BASE, FOOT, LIDAR, WHEEL, Case, cases_of
+from tests.checks.robots import Scene, joint, link, scene
+
+MOVING = [each for each in JOINT_TYPES if each != "fixed"]
+HELD: Arguments = {"link": "wheel", "parent": "base", "joint_type": "continuous"}
+FIXED: Arguments = {"link": "wheel", "parent": "base", "joint_type": "fixed"}
+ROOT: Arguments = {"link": "foot", "holds": "base"}
+
+
+def held(kind: str, **more: Any) -> Scene:
+    """A base with a wheel on one joint."""
+    return scene(BASE, WHEEL, joint("j", kind, "base", "wheel", **more))
+
+
+def in_line(*kinds: str) -> Scene:
+    """A base and a wheel with joints of these types between, one behind the other: a, b, c and so on."""
+    between = [f"mount{index}" for index in range(len(kinds) - 1)]
+    names = ["base", *between, "wheel"]
+    held_in_line = [
+        joint(letter, kind, above, below)
+        for letter, kind, above, below in zip("abcdef", kinds, names, names[1:], strict=False)
+    ]
+    return scene(BASE, WHEEL, *map(link, between), *held_in_line)
+
+
+@cases_of("joints")
+def test_what_joints_are_is_not_measured(case: Case) -> None:
+    """A fact about joints has no number, no tolerance and no unit."""
+    for found in (case.passing, case.failing):
+        outcome = ask(case.check, found, **case.arguments)
+        assert (outcome.measured, outcome.expected, outcome.tolerance, outcome.unit) == (None, None, None, None)
+
+
+# --- held_by ----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("wanted", JOINT_TYPES)
+@pytest.mark.parametrize("kind", JOINT_TYPES)
+def test_the_type_of_the_joint_decides(kind: str, wanted: str) -> None:
+    """Each type of joint passes for itself and for no other."""
+    outcome = graded(held_by, held(kind), link="wheel", parent="base", joint_type=wanted)
+    assert outcome.status == ("passed" if kind == wanted else "failed")
+    if kind == wanted:
+        assert outcome.message == f"a {kind} joint, 'j', holds 'wheel' to 'base'"
+    elif kind == "fixed":
+        assert outcome.message == f"'wheel' cannot move: joint 'j' is fixed, expected {wanted}"
+    else:
+        assert outcome.message == f"joint 'j', which holds 'wheel', is {kind}, expected {wanted}"
+
+
+def test_a_wrong_type_is_pointed_to() -> None:
+    """The place of a wrong type is the type itself."""
+    fails(held_by, held("revolute"), at='type="revolute"', **HELD)
+    fails(held_by, held("continuous"), at='type="continuous"', **FIXED)
+    fails(held_by, held("fixed"), at='type="fixed"', **HELD)
+
+
+def test_a_link_that_cannot_move_misses_a_moving_joint() -> None:
+    """Checks of motion miss the same thing, so that they are skipped and not failed again."""
+    error = missing(held_by, held("fixed"), **HELD)
+    assert (error.kind, error.name) == ("moving joint", "wheel")
+
+
+@pytest.mark.parametrize(
+    ("kind", "guess"),
+    [("Continuous", "continuous"), ("continous", "continuous"), ("fixd", "fixed"), ("", None), ("wheel", None)],
+)
+def test_an_unknown_type_is_quoted(kind: str, guess: str | None) -> None:
+    """A type that does not exist is told as it is written, with the one that may be meant."""
+    for arguments in (HELD, FIXED):
+        message = fails(held_by, held(kind), at=f'type="{kind}"', **arguments)
+        hint = f"; did you mean {guess!r}?" if guess else ""
+        assert message == f"joint 'j', which holds 'wheel', has the type {kind!r}, which does not exist{hint}"
+
+
+def test_an_unknown_type_moves_nothing() -> None:
+    """A link on a joint of an unknown type misses a moving joint, where one is asked for."""
+    error = missing(held_by, held("Continuous"), **HELD)
+    assert (error.kind, error.name) == ("moving joint", "wheel")
+
+
+@pytest.mark.parametrize("kinds", [("fixed", "continuous"), ("continuous", "fixed"), ("fixed", "continuous", "fixed")])
+def test_fixed_joints_may_stand_between(kinds: tuple[str, ...]) -> None:
+    """A mount between base and wheel changes nothing: the moving joint is the one that is named."""
+    name = "abc"[kinds.index("continuous")]
+    assert passes(held_by, in_line(*kinds), **HELD) == f"a continuous joint, {name!r}, holds 'wheel' to 'base'"
+
+
+def test_several_fixed_joints_are_as_good_as_one() -> None:
+    """A chain of fixed joints holds a link; the joint next to it is named."""
+    assert passes(held_by, in_line("fixed", "fixed", "fixed"), **FIXED) == "a fixed joint, 'c', holds 'wheel' to 'base'"
+
+
+def test_a_wrong_joint_in_a_chain_is_named() -> None:
+    """In a chain it is the moving joint that is wrong, wherever it stands."""
+    message = fails(held_by, in_line("revolute", "fixed"), at='type="revolute"', **HELD)
+    assert message == "joint 'a', which holds 'wheel', is revolute, expected continuous"
+
+
+@pytest.mark.parametrize("kinds", [("continuous", "continuous"), ("revolute", "fixed", "continuous")])
+def test_several_moving_joints_are_one_too_many(kinds: tuple[str, ...]) -> None:
+    """A wheel that can also be steered is not held by one continuous joint."""
+    last = "abc"[len(kinds) - 1]
+    message = fails(held_by, in_line(*kinds), **HELD)
+    assert message == f"several joints move 'wheel': 'a' and {last!r}; expected one continuous joint"
+    assert ask(held_by, in_line(*kinds), **FIXED).status == "failed"
+
+
+def test_a_type_that_does_not_exist_moves_nothing_in_a_chain() -> None:
+    """A joint of an unknown type beside a moving one is not told to move the link."""
+    message = fails(held_by, in_line("continuous", "Fixed"), **HELD)
+    assert "several joints move" not in message
+    assert "'Fixed'" in message
+
+
+def test_swapped_parent_and_child_are_told() -> None:
+    """A joint that has base and wheel the other way round is named as that."""
+    swapped = scene(BASE, WHEEL, joint("j", "continuous", "wheel", "base"))
+    message = fails(held_by, swapped, at="<joint", **HELD)
+    assert message == "'wheel' is above 'base': joint 'j' has them as parent and child the other way round"
+
+
+def test_in_a_swapped_chain_the_joint_below_the_link_is_named() -> None:
+    """Of several joints between, the one that makes the link a parent is pointed to."""
+    swapped = scene(
+        BASE, WHEEL, link("mount"), joint("a", "fixed", "wheel", "mount"), joint("b", "fixed", "mount", "base")
+    )
+    assert "joint 'a' has them" in fails(held_by, swapped, at='<joint name="a"', **FIXED)
+
+
+def test_another_parent_is_named() -> None:
+    """A link that is held to something else fails, and what holds it is told."""
+    beside = scene(BASE, LIDAR, WHEEL, joint("a", "fixed", "lidar", "base"), joint("b", "continuous", "lidar", "wheel"))
+    message = fails(held_by, beside, at='<joint name="b"', **HELD)
+    assert message == "joint 'b' holds 'wheel' to 'lidar', expected 'base' as the parent"
+
+
+def test_a_link_under_another_one_still_hangs_on_the_base() -> None:
+    """A wheel that hangs on the lidar moves with the base too, if the lidar is fixed to it."""
+    below = scene(BASE, LIDAR, WHEEL, joint("a", "fixed", "base", "lidar"), joint("b", "continuous", "lidar", "wheel"))
+    passes(held_by, below, **HELD)
+
+
+def test_a_link_without_a_joint_is_not_held() -> None:
+    """No joint, no connection: that is what is missing, not the right type."""
+    error = missing(held_by, scene(BASE, WHEEL), **HELD)
+    assert (error.kind, error.name) == ("connection", "base and wheel")
+
+
+def test_of_two_joints_to_one_link_the_last_in_name_order_counts() -> None:
+    """ROS 2 keeps the joint that is last in name order, wherever it stands, and so does the check."""
+    one, two = joint("a", "fixed", "base", "wheel"), joint("b", "continuous", "base", "wheel")
+    for order in ((one, two), (two, one)):
+        assert "'b'" in passes(held_by, scene(BASE, WHEEL, *order), **HELD)
+        assert "joint 'b', which holds" in fails(held_by, scene(BASE, WHEEL, *order), **FIXED)
+
+
+def test_what_a_joint_looks_like_otherwise_does_not_matter() -> None:
+    """A zero axis or an unreadable origin is the fault of other criteria, not of how the link is held."""
+    passes(held_by, held("continuous", axis="0 0 0"), **HELD)
+    passes(held_by, held("continuous", xyz="0 0"), **HELD)
+    passes(held_by, held("continuous", more='<mimic joint="nobody"/>'), **HELD)
+
+
+def test_links_on_a_loop_are_held_by_nobody() -> None:
+    """A loop of joints apart from the base is no way to hold a link to it."""
+    loop = scene(BASE, WHEEL, LIDAR, joint("a", "fixed", "lidar", "wheel"), joint("b", "fixed", "wheel", "lidar"))
+    error = missing(held_by, loop, **FIXED)
+    assert error.kind == "connection"
+    assert "'wheel' hangs on a loop of joints" in str(error)
+
+
+@settings(deadline=None, max_examples=60)
+@given(kinds=st.lists(st.sampled_from(JOINT_TYPES), min_size=1, max_size=5), wanted=st.sampled_from(JOINT_TYPES))
+def test_a_chain_holds_a_link_just_where_its_moving_joints_are_those_asked_for(kinds: list[str], wanted: str) -> None:
+    """Whatever joints lead down, only their moving ones count: none for a fixed one, else one of the type."""
+    moving = [kind for kind in kinds if kind != "fixed"]
+    outcome = graded(held_by, in_line(*kinds), link="wheel", parent="base", joint_type=wanted)
+    assert (outcome.status == "passed") == (moving == ([] if wanted == "fixed" else [wanted]))
+
+
+# --- joints_named -----------------------------------------------------------------------------------------------------
+
+NAMED: Arguments = {"parent": "base", "joints": {"lidar_joint": "lidar", "wheel_joint": "wheel"}}
+
+
+def named(lidar: str, wheel: str) -> Scene:
+    """A base with lidar and wheel, on joints of these names."""
+    return scene(
+        BASE, LIDAR, WHEEL, joint(lidar, "fixed", "base", "lidar"), joint(wheel, "continuous", "base", "wheel")
+    )
+
+
+def test_every_wrong_name_is_told() -> None:
+    """All wrong names are told at once, and the first is pointed to."""
+    message = fails(joints_named, named("a", "b"), at='name="a"', **NAMED)
+    assert message == "'lidar' is held by 'a', not 'lidar_joint'; 'wheel' is held by 'b', not 'wheel_joint'"
+
+
+def test_only_the_wrong_names_are_told() -> None:
+    """A right name beside a wrong one is passed over."""
+    message = fails(joints_named, named("lidar_joint", "Wheel_joint"), at='name="Wheel_joint"', **NAMED)
+    assert message == "'wheel' is held by 'Wheel_joint', not 'wheel_joint'"
+
+
+def test_swapped_names_are_wrong() -> None:
+    """The right names on each other's links are not right."""
+    message = fails(joints_named, named("wheel_joint", "lidar_joint"), **NAMED)
+    assert (
+        message
+        == "'lidar' is held by 'wheel_joint', not 'lidar_joint'; 'wheel' is held by 'lidar_joint', not 'wheel_joint'"
+    )
+
+
+def test_a_missing_link_is_held_by_no_joint_of_the_name() -> None:
+    """A link that is not there fails the names without hiding a wrong one."""
+    half = scene(BASE, WHEEL, joint("b", "continuous", "base", "wheel"))
+    message = fails(joints_named, half, at='name="b"', **NAMED)
+    assert message == "no joint 'lidar_joint' holds 'lidar'; 'wheel' is held by 'b', not 'wheel_joint'"
+
+
+def test_a_link_without_a_joint_is_held_by_no_name() -> None:
+    """Links that nothing joins fail the names; there is no place to look at."""
+    loose = scene(BASE, LIDAR, WHEEL)
+    assert (
+        fails(joints_named, loose, **NAMED)
+        == "no joint 'lidar_joint' holds 'lidar'; no joint 'wheel_joint' holds 'wheel'"
+    )
+    assert ask(joints_named, loose, **NAMED).location is None
+
+
+def test_any_joint_on_the_way_may_have_the_name() -> None:
+    """With a mount between, either joint may bear the name."""
+    for upper, lower in (("lidar_joint", "x"), ("x", "lidar_joint")):
+        mount = (joint(upper, "fixed", "base", "mount"), joint(lower, "fixed", "mount", "lidar"))
+        found = scene(BASE, LIDAR, link("mount"), *mount)
+        passes(joints_named, found, parent="base", joints={"lidar_joint": "lidar"})
+
+
+def test_a_joint_to_another_parent_does_not_count() -> None:
+    """A name is asked of the joints that hold a link to the parent."""
+    swapped = scene(BASE, LIDAR, joint("lidar_joint", "fixed", "lidar", "base"))
+    fails(joints_named, swapped, parent="base", joints={"lidar_joint": "lidar"})
+
+
+def test_a_single_name_is_listed_alone() -> None:
+    """One name is told as one."""
+    one = scene(BASE, LIDAR, joint("lidar_joint", "fixed", "base", "lidar"))
+    assert (
+        passes(joints_named, one, parent="base", joints={"lidar_joint": "lidar"})
+        == "the joints are named 'lidar_joint'"
+    )
+
+
+# --- root_of_tree -----------------------------------------------------------------------------------------------------
+
+
+def test_a_chain_of_fixed_joints_may_lead_from_the_root() -> None:
+    """The root need not hold the link directly."""
+    chain = (joint("a", "fixed", "foot", "mount"), joint("b", "fixed", "mount", "base"))
+    passes(root_of_tree, scene(FOOT, link("mount"), BASE, *chain), **ROOT)
+
+
+@pytest.mark.parametrize("kind", [*MOVING, "Fixed"])
+def test_a_loose_joint_does_not_hold_the_base(kind: str) -> None:
+    """A joint that moves, or whose type does not exist, is not fixed."""
+    message = fails(root_of_tree, scene(FOOT, BASE, joint("j", kind, "foot", "base")), at=f'type="{kind}"', **ROOT)
+    assert message == f"joint 'j' between 'foot' and 'base' is {kind}, expected fixed"
+
+
+def test_the_first_loose_joint_is_told() -> None:
+    """Of several joints the one that is not fixed is named."""
+    chain = (joint("a", "fixed", "foot", "mount"), joint("b", "revolute", "mount", "base"))
+    message = fails(root_of_tree, scene(FOOT, link("mount"), BASE, *chain), at='type="revolute"', **ROOT)
+    assert message == "joint 'b' between 'foot' and 'base' is revolute, expected fixed"
+
+
+def test_a_root_with_something_above_it_is_no_root() -> None:
+    """A link that hangs on another one fails, and what it hangs on is told."""
+    above = scene(link("world"), FOOT, BASE, joint("w", "fixed", "world", "foot"), joint("j", "fixed", "foot", "base"))
+    message = fails(root_of_tree, above, at='<joint name="w"', **ROOT)
+    assert message == "'foot' is not the root: joint 'w' makes it a child of 'world'"
+
+
+def test_a_root_beside_the_base_does_not_hold_it() -> None:
+    """A footprint that no joint leads from is missing a connection."""
+    error = missing(root_of_tree, scene(FOOT, BASE), **ROOT)
+    assert (error.kind, error.name) == ("connection", "base and foot")
+
+
+def test_a_loop_has_no_root() -> None:
+    """Where footprint and base hold each other, neither is the root."""
+    loop = scene(FOOT, BASE, joint("a", "fixed", "foot", "base"), joint("b", "fixed", "base", "foot"))
+    assert "'foot' is not the root: joint 'b'" in fails(root_of_tree, loop, at='<joint name="b"', **ROOT)
+
+
+def test_the_root_holds_whatever_else_hangs_on_it() -> None:
+    """Other links on the root do not matter, moving or not."""
+    more = scene(FOOT, BASE, WHEEL, joint("a", "fixed", "foot", "base"), joint("b", "continuous", "foot", "wheel"))
+    assert passes(root_of_tree, more, **ROOT) == "'foot' is the root, and 'base' is fixed to it"

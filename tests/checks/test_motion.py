@@ -1,0 +1,433 @@
+"""What moves when a joint is turned: rolling forward, the frame's axes, turning without wobble."""
+
+from math import cos, radians, sin
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from grader.checks.motion import axis_along, rolls_forward, turns_about_itself
+from tests.checks.asking import Arguments, ask, fails, graded, missing, passes
+from tests.checks.cases import BASE, FORWARD, WHEEL, Case, cases_of, rolling
+from tests.checks.robots import Scene, box, cylinder, joint, link, mesh, scene, sphere, turned, visual
+
+FORWARDS: Arguments = {"link": "wheel", "base": "base", "tolerance": 1.0}
+ALONG: Arguments = {
+    "link": "wheel",
+    "axis": (0.0, 0.0, 1.0),
+    "relative_to": "base",
+    "direction": (0.0, 1.0, 0.0),
+    "tolerance": 1.0,
+}
+ITSELF: Arguments = {"link": "wheel", "base": "base", "tolerance": 0.002, "angle": 1.0}
+
+ROLLS = "a small positive turn of joint 'wheel_joint' drives 'base' forward"
+
+
+def with_wheel(*visuals: str, kind: str = "continuous", rpy: str = FORWARD, axis: str = "0 0 1") -> Scene:
+    """A base with a wheel that shows these visuals."""
+    return scene(
+        BASE,
+        link("wheel", *visuals),
+        joint("wheel_joint", kind, "base", "wheel", xyz="-0.15 0.225 0", rpy=rpy, axis=axis),
+    )
+
+
+@cases_of("motion")
+def test_directions_are_measured_in_degrees(case: Case) -> None:
+    """Every outcome carries what was measured and expected; angles are in degrees."""
+    outcome = ask(case.check, case.failing, **case.arguments)
+    assert outcome.measured is not None
+    assert outcome.expected is not None
+    assert outcome.tolerance == 1.0
+    assert outcome.unit == "deg"
+
+
+# --- rolls_forward ----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("rpy", "axis"),
+    [
+        ("-1.57 0 0", "0 0 1"),
+        ("1.57 0 0", "0 0 -1"),
+        ("-1.5708 0 0", "0 0 5"),
+        ("", "0 1 0"),
+        ("0 0 3.14159", "0 -1 0"),
+        ("0 0 1.5708", "1 0 0"),
+        ("0 1 0", "0 1 0"),
+    ],
+)
+def test_every_way_to_turn_about_the_left_is_forward(rpy: str, axis: str) -> None:
+    """Whichever way the frame is turned, what counts is that the axis points to the base's left."""
+    passes(rolls_forward, with_wheel(visual(sphere(0.1)), rpy=rpy, axis=axis), **FORWARDS)
+
+
+@pytest.mark.parametrize(
+    ("rpy", "axis"), [(turned(roll=90), "0 0 1"), (FORWARD, "0 0 -1")], ids=["mirrored", "negated"]
+)
+def test_a_wheel_the_other_way_round_drives_backward(rpy: str, axis: str) -> None:
+    """A mirrored frame or a negated axis turns the wheel the other way: the axis is where to look."""
+    found = rolling(rpy=rpy, axis=axis)
+    message = fails(rolls_forward, found, at=f'xyz="{axis}"', **FORWARDS)
+    assert message == "a small positive turn of joint 'wheel_joint' drives 'base' backward, expected forward"
+    assert ask(rolls_forward, found, **FORWARDS).measured == pytest.approx((-1.0, 0.0, 0.0))
+    assert ask(rolls_forward, found, **FORWARDS).expected == (1.0, 0.0, 0.0)
+
+
+def test_a_wheel_along_x_drives_sideways() -> None:
+    """A wheel whose axis lies along the base's x axis rolls to the side."""
+    for pitch, y in ((90, "-1"), (-90, "1")):
+        message = fails(rolls_forward, rolling(rpy=turned(pitch=pitch)), **FORWARDS)
+        assert message == (
+            f"a small positive turn of joint 'wheel_joint' drives 'base' sideways, along 0 {y} 0, expected forward"
+        )
+
+
+def test_a_wheel_that_lies_flat_does_not_roll() -> None:
+    """A wheel that turns about the vertical stays where it is: its lowest point is its middle."""
+    flat = rolling(rpy="")
+    message = fails(rolls_forward, flat, at='xyz="0 0 1"', **FORWARDS)
+    assert message == "turning joint 'wheel_joint' does not roll 'wheel': its lowest point stays where it is"
+    assert ask(rolls_forward, flat, **FORWARDS).measured is None
+
+
+def test_a_wheel_that_turns_about_its_contact_does_not_roll() -> None:
+    """An axis through the lowest point moves everything but that point."""
+    found = with_wheel(visual(sphere(0.1)), rpy="", axis="0 0 1")
+    assert "does not roll" in fails(rolls_forward, found, **FORWARDS)
+
+
+def test_a_tilted_wheel_rolls_where_its_axis_points() -> None:
+    """A cambered wheel rolls straight; its contact moves sideways and forward as its axis says."""
+    passes(rolls_forward, rolling(rpy=turned(roll=-80)), **FORWARDS)
+    passes(rolls_forward, rolling(rpy=turned(roll=-100)), **FORWARDS)
+
+
+@pytest.mark.parametrize(
+    ("off", "fine"), [(0.0, True), (0.99, True), (1.0, True), (-1.0, True), (1.01, False), (-1.01, False)]
+)
+def test_straight_ahead_has_a_tolerance(off: float, fine: bool) -> None:
+    """The wheel may toe in or out by the tolerance, its end included; beyond it the message says by how much."""
+    outcome = ask(rolls_forward, rolling(rpy=turned(roll=-90, yaw=off)), **FORWARDS)
+    assert (outcome.status == "passed") == fine
+    assert outcome.measured == pytest.approx((cos(radians(off)), sin(radians(off)), 0.0))
+
+
+@pytest.mark.parametrize(
+    ("yaw", "words"),
+    [
+        (10.0, f"{ROLLS}, 10 degrees off straight ahead"),
+        (-44.0, f"{ROLLS}, 44 degrees off straight ahead"),
+        (46.0, "sideways, along 0.6947 0.7193 0, expected forward"),
+        (134.0, "sideways, along -0.6947 0.7193 0, expected forward"),
+        (136.0, "backward, expected forward"),
+    ],
+)
+def test_a_heading_is_told_in_words(yaw: float, words: str) -> None:
+    """Up to 45 degrees is forward with a slant, from 135 backward, and sideways between, with the direction."""
+    assert fails(rolls_forward, rolling(rpy=turned(roll=-90, yaw=yaw)), **FORWARDS).endswith(words)
+
+
+def test_a_small_slant_is_told_though_it_passes() -> None:
+    """A slant that a reader can see in the file is told; rounded angles are not."""
+    assert passes(rolls_forward, rolling(rpy="-1.57 0 0.01"), **FORWARDS) == f"{ROLLS}, 0.6 degrees off straight ahead"
+    assert passes(rolls_forward, rolling(rpy="-1.57 0 0"), **FORWARDS) == ROLLS
+
+
+def test_forward_and_up_are_the_rubrics() -> None:
+    """Another lab may drive along y, or on a wall; directions need not be unit vectors."""
+    sideways = rolling(rpy=turned(pitch=-90))
+    passes(rolls_forward, sideways, **FORWARDS, forward=(0.0, 3.0, 0.0))
+    passes(rolls_forward, sideways, **FORWARDS, forward=(0.0, 1.0, 0.0), up=(0.0, 0.0, 0.1))
+    flat = rolling(rpy="")
+    passes(rolls_forward, flat, **FORWARDS, up=(0.0, 1.0, 0.0), forward=(-1.0, 0.0, 0.0))
+    fails(rolls_forward, flat, **FORWARDS, up=(0.0, -1.0, 0.0), forward=(-1.0, 0.0, 0.0))
+
+
+def test_the_lowest_of_several_visuals_touches_the_ground() -> None:
+    """A hub beside the wheel does not touch the ground, so it does not matter."""
+    hub = visual(box(0.01, 0.01, 0.01), xyz="0.05 0 0")
+    for order in ((hub, visual(cylinder())), (visual(cylinder()), hub)):
+        passes(rolls_forward, with_wheel(*order), **FORWARDS)
+
+
+def test_a_wheel_without_an_axis_points_to_its_joint() -> None:
+    """Where no axis is written ROS 2 takes x; the joint is where it is missing."""
+    found = scene(BASE, WHEEL, joint("wheel_joint", "continuous", "base", "wheel", rpy=FORWARD))
+    message = fails(rolls_forward, found, at="<joint", **FORWARDS)
+    assert "sideways" in message or "does not roll" in message
+
+
+def test_the_joint_next_to_the_wheel_is_turned() -> None:
+    """Of several moving joints the one nearest to the wheel counts; a steering joint above it is left at 0."""
+    steered = scene(
+        BASE,
+        link("fork"),
+        WHEEL,
+        joint("steering", "revolute", "base", "fork", xyz="-0.15 0.225 0", axis="0 0 1"),
+        joint("wheel_joint", "continuous", "fork", "wheel", rpy=FORWARD, axis="0 0 1"),
+    )
+    assert passes(rolls_forward, steered, **FORWARDS) == ROLLS
+    passes(turns_about_itself, steered, **ITSELF)
+
+
+def test_the_moving_joint_may_stand_above_a_mount() -> None:
+    """The wheel may be fixed to what the joint turns."""
+    mounted = scene(
+        BASE,
+        link("axle"),
+        WHEEL,
+        joint("wheel_joint", "continuous", "base", "axle", xyz="-0.15 0.225 0", rpy=FORWARD, axis="0 0 1"),
+        joint("mount", "fixed", "axle", "wheel", xyz="0 0 0.01"),
+    )
+    assert passes(rolls_forward, mounted, **FORWARDS) == ROLLS
+    passes(turns_about_itself, mounted, **ITSELF)
+
+
+def test_a_wheel_that_follows_another_joint_is_turned_itself() -> None:
+    """A mimic joint is turned for the question, whatever it follows."""
+    follower = joint("wheel_joint", "continuous", "base", "wheel", rpy=FORWARD, axis="0 0 1",
+                     more='<mimic joint="other" multiplier="-1"/>')  # fmt: skip
+    leader = joint("other", "continuous", "base", "x", axis="0 0 1")
+    passes(rolls_forward, scene(BASE, WHEEL, link("x"), follower, leader), **FORWARDS)
+
+
+@pytest.mark.parametrize("kind", ["fixed", "Continuous", "", "wheel"])
+def test_a_wheel_on_a_joint_that_does_not_move_misses_one(kind: str) -> None:
+    """Fixed joints and types that do not exist move nothing: the moving joint is missing."""
+    for check, arguments in ((rolls_forward, FORWARDS), (turns_about_itself, ITSELF)):
+        error = missing(check, rolling(kind=kind), **arguments)
+        assert (error.kind, error.name) == ("moving joint", "wheel")
+        assert fails(check, rolling(kind=kind), at="<joint", **arguments) == "no joint between 'base' and 'wheel' moves"
+
+
+def test_a_link_does_not_move_against_itself() -> None:
+    """Where base and wheel are one link there is no joint between."""
+    assert missing(rolls_forward, rolling(), **{**FORWARDS, "link": "base"}).kind == "moving joint"
+
+
+@pytest.mark.parametrize("kind", ["planar", "floating", "prismatic"])
+def test_a_joint_of_another_kind_is_the_students_fault(kind: str) -> None:
+    """A joint that slides or floats is no error of the grader's: it fails, or misses a joint that turns."""
+    for check, arguments in ((rolls_forward, FORWARDS), (turns_about_itself, ITSELF)):
+        assert graded(check, rolling(kind=kind), **arguments).status in ("passed", "failed")
+    assert graded(rolls_forward, rolling(kind=kind), **FORWARDS).status == "failed"
+
+
+def test_a_revolute_joint_turns_too() -> None:
+    """How far a joint may turn is another criterion."""
+    passes(rolls_forward, rolling(kind="revolute"), **FORWARDS)
+    passes(turns_about_itself, rolling(kind="revolute"), **ITSELF)
+
+
+@pytest.mark.parametrize(
+    ("found", "reason", "at"),
+    [
+        (rolling(axis="0 0 0"), "its axis is 0 0 0", 'xyz="0 0 0"'),
+        (rolling(axis="0 1"), "its axis cannot be read", "<joint"),
+        (rolling(xyz="1 2"), "its origin cannot be read", "<joint"),
+    ],
+    ids=["zero-axis", "unreadable-axis", "unreadable-origin"],
+)
+def test_nothing_rolls_on_a_joint_without_a_pose(found: Scene, reason: str, at: str) -> None:
+    """Where the joint's pose is undefined that is what is missing, and why."""
+    error = missing(rolls_forward, found, **FORWARDS)
+    assert (error.kind, error.name) == ("pose behind joint", "wheel_joint")
+    assert (
+        fails(rolls_forward, found, at=at, **FORWARDS) == f"the pose behind joint 'wheel_joint' is undefined: {reason}"
+    )
+
+
+def test_a_swapped_joint_still_has_a_direction() -> None:
+    """With parent and child the other way round the base turns under the wheel: the other way."""
+    swapped = scene(BASE, WHEEL, joint("wheel_joint", "continuous", "wheel", "base", rpy=turned(roll=90), axis="0 1 0"))
+    assert "backward" in fails(rolls_forward, swapped, **FORWARDS)
+
+
+@settings(deadline=None, max_examples=80)
+@given(yaw=st.floats(-180.0, 180.0), spin=st.floats(-4.0, 4.0), radius=st.floats(0.01, 2.0))
+def test_a_wheel_drives_where_its_axis_says(yaw: float, spin: float, radius: float) -> None:
+    """For every heading, size and starting turn of the wheel, it drives across its axis, seen from above."""
+    found = scene(
+        BASE,
+        link("wheel", visual(cylinder(radius, 0.05), rpy=(0.0, 0.0, spin))),
+        joint("wheel_joint", "continuous", "base", "wheel", rpy=turned(roll=-90, yaw=yaw), axis="0 0 1"),
+    )
+    outcome = ask(rolls_forward, found, **FORWARDS)
+    assert outcome.measured == pytest.approx((cos(radians(yaw)), sin(radians(yaw)), 0.0), abs=1e-6)
+    if abs(abs(yaw) - 1.0) > 1e-6:
+        assert (outcome.status == "passed") == (abs(yaw) < 1.0)
+
+
+# --- axis_along -------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("angle", ["roll", "yaw"])
+def test_an_axis_has_a_tolerance(angle: str) -> None:
+    """An axis may be off by the tolerance, its end included; beyond it the message says by how much."""
+    for off, fine in ((0.0, True), (0.99, True), (1.0, True), (-1.0, True), (1.01, False), (-1.01, False)):
+        rpy = turned(roll=-90 + off) if angle == "roll" else turned(roll=-90, yaw=off)
+        outcome = ask(axis_along, rolling(rpy=rpy), **ALONG)
+        assert (outcome.status == "passed") == fine, off
+        assert outcome.expected == (0.0, 1.0, 0.0)
+    message = fails(axis_along, rolling(rpy=turned(roll=-80)), at="rpy=", **ALONG)
+    assert message == (
+        "the z axis of the frame 'wheel' points along 0 0.9848 0.1736 in 'base', expected 0 1 0: 10 degrees off"
+    )
+
+
+@pytest.mark.parametrize(
+    ("axis", "direction", "name"),
+    [
+        ((1.0, 0.0, 0.0), (1.0, 0.0, 0.0), "the x axis"),
+        ((0.0, 1.0, 0.0), (0.0, 0.0, -1.0), "the y axis"),
+        ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), "the z axis"),
+        ((0.0, 0.0, -2.0), (0.0, -9.0, 0.0), "the direction 0 0 -2"),
+        ((1.0, 0.0, 1.0), (1.0, 1.0, 0.0), "the direction 1 0 1"),
+    ],
+)
+def test_any_axis_of_a_frame_can_be_asked_for(
+    axis: tuple[float, float, float], direction: tuple[float, float, float], name: str
+) -> None:
+    """An axis is named as what it is; neither it nor the direction has to be a unit vector."""
+    message = passes(axis_along, rolling(), **{**ALONG, "axis": axis, "direction": direction})
+    assert message.startswith(f"{name} of the frame 'wheel' points along ")
+
+
+def test_the_joints_axis_does_not_turn_the_frame() -> None:
+    """It is the frame that is asked for, whatever it turns about and however the picture is turned."""
+    passes(axis_along, rolling(axis="0 0 -1"), **ALONG)
+    passes(axis_along, with_wheel(visual(cylinder(), rpy="1 2 3"), axis="1 0 0"), **ALONG)
+
+
+def test_a_frame_that_is_not_turned_points_to_what_is_there() -> None:
+    """Without an rpy the origin is pointed to, without an origin the link."""
+    message = fails(axis_along, rolling(rpy=""), at='<origin xyz="-0.15 0.225 0.0"', **ALONG)
+    assert message.endswith("points along 0 0 1 in 'base', expected 0 1 0: 90 degrees off")
+    bare = scene(BASE, WHEEL, joint("wheel_joint", "continuous", "base", "wheel"))
+    fails(axis_along, bare, at='<link name="wheel"', **ALONG)
+
+
+def test_an_axis_is_told_in_the_frame_that_is_named() -> None:
+    """In a turned frame the same axis has other coordinates."""
+    found = scene(BASE, WHEEL, link("mast"), joint("m", "fixed", "base", "mast", rpy=turned(yaw=90)),
+                  joint("j", "continuous", "base", "wheel", rpy=FORWARD))  # fmt: skip
+    passes(axis_along, found, **{**ALONG, "relative_to": "mast", "direction": (1.0, 0.0, 0.0)})
+
+
+@settings(deadline=None, max_examples=80)
+@given(off=st.floats(0.0, 180.0), about=st.floats(0.0, 360.0))
+def test_the_angle_between_axes_is_exact(off: float, about: float) -> None:
+    """However small or large the angle, it is the one by which the frame was turned."""
+    tilt = rolling(rpy=(0.0, radians(off), radians(about)))
+    outcome = ask(axis_along, tilt, **{**ALONG, "direction": (0.0, 0.0, 1.0), "tolerance": off + 1e-6})
+    assert outcome.status == "passed"
+    outcome = ask(axis_along, tilt, **{**ALONG, "direction": (0.0, 0.0, 1.0), "tolerance": off - 1e-6})
+    assert outcome.status == "failed"
+
+
+# --- turns_about_itself -----------------------------------------------------------------------------------------------
+
+
+def test_a_cylinder_may_be_moved_along_its_axis() -> None:
+    """Where on the axis the wheel sits does not matter, nor which way the axis points."""
+    for xyz in ("0 0 0.025", "0 0 -0.5", "0 0 0"):
+        for axis in ("0 0 1", "0 0 -1", "0 0 3"):
+            passes(turns_about_itself, with_wheel(visual(cylinder(), xyz=xyz), axis=axis), **ITSELF)
+
+
+@pytest.mark.parametrize(
+    ("axis", "rpy"),
+    [("0 1 0", "1.5708 0 0"), ("0 1 0", "-1.5708 0 0"), ("1 0 0", "0 1.5708 0"), ("0 0 1", "3.1416 0 0")],
+)
+def test_the_picture_may_be_turned_instead_of_the_frame(axis: str, rpy: str) -> None:
+    """Axis and cylinder must agree, wherever the turn is written."""
+    passes(turns_about_itself, with_wheel(visual(cylinder(), rpy=rpy), rpy="", axis=axis), **ITSELF)
+
+
+@pytest.mark.parametrize(
+    ("off", "fine"), [(0.99, True), (1.0, True), (-1.0, True), (1.01, False), (-1.01, False), (90.0, False)]
+)
+def test_a_wobble_has_a_tolerance(off: float, fine: bool) -> None:
+    """The joint's axis may be off the cylinder's by the angle, its end included; beyond it the wheel wobbles."""
+    found = with_wheel(visual(cylinder(), rpy=turned(pitch=off)))
+    outcome = ask(turns_about_itself, found, **ITSELF)
+    assert (outcome.status == "passed") == fine
+    if not fine:
+        assert outcome.measured == pytest.approx(abs(off))
+        assert outcome.expected == 0.0
+        assert (outcome.tolerance, outcome.unit) == (1.0, "deg")
+        assert outcome.message == (
+            f"'wheel' wobbles: the axis of joint 'wheel_joint' is {round(abs(off), 1):g} degrees off the cylinder's axis"
+        )
+        assert outcome.location == found.place('xyz="0 0 1"')
+
+
+@pytest.mark.parametrize(
+    ("off", "fine"), [(0.0019, True), (0.002, True), (-0.002, True), (0.0021, False), (-0.0021, False)]
+)
+@pytest.mark.parametrize("axis", ["x", "y"])
+def test_an_axle_beside_the_middle_has_a_tolerance(axis: str, off: float, fine: bool) -> None:
+    """The axis may pass the cylinder's by the tolerance, its end included; beyond it the message says how far."""
+    xyz = f"{off!r} 0 0.025" if axis == "x" else f"0 {off!r} 0.025"
+    found = with_wheel(visual(cylinder(), xyz=xyz))
+    outcome = ask(turns_about_itself, found, **ITSELF)
+    assert (outcome.status == "passed") == fine
+    assert (outcome.tolerance, outcome.unit) == (0.002, "m")
+    assert outcome.measured == pytest.approx(abs(off))
+    if not fine:
+        assert outcome.message == (
+            "'wheel' turns off its centre: joint 'wheel_joint' turns it about a line 2.1 mm beside it"
+        )
+        assert outcome.location == found.place(f'xyz="{xyz}"')
+
+
+def test_a_wheel_that_shows_no_cylinder_has_no_axis() -> None:
+    """Boxes, spheres and meshes do not turn about themselves: a cylinder is missing, as it is for the shape's criterion."""
+    for shape in (box(0.2, 0.2, 0.05), sphere(0.1), mesh()):
+        found = rolling().with_shape(shape)
+        error = missing(turns_about_itself, found, **ITSELF)
+        assert (error.kind, error.name) == ("cylinder", "wheel")
+        assert graded(turns_about_itself, found, **ITSELF).status == "failed"
+
+
+def test_the_cylinder_beside_a_larger_shape_is_found() -> None:
+    """A wheel with a fender larger than itself still shows a cylinder that turns about its axis."""
+    fender = visual(box(0.3, 0.3, 0.3))
+    passes(turns_about_itself, with_wheel(visual(cylinder()), fender), **ITSELF)
+
+
+def test_a_hub_does_not_turn_the_wheel_about_itself() -> None:
+    """Of several cylinders the largest is the wheel."""
+    hub, wheel = visual(cylinder(0.01, 0.1)), visual(cylinder(), xyz="0.05 0 0")
+    for order in ((hub, wheel), (wheel, hub)):
+        assert "50 mm beside it" in fails(turns_about_itself, with_wheel(*order), at='xyz="0.05', **ITSELF)
+
+
+@settings(deadline=None, max_examples=80)
+@given(
+    rpy=st.tuples(*[st.floats(-4.0, 4.0, width=16)] * 3),
+    along=st.floats(-2.0, 2.0, width=16),
+    beside=st.floats(0.0, 1.0, width=16),
+    around=st.floats(0.0, 6.0, width=16),
+)
+def test_how_far_an_axle_is_beside_the_middle_does_not_depend_on_the_frame(
+    rpy: tuple[float, float, float], along: float, beside: float, around: float
+) -> None:
+    """The distance between the two axes is what was written, however the joint is turned and wherever the wheel sits."""
+    xyz = f"{beside * cos(around)!r} {beside * sin(around)!r} {along!r}"
+    joined = joint("wheel_joint", "continuous", "base", "wheel", rpy=rpy, axis="0 0 -1")
+    outcome = ask(turns_about_itself, scene(BASE, link("wheel", visual(cylinder(), xyz=xyz)), joined), **ITSELF)
+    assert outcome.measured == pytest.approx(beside, abs=1e-9)
+    assert (outcome.status == "passed") == (beside <= 0.002)
+
+
+@settings(deadline=None, max_examples=60)
+@given(tilt=st.floats(0.0, 180.0))
+def test_a_wobble_is_never_more_than_a_right_angle(tilt: float) -> None:
+    """An axis has no head and no tail: turned by 179 degrees it is one degree off."""
+    found = with_wheel(visual(cylinder(), rpy=(radians(tilt), 0.0, 0.0)))
+    outcome = ask(turns_about_itself, found, **{**ITSELF, "angle": 0.0})
+    if min(tilt, 180.0 - tilt) > 1e-6:
+        assert outcome.measured == pytest.approx(min(tilt, 180.0 - tilt), abs=1e-6)

@@ -1,0 +1,588 @@
+"""Where things are: frames, centres, bottoms, gaps and overlaps, just inside and just outside their tolerances."""
+
+from itertools import product
+from math import cos, pi, sin
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from grader.checks.placement import (
+    bottom_at_height,
+    bottoms_at_height,
+    centre_at,
+    clear_of,
+    frame_at,
+    stands_on,
+    under_the_base,
+)
+from grader.robot.kinematics import Configuration
+from tests.checks.asking import Arguments, ask, fails, graded, missing, passes
+from tests.checks.cases import BASE, CASTER, FOOT, FORWARD, LIDAR, WHEEL, Case, cases_of, mounted, rolling, standing
+from tests.checks.robots import Scene, box, cylinder, joint, link, mesh, numbers, scene, sphere, turned, visual
+
+FRAME: Arguments = {"link": "lidar", "relative_to": "base", "xyz": (0.15, 0.0, 0.225), "tolerance": 0.002}
+CENTRE: Arguments = {"link": "wheel", "relative_to": "base", "xyz": (-0.15, 0.225, 0.0), "tolerance": 0.002}
+BOTTOM: Arguments = {"link": "base", "relative_to": "base", "height": 0.0, "tolerance": 0.002}
+BOTTOMS: Arguments = {"links": ["wheel", "caster"], "relative_to": "foot", "height": 0.0, "tolerance": 0.002}
+ON: Arguments = {"link": "lidar", "on": "base", "tolerance": 0.002}
+CLEAR: Arguments = {"link": "wheel", "of": "base", "tolerance": 0.002}
+UNDER: Arguments = {"link": "foot", "base": "base", "wheels": ["wheel"], "tolerance": 0.002, "angle": 1.0}
+
+# Offsets in metres from what is expected, and whether a tolerance of 2 mm takes them.
+OFFSETS = [(0.0, True), (0.0019, True), (0.002, True), (-0.002, True), (0.0021, False), (-0.0021, False)]
+
+
+@cases_of("placement")
+def test_places_are_measured_in_metres(case: Case) -> None:
+    """Every outcome carries what was measured and expected, the tolerance, and metres as the unit."""
+    for found in (case.passing, case.failing):
+        outcome = ask(case.check, found, **case.arguments)
+        assert outcome.measured is not None
+        assert outcome.expected is not None
+        assert (outcome.tolerance, outcome.unit) == (0.002, "m")
+
+
+def hanging(kind: str, **more: str) -> Scene:
+    """A base with a wheel on a joint that is broken in some way."""
+    return scene(BASE, WHEEL, joint("wheel_joint", kind, "base", "wheel", **more))
+
+
+def far_away() -> Scene:
+    """A base with a wheel so far away that its place is no number."""
+    far = numbers((1e308, 1e308, 1e308))
+    mount, wheel = (
+        joint("mount_joint", "fixed", "base", "m", xyz=far),
+        joint("wheel_joint", "fixed", "m", "wheel", xyz=far),
+    )
+    return scene(BASE, WHEEL, link("m"), mount, wheel)
+
+
+@pytest.mark.parametrize(
+    ("found", "reason", "at"),
+    [
+        (hanging("continuous", axis="0 0 0"), "its axis is 0 0 0", 'xyz="0 0 0"'),
+        (hanging("fixed", xyz="1 2"), "its origin cannot be read", "<joint"),
+        (hanging("fixed", rpy="a b c"), "its origin cannot be read", "<joint"),
+        (far_away(), "its numbers are too large", '<joint name="wheel_joint"'),
+    ],
+    ids=["zero-axis", "two-numbers", "letters", "overflow"],
+)
+def test_nothing_is_known_behind_a_joint_without_a_pose(found: Scene, reason: str, at: str) -> None:
+    """Where a joint's pose is undefined every check of what is behind it misses the same thing, and says why."""
+    for check, arguments in ((frame_at, {**FRAME, "link": "wheel"}), (centre_at, CENTRE), (clear_of, CLEAR)):
+        error = missing(check, found, **arguments)
+        assert (error.kind, error.name) == ("pose behind joint", "wheel_joint")
+        assert fails(check, found, at=at, **arguments) == f"the pose behind joint 'wheel_joint' is undefined: {reason}"
+
+
+def test_a_joint_without_a_pose_hides_nothing_before_it() -> None:
+    """What stands before the broken joint is measured as ever, and so is what hangs together behind it."""
+    broken = joint("a", "fixed", "foot", "base", xyz="0 0")
+    found = scene(FOOT, BASE, LIDAR, broken, joint("b", "fixed", "base", "lidar", xyz="0.15 0 0.225"))
+    passes(frame_at, found, **FRAME)
+    passes(stands_on, found, **ON)
+    assert missing(frame_at, found, **{**FRAME, "relative_to": "foot"}).name == "a"
+
+
+@pytest.mark.parametrize("kind", ["continuous", "revolute", "prismatic", "planar", "floating", "fixed", "Fixed", ""])
+def test_joints_of_every_type_are_at_zero(kind: str) -> None:
+    """Places are measured with every joint at 0, whatever its type and even if it has none that exists."""
+    joined = joint("j", kind, "base", "wheel", xyz=(-0.15, 0.225, 0.0), rpy=FORWARD, axis="0 0 1")
+    passes(centre_at, scene(BASE, WHEEL, joined), **CENTRE)
+
+
+# --- frame_at ---------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("axis", "offset"), list(product(range(3), OFFSETS)))
+def test_a_frame_has_a_tolerance_along_each_axis(axis: int, offset: tuple[float, bool]) -> None:
+    """Each coordinate may be off by the tolerance, its end included; beyond it the message says which and how far."""
+    off, fine = offset
+    xyz = [0.15, 0.0, 0.225]
+    xyz[axis] += off
+    outcome = ask(frame_at, mounted((xyz[0], xyz[1], xyz[2])), **FRAME)
+    assert (outcome.status == "passed") == fine
+    assert outcome.measured == pytest.approx(tuple(xyz))
+    assert outcome.expected == (0.15, 0.0, 0.225)
+    if not fine:
+        side = "large" if off > 0 else "small"
+        assert outcome.message.endswith(f" m in 'base', expected 0.15 0 0.225 m: {'xyz'[axis]} is 2.1 mm too {side}")
+
+
+def test_a_frame_without_an_origin_points_to_its_joint() -> None:
+    """Where no origin is written, the joint is where it is missing."""
+    found = scene(BASE, LIDAR, joint("j", "fixed", "base", "lidar"))
+    message = fails(frame_at, found, at="<joint", **FRAME)
+    assert message.endswith("expected 0.15 0 0.225 m: x is 150 mm too small, z is 225 mm too small")
+
+
+def test_an_origin_without_xyz_points_to_its_tag() -> None:
+    """An origin that leaves its xyz out is pointed to as a whole."""
+    fails(frame_at, scene(BASE, LIDAR, joint("j", "fixed", "base", "lidar", rpy="0 0 1")), at="<origin rpy", **FRAME)
+
+
+def test_the_offset_of_a_visual_does_not_move_the_frame() -> None:
+    """The picture is right, but the frame is not: that is what the check is for."""
+    found = scene(BASE, link("lidar", visual(cylinder(), xyz="0.15 0 0.225")), joint("j", "fixed", "base", "lidar"))
+    fails(frame_at, found, **FRAME)
+    passes(stands_on, found, **ON)
+
+
+def test_frames_are_measured_in_the_frame_that_is_named() -> None:
+    """Where the other frame is turned and moved, the point is given in it, also from child to parent."""
+    found = mounted((1.0, 2.0, 3.0), turned(yaw=90))
+    passes(frame_at, found, link="lidar", relative_to="base", xyz=(1.0, 2.0, 3.0), tolerance=1e-9)
+    passes(frame_at, found, link="base", relative_to="lidar", xyz=(-2.0, 1.0, -3.0), tolerance=1e-9)
+    passes(frame_at, found, link="base", relative_to="base", xyz=(0.0, 0.0, 0.0), tolerance=0.0)
+
+
+def test_a_root_that_is_elsewhere_points_to_its_link() -> None:
+    """The frame of the root has no joint above it: its link is where to look."""
+    arguments: Arguments = {"link": "base", "relative_to": "lidar", "xyz": (0.0, 0.0, 0.0), "tolerance": 0.002}
+    fails(frame_at, mounted(), at='<link name="base"', **arguments)
+
+
+positions = st.tuples(*[st.floats(-1.0, 1.0, width=16)] * 3)
+angles = st.tuples(*[st.floats(-4.0, 4.0, width=16)] * 3)
+
+
+@settings(deadline=None, max_examples=60)
+@given(steps=st.lists(st.tuples(positions, angles), min_size=1, max_size=4), moves=st.booleans())
+def test_a_frame_passes_where_forward_kinematics_puts_it(
+    steps: list[tuple[tuple[float, ...], tuple[float, ...]]], moves: bool
+) -> None:
+    """However many joints lead to a link, its frame is where they put it, within any tolerance but rounding."""
+    names = ["base", *(f"m{index}" for index in range(len(steps) - 1)), "lidar"]
+    kind = "continuous" if moves else "fixed"
+    joined = [
+        joint(f"j{index}", kind, names[index], names[index + 1], xyz=xyz, rpy=rpy)
+        for index, (xyz, rpy) in enumerate(steps)
+    ]
+    found = scene(BASE, LIDAR, *map(link, names[1:-1]), *joined)
+    xyz = _walked(steps)
+    passes(frame_at, found, link="lidar", relative_to="base", xyz=xyz, tolerance=1e-9)
+    beyond = (xyz[0] + 0.0021, xyz[1], xyz[2])
+    fails(frame_at, found, link="lidar", relative_to="base", xyz=beyond, tolerance=0.002)
+
+
+def _walked(steps: list[tuple[tuple[float, ...], tuple[float, ...]]]) -> tuple[float, float, float]:
+    """The end of a chain of origins, worked out from its tip: turn about x, y and z, then move."""
+    x, y, z = 0.0, 0.0, 0.0
+    for (u, v, w), (roll, pitch, yaw) in reversed(steps):
+        y, z = y * cos(roll) - z * sin(roll), y * sin(roll) + z * cos(roll)
+        x, z = x * cos(pitch) + z * sin(pitch), z * cos(pitch) - x * sin(pitch)
+        x, y = x * cos(yaw) - y * sin(yaw), x * sin(yaw) + y * cos(yaw)
+        x, y, z = x + u, y + v, z + w
+    return (x, y, z)
+
+
+# --- centre_at --------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("axis", "offset"), list(product(range(3), OFFSETS)))
+def test_a_centre_has_a_tolerance_along_each_axis(axis: int, offset: tuple[float, bool]) -> None:
+    """Each coordinate may be off by the tolerance, its end included, whichever origin it comes from."""
+    off, fine = offset
+    xyz = [-0.15, 0.225, 0.0]
+    xyz[axis] += off
+    by_joint = rolling(xyz=(xyz[0], xyz[1], xyz[2]))
+    shifted = link("wheel", visual(cylinder(), xyz=(xyz[0] + 0.15, xyz[1] - 0.225, xyz[2])))
+    by_visual = scene(BASE, shifted, joint("j", "continuous", "base", "wheel", xyz="-0.15 0.225 0"))
+    for found in (by_joint, by_visual):
+        outcome = ask(centre_at, found, **CENTRE)
+        assert (outcome.status == "passed") == fine
+        assert outcome.measured == pytest.approx(tuple(xyz))
+        assert fine or f"{'xyz'[axis]} is 2.1 mm too {'large' if off > 0 else 'small'}" in outcome.message
+
+
+@pytest.mark.parametrize(
+    ("joint_xyz", "visual_xyz", "rpy"),
+    [
+        ("-0.15 0.2 0", "0 0 0.025", "-1.57 0 0"),
+        ("-0.15 0.225 0", "", "-1.57 0 0"),
+        ("-0.15 0.25 0", "0 0 -0.025", "-1.5708 0 0"),
+        ("-0.15 0.2 0", "0 0 -0.025", "1.57 0 0"),
+        ("-0.15 0.2 0", "0 0.025 0", ""),
+        ("0 0 0", "-0.15 0.225 0", ""),
+    ],
+)
+def test_joint_and_visual_place_the_centre_together(joint_xyz: str, visual_xyz: str, rpy: str) -> None:
+    """It does not matter how the way to the centre is split between the two origins."""
+    wheel = link("wheel", visual(cylinder(), xyz=visual_xyz))
+    found = scene(BASE, wheel, joint("j", "continuous", "base", "wheel", xyz=joint_xyz, rpy=rpy))
+    assert passes(centre_at, found, **CENTRE) == "the centre of what 'wheel' shows is at -0.15 0.225 0 m in 'base'"
+
+
+def test_a_wrong_centre_is_pointed_to_where_it_was_moved() -> None:
+    """The visual's origin is pointed to where it moves the shape, else the joint's, else the joint."""
+    moved = link("wheel", visual(cylinder(), xyz="0 0 -0.025"))
+    joined = joint("j", "continuous", "base", "wheel", xyz="-0.15 0.2 0", rpy=FORWARD)
+    fails(centre_at, scene(BASE, moved, joined), at='xyz="0 0 -0.025"', **CENTRE)
+    unmoved = link("wheel", visual(cylinder(), xyz="0 0 0"))
+    fails(centre_at, scene(BASE, unmoved, joined), at='xyz="-0.15 0.2 0"', **CENTRE)
+    fails(centre_at, scene(BASE, WHEEL, joint("j", "fixed", "base", "wheel")), at="<joint", **CENTRE)
+
+
+def test_a_rigid_link_has_no_moving_joint_above_it() -> None:
+    """With `rigid` a link must also be fixed; the place alone is not enough."""
+    loose = rolling()
+    message = fails(centre_at, loose, at='type="continuous"', **CENTRE, rigid=True)
+    assert message == "joint 'wheel_joint' between 'base' and 'wheel' is continuous, expected fixed"
+    passes(centre_at, loose, **CENTRE, rigid=False)
+    passes(centre_at, rolling(kind="fixed"), **CENTRE, rigid=True)
+
+
+def test_the_largest_visual_is_the_one_whose_centre_counts() -> None:
+    """A hub or a marker beside the wheel does not move its centre."""
+    hub = visual(cylinder(0.01, 0.02), xyz="0 0 0.5")
+    for order in ((hub, visual(cylinder())), (visual(cylinder()), hub)):
+        found = scene(BASE, link("wheel", *order), joint("j", "continuous", "base", "wheel", xyz="-0.15 0.225 0"))
+        passes(centre_at, found, **CENTRE)
+
+
+def test_the_centre_of_a_mesh_is_unknown() -> None:
+    """A mesh may lie anywhere about its origin: a person has to see where its centre is."""
+    for xyz in ((-0.15, 0.225, 0.0), (-0.15, 0.2, 0.0)):
+        assert graded(centre_at, rolling(xyz=xyz).with_shape(mesh()), **CENTRE).status == "pending"
+
+
+# --- bottom_at_height, bottoms_at_height ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("offset", OFFSETS)
+def test_a_bottom_has_a_tolerance(offset: tuple[float, bool]) -> None:
+    """The lowest point may be off by the tolerance, its end included; beyond it the message says how far and where to."""
+    off, fine = offset
+    found = scene(link("base", visual(box(0.6, 0.4, 0.2), xyz=(0.0, 0.0, 0.1 + off))))
+    outcome = ask(bottom_at_height, found, **BOTTOM)
+    assert (outcome.status == "passed") == fine
+    assert outcome.measured == pytest.approx(off)
+    assert outcome.expected == 0.0
+    if not fine:
+        side = "high" if off > 0 else "low"
+        assert (
+            outcome.message == f"the bottom of 'base' in the frame 'base' is {off} m, expected 0 m: 2.1 mm too {side}"
+        )
+        assert outcome.location == found.place('xyz="')
+
+
+@pytest.mark.parametrize(
+    ("shape", "rpy", "bottom"),
+    [
+        (box(0.6, 0.4, 0.2), "", -0.1),
+        (box(0.6, 0.4, 0.2), turned(roll=90), -0.2),
+        (box(0.6, 0.4, 0.2), turned(pitch=90), -0.3),
+        (box(0.6, 0.4, 0.2), turned(pitch=45), -0.4 / 2**0.5),
+        (cylinder(0.1, 0.05), "", -0.025),
+        (cylinder(0.1, 0.05), turned(roll=90), -0.1),
+        (cylinder(0.1, 0.05), turned(pitch=45), -0.125 / 2**0.5),
+        (sphere(0.05), "1 2 3", -0.05),
+        (box(0.6, 0.4, -0.2), "", -0.1),
+        (cylinder(-0.1, -0.05), turned(roll=90), -0.1),
+    ],
+)
+def test_the_bottom_is_that_of_the_shape_as_it_lies(shape: str, rpy: str, bottom: float) -> None:
+    """Boxes, cylinders and spheres reach down as far as they do, however they are turned."""
+    found = scene(link("base", visual(shape, rpy=rpy)))
+    passes(bottom_at_height, found, link="base", relative_to="base", height=bottom, tolerance=1e-9)
+
+
+def test_the_lowest_of_several_visuals_counts() -> None:
+    """A foot below the box is its bottom; where the body stands is where to look."""
+    foot = visual(sphere(0.01), xyz="0 0 -0.04")
+    found = scene(link("base", visual(box(0.6, 0.4, 0.2), xyz="0 0 0.1"), foot))
+    message = fails(bottom_at_height, found, at='xyz="0 0 0.1"', **BOTTOM)
+    assert message == "the bottom of 'base' in the frame 'base' is -0.05 m, expected 0 m: 50 mm too low"
+
+
+def test_a_bottom_is_measured_in_the_frame_that_is_named() -> None:
+    """The height of a frame above another one is added, its turn is taken into account."""
+    found = mounted((0.0, 0.0, 1.0), turned(roll=90))
+    passes(bottom_at_height, found, link="lidar", relative_to="base", height=0.9, tolerance=1e-9)
+    passes(bottom_at_height, found, link="lidar", relative_to="lidar", height=-0.025, tolerance=1e-9)
+
+
+@settings(deadline=None, max_examples=60)
+@given(rpy=angles, height=st.floats(-2.0, 2.0, width=16))
+def test_a_sphere_stands_on_its_lowest_point_however_it_is_turned(rpy: tuple[float, ...], height: float) -> None:
+    """A sphere's bottom is its radius below its centre, for every orientation."""
+    found = scene(BASE, CASTER, joint("j", "fixed", "base", "caster", xyz=f"0.2 0 {height!r}", rpy=rpy))
+    passes(bottom_at_height, found, link="caster", relative_to="base", height=height - 0.05, tolerance=1e-9)
+
+
+@pytest.mark.parametrize("offset", OFFSETS)
+def test_every_bottom_has_the_tolerance(offset: tuple[float, bool]) -> None:
+    """One wheel that is off is named with its distance, and pointed to."""
+    off, fine = offset
+    found = standing(wheel=off)
+    outcome = ask(bottoms_at_height, found, **BOTTOMS)
+    assert (outcome.status == "passed") == fine
+    assert outcome.measured == pytest.approx((off, 0.0))
+    if not fine:
+        assert outcome.message.endswith(
+            f" m in 'foot', expected 0 m: 'wheel' is 2.1 mm too {'high' if off > 0 else 'low'}"
+        )
+        assert outcome.location == found.place('<link name="wheel"')
+
+
+def test_all_bottoms_that_are_off_are_told() -> None:
+    """Every link that hangs or sinks is named, and the first is pointed to."""
+    message = fails(bottoms_at_height, standing(height=0.15), at='<link name="wheel"', **BOTTOMS)
+    assert message == (
+        "the bottoms of 'wheel', 'caster' are at z = 0.05 0.05 m in 'foot', expected 0 m:"
+        " 'wheel' is 50 mm too high, 'caster' is 50 mm too high"
+    )
+
+
+def test_a_missing_link_does_not_hide_one_that_is_off() -> None:
+    """What can be measured is judged first; only where that is right, what is missing counts."""
+    both: Arguments = {**BOTTOMS, "links": ["nowhere", "wheel"]}
+    assert missing(bottoms_at_height, standing(), **both).name == "nowhere"
+    message = fails(bottoms_at_height, standing(wheel=0.05), **both)
+    assert message == "the bottoms of 'wheel' are at z = 0.05 m in 'foot', expected 0 m: 'wheel' is 50 mm too high"
+
+
+def test_a_mesh_does_not_hide_a_bottom_that_is_off() -> None:
+    """A link of unknown size leaves the verdict open only where all others are right."""
+    open_ = standing().text.replace(sphere(0.05), mesh())
+    assert graded(bottoms_at_height, Scene(open_), **BOTTOMS).status == "pending"
+    closed = standing(wheel=0.05).text.replace(sphere(0.05), mesh())
+    assert graded(bottoms_at_height, Scene(closed), **BOTTOMS).status == "failed"
+
+
+# --- stands_on --------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("offset", OFFSETS)
+def test_a_gap_and_an_overlap_have_a_tolerance(offset: tuple[float, bool]) -> None:
+    """What stands on a top may hang above it or sink into it by the tolerance, its end included."""
+    off, fine = offset
+    found = mounted((0.15, 0.0, 0.225 + off))
+    outcome = ask(stands_on, found, **ON)
+    assert (outcome.status == "passed") == fine
+    assert outcome.measured == pytest.approx(0.2 + off)
+    assert outcome.expected == pytest.approx(0.2)
+    if not fine:
+        fault = "floats above it" if off > 0 else "is sunk into it"
+        assert outcome.message == (
+            f"the bottom of 'lidar' is at z = {round(0.2 + off, 4)} m in 'base' and the top of 'base' at 0.2 m:"
+            f" 'lidar' {fault} by 2.1 mm"
+        )
+        assert outcome.location == found.place('xyz="0.15')
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "beyond"),
+    [
+        (0.2, 0.1, None),
+        (0.2019, 0.0, None),
+        (0.202, 0.0, None),
+        (0.2021, 0.0, "2.1"),
+        (-0.2021, 0.0, "2.1"),
+        (0.0, 0.102, None),
+        (0.0, 0.1021, "2.1"),
+        (0.0, -0.1021, "2.1"),
+        (0.3, 0.0, "100"),
+        (1.0, 1.0, "900"),
+    ],
+)
+def test_what_stands_on_a_top_stays_within_its_edges(x: float, y: float, beyond: str | None) -> None:
+    """What reaches beyond the outline by more than the tolerance does not stand on the top."""
+    if beyond is None:
+        passes(stands_on, mounted((x, y, 0.225)), **ON)
+    else:
+        message = fails(stands_on, mounted((x, y, 0.225)), at=f'xyz="{x!r} {y!r}', **ON)
+        assert message == f"'lidar' reaches {beyond} mm beyond the edge of the top of 'base'"
+
+
+def test_the_edges_turn_with_the_base() -> None:
+    """The outline of a box is that of the box as it lies, not of the frame."""
+    for yaw, fine in ((0, True), (90, False)):
+        base = link("base", visual(box(0.6, 0.4, 0.2), xyz="0 0 0.1", rpy=turned(yaw=yaw)))
+        found = scene(base, LIDAR, joint("j", "fixed", "base", "lidar", xyz="0.2 0 0.225"))
+        assert (ask(stands_on, found, **ON).status == "passed") == fine
+    slanted = link("base", visual(box(1.0, 0.3, 0.2), xyz="0 0 0.1", rpy=turned(yaw=45)))
+    along = 0.3 / 2**0.5
+    for y, fine in ((along, True), (-along, False)):
+        found = scene(slanted, LIDAR, joint("j", "fixed", "base", "lidar", xyz=(along, y, 0.225)))
+        assert (ask(stands_on, found, **ON).status == "passed") == fine
+
+
+def test_things_stand_on_cylinders_and_spheres_too() -> None:
+    """Any shape has a top and an outline."""
+    drum = link("base", visual(cylinder(0.3, 0.2), xyz="0 0 0.1"))
+    for x, fine in ((0.19, True), (0.21, False)):
+        found = scene(drum, LIDAR, joint("j", "fixed", "base", "lidar", xyz=(x, 0.0, 0.225)))
+        assert (ask(stands_on, found, **ON).status == "passed") == fine
+    ball = link("base", visual(sphere(0.2)))
+    passes(stands_on, scene(ball, LIDAR, joint("j", "fixed", "base", "lidar", xyz="0 0 0.225")), **ON)
+
+
+def test_a_turned_lidar_is_measured_as_it_lies() -> None:
+    """A lidar on its rim reaches farther down than one that lies flat."""
+    message = fails(stands_on, mounted(rpy=turned(roll=90)), **ON)
+    assert message.endswith("'lidar' is sunk into it by 75 mm")
+    passes(stands_on, mounted((0.15, 0.0, 0.3), turned(roll=90)), **ON)
+
+
+def test_all_visuals_of_what_stands_count() -> None:
+    """A mast on the lidar is no matter, a plug below it is."""
+    mast = visual(cylinder(0.01, 0.01), xyz="0 0 0.5")
+    passes(stands_on, mounted(lidar=link("lidar", visual(cylinder()), mast)), **ON)
+    plug = visual(cylinder(0.01, 0.05), xyz="0 0 -0.01")
+    assert "sunk into it by 10 mm" in fails(stands_on, mounted(lidar=link("lidar", visual(cylinder()), plug)), **ON)
+
+
+def test_a_lidar_without_an_origin_points_to_its_joint() -> None:
+    """Where nothing is written that raises the lidar, the joint is where it is missing."""
+    fails(stands_on, scene(BASE, LIDAR, joint("j", "fixed", "base", "lidar")), at="<joint", **ON)
+
+
+# --- clear_of ---------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("y", "depth"),
+    [(0.225, None), (0.25, None), (1.0, None), (0.2231, None), (0.223, None), (0.2229, "2.1"), (0.2, "25")],
+)
+def test_an_overlap_has_a_tolerance(y: float, depth: str | None) -> None:
+    """Touching is fine, and so is an overlap of the tolerance, its end included; a deeper one is told."""
+    found = rolling(xyz=(-0.15, y, 0.0))
+    if depth is None:
+        assert passes(clear_of, found, **CLEAR) == "'wheel' does not cut into 'base'"
+        assert ask(clear_of, found, **CLEAR).measured == 0.0
+    else:
+        assert fails(clear_of, found, **CLEAR) == f"'wheel' cuts {depth} mm deep into 'base'"
+        assert ask(clear_of, found, **CLEAR).measured == pytest.approx(float(depth) / 1000)
+
+
+def test_a_deep_overlap_is_the_shortest_way_out() -> None:
+    """A wheel in the middle of the base has to go out by the nearest side, here the bottom."""
+    message = fails(clear_of, rolling(xyz="0 0 0"), **CLEAR)
+    assert message == "'wheel' cuts 100 mm deep into 'base'"
+
+
+def test_an_overlap_is_measured_whichever_link_is_asked() -> None:
+    """Each cuts as deep into the other."""
+    found = rolling(xyz=(-0.15, 0.2, 0.0))
+    assert fails(clear_of, found, **CLEAR) == "'wheel' cuts 25 mm deep into 'base'"
+    assert fails(clear_of, found, link="base", of="wheel", tolerance=0.002) == "'base' cuts 25 mm deep into 'wheel'"
+
+
+def test_the_visual_that_was_moved_inward_is_pointed_to() -> None:
+    """Where the visual has an origin, its xyz is the place; else the visual is."""
+    inward = link("wheel", visual(cylinder(), xyz="0 0 -0.025"))
+    joined = joint("j", "continuous", "base", "wheel", xyz="-0.15 0.2 0", rpy=FORWARD)
+    assert "50 mm deep" in fails(clear_of, scene(BASE, inward, joined), at='xyz="0 0 -0.025"', **CLEAR)
+
+
+@settings(deadline=None, max_examples=40)
+@given(x=st.floats(-0.5, 0.5, width=16), z=st.floats(-0.5, 0.5, width=16), yaw=st.floats(-4.0, 4.0, width=16))
+def test_two_spheres_cut_as_deep_as_their_radii_overlap(x: float, z: float, yaw: float) -> None:
+    """For spheres the depth is known: the radii less the distance of the centres."""
+    one, other = link("base", visual(sphere(0.3))), link("wheel", visual(sphere(0.2)))
+    found = scene(one, other, joint("j", "fixed", "base", "wheel", xyz=(x, 0.0, z), rpy=(0.0, 0.0, yaw)))
+    depth = 0.5 - (x * x + z * z) ** 0.5
+    outcome = ask(clear_of, found, **CLEAR)
+    if depth < 0.0019:
+        assert outcome.status == "passed"
+    elif depth > 0.0021:
+        assert outcome.status == "failed"
+        assert outcome.measured == pytest.approx(depth, abs=2e-4)
+
+
+def test_no_visual_of_a_link_cuts_into_the_other() -> None:
+    """All that a link shows counts: an axle that reaches into the base cuts, though the wheel itself does not."""
+    axle = visual(cylinder(0.01, 0.3))
+    joined = joint("j", "continuous", "base", "wheel", xyz="-0.15 0.225 0.1", rpy=FORWARD)
+    fails(clear_of, scene(BASE, link("wheel", visual(cylinder()), axle), joined), **CLEAR)
+
+
+# --- under_the_base ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("offset", OFFSETS)
+def test_a_footprint_has_a_tolerance_in_height(offset: tuple[float, bool]) -> None:
+    """The wheels' lowest points may be off the footprint by the tolerance, its end included."""
+    off, fine = offset
+    found = standing(height=0.1 + off)
+    outcome = ask(under_the_base, found, **UNDER)
+    assert (outcome.status == "passed") == fine
+    assert outcome.measured == pytest.approx((0.0, 0.0, off))
+    if not fine:
+        assert outcome.message.endswith(f": the lowest point of 'wheel' is 2.1 mm {'above' if off > 0 else 'below'} it")
+        assert outcome.location == found.place('xyz="0 0 0.')
+
+
+@pytest.mark.parametrize(("axis", "offset"), list(product("xy", OFFSETS)))
+def test_a_footprint_has_a_tolerance_in_the_plane(axis: str, offset: tuple[float, bool]) -> None:
+    """The base may stand off the footprint by the tolerance in x and in y, its end included."""
+    off, fine = offset
+    found = standing(xy=f"{off!r} 0" if axis == "x" else f"0 {off!r}")
+    outcome = ask(under_the_base, found, **UNDER)
+    assert (outcome.status == "passed") == fine
+    if not fine:
+        shown = f"{off:g} 0" if axis == "x" else f"0 {off:g}"
+        assert f": 'base' is at x, y = {shown} m in it, expected 0 0" in outcome.message
+
+
+@pytest.mark.parametrize("angle", ["roll", "pitch", "yaw"])
+def test_a_footprint_has_a_tolerance_in_its_angle(angle: str) -> None:
+    """The base may be turned by the angle, its end included, about any axis; the wheel then hardly moves."""
+    loose: Arguments = {**UNDER, "tolerance": 0.1}
+    for degrees, fine in ((0.99, True), (1.0, True), (-1.0, True), (1.01, False), (-1.01, False), (180.0, False)):
+        found = standing(rpy=turned(**{angle: degrees}))
+        outcome = ask(under_the_base, found, **loose)
+        assert (outcome.status == "passed") == fine, degrees
+        if abs(degrees) == 180.0:
+            assert "'base' is turned by 180 degrees in it, expected 0" in outcome.message
+
+
+def test_all_faults_of_a_footprint_are_told() -> None:
+    """Place, turn and height are told together."""
+    found = standing(height=0.2, xy="0.3 0", rpy=turned(yaw=90))
+    message = fails(under_the_base, found, at='xyz="0.3 0 0.2"', **UNDER)
+    assert message == (
+        "the frame 'foot' is not level with the bottoms of the wheels under 'base': 'base' is at x, y = 0.3 0 m in it,"
+        " expected 0 0; 'base' is turned by 90 degrees in it, expected 0; the lowest point of 'wheel' is 100 mm above it"
+    )
+
+
+def test_the_footprint_is_judged_by_the_wheels_that_are_there() -> None:
+    """A missing wheel does not hide that the footprint is too low, and is told where all else is right."""
+    both: Arguments = {**UNDER, "wheels": ["nowhere", "wheel"]}
+    assert missing(under_the_base, standing(), **both).name == "nowhere"
+    assert fails(under_the_base, standing(height=0.05), **both).endswith(
+        "the lowest point of 'wheel' is 50 mm below it"
+    )
+
+
+def test_a_wheel_of_unknown_size_leaves_the_height_open() -> None:
+    """A mesh for a wheel is pending where the rest is right, and does not hide that the base is turned."""
+    assert graded(under_the_base, standing().with_shape(mesh()), **UNDER).status == "pending"
+    assert graded(under_the_base, standing(rpy=turned(yaw=90)).with_shape(mesh()), **UNDER).status == "failed"
+
+
+def test_a_footprint_need_not_be_the_root() -> None:
+    """The check measures frames; who is whose parent is another criterion."""
+    upside = scene(FOOT, BASE, WHEEL, joint("base_joint", "fixed", "base", "foot", xyz="0 0 -0.1"),
+                   joint("wheel_joint", "continuous", "base", "wheel", xyz="-0.15 0.225 0", rpy=FORWARD))  # fmt: skip
+    passes(under_the_base, upside, **UNDER)
+
+
+def test_both_wheels_count() -> None:
+    """Each wheel's lowest point is compared, and each that is off is told."""
+    low = link("low", visual(cylinder(0.2)))
+    found = Scene(
+        standing().text.replace("</robot>", f"{low}\n{joint('k', 'continuous', 'base', 'low', rpy=FORWARD)}\n</robot>")
+    )
+    message = fails(under_the_base, found, **{**UNDER, "wheels": ["wheel", "low"]})
+    assert message.endswith(": the lowest point of 'low' is 100 mm below it")
+
+
+def test_places_do_not_depend_on_positions_given() -> None:
+    """A check measures the configuration that it is given: turning a wheel leaves its centre where it is."""
+    robot = rolling().robot
+    turned_robot = Configuration(robot.robot, {"wheel_joint": pi / 3})
+    assert centre_at(turned_robot, **CENTRE).status == "passed"

@@ -1,0 +1,459 @@
+"""A grade run: who fails, who is skipped and because of what, what a person has to decide, and what all of it is worth."""
+
+from collections.abc import Callable, Sequence
+from decimal import Decimal
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from grader.checks.appearance import shows_box, shows_colour, shows_cylinder
+from grader.checks.joints import held_by
+from grader.checks.loading import urdf_loads
+from grader.checks.motion import rolls_forward, turns_about_itself
+from grader.checks.outcome import Outcome, failed, passed
+from grader.checks.placement import bottom_at_height, centre_at, frame_at
+from grader.checks.registry import describe
+from grader.errors import InputError, MissingElement
+from grader.grading.grade import grade
+from grader.grading.report import Report, Result
+from grader.grading.rubric import Criterion, Part, Rubric
+from grader.robot.kinematics import Configuration
+from grader.robot.model import Mesh
+from grader.robot.reader import Reading
+from grader.robot.shapes import UnknownShape
+from grader.submission.submission import read_submission
+from tests.checks.cases import BASE, LIDAR, MOUNT, WHEEL, rolling
+from tests.checks.robots import PATH, Scene, joint, mesh, scene
+
+NOT_XML = Scene("this is no XML <")
+
+
+def passes_(robot: Configuration) -> Outcome:
+    """A check that always passes."""
+    return passed("it is so")
+
+
+def fails_(robot: Configuration) -> Outcome:
+    """A check that always fails."""
+    return failed("it is not so")
+
+
+def pends(robot: Configuration) -> Outcome:
+    """A check that a person has to decide."""
+    raise UnknownShape(Mesh("part.stl"))
+
+
+def breaks(robot: Configuration) -> Outcome:
+    """A check with a fault of ours."""
+    raise ZeroDivisionError("a secret detail")
+
+
+def misses(robot: Configuration, *, what: str) -> Outcome:
+    """A check that misses a thing of a name."""
+    raise MissingElement("thing", what)
+
+
+def of_file(urdf: Reading) -> Outcome:
+    """A check of the file that always passes."""
+    return passed("it is a file")
+
+
+def ask(
+    name: str,
+    check: Callable[..., Outcome] = passes_,
+    *,
+    points: str = "1",
+    requires: Sequence[str] = (),
+    part: str = "a",
+    **arguments: Any,
+) -> Criterion:
+    """A criterion in one line."""
+    return Criterion(name, name.title(), part, Decimal(points), describe(check), arguments, tuple(requires))
+
+
+def run(*criteria: Criterion, on: Scene | None = None, parts: Sequence[str] = ()) -> Report:
+    """The report on a robot under a rubric with these criteria, in parts a and b."""
+    rubric = Rubric("r", "R", (Part("a", "A"), Part("b", "B")), criteria, "robot.urdf", "", "", Path("r.toml"))
+    robot = on if on is not None else scene(BASE)
+    return grade(rubric, read_submission(robot.text.encode(), identity="me", path=PATH), parts)
+
+
+def statuses(report: Report) -> list[str]:
+    """How each criterion ended, in order."""
+    return [result.outcome.status for result in report.results]
+
+
+def causes(report: Report) -> list[str | None]:
+    """What each criterion's skip is due to."""
+    return [result.because for result in report.results]
+
+
+def sums(report: Report) -> list[object]:
+    """The points earned, those that could be earned, and those that a person has to give."""
+    return [report.score, report.max_score, report.pending]
+
+
+# --- requires ---------------------------------------------------------------------------------------------------------
+
+
+def test_a_failed_requirement_skips() -> None:
+    """A criterion is not decided where one that it requires failed; the skip names it."""
+    report = run(ask("one", fails_), ask("two", requires=["one"]))
+    assert statuses(report) == ["failed", "skipped"]
+    assert causes(report) == [None, "one"]
+    assert report.results[1].outcome.message == "not decided, because one failed"
+
+
+def test_a_skip_names_the_root_cause() -> None:
+    """Down a chain of requirements every skip names the criterion that failed, not another skip."""
+    report = run(
+        ask("one", fails_),
+        ask("two", requires=["one"]),
+        ask("three", requires=["two"]),
+        ask("four", requires=["three"]),
+    )
+    assert statuses(report) == ["failed", "skipped", "skipped", "skipped"]
+    assert causes(report) == [None, "one", "one", "one"]
+    assert report.results[3].outcome.message == "not decided, because one failed"
+
+
+def test_the_first_requirement_that_is_not_met_is_named() -> None:
+    """Of several failures the first of the list counts."""
+    report = run(ask("one", fails_), ask("two", fails_), ask("three"), ask("four", requires=["three", "two", "one"]))
+    assert causes(report)[3] == "two"
+
+
+def test_a_passed_requirement_does_not_skip() -> None:
+    """Where all that is required passed, a criterion is decided on its own."""
+    report = run(ask("one"), ask("two"), ask("three", fails_, requires=["one", "two"]), ask("four", requires=["one"]))
+    assert statuses(report) == ["passed", "passed", "failed", "passed"]
+    assert causes(report) == [None] * 4
+
+
+def test_a_pending_requirement_does_not_skip() -> None:
+    """What a person still has to look at may turn out well: what requires it is decided."""
+    assert statuses(run(ask("one", pends), ask("two", requires=["one"]))) == ["pending", "passed"]
+
+
+def test_a_requirement_in_another_part_does_not_skip() -> None:
+    """A part that is not graded says nothing about the one that is."""
+    criteria = (ask("one", fails_), ask("two", part="b", requires=["one"]))
+    assert statuses(run(*criteria)) == ["failed", "skipped"]
+    assert statuses(run(*criteria, parts=["b"])) == ["passed"]
+
+
+def test_a_check_is_not_run_for_a_skip() -> None:
+    """What is skipped is not even asked: a fault in it stays out of the report."""
+    report = run(
+        ask("one", fails_), ask("two", breaks, requires=["one"]), ask("three", misses, what="x", requires=["one"])
+    )
+    assert statuses(report) == ["failed", "skipped", "skipped"]
+
+
+# --- Missing elements -------------------------------------------------------------------------------------------------
+
+
+def test_the_first_criterion_that_misses_a_thing_fails() -> None:
+    """Those behind it that miss the same are skipped because of it, and say so."""
+    report = run(
+        ask("one", misses, what="x"), ask("two"), ask("three", misses, what="x"), ask("four", misses, what="x")
+    )
+    assert statuses(report) == ["failed", "passed", "skipped", "skipped"]
+    assert causes(report) == [None, None, "one", "one"]
+    assert "there is no thing 'x'" in report.results[0].outcome.message
+    assert report.results[2].outcome.message == "not decided, because one failed"
+
+
+def test_each_thing_that_is_missing_fails_once() -> None:
+    """Two different things are two failures: one defect does not hide another."""
+    report = run(*(ask(f"{name}{index}", misses, what=name) for index in (1, 2) for name in "xy"))
+    assert statuses(report) == ["failed", "failed", "skipped", "skipped"]
+    assert causes(report) == [None, None, "x1", "y1"]
+
+
+def test_a_skip_for_a_missing_thing_is_handed_on() -> None:
+    """What requires a skipped criterion is skipped because of the one that failed."""
+    report = run(ask("one", misses, what="x"), ask("two", misses, what="x"), ask("three", requires=["two"]))
+    assert causes(report) == [None, "one", "one"]
+
+
+def test_a_missing_link_fails_once_and_hides_nothing_else() -> None:
+    """A lidar that was forgotten fails its shape, skips the rest of it, and says nothing about the wheel."""
+    report = run(
+        ask("lidar-shape", shows_cylinder, link="lidar", radius=0.1, length=0.05, tolerance=0.002),
+        ask("lidar-held", held_by, link="lidar", parent="base", joint_type="fixed"),
+        ask("wheel-shape", shows_cylinder, link="wheel", radius=0.1, length=0.05, tolerance=0.002),
+        ask("lidar-frame", frame_at, link="lidar", relative_to="base", xyz=(0.0, 0.0, 0.0), tolerance=0.002),
+        ask("wheel-forward", rolls_forward, link="wheel", base="base", tolerance=1.0),
+        on=rolling(),
+    )
+    assert statuses(report) == ["failed", "skipped", "passed", "skipped", "passed"]
+    assert causes(report) == [None, "lidar-shape", None, "lidar-shape", None]
+    assert "'lidar'" in report.results[0].outcome.message
+    assert report.score == 2
+
+
+def test_a_fixed_wheel_fails_once() -> None:
+    """A wheel that cannot turn loses its joint, not also its direction and its axis."""
+    report = run(
+        ask("continuous", held_by, link="wheel", parent="base", joint_type="continuous"),
+        ask("placed", centre_at, link="wheel", relative_to="base", xyz=(-0.15, 0.225, 0.0), tolerance=0.002),
+        ask("forward", rolls_forward, link="wheel", base="base", tolerance=1.0),
+        ask("spins", turns_about_itself, link="wheel", base="base", tolerance=0.002, angle=1.0),
+        on=rolling(kind="fixed"),
+    )
+    assert statuses(report) == ["failed", "passed", "skipped", "skipped"]
+    assert causes(report) == [None, None, "continuous", "continuous"]
+
+
+def test_a_zero_axis_fails_once() -> None:
+    """The first criterion that needs the pose behind the joint fails, with the place of the axis."""
+    report = run(
+        ask("continuous", held_by, link="wheel", parent="base", joint_type="continuous"),
+        ask("placed", centre_at, link="wheel", relative_to="base", xyz=(-0.15, 0.225, 0.0), tolerance=0.002),
+        ask("forward", rolls_forward, link="wheel", base="base", tolerance=1.0),
+        on=rolling(axis="0 0 0"),
+    )
+    assert statuses(report) == ["passed", "failed", "skipped"]
+    assert report.results[1].outcome.location == rolling(axis="0 0 0").place('xyz="0 0 0"')
+
+
+def test_a_missing_joint_fails_once() -> None:
+    """A link that no joint joins to the base misses its connection, once."""
+    report = run(
+        ask("fixed", held_by, link="lidar", parent="base", joint_type="fixed"),
+        ask("frame", frame_at, link="lidar", relative_to="base", xyz=(0.0, 0.0, 0.0), tolerance=0.002),
+        ask("back", frame_at, link="base", relative_to="lidar", xyz=(0.0, 0.0, 0.0), tolerance=0.002),
+        ask("shape", shows_cylinder, link="lidar", radius=0.1, length=0.05, tolerance=0.002),
+        on=scene(BASE, LIDAR),
+    )
+    assert statuses(report) == ["failed", "skipped", "skipped", "passed"]
+    assert report.results[0].outcome.location == scene(BASE, LIDAR).place('<link name="lidar"')
+
+
+def test_the_place_of_what_is_missing_is_kept() -> None:
+    """A failure for a missing shape points to the shape that is there instead."""
+    robot = scene(BASE, LIDAR, MOUNT)
+    report = run(ask("box", shows_box, link="lidar", size=(1.0, 1.0, 1.0), tolerance=0.1), on=robot)
+    assert report.results[0].outcome.location == robot.place("<cylinder")
+
+
+# --- Unreadable files -------------------------------------------------------------------------------------------------
+
+
+def test_of_an_unreadable_file_only_the_file_fails() -> None:
+    """Where there is no robot, the check of the file fails and all that asks of the robot is skipped because of it."""
+    report = run(ask("loads", urdf_loads), ask("one"), ask("two", breaks), ask("three", misses, what="x"), on=NOT_XML)
+    assert statuses(report) == ["failed", "skipped", "skipped", "skipped"]
+    assert causes(report) == [None, "loads", "loads", "loads"]
+    assert sums(report) == [0, 4, 0]
+
+
+def test_a_check_of_the_file_is_asked_of_an_unreadable_one_too() -> None:
+    """What is asked of the file and not of the robot is decided all the same."""
+    report = run(ask("loads", urdf_loads), ask("file", of_file), ask("robot"), on=NOT_XML)
+    assert statuses(report) == ["failed", "passed", "skipped"]
+    assert causes(report) == [None, None, "loads"]
+
+
+def test_without_a_check_of_the_file_every_criterion_fails() -> None:
+    """Where no criterion asks whether the file loads, each says that there is no robot to look at."""
+    report = run(ask("one"), ask("two", breaks), on=NOT_XML)
+    assert statuses(report) == ["failed", "failed"]
+    assert "no robot" in report.results[0].outcome.message
+    report = run(ask("loads", urdf_loads), ask("one", part="b"), on=NOT_XML, parts=["b"])
+    assert statuses(report) == ["failed"]
+
+
+def test_a_file_that_ros_rejects_is_graded_for_what_is_in_it() -> None:
+    """A robot that does not load still has a box of the right size: only what is wrong is lost."""
+    robot = scene(BASE, LIDAR)
+    assert robot.reading.verdict == "rejected"
+    report = run(
+        ask("loads", urdf_loads),
+        ask("box", shows_box, link="base", size=(0.6, 0.4, 0.2), tolerance=0.002),
+        ask("green", shows_colour, link="base", colour=(0.0, 0.6, 0.0), tolerance=0.01),
+        on=robot,
+    )
+    assert statuses(report) == ["failed", "passed", "passed"]
+
+
+# --- Faults of ours ---------------------------------------------------------------------------------------------------
+
+
+def test_a_check_that_raises_is_our_fault() -> None:
+    """It is errored, not failed; the traceback is kept for us, and the message does not trouble the student with it."""
+    result = run(ask("one", breaks)).results[0]
+    assert result.outcome.status == "errored"
+    assert "ZeroDivisionError" in result.outcome.message
+    assert "a secret detail" not in result.outcome.message
+    assert result.traceback.startswith("Traceback (most recent call last):")
+    assert "in breaks" in result.traceback
+    assert result.traceback.endswith("ZeroDivisionError: a secret detail\n")
+
+
+def test_a_fault_of_ours_costs_nothing_else() -> None:
+    """Criteria before and behind it are decided as ever."""
+    report = run(ask("one"), ask("two", breaks), ask("three"), ask("four", fails_), ask("five", pends))
+    assert statuses(report) == ["passed", "errored", "passed", "failed", "pending"]
+    assert [bool(result.traceback) for result in report.results] == [False, True, False, False, False]
+    assert sums(report) == [2, 5, 1]
+
+
+def test_what_requires_a_fault_of_ours_does_not_blame_the_student() -> None:
+    """A skip that is due to our fault names the criterion, and does not say that the student failed it."""
+    report = run(ask("one", breaks), ask("two", requires=["one"]))
+    result = report.results[1]
+    assert result.outcome.status != "failed"
+    assert result.outcome.status != "skipped" or (result.because == "one" and "failed" not in result.outcome.message)
+
+
+@pytest.mark.parametrize(
+    "error",
+    [KeyError("x"), LookupError("x"), ValueError("x"), RecursionError("x"), AssertionError("x"), MemoryError("x")],
+)
+def test_every_exception_of_a_check_is_caught(error: Exception) -> None:
+    """Whatever a check raises but what it is meant to raise, the run goes on."""
+
+    def raises(robot: Configuration) -> Outcome:
+        raise error
+
+    assert statuses(run(ask("one", raises), ask("two"))) == ["errored", "passed"]
+
+
+def test_an_interrupt_is_not_caught() -> None:
+    """A person who stops the program is not a fault in a check."""
+
+    def interrupted(robot: Configuration) -> Outcome:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run(ask("one", interrupted))
+
+
+# --- Pending ----------------------------------------------------------------------------------------------------------
+
+
+def test_what_depends_on_a_mesh_is_pending() -> None:
+    """Each criterion that needs the size of a mesh is left to a person, one by one; the others are decided."""
+    robot = scene(BASE, WHEEL, joint("j", "continuous", "base", "wheel")).with_shape(mesh())
+    report = run(
+        ask("base", bottom_at_height, link="base", relative_to="base", height=0.0, tolerance=0.002, points="2.5"),
+        ask("green", shows_colour, link="base", colour=(0.0, 0.6, 0.0), tolerance=0.01),
+        ask("wheel", bottom_at_height, link="wheel", relative_to="base", height=0.0, tolerance=0.002, points="0.1"),
+        ask("held", held_by, link="wheel", parent="base", joint_type="continuous"),
+        on=robot,
+    )
+    assert statuses(report) == ["pending", "passed", "pending", "passed"]
+    assert sums(report) == [2, Decimal("4.6"), Decimal("2.6")]
+    assert causes(report) == [None] * 4
+
+
+# --- Parts ------------------------------------------------------------------------------------------------------------
+
+
+def test_all_parts_are_graded_unless_some_are_named() -> None:
+    """Criteria come in the order of the file, whatever their part; parts in the rubric's order."""
+    criteria = (ask("one", part="b"), ask("two", part="a"), ask("three", part="b", points="2"))
+    report = run(*criteria)
+    assert report.parts == ("a", "b")
+    assert [result.criterion.id for result in report.results] == ["one", "two", "three"]
+    assert report.max_score == 4
+
+
+def test_only_named_parts_are_graded() -> None:
+    """Points of the others are neither earned nor missed."""
+    criteria = (ask("one", part="b"), ask("two", fails_, part="a"), ask("three", part="b", points="2"))
+    report = run(*criteria, parts=["b"])
+    assert report.parts == ("b",)
+    assert [result.criterion.id for result in report.results] == ["one", "three"]
+    assert sums(report) == [3, 3, 0]
+    assert run(*criteria, parts=["b", "a", "b"]).parts == ("a", "b")
+
+
+def test_a_part_without_criteria_is_worth_nothing() -> None:
+    """There is nothing to decide in it."""
+    report = run(ask("one"), parts=["b"])
+    assert report.results == ()
+    assert sums(report) == [0, 0, 0]
+
+
+def test_an_unknown_part_is_told() -> None:
+    """A part that is not there is wrong usage, also beside one that is."""
+    with pytest.raises(InputError, match="no part 'c'"):
+        run(ask("one"), parts=["c"])
+    with pytest.raises(InputError, match="no part 'c'"):
+        run(ask("one"), parts=["a", "c"])
+
+
+# --- Points -----------------------------------------------------------------------------------------------------------
+
+
+def test_points_are_all_or_nothing() -> None:
+    """Only a pass earns points, and it earns all of them."""
+    report = run(
+        ask("passed", points="1.5"),
+        ask("failed", fails_, points="1.5"),
+        ask("pending", pends, points="1.5"),
+        ask("errored", breaks, points="1.5"),
+        ask("skipped", requires=["failed"], points="1.5"),
+    )
+    assert [result.points for result in report.results] == [Decimal("1.5"), 0, 0, 0, 0]
+    assert statuses(report) == ["passed", "failed", "pending", "errored", "skipped"]
+    assert report.counts("passed") == 1
+    assert report.counts("failed", "errored") == 2
+    assert report.counts() == 0
+    assert sums(report) == [Decimal("1.5"), Decimal("7.5"), Decimal("1.5")]
+
+
+def test_sums_are_exact() -> None:
+    """A tenth and two tenths are three tenths, in every sum."""
+    report = run(
+        ask("one", points="0.1"),
+        ask("two", points="0.2"),
+        ask("three", pends, points="0.1"),
+        ask("four", pends, points="0.2"),
+    )
+    assert (str(report.score), str(report.pending), str(report.max_score)) == ("0.3", "0.3", "0.6")
+    thirds = [ask(name, points=points) for name, points in (("a", "0.3333"), ("b", "0.3333"), ("c", "0.3334"))]
+    assert run(*thirds).score == run(*thirds).max_score == 1
+
+
+@settings(deadline=None, max_examples=60)
+@given(
+    rows=st.lists(
+        st.tuples(st.sampled_from([passes_, fails_, pends, breaks]), st.integers(0, 1000), st.sampled_from("ab")),
+        max_size=12,
+    )
+)
+def test_the_sums_are_those_of_the_rows(rows: list[tuple[Callable[..., Outcome], int, str]]) -> None:
+    """For any mix of outcomes the sums are exact, part by part and together."""
+    criteria = [
+        ask(f"c{index}", check, points=f"{points // 100}.{points % 100:02d}", part=part)
+        for index, (check, points, part) in enumerate(rows)
+    ]
+    for parts in ((), ("a",), ("b",)):
+        chosen = [(check, points) for check, points, part in rows if not parts or part in parts]
+        report = run(*criteria, parts=parts)
+        assert report.max_score * 100 == sum(points for _, points in chosen)
+        assert report.score * 100 == sum(points for check, points in chosen if check is passes_)
+        assert report.pending * 100 == sum(points for check, points in chosen if check is pends)
+
+
+def test_the_same_submission_gets_the_same_report() -> None:
+    """Nothing but the submission and the rubric decides."""
+    criteria = (
+        ask("loads", urdf_loads),
+        ask("box", shows_box, link="base", size=(0.6, 0.4, 0.1), tolerance=0.002),
+        ask("lidar", held_by, link="lidar", parent="base", joint_type="fixed"),
+    )
+    one, other = run(*criteria).results, run(*criteria).results
+    assert [plain(result) for result in one] == [plain(result) for result in other]
+
+
+def plain(result: Result) -> tuple[str, Outcome, str | None, str]:
+    """All that a result says."""
+    return (result.criterion.id, result.outcome, result.because, result.traceback)

@@ -1,0 +1,742 @@
+"""A rubric is loaded strictly: every mistake at once, each with its line; points are exact."""
+
+import os
+from decimal import Decimal
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from grader.checks.appearance import shows_box
+from grader.errors import GraderError, InputError, RubricError
+from grader.grading.rubric import Part, Rubric, find_rubric, load_rubric, shipped_rubrics
+
+GOOD = """\
+id = "lab0"
+title = "Lab 0"
+[[part]]
+id = "a"
+title = "Part A"
+[[criterion]]
+id = "loads"
+part = "a"
+title = "It loads"
+points = 1
+check = "urdf_loads"
+"""
+
+
+def write(folder: Path, text: str | bytes) -> str:
+    """The path of a rubric with this content."""
+    path = folder / "rubric.toml"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return str(path)
+
+
+def complaints(folder: Path, text: str | bytes) -> list[str]:
+    """What is wrong with a rubric, each complaint without the file's name."""
+    path = write(folder, text)
+    with pytest.raises(RubricError) as caught:
+        load_rubric(path)
+    assert str(caught.value) == "\n".join(caught.value.complaints)
+    assert all(each.startswith(f"{path}:") for each in caught.value.complaints)
+    return [each.removeprefix(f"{path}:") for each in caught.value.complaints]
+
+
+def announced(text: str) -> list[str]:
+    """The complaints that a text announces in comments, each behind `!!` in the line that it is expected for."""
+    found = enumerate(text.split("\n"), 1)
+    return [
+        f"{number}: {each.strip()}" for number, line in found for each in line.partition("# !!")[2].split("!!") if each
+    ]
+
+
+def loaded(folder: Path, text: str) -> Rubric:
+    """The rubric in a text that has no mistake."""
+    return load_rubric(write(folder, text))
+
+
+# --- What a good rubric is --------------------------------------------------------------------------------------------
+
+
+def test_a_rubric_keeps_what_is_written(tmp_path: Path) -> None:
+    """Every key is there with its value, criteria in the order of the file, arguments in the types of the check."""
+    text = """
+id = "lab0"
+title = "Lab 0"
+reference = "solution"
+urdf = "urdf/robot.urdf"
+points = 7.5
+
+[[part]]
+id = "a"
+title = "Part A"
+needs = "urdf"
+points = 7.5
+
+[[part]]
+id = "b"
+title = "Part B"
+points = 0
+
+[[criterion]]
+id = "loads"
+part = "a"
+title = "It loads"
+points = 2
+check = "urdf_loads"
+
+[[criterion]]
+id = "box"
+part = "a"
+about = "The base"
+title = "It is a box"
+points = 5.5
+check = "shows_box"
+with = { link = "base", size = [1, 2.5, 3], tolerance = 0.002 }
+requires = ["loads"]
+feedback = "Look at its size."
+"""
+    rubric = loaded(tmp_path, text)
+    assert (rubric.id, rubric.title, rubric.reference, rubric.urdf) == ("lab0", "Lab 0", "solution", "urdf/robot.urdf")
+    assert rubric.parts == (Part("a", "Part A", "urdf"), Part("b", "Part B", "urdf"))
+    assert rubric.points == Decimal("7.5")
+    assert len(rubric.sha256) == 64
+    loads, box = rubric.criteria
+    assert (loads.id, loads.arguments, loads.requires, loads.feedback, loads.about) == ("loads", {}, (), "", "")
+    assert (box.id, box.part, box.about, box.title) == ("box", "a", "The base", "It is a box")
+    assert (box.points, box.requires, box.feedback) == (Decimal("5.5"), ("loads",), "Look at its size.")
+    assert box.check.function is shows_box
+    assert box.arguments == {"link": "base", "size": (1.0, 2.5, 3.0), "tolerance": 0.002}
+    assert [type(each) for each in box.arguments["size"]] == [float] * 3
+
+
+def test_what_may_be_left_out_has_a_default(tmp_path: Path) -> None:
+    """A rubric needs ids, titles, points and checks; the rest has a default."""
+    rubric = loaded(tmp_path, GOOD)
+    assert (rubric.urdf, rubric.reference) == ("robot.urdf", "")
+    assert rubric.part("a") == Part("a", "Part A", "urdf")
+
+
+def test_the_digest_is_of_the_bytes(tmp_path: Path) -> None:
+    """Two files with the same meaning but other bytes are not the same rubric."""
+    one, other = loaded(tmp_path, GOOD), loaded(tmp_path, GOOD + "# a comment\n")
+    assert one.sha256 != other.sha256
+    assert one.criteria == other.criteria
+
+
+@pytest.mark.parametrize("name", sorted(shipped_rubrics()))
+def test_shipped_rubrics_load(name: str) -> None:
+    """Every rubric that comes with the grader loads by its id, which is the name of its file."""
+    rubric = load_rubric(name)
+    assert rubric.id == name
+    assert rubric.points > 0
+    assert load_rubric(str(shipped_rubrics()[name])) == rubric
+
+
+def test_a_part_is_found_by_its_id(tmp_path: Path) -> None:
+    """A part that is not there is answered with the one that may be meant, or with all that there are."""
+    rubric = loaded(tmp_path, GOOD.replace('"a"', '"task1"'))
+    assert rubric.part("task1").title == "Part A"
+    with pytest.raises(InputError, match="the rubric lab0 has no part 'task2'; did you mean 'task1'"):
+        rubric.part("task2")
+    with pytest.raises(InputError, match="the rubric lab0 has no part 'zzz'; it has: task1"):
+        rubric.part("zzz")
+
+
+# --- Many mistakes at once --------------------------------------------------------------------------------------------
+
+EVERY_KIND_OF_MISTAKE = """\
+id = ""  # !! id must not be empty
+titel = "Lab 0"  # !! a rubric has no key 'titel'; did you mean 'title'?
+urdf = 3  # !! urdf must be a text, not a number
+title = "Lab 0"
+
+[[part]]
+id = "task1"
+title = "Task 1"
+needs = "udrf"  # !! a part cannot need 'udrf'; did you mean 'urdf'?
+colour = "red"  # !! a part has no key 'colour'; it has: id, title, needs, points
+
+[[part]]  # !! this part has no title
+id = "task1"  # !! there is a part 'task1' already
+
+[[criterion]]
+id = "one"
+part = "task1"
+title = "One"
+points = 2
+check = "shows_boxx"  # !! there is no check 'shows_boxx'; did you mean 'shows_box'?
+
+[[criterion]]  # !! this criterion has no title !! this criterion has no points !! this criterion has no check
+id = "two"
+part = "taks1"  # !! there is no part 'taks1'; did you mean 'task1'?
+
+[[criterion]]
+id = "three"
+part = "task1"
+title = "Three"
+points = "2"  # !! points must be a number, not a text
+check = "shows_box"
+with = { link = "base", sise = [1, 2, 3], tolerance = "a" }  # !! the check shows_box takes no 'sise'; did you mean 'size'?\
+ !! tolerance of shows_box must be a number, not 'a' !! the check shows_box needs size: 3 numbers
+
+[[criterion]]
+id = "three"  # !! there is a criterion 'three' already
+part = "task1"
+title = " "  # !! title must not be empty
+points = -1  # !! points must be a number of at least 0, not -1
+check = "urdf_loads"
+requires = ["on"]  # !! requires 'on', which does not exist; did you mean 'one'?
+
+[[criterion]]
+id = "four"
+part = "task1"
+title = "Four"
+points = 1
+check = "urdf_loads"
+requires = ["five", "one", 3]  # !! requires must be a list of texts, not a list !! requires 'five', which stands below:\
+ a criterion can only require those above it
+feedback = ["a"]  # !! feedback must be a text, not a list
+about = true  # !! about must be a text, not true or false
+
+[[criterion]]
+id = "five"
+part = "task1"
+title = "Five"
+points = 7.5
+check = "urdf_loads"
+with = { link = "base" }  # !! the check urdf_loads takes no 'link'; it takes: nothing
+pints = 3  # !! a criterion has no key 'pints'; did you mean 'points'?
+"""
+
+
+def test_every_mistake_is_told_at_once(tmp_path: Path) -> None:
+    """A rubric full of mistakes is told all of them, in the order of the file, each with its line."""
+    found = complaints(tmp_path, EVERY_KIND_OF_MISTAKE)
+    assert found == announced(EVERY_KIND_OF_MISTAKE)
+    assert len(found) >= 25
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        GOOD + "with = 3  # !! with must be a table, not a number",
+        GOOD + "with = []  # !! with must be a table, not a list",
+        GOOD + "requires = 'loads'  # !! requires must be a list of texts, not a text",
+        GOOD + "requires = {}  # !! requires must be a list of texts, not a table",
+        GOOD.replace("points = 1", "points = true  # !! points must be a number, not true or false"),
+        GOOD.replace("points = 1", "points = 1979-05-27  # !! points must be a number, not a date or time"),
+        GOOD.replace("points = 1", "points = 07:32:00  # !! points must be a number, not a date or time"),
+        GOOD.replace("points = 1", "points = -0.5  # !! points must be a number of at least 0, not -0.5"),
+        GOOD.replace("points = 1", "points = inf  # !! points must be a number of at least 0, not Infinity"),
+        GOOD.replace("points = 1", "points = nan  # !! points must be a number of at least 0, not NaN"),
+        GOOD.replace("points = 1", "points = -nan  # !! points must be a number of at least 0, not -NaN"),
+        GOOD.replace('id = "loads"', 'id = ["loads"]  # !! id must be a text, not a list'),
+        GOOD.replace('id = "loads"', "id = 3  # !! id must be a text, not a number"),
+        GOOD.replace('id = "a"', r'id = "\t "  # !! id must not be empty').replace('part = "a"', r'part = "\t "'),
+        GOOD.replace('check = "urdf_loads"', "check = 3  # !! check must be a text, not a number"),
+        GOOD.replace('part = "a"', "part = 1.5  # !! part must be a text, not a number"),
+        GOOD.replace('title = "Lab 0"', "title = 2026-01-01T00:00:00Z  # !! title must be a text, not a date or time"),
+        GOOD.replace('title = "Part A"', 'title = "A"\nneeds = 3  # !! needs must be a text, not a number'),
+        GOOD.replace('title = "Part A"', 'title = "A"\npoints = "1"  # !! points must be a number, not a text'),
+    ],
+)
+def test_a_value_of_the_wrong_type_is_told(tmp_path: Path, text: str) -> None:
+    """Whatever a key holds instead of what it should, the complaint says both, in the line of the key."""
+    assert complaints(tmp_path, text) == announced(text)
+
+
+@pytest.mark.parametrize(("line", "where"), [(0, "1: this rubric"), (3, "3: this part"), (6, "5: this criterion")])
+def test_ids_and_titles_are_needed(tmp_path: Path, line: int, where: str) -> None:
+    """What is missing at the top is told for the first line, the rest for the header of its table."""
+    lines = GOOD.split("\n")
+    without_id = "\n".join(lines[:line] + lines[line + 1 :])
+    header = where if line != 6 else where.replace("5", "6")
+    assert f"{header} has no id" in complaints(tmp_path, without_id)
+    title = next(index for index in range(line, len(lines)) if lines[index].startswith("title"))
+    without_title = "\n".join(lines[:title] + lines[title + 1 :])
+    assert complaints(tmp_path, without_title) == [f"{where if line != 6 else '6: this criterion'} has no title"]
+
+
+@pytest.mark.parametrize("key", ["part", "points", "check"])
+def test_part_points_and_check_are_needed(tmp_path: Path, key: str) -> None:
+    """A criterion that leaves one of them out is told so."""
+    kept = [line for line in GOOD.split("\n") if not line.startswith(f"{key} =")]
+    assert complaints(tmp_path, "\n".join(kept)) == [f"6: this criterion has no {key}"]
+
+
+def test_a_rubric_has_parts_and_criteria(tmp_path: Path) -> None:
+    """Without a part or a criterion there is nothing to grade; a single table is not an array of them."""
+    missing = ["a rubric has at least one [[part]]", "a rubric has at least one [[criterion]]"]
+    assert complaints(tmp_path, 'id = "r"\ntitle = "R"\n') == [f"1: {missing[0]}", f"1: {missing[1]}"]
+    single = 'id = "r"\ntitle = "R"\n[part]\nid = "a"\n[criterion]\nid = "c"\n'
+    assert complaints(tmp_path, single) == [f"3: {missing[0]}", f"5: {missing[1]}"]
+    listed = 'id = "r"\ntitle = "R"\npart = [1]\ncriterion = []\n'
+    assert complaints(tmp_path, listed) == [f"3: {missing[0]}", f"4: {missing[1]}"]
+
+
+@pytest.mark.parametrize("text", ["", "\n\n", "# only a comment\n"])
+def test_an_empty_file_misses_everything(tmp_path: Path, text: str) -> None:
+    """A file without content is a rubric without anything, and is told so."""
+    assert complaints(tmp_path, text) == [
+        "1: this rubric has no id",
+        "1: this rubric has no title",
+        "1: a rubric has at least one [[part]]",
+        "1: a rubric has at least one [[criterion]]",
+    ]
+
+
+# --- Arguments --------------------------------------------------------------------------------------------------------
+
+
+def checked(check: str, given: str) -> str:
+    """A rubric with one check and its arguments, in line 12."""
+    return GOOD.replace("urdf_loads", check) + given
+
+
+BOX = 'link = "base", size = [1, 1, 1], tolerance = 0.1'
+BOTTOMS = 'links = ["a"], relative_to = "b", height = 0, tolerance = 1'
+SPHERE = 'link = "a", radius = 1, tolerance = 0'
+COLOUR = 'link = "a", colour = [0, 1, 0], tolerance = 0'
+
+
+@pytest.mark.parametrize(
+    ("check", "given", "complaint"),
+    [
+        ("shows_box", BOX.replace("[1, 1, 1]", "[1, 1]"), "size of shows_box must be 3 numbers, not [1, 1]"),
+        ("shows_box", BOX.replace("[1, 1, 1]", "[1, 1, 1, 1]"), "size of shows_box must be 3 numbers, not [1, 1, 1, 1]"),
+        ("shows_box", BOX.replace("[1, 1, 1]", "1"), "size of shows_box must be 3 numbers, not 1"),
+        ("shows_box", BOX.replace("[1, 1, 1]", "[]"), "size of shows_box must be 3 numbers, not []"),
+        ("shows_box", BOX.replace('"base"', "3"), "link of shows_box must be a text, not 3"),
+        ("shows_box", BOX.replace("0.1", '"0.1"'), "tolerance of shows_box must be a number, not '0.1'"),
+        ("shows_box", BOX.replace("0.1", "nan"), "tolerance of shows_box must be a number, not NaN"),
+        ("shows_box", BOX.replace("0.1", "inf"), "tolerance of shows_box must be a number, not Infinity"),
+        ("shows_box", BOX.replace(", tolerance = 0.1", ""), "the check shows_box needs tolerance: a number"),
+        ("shows_box", BOX + ", links = 3", "the check shows_box takes no 'links'; it takes: link, size, tolerance"),
+        ("bottoms_at_height", BOTTOMS.replace('["a"]', '"a"'), "links of bottoms_at_height must be a list of texts, not 'a'"),
+        ("bottoms_at_height", BOTTOMS.replace('["a"]', "[]"), "links of bottoms_at_height must be a list of texts, not []"),
+        ("joints_named", 'parent = "a", joints = ["j"]', "joints of joints_named must be a table of texts, not ['j']"),
+    ],
+)  # fmt: skip
+def test_an_argument_that_a_check_does_not_take_is_told(tmp_path: Path, check: str, given: str, complaint: str) -> None:
+    """The arguments of a check are held against its signature: unknown ones, missing ones, those of another type."""
+    assert complaints(tmp_path, checked(check, f"with = {{ {given} }}\n")) == [f"12: {complaint}"]
+
+
+@pytest.mark.parametrize(
+    ("check", "given", "name"),
+    [
+        ("shows_box", BOX.replace("0.1", "true"), "tolerance"),
+        ("shows_box", BOX.replace("0.1", "1979-05-27"), "tolerance"),
+        ("centre_at", 'link = "a", relative_to = "b", xyz = [0, 0, 0], tolerance = 1, rigid = 1', "rigid"),
+        ("bottoms_at_height", BOTTOMS.replace('["a"]', '["a", 1]'), "links"),
+        ("joints_named", 'parent = "a", joints = { j = 1 }', "joints"),
+        ("joints_named", 'parent = "a", joints = { j = ["l"] }', "joints"),
+        ("shows_sphere", SPHERE.replace('"a"', f'["{"a" * 999}"]'), "link"),
+    ],
+)
+def test_an_argument_of_another_type_is_told(tmp_path: Path, check: str, given: str, name: str) -> None:
+    """Nothing is taken for something else: no true for a number, no number for a text, no list for a table's value."""
+    (found,) = complaints(tmp_path, checked(check, f"with = {{ {given} }}\n"))
+    assert found.startswith(f"12: {name} of {check} must be ")
+    assert len(found) < 150
+
+
+@pytest.mark.parametrize(
+    ("check", "given", "name"),
+    [
+        ("shows_sphere", SPHERE.replace("radius = 1", "radius = 1e400"), "radius"),
+        ("shows_sphere", SPHERE.replace("radius = 1", f"radius = 1{'0' * 400}"), "radius"),
+        ("shows_box", BOX.replace("[1, 1, 1]", f"[1, 1, -1{'0' * 400}]"), "size"),
+    ],
+    ids=["exponent", "digits", "digits-in-a-list"],
+)
+def test_an_argument_beyond_all_bounds_is_refused(tmp_path: Path, check: str, given: str, name: str) -> None:
+    """A number that is no float is a mistake in the rubric: not infinity, and not a crash."""
+    (found,) = complaints(tmp_path, checked(check, f"with = {{ {given} }}\n"))
+    assert found.startswith(f"12: {name} of {check} must be ")
+
+
+@pytest.mark.parametrize("colour", ["[0]", "[0, 1]", "[0, 1, 0, 1, 1]"])
+def test_a_colour_has_three_or_four_channels(tmp_path: Path, colour: str) -> None:
+    """Another count can never be compared with what a link shows, so it is told when the rubric is loaded."""
+    (found,) = complaints(tmp_path, checked("shows_colour", f"with = {{ {COLOUR.replace('[0, 1, 0]', colour)} }}\n"))
+    assert found.startswith("12: ")
+
+
+def test_no_names_are_no_question(tmp_path: Path) -> None:
+    """An empty table of joints would pass every robot; it is refused as an empty list is."""
+    assert complaints(tmp_path, checked("joints_named", 'with = { parent = "a", joints = {} }\n'))
+
+
+def test_a_misspelt_argument_is_told_twice(tmp_path: Path) -> None:
+    """It is unknown, with the one that may be meant, and that one is missing."""
+    given = f"with = {{ {BOX.replace('link', 'lnk')} }}\n"
+    assert complaints(tmp_path, checked("shows_box", given)) == [
+        "12: the check shows_box takes no 'lnk'; did you mean 'link'?",
+        "12: the check shows_box needs link: a text",
+    ]
+
+
+def test_all_arguments_are_told_if_none_is_given(tmp_path: Path) -> None:
+    """Without a table each argument that is needed is told for the criterion; those with a default are not."""
+    assert complaints(tmp_path, checked("rolls_forward", "")) == [
+        "6: the check rolls_forward needs link: a text",
+        "6: the check rolls_forward needs base: a text",
+        "6: the check rolls_forward needs tolerance: a number",
+    ]
+
+
+def test_a_missing_argument_is_told_where_the_table_is(tmp_path: Path) -> None:
+    """Where a table of arguments stands in lines of its own, its header is the place for what is missing in it."""
+    text = checked("shows_box", '\n# the arguments\n[criterion.with]\nlink = "base"\nsize = [1, 2]\n')
+    assert complaints(tmp_path, text) == [
+        "14: the check shows_box needs tolerance: a number",
+        "16: size of shows_box must be 3 numbers, not [1, 2]",
+    ]
+
+
+def test_arguments_become_what_the_check_takes(tmp_path: Path) -> None:
+    """Whole numbers are numbers too; lists become tuples where the check has one; defaults stay with the check."""
+    given = 'with = { link = "w", base = "b", forward = [1, 0, 0], tolerance = 1 }'
+    (criterion,) = loaded(tmp_path, checked("rolls_forward", given)).criteria
+    assert criterion.arguments == {"link": "w", "base": "b", "forward": (1.0, 0.0, 0.0), "tolerance": 1.0}
+    assert isinstance(criterion.arguments["forward"], tuple)
+    assert isinstance(criterion.arguments["tolerance"], float)
+
+
+# --- requires ---------------------------------------------------------------------------------------------------------
+
+
+def row(name: str, *, requires: str = "[]", part: str = "a", points: str = "1") -> str:
+    """A criterion in seven lines; what it requires is in the last."""
+    return (
+        f'[[criterion]]\nid = "{name}"\npart = "{part}"\ntitle = "T"\npoints = {points}\ncheck = "urdf_loads"\n'
+        f"requires = {requires}\n"
+    )
+
+
+def test_only_what_stands_above_can_be_required(tmp_path: Path) -> None:
+    """File order is run order: a cycle cannot be written."""
+    rubric = loaded(tmp_path, GOOD + row("b", requires='["loads"]') + row("c", requires='["b", "loads"]'))
+    assert [each.requires for each in rubric.criteria] == [(), ("loads",), ("b", "loads")]
+    assert complaints(tmp_path, GOOD + row("b", requires='["c"]') + row("c", requires='["b"]')) == [
+        "18: requires 'c', which stands below: a criterion can only require those above it"
+    ]
+
+
+def test_a_criterion_cannot_require_itself(tmp_path: Path) -> None:
+    """It does not stand above itself."""
+    (found,) = complaints(tmp_path, GOOD + row("b", requires='["b"]'))
+    assert found.startswith("18: requires 'b', which ")
+
+
+def test_each_unknown_requirement_is_told(tmp_path: Path) -> None:
+    """Every name that does not exist is told, with the one that may be meant."""
+    assert complaints(tmp_path, GOOD + row("b", requires='["load", "zzz", "loads"]')) == [
+        "18: requires 'load', which does not exist; did you mean 'loads'?",
+        "18: requires 'zzz', which does not exist",
+    ]
+
+
+# --- Points -----------------------------------------------------------------------------------------------------------
+
+
+def worth(*points: str, total: str = "", part: str = "") -> str:
+    """A rubric with criteria of these points, and what the rubric and its part declare."""
+    declared = f"points = {total}\n" if total else ""
+    own = f"points = {part}\n" if part else ""
+    head = f'id = "r"\ntitle = "R"\n{declared}[[part]]\nid = "a"\ntitle = "A"\n{own}'
+    return head + "".join(row(f"c{index}", points=each) for index, each in enumerate(points))
+
+
+@pytest.mark.parametrize(
+    ("points", "total"),
+    [
+        (("0.1", "0.2"), "0.3"),
+        (("0.1",) * 10, "1"),
+        (("0.33", "0.33", "0.34"), "1.0"),
+        (("0.3333", "0.3333", "0.3334"), "1"),
+        (("1.1", "2.2"), "3.3"),
+        (("1e-3", "0.999"), "1"),
+        (("1", "2", "0"), "3"),
+        (("0.1", "0.7"), "8e-1"),
+        (("1_000.5", "0.5"), "1_001"),
+        (("0.0000000000000001", "1"), "1.0000000000000001"),
+    ],
+)
+def test_points_are_exact(tmp_path: Path, points: tuple[str, ...], total: str) -> None:
+    """Points add up as they do on paper, not as floats do."""
+    rubric = loaded(tmp_path, worth(*points, total=total, part=total))
+    assert rubric.points == Decimal(total)
+    assert [each.points for each in rubric.criteria] == [Decimal(each) for each in points]
+    assert all(isinstance(each.points, Decimal) for each in rubric.criteria)
+
+
+@settings(deadline=None, max_examples=50)
+@given(cents=st.lists(st.integers(0, 10_000), min_size=1, max_size=20))
+def test_any_points_in_hundredths_add_up(tmp_path_factory: pytest.TempPathFactory, cents: list[int]) -> None:
+    """However many criteria share the points, the declared total is their exact sum, and one cent more is refused."""
+    folder = tmp_path_factory.getbasetemp()
+    points = [f"{each // 100}.{each % 100:02d}" for each in cents]
+    total, wrong = (f"{each // 100}.{each % 100:02d}" for each in (sum(cents), sum(cents) + 1))
+    assert loaded(folder, worth(*points, total=total, part=total)).points * 100 == sum(cents)
+    assert len(complaints(folder, worth(*points, total=wrong, part=wrong))) == 2
+
+
+def test_totals_that_do_not_add_up_are_told(tmp_path: Path) -> None:
+    """What the rubric and each part declare is compared with the sums."""
+    assert complaints(tmp_path, worth("0.1", "0.2", total="0.30001", part="1")) == [
+        "3: the rubric declares 0.30001 points, but its criteria add up to 0.3",
+        "7: part 'a' declares 1 points, but its criteria add up to 0.3",
+    ]
+
+
+def test_a_part_is_worth_its_own_criteria(tmp_path: Path) -> None:
+    """Points of another part do not count."""
+    second = '[[part]]\nid = "b"\ntitle = "B"\npoints = 2\n'
+    text = worth("1", total="3", part="1").replace("[[criterion]]", second + "[[criterion]]", 1)
+    assert loaded(tmp_path, text + row("last", part="b", points="2")).points == 3
+    assert complaints(tmp_path, text + row("last", part="b", points="3")) == [
+        "3: the rubric declares 3 points, but its criteria add up to 4",
+        "11: part 'b' declares 2 points, but its criteria add up to 3",
+    ]
+
+
+def test_totals_are_not_told_while_points_cannot_be_read(tmp_path: Path) -> None:
+    """One mistake in a criterion's points does not make the totals wrong, too."""
+    assert complaints(tmp_path, worth("1", '"2"', total="3", part="3")) == ["19: points must be a number, not a text"]
+
+
+@pytest.mark.parametrize(
+    "points",
+    ["1e9999999", "9e999999", "1" + "0" * 5000, "0x" + "f" * 5000, "1e-9999999", "1e9999999999999999999"],
+    ids=["exponent", "sum", "digits", "hexadecimal", "small", "no-decimal"],
+)
+def test_numbers_beyond_all_bounds_are_no_crash(tmp_path: Path, points: str) -> None:
+    """Points that no computer adds up are loaded or told as a mistake in the rubric."""
+    try:
+        assert loaded(tmp_path, worth(points, points)).points >= 0
+    except RubricError as error:
+        assert error.complaints
+
+
+# --- Files ------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("text", "where"),
+    [
+        ("id = \n", "line 1, column 6"),
+        ("a = 1\nb = 'open\n", "at end of document"),
+        ("a = 1\na = 2\n", "line 2"),
+        ("[a]\n[a]\n", "line 2"),
+        ("= 3\n", "line 1, column 1"),
+        ("a = 1 2\n", "line 1"),
+        ("a = 01\n", "line 1"),
+        ('a = "\\q"\n', "line 1"),
+        ("<xml/>\n", "line 1, column 1"),
+        ("{}", "line 1, column 1"),
+        ("id = yes\n", "line 1, column 6"),
+    ],
+)
+def test_broken_toml_is_told_with_its_place(tmp_path: Path, text: str, where: str) -> None:
+    """Text that is no TOML is refused in one line that says where."""
+    (found,) = complaints(tmp_path, text)
+    assert found.startswith(" not readable as TOML: ")
+    assert where in found
+    assert "\n" not in found
+
+
+@pytest.mark.parametrize("data", [b'id = "caf\xe9"\n', "id = 1".encode("utf-16"), b"\xff\xfe\x00", b"\x80"])
+def test_what_is_not_utf_8_is_refused(tmp_path: Path, data: bytes) -> None:
+    """TOML is UTF-8; another encoding is named as that, not as broken TOML."""
+    assert complaints(tmp_path, data) == [" this is not UTF-8 text"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "x = " + "[" * 100_000,
+        "x = " + "[" * 5000 + "]" * 5000,
+        "x = " + "{a=" * 5000 + "1" + "}" * 5000,
+        "[" + ".".join("a" * 5000) + "]\nx = 1\n",
+        ".".join("a" * 5000) + " = 1\n",
+        "x = '''" + "[" * 100_000 + "'''\n",
+    ],
+    ids=["open", "arrays", "inline-tables", "header", "dotted", "only-text"],
+)
+def test_deep_nesting_is_no_crash(tmp_path: Path, text: str) -> None:
+    """Brackets without end are a mistake in the rubric, which is told in words."""
+    assert complaints(tmp_path, GOOD + text)
+
+
+def test_line_ends_of_windows_are_line_ends(tmp_path: Path) -> None:
+    """A rubric written on Windows loads, and its mistakes have the same lines."""
+    windows = GOOD.replace("\n", "\r\n")
+    assert loaded(tmp_path, windows).criteria == loaded(tmp_path, GOOD).criteria
+    assert complaints(tmp_path, EVERY_KIND_OF_MISTAKE.replace("\n", "\r\n")) == announced(EVERY_KIND_OF_MISTAKE)
+
+
+def test_a_file_that_is_not_there_is_told(tmp_path: Path) -> None:
+    """A path that leads nowhere is unreadable input, not a broken rubric."""
+    with pytest.raises(InputError, match=r"cannot read .*nothing\.toml: No such file or directory"):
+        load_rubric(str(tmp_path / "nothing.toml"))
+
+
+def test_a_folder_is_no_rubric(tmp_path: Path) -> None:
+    """A folder is refused, whatever its name."""
+    (tmp_path / "lab.toml").mkdir()
+    for path in (tmp_path, tmp_path / "lab.toml"):
+        with pytest.raises(InputError, match=r"cannot read|is not a regular file"):
+            load_rubric(str(path))
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="named pipes are a thing of POSIX")
+def test_a_pipe_is_no_rubric(tmp_path: Path) -> None:
+    """A named pipe is refused at once instead of being waited for."""
+    os.mkfifo(tmp_path / "pipe.toml")
+    with pytest.raises(InputError, match="not a regular file"):
+        load_rubric(str(tmp_path / "pipe.toml"))
+
+
+def test_a_file_without_end_is_refused(tmp_path: Path) -> None:
+    """No more than a limit is read."""
+    with pytest.raises(InputError, match="larger than"):
+        load_rubric(write(tmp_path, GOOD + "#" * (1 << 21)))
+
+
+@pytest.mark.parametrize(
+    ("name", "guess"), [("lab", "lab6"), ("lab66", "lab6"), ("LAB6", "lab6"), ("l6", None), ("zzz", None)]
+)
+def test_an_unknown_id_is_told_with_what_there_is(name: str, guess: str | None) -> None:
+    """A name that is no rubric is answered with the one that may be meant, or with all that there are."""
+    with pytest.raises(RubricError) as caught:
+        load_rubric(name)
+    (line,) = caught.value.complaints
+    assert line.startswith(f"there is no rubric {name!r}")
+    assert (f"did you mean {guess!r}?" in line) if guess else ("there are: lab6" in line)
+
+
+def test_a_file_is_found_by_its_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A path with a folder, an ending, or an existing file is a path; a shipped id comes first."""
+    monkeypatch.chdir(tmp_path)
+    Path("lab6").write_text(GOOD)
+    Path("mine").write_text(GOOD)
+    assert find_rubric("lab6") == shipped_rubrics()["lab6"]
+    assert find_rubric("mine") == Path("mine")
+    assert find_rubric("./lab6") == Path("lab6")
+    assert find_rubric("gone.toml") == Path("gone.toml")
+    assert load_rubric("./lab6").id == "lab0"
+
+
+def test_a_path_is_shown_without_control_characters(tmp_path: Path) -> None:
+    """A file's name is data: it cannot colour the terminal."""
+    path = tmp_path / "a\x1b[31m.toml"
+    path.write_text("")
+    with pytest.raises(RubricError) as caught:
+        load_rubric(str(path))
+    assert "\x1b" not in str(caught.value)
+    with pytest.raises(GraderError) as other:
+        load_rubric(str(tmp_path / "\x1b[31m.toml"))
+    assert "\x1b" not in str(other.value)
+
+
+# --- Lines ------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("line", "key"),
+    [
+        ('"a rubric" = 1', "a rubric"),
+        ("'quo.ted' = 1", "quo.ted"),
+        ("extra.deep = 1", "extra"),
+        ("[extra]", "extra"),
+        ("[extra.deep]", "extra"),
+        ("[[extra]]", "extra"),
+        ("[[extra.deep]]", "extra"),
+        ("[ 'extra' . deep ] # and more", "extra"),
+    ],
+)
+def test_an_unknown_key_of_a_rubric_is_told_in_its_line(tmp_path: Path, line: str, key: str) -> None:
+    """However an unknown key is written, the complaint has the line that it is written in."""
+    if line.startswith("["):
+        text, number = GOOD + line + "\n", 12
+    else:
+        text, number = GOOD.replace("[[part]]", line + "\n[[part]]"), 3
+    (found,) = complaints(tmp_path, text)
+    assert found.startswith(f"{number}: a rubric has no key {key!r};")
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["hint.text = 1", "hint.text.more = 1", '"hint" = 1', "'hint'.x = 1", "hint = { a = 1 }", "[criterion.hint.deep]"],
+)
+def test_an_unknown_key_of_a_criterion_is_told_in_its_line(tmp_path: Path, line: str) -> None:
+    """Dotted and quoted keys and tables have a line, too."""
+    (found,) = complaints(tmp_path, GOOD + line + "\n")
+    assert found.startswith("12: a criterion has no key 'hint';")
+
+
+def test_a_table_in_a_criterion_does_not_move_those_behind_it(tmp_path: Path) -> None:
+    """Arrays of tables below a criterion belong to it: the next criterion keeps its lines."""
+    text = GOOD + "[[criterion.hint]]\nx = 1\n[[criterion.hint]]\nx = 1\n" + row("b", points="-1")
+    assert [each.partition(":")[0] for each in complaints(tmp_path, text)] == ["12", "20"]
+
+
+BEHIND_TEXTS = r'''feedback = """
+[[criterion]]
+id = "not a key"
+# no comment \
+  \""" still "text" """
+
+# [[criterion]] in a comment
+[[criterion]]   # a second one
+id = 'two' # 'quoted' "in" comment
+part = "a"
+title = """
+"""  # !!
+requires = [ # [ ] "
+  "loads", # one
+  'lods', # two ]
+]
+"points" = -1
+'check' = "urdf_load"
+'''
+
+
+def test_lines_are_right_behind_text_of_many_lines(tmp_path: Path) -> None:
+    """Multi-line strings, comments and arrays of many lines do not move what comes behind them."""
+    assert complaints(tmp_path, GOOD + BEHIND_TEXTS) == [
+        "22: title must not be empty",
+        "24: requires 'lods', which does not exist; did you mean 'loads'?",
+        "28: points must be a number of at least 0, not -1",
+        "29: there is no check 'urdf_load'; did you mean 'urdf_loads'?",
+    ]
+
+
+def test_lines_are_right_behind_quotes_at_the_end_of_a_text(tmp_path: Path) -> None:
+    """A text between triple quotes may itself end in quotes, and brackets may follow."""
+    text = GOOD + 'feedback = """He said "yes"""" # ["\nrequires = ["""a"""", "[b"]\npints = 1\n'
+    assert [each.partition(":")[0] for each in complaints(tmp_path, text)] == ["13", "13", "14"]
+    text = GOOD + "feedback = '''It's 'fine'''' # ['\nrequires = ['''a'''', '[b']\npints = 1\n"
+    assert [each.partition(":")[0] for each in complaints(tmp_path, text)] == ["13", "13", "14"]
+
+
+def test_lines_in_tables_of_arguments(tmp_path: Path) -> None:
+    """An argument in a table of its own has its own line; one in braces has the line of the braces."""
+    names = GOOD.replace("urdf_loads", "joints_named")
+    tables = '[criterion.with]\nparent = 3\n\n[criterion.with.joints]\n# a joint\nj = "lidar"\nk = 4\n'
+    assert complaints(tmp_path, names + tables) == [
+        "13: parent of joints_named must be a text, not 3",
+        "15: joints of joints_named must be a table of texts, not {'j': 'lidar', 'k': 4}",
+    ]
+    dotted = 'with.parent = 3\nwith.joints.j = "lidar"\nwith.jionts = 3\n'
+    assert complaints(tmp_path, names + dotted) == [
+        "12: parent of joints_named must be a text, not 3",
+        "14: the check joints_named takes no 'jionts'; it takes: parent, joints",
+    ]
+    braces = 'with = { parent = 3, joints = { j = "lidar" } }\n'
+    assert complaints(tmp_path, names + braces) == ["12: parent of joints_named must be a text, not 3"]

@@ -1,0 +1,630 @@
+"""Where links are: each kind of joint, mimics, forests, defects that stay where they are, loops, size."""
+
+import sys
+from collections.abc import Sequence
+from contextlib import suppress
+from math import cos, hypot, inf, isfinite, pi, sin
+from time import process_time
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from grader.errors import MissingElement
+from grader.robot.kinematics import DEGREES_OF_FREEDOM, Configuration, Position
+from grader.robot.model import Joint, Link, Mimic, Origin, Robot
+from grader.robot.reader import read_urdf
+from grader.robot.transforms import IDENTITY, Transform, Vector, dot, minus, rotation_about, rotation_from_rpy, unit
+
+Z: Vector = (0.0, 0.0, 1.0)
+
+angles = st.floats(-7, 7)
+lengths = st.floats(-10, 10)
+vectors = st.tuples(lengths, lengths, lengths)
+origins = st.builds(Origin, vectors, st.tuples(angles, angles, angles))
+axes = vectors.filter(lambda axis: hypot(*axis) > 1e-6)
+scales = st.floats(-150, 150).map(lambda exponent: 10.0**exponent)
+
+
+def joint(ends: str, kind: str = "fixed", **more: Any) -> Joint:
+    """A joint between two links of one letter each, called by these letters."""
+    return Joint(ends, kind, ends[0], ends[1], **more)
+
+
+def robot(*joints: Joint, alone: str = "") -> Robot:
+    """A robot of these joints, with the links that they name in this order, and others."""
+    names = dict.fromkeys([*(end for each in joints for end in (each.parent, each.child)), *alone])
+    return Robot("r", tuple(Link(name) for name in names if name), joints)
+
+
+def at(*xyz: float) -> Origin:
+    """An origin without a turn."""
+    x, y, z = xyz
+    return Origin((x, y, z))
+
+
+def transform(origin: Origin) -> Transform:
+    """T_parent_child of an origin."""
+    return Transform(rotation_from_rpy(origin.rpy), origin.xyz)
+
+
+def motion(each: Joint, position: float) -> Transform:
+    """What a joint of one axis, or none, adds behind its origin."""
+    x, y, z = unit(each.axis or Z) or Z
+    match each.type:
+        case "continuous":
+            return Transform(rotation_about((x, y, z), position))
+        case "prismatic":
+            return Transform(translation=(x * position, y * position, z * position))
+    return IDENTITY
+
+
+def near(one: Transform, other: Transform, within: float = 1e-9) -> bool:
+    """Whether two poses are the same but for rounding."""
+    return bool(np.allclose(np.array(one), np.array(other), rtol=0, atol=within))
+
+
+# --- Joints -----------------------------------------------------------------------------------------------------------
+
+
+@given(kind=st.sampled_from(("continuous", "revolute")), axis=axes, scale=scales, angle=angles, origin=origins)
+def test_a_turning_joint_turns_behind_its_origin(
+    kind: str, axis: Vector, scale: float, angle: float, origin: Origin
+) -> None:
+    """The child turns about the axis, given in its own frame, whatever the axis' length."""
+    direction = unit(axis)
+    assert direction is not None
+    scaled = (axis[0] * scale, axis[1] * scale, axis[2] * scale)
+    pose = Configuration(robot(joint("ab", kind, origin=origin, axis=scaled)), {"ab": angle}).pose("b")
+    assert near(pose, transform(origin) @ Transform(rotation_about(direction, angle)))
+
+
+@given(axis=axes, scale=scales, way=lengths, origin=origins)
+def test_a_sliding_joint_slides_by_metres(axis: Vector, scale: float, way: float, origin: Origin) -> None:
+    """The child moves along the axis by the position itself: KDL normalises the axis."""
+    direction = unit(axis)
+    assert direction is not None
+    scaled = (axis[0] * scale, axis[1] * scale, axis[2] * scale)
+    pose = Configuration(robot(joint("ab", "prismatic", origin=origin, axis=scaled)), {"ab": way}).pose("b")
+    slide = (direction[0] * way, direction[1] * way, direction[2] * way)
+    assert near(pose, transform(origin) @ Transform(translation=slide))
+
+
+@given(normal=axes, x=lengths, y=lengths, angle=angles)
+def test_a_planar_joint_moves_across_its_normal(normal: Vector, x: float, y: float, angle: float) -> None:
+    """It slides in the plane across the normal, x and y at right angles, and turns about the normal."""
+    direction = unit(normal)
+    assert direction is not None
+    moving = robot(joint("ab", "planar", axis=normal))
+    pose = Configuration(moving, {"ab": (x, y, angle)}).pose("b")
+    assert pose.rotation == pytest.approx(rotation_about(direction, angle), abs=1e-12)
+    assert dot(pose.translation, direction) == pytest.approx(0.0, abs=1e-9)
+    assert hypot(*pose.translation) == pytest.approx(hypot(x, y), abs=1e-9)
+    along_x = Configuration(moving, {"ab": (1.0, 0.0, 0.0)}).pose("b").translation
+    along_y = Configuration(moving, {"ab": (0.0, 1.0, 0.0)}).pose("b").translation
+    assert dot(along_x, along_y) == pytest.approx(0.0, abs=1e-9)
+    assert pose.translation == pytest.approx(
+        tuple(x * a + y * b for a, b in zip(along_x, along_y, strict=True)), abs=1e-9
+    )
+
+
+@given(x=lengths, y=lengths, angle=angles, length=st.floats(1e-3, 1e3))
+def test_a_planar_joint_across_z_slides_in_x_and_y(x: float, y: float, angle: float, length: float) -> None:
+    """With the z axis as its normal, x and y are the frame's."""
+    pose = Configuration(robot(joint("ab", "planar", axis=(0.0, 0.0, length))), {"ab": (x, y, angle)}).pose("b")
+    assert near(pose, Transform(rotation_from_rpy((0.0, 0.0, angle)), (x, y, 0.0)))
+
+
+@given(normal=axes)
+def test_a_planar_joint_has_a_right_handed_plane(normal: Vector) -> None:
+    """x, y and the normal are right-handed, for every normal but the opposite of z too."""
+    direction = unit(normal)
+    assert direction is not None
+    moving = robot(joint("ab", "planar", axis=normal))
+    along_x, along_y = (
+        Configuration(moving, {"ab": (float(first), float(not first), 0.0)}).pose("b").translation for first in (1, 0)
+    )
+    assert np.cross(along_x, along_y) == pytest.approx(direction, abs=1e-6)
+
+
+@given(xyz=vectors, rpy=st.tuples(angles, angles, angles), origin=origins, axis=vectors)
+def test_a_floating_joint_takes_a_whole_pose(xyz: Vector, rpy: Vector, origin: Origin, axis: Vector) -> None:
+    """x, y, z, roll, pitch, yaw behind the origin; its axis does not matter."""
+    moving = robot(joint("ab", "floating", origin=origin, axis=axis))
+    assert near(Configuration(moving, {"ab": (*xyz, *rpy)}).pose("b"), transform(origin) @ transform(Origin(xyz, rpy)))
+
+
+@pytest.mark.parametrize("kind", ["fixed", *DEGREES_OF_FREEDOM, "Fixed", ""])
+def test_every_joint_rests_at_its_origin(kind: str) -> None:
+    """At 0 a joint of any type, known or not, adds nothing."""
+    origin = Origin((1.0, 2.0, 3.0), (0.1, 0.2, 0.3))
+    assert Configuration(robot(joint("ab", kind, origin=origin, axis=Z))).pose("b") == transform(origin)
+
+
+@pytest.mark.parametrize(
+    ("kind", "position"),
+    [
+        ("fixed", 1.0),
+        ("", 1.0),
+        ("Continuous", 1.0),
+        ("continuous", (1.0, 2.0)),
+        ("planar", 1.0),
+        ("planar", (1.0, 2.0)),
+        ("floating", 1.0),
+        ("floating", (1.0, 2.0, 3.0)),
+        ("prismatic", ()),
+    ],
+)
+def test_positions_of_the_wrong_shape_are_refused(kind: str, position: Position) -> None:
+    """A position has as many numbers as the joint's type moves in; the message names the joint."""
+    with pytest.raises(ValueError, match="joint 'ab'"):
+        Configuration(robot(joint("ab", kind)), {"ab": position})
+    with pytest.raises(ValueError, match="joint 'ab'"):
+        Configuration(robot(joint("ab", kind))).moved("ab", position)
+
+
+def test_positions_of_unknown_joints_are_refused() -> None:
+    """The error names the joints that there are."""
+    with pytest.raises(MissingElement, match=r"'ba'.*'ab'"):
+        Configuration(robot(joint("ab")), {"ba": 1.0})
+
+
+def test_moved_changes_one_joint() -> None:
+    """The other positions stay, and so does the configuration that is asked."""
+    still = Configuration(robot(joint("ab", "prismatic"), joint("bc", "prismatic")), {"ab": 1.0})
+    moved = still.moved("bc", 2.0)
+    assert moved.pose("c").translation == (3.0, 0.0, 0.0)
+    assert still.pose("c").translation == (1.0, 0.0, 0.0)
+    assert moved.moved("ab", 0.0).pose("c").translation == (2.0, 0.0, 0.0)
+    with pytest.raises(MissingElement):
+        still.moved("cd", 1.0)
+
+
+@given(origin=origins, angle=angles, asked=st.booleans())
+def test_moved_is_a_new_configuration(origin: Origin, angle: float, asked: bool) -> None:
+    """Poses that were asked for before do not stick."""
+    turning = robot(joint("ab", "continuous", origin=origin, axis=Z), joint("bc", origin=origin))
+    still = Configuration(turning)
+    if asked:
+        still.pose("c", relative_to="b")
+    assert still.moved("ab", angle).pose("c") == Configuration(turning, {"ab": angle}).pose("c")
+
+
+# --- Mimics -----------------------------------------------------------------------------------------------------------
+
+
+@given(multiplier=lengths, offset=lengths, second=lengths, start=lengths)
+def test_mimics_follow_through_a_chain(multiplier: float, offset: float, second: float, start: float) -> None:
+    """A mimic of a mimic follows both rules, whatever the order in the file."""
+    following = robot(
+        joint("ad", "prismatic", mimic=Mimic("ac", second, -1.0)),
+        joint("ac", "prismatic", mimic=Mimic("ab", multiplier, offset)),
+        joint("ab", "prismatic"),
+    )
+    configuration = Configuration(following, {"ab": start})
+    middle = multiplier * start + offset
+    assert configuration.pose("c").translation[0] == pytest.approx(middle, abs=1e-9)
+    assert configuration.pose("d").translation[0] == pytest.approx(second * middle - 1.0, abs=1e-9)
+    assert Configuration(following).pose("c").translation[0] == pytest.approx(offset, abs=1e-12)
+
+
+def test_a_mimic_that_is_moved_itself_does_not_follow() -> None:
+    """Its own position counts, and those that mimic it follow it."""
+    following = robot(
+        joint("ab", "prismatic"),
+        joint("ac", "prismatic", mimic=Mimic("ab", 2.0)),
+        joint("ad", "prismatic", mimic=Mimic("ac", 3.0)),
+    )
+    configuration = Configuration(following, {"ab": 1.0, "ac": 5.0})
+    assert [configuration.pose(each).translation[0] for each in "bcd"] == [1.0, 5.0, 15.0]
+    assert Configuration(following, {"ab": 1.0}).moved("ac", 0.0).pose("d").translation[0] == 0.0
+
+
+@pytest.mark.parametrize("length", [1, 2, 3, 500])
+def test_mimics_in_a_circle_stand_still(length: int) -> None:
+    """Joints that follow each other are moved by nobody; a joint that follows them stands where they do."""
+    circle = [
+        Joint(f"j{index}", "prismatic", "a", f"b{index}", mimic=Mimic(f"j{(index + 1) % length}", 2.0, 1.0))
+        for index in range(length)
+    ]
+    names = ("a", *(each.child for each in circle))
+    configuration = Configuration(Robot("r", tuple(map(Link, names)), tuple(circle)))
+    assert all(configuration.pose(each.child) == IDENTITY for each in circle)
+
+
+def test_a_circle_of_mimics_is_opened_by_a_position() -> None:
+    """If one of them is moved, the others follow."""
+    circle = robot(
+        joint("ab", "prismatic", mimic=Mimic("ac", 2.0)), joint("ac", "prismatic", mimic=Mimic("ab", 3.0, 1.0))
+    )
+    configuration = Configuration(circle, {"ab": 1.0})
+    assert [configuration.pose(each).translation[0] for each in "bc"] == [1.0, 4.0]
+
+
+def test_a_mimic_of_a_missing_joint_is_at_its_offset() -> None:
+    """Nothing moves it; the offset is all that is left."""
+    configuration = Configuration(robot(joint("ab", "prismatic", mimic=Mimic("nothing", 2.0, 0.5))))
+    assert configuration.pose("b").translation == (0.5, 0.0, 0.0)
+
+
+def test_a_mimic_of_a_joint_with_more_numbers() -> None:
+    """A planar or floating joint has no single position to follow: the offset is left."""
+    following = robot(joint("ab", "planar", axis=Z), joint("ac", "prismatic", mimic=Mimic("ab", 2.0, 0.5)))
+    assert Configuration(following, {"ab": (1.0, 2.0, 3.0)}).pose("c").translation == (0.5, 0.0, 0.0)
+
+
+# --- Trees ------------------------------------------------------------------------------------------------------------
+
+
+@st.composite
+def trees(draw: st.DrawFn) -> Robot:
+    """Robots of 1 to 15 links under one root, joints of all single-axis types in random order."""
+    count = draw(st.integers(1, 15))
+    joints = [
+        Joint(
+            f"j{child}",
+            draw(st.sampled_from(("fixed", "continuous", "prismatic"))),
+            f"l{draw(st.integers(0, child - 1))}",
+            f"l{child}",
+            draw(origins),
+            draw(axes),
+        )
+        for child in range(1, count)
+    ]
+    links = draw(st.permutations([Link(f"l{index}") for index in range(count)]))
+    return Robot("r", tuple(links), tuple(draw(st.permutations(joints))))
+
+
+@given(tree=trees(), draw=st.data())
+def test_poses_are_products_along_the_tree(tree: Robot, draw: st.DataObject) -> None:
+    """A child's pose is its parent's, the joint's origin and the joint's motion, in whichever order one asks."""
+    positions = {each.name: draw.draw(angles) for each in tree.joints if each.type != "fixed"}
+    configuration = Configuration(tree, positions)
+    assert configuration.roots == ("l0",)
+    assert configuration.pose("l0") == IDENTITY
+    for each in draw.draw(st.permutations(tree.joints)):
+        assert each.origin is not None
+        step = transform(each.origin) @ motion(each, positions.get(each.name, 0.0))
+        expected = configuration.pose(each.parent) @ step
+        assert near(configuration.pose(each.child), expected, within=1e-8)
+        assert configuration.root_of(each.child) == "l0"
+
+
+@given(tree=trees(), draw=st.data())
+def test_relative_poses_fit_together(tree: Robot, draw: st.DataObject) -> None:
+    """T_b_c is the inverse of T_a_b times T_a_c, T_b_a undoes T_a_b, and a link in its own frame is at the identity."""
+    links = st.sampled_from([link.name for link in tree.links])
+    configuration = Configuration(tree)
+    a, b, c = draw.draw(links), draw.draw(links), draw.draw(links)
+    T_a_b, T_a_c = configuration.pose(b, relative_to=a), configuration.pose(c, relative_to=a)
+    assert near(configuration.pose(c, relative_to=b), T_a_b.inverse() @ T_a_c, within=1e-8)
+    assert near(configuration.pose(a, relative_to=b) @ T_a_b, IDENTITY, within=1e-8)
+    assert configuration.pose(a, relative_to=a) == IDENTITY
+    assert near(configuration.pose(b), configuration.pose(b, relative_to="l0"), within=0)
+
+
+@given(tree=trees(), draw=st.data())
+def test_ways_between_links(tree: Robot, draw: st.DataObject) -> None:
+    """The way leads up to where the two branches part and down again; no joint twice; backwards it is the same way."""
+    links = st.sampled_from([link.name for link in tree.links])
+    configuration = Configuration(tree)
+    one, other = draw.draw(links), draw.draw(links)
+    way = configuration.between(one, other)
+    assert len(set(way)) == len(way)
+    assert configuration.between(other, one) == way[::-1]
+    here = one
+    for step in way:
+        assert here in (step.parent, step.child)
+        here = step.child if here == step.parent else step.parent
+    assert here == other
+
+
+@given(tree=trees(), draw=st.data())
+def test_chains_lead_down(tree: Robot, draw: st.DataObject) -> None:
+    """From the root, or from a link above, to the link; None from a link that is not above."""
+    links = st.sampled_from([link.name for link in tree.links])
+    configuration = Configuration(tree)
+    link, above = draw.draw(links), draw.draw(links)
+    chain = configuration.chain(link)
+    assert chain is not None
+    passed = ["l0", *(each.child for each in chain)]
+    assert [each.parent for each in chain] == passed[:-1]
+    assert passed[-1] == link
+    part = configuration.chain(link, above=above)
+    assert part == (chain[passed.index(above) :] if above in passed else None)
+
+
+def test_asking_for_what_is_not_there() -> None:
+    """Unknown links and joints raise MissingElement, which names what there is, or the one that was meant."""
+    configuration = Configuration(robot(joint("ab")))
+    for ask in (
+        lambda: configuration.pose("x"),
+        lambda: configuration.pose("b", relative_to="x"),
+        lambda: configuration.chain("x"),
+        lambda: configuration.chain("b", above="x"),
+        lambda: configuration.between("a", "x"),
+        lambda: configuration.between("x", "a"),
+        lambda: configuration.root_of("x"),
+        lambda: configuration.link("x"),
+        lambda: configuration.joint("x"),
+        lambda: configuration.axis("x"),
+    ):
+        with pytest.raises(MissingElement, match=r"no (link|joint) 'x'; the file has: '(a', 'b|ab)'$"):
+            ask()
+
+
+def test_axes_are_unit() -> None:
+    """The axis of a joint in its child's frame, of length 1; a zero or unreadable one has no direction."""
+    named = robot(
+        joint("ab", "continuous", axis=(0.0, -3.0, 4.0)),
+        joint("ac", "continuous", axis=(0.0, 0.0, 0.0)),
+        joint("ad", "continuous", axis=None),
+    )
+    configuration = Configuration(named)
+    assert configuration.axis("ab") == pytest.approx((0.0, -0.6, 0.8))
+    with pytest.raises(MissingElement, match="'ac' is undefined: its axis is 0 0 0"):
+        configuration.axis("ac")
+    with pytest.raises(MissingElement, match="'ad' is undefined: its axis cannot be read"):
+        configuration.axis("ad")
+
+
+# --- Defects, each of which stays where it is -------------------------------------------------------------------------
+
+
+def test_a_forest_is_solved_tree_by_tree() -> None:
+    """Each root's tree has its poses; between two trees there is no pose, and the message names both links."""
+    forest = robot(joint("ab", origin=at(1, 0, 0)), joint("cd", origin=at(0, 1, 0)), alone="e")
+    configuration = Configuration(forest)
+    assert configuration.roots == ("a", "c", "e")
+    assert configuration.pose("b").translation == (1.0, 0.0, 0.0)
+    assert configuration.pose("d").translation == (0.0, 1.0, 0.0)
+    assert configuration.pose("e") == IDENTITY
+    for one, other in (("b", "d"), ("a", "e"), ("c", "b")):
+        with pytest.raises(MissingElement, match=f"from '{other}' to '{one}'") as caught:
+            configuration.pose(one, relative_to=other)
+        assert caught.value.kind == "connection"
+        with pytest.raises(MissingElement):
+            configuration.between(one, other)
+
+
+def test_an_unreadable_origin_makes_an_island() -> None:
+    """Behind it poses are known relative to each other; the other links do not notice."""
+    broken = robot(
+        joint("ab", origin=at(1, 0, 0)),
+        joint("bc", origin=None),
+        joint("cd", origin=at(0, 0, 1)),
+        joint("ce", origin=at(0, 0, 2)),
+    )
+    configuration = Configuration(broken)
+    assert configuration.pose("b").translation == (1.0, 0.0, 0.0)
+    assert configuration.pose("e", relative_to="d").translation == (0.0, 0.0, 1.0)
+    assert configuration.pose("d", relative_to="c").translation == (0.0, 0.0, 1.0)
+    for one, other in (("c", None), ("d", None), ("d", "b"), ("a", "e")):
+        with pytest.raises(MissingElement, match="behind joint 'bc' is undefined: its origin cannot be read"):
+            configuration.pose(one, relative_to=other)
+    assert configuration.root_of("e") == "a"
+    assert [each.name for each in configuration.between("e", "a")] == ["ce", "bc", "ab"]
+
+
+def test_two_islands_name_a_joint_that_is_to_blame() -> None:
+    """Between two islands the message speaks of one of the joints with an unreadable origin."""
+    broken = robot(joint("ab", origin=None), joint("ac", origin=None), joint("cd", origin=at(1, 0, 0)))
+    with pytest.raises(MissingElement, match=r"joint '(ab|ac)' is undefined: its origin cannot be read"):
+        Configuration(broken).pose("b", relative_to="d")
+
+
+@pytest.mark.parametrize("kind", ["continuous", "revolute", "prismatic", "planar"])
+@pytest.mark.parametrize("position", [None, 0.0, 0.5])
+def test_a_zero_axis_hides_what_is_behind_it(kind: str, position: float | None) -> None:
+    """At any position, 0 included, as KDL divides by the axis' length; links elsewhere have their poses."""
+    broken = robot(
+        joint("ab", kind, origin=at(1, 0, 0), axis=(0.0, 0.0, 0.0)), joint("bc"), joint("ad", origin=at(0, 1, 0))
+    )
+    positions: dict[str, Position] = {}
+    if position is not None:
+        positions["ab"] = (position, 0.0, 0.0) if kind == "planar" else position
+    configuration = Configuration(broken, positions)
+    for link in "bc":
+        with pytest.raises(MissingElement, match="'ab' is undefined: its axis is 0 0 0"):
+            configuration.pose(link)
+    assert configuration.pose("c", relative_to="b") == IDENTITY
+    assert configuration.pose("d").translation == (0.0, 1.0, 0.0)
+
+
+@pytest.mark.parametrize("kind", ["fixed", "floating", "unknown"])
+def test_a_zero_axis_does_not_matter_where_none_is_used(kind: str) -> None:
+    """Fixed and floating joints have no axis."""
+    assert Configuration(robot(joint("ab", kind, axis=(0.0, 0.0, 0.0)))).pose("b") == IDENTITY
+
+
+@pytest.mark.parametrize("names", [("j1", "j2"), ("j2", "j1"), ("J2", "j1"), ("a", "é")])
+def test_of_two_parents_the_last_joint_by_name_holds(names: tuple[str, str]) -> None:
+    """Whatever the order in the file, the joint whose name sorts last decides, as in urdfdom's map of joints."""
+    joints = [Joint(name, "fixed", "a", "b", at(index, 0, 0)) for index, name in enumerate(names)]
+    for order in (joints, joints[::-1]):
+        configuration = Configuration(robot(*order))
+        assert configuration.holding["b"].name == max(names)
+        assert configuration.pose("b").translation[0] == names.index(max(names))
+
+
+@pytest.mark.parametrize("ring", ["a", "ab", "abcdefgh"])
+def test_links_on_a_loop_have_no_pose(ring: str) -> None:
+    """Loops, and what hangs on them, raise MissingElement and never run for ever; a tree beside is not touched."""
+    loop = [joint(f"{one}{other}") for one, other in zip(ring, ring[1:] + ring[0], strict=True)]
+    configuration = Configuration(robot(*loop, joint(f"{ring[0]}y"), joint("yz"), joint("uv", origin=at(1, 0, 0))))
+    for link in (*ring, "y", "z"):
+        with pytest.raises(MissingElement, match=f"'{link}' hangs on a loop of joints"):
+            configuration.pose(link)
+        with pytest.raises(MissingElement):
+            configuration.pose(link, relative_to="v")
+        with pytest.raises(MissingElement):
+            configuration.root_of(link)
+        with pytest.raises(MissingElement):
+            configuration.between(link, "v")
+        assert configuration.chain(link, above="v") is None
+        configuration.chain(link)
+    assert configuration.pose("v").translation == (1.0, 0.0, 0.0)
+    assert configuration.roots == ("u",)
+
+
+def test_a_joint_to_nowhere_holds_nothing() -> None:
+    """A joint whose parent or child is not there, or not said, is passed over."""
+    robot_with_gaps = Robot(
+        "r",
+        (Link("a"), Link("b"), Link("")),
+        (Joint("j1", "fixed", "a", "x"), Joint("j2", "fixed", "x", "b"), Joint("j3", "fixed", "", "a"), joint("ab")),
+    )
+    configuration = Configuration(robot_with_gaps)
+    assert configuration.roots == ("a", "")
+    assert configuration.pose("b") == IDENTITY
+
+
+# --- Size and extremes ------------------------------------------------------------------------------------------------
+
+
+def chain_of(count: int) -> bytes:
+    """A URDF of so many links, one behind the other, each 1 mm along x of the last and turned a little."""
+    links = "".join(f'<link name="l{index}"/>\n' for index in range(count))
+    joints = "".join(
+        f'<joint name="j{index}" type="continuous"><parent link="l{index}"/><child link="l{index + 1}"/>'
+        f'<origin xyz="0.001 0 0"/><axis xyz="1 0 0"/></joint>\n'
+        for index in range(count - 1)
+    )
+    return f'<robot name="chain">{links}{joints}</robot>'.encode()
+
+
+def seconds_for(count: int) -> float:
+    """The processor time that reading and solving a chain takes, the best of three."""
+    data = chain_of(count)
+    times = []
+    for _ in range(3):
+        start = process_time()
+        read = read_urdf(data)
+        assert read.robot is not None
+        configuration = Configuration(read.robot)
+        for link in read.robot.links:
+            configuration.pose(link.name)
+        times.append(process_time() - start)
+    return min(times)
+
+
+def test_a_chain_of_20000_links() -> None:
+    """It is read and solved in less than 5 s, and without recursion, of which Python has far less."""
+    assert sys.getrecursionlimit() < 20_000
+    data = chain_of(20_000)
+    start = process_time()
+    read = read_urdf(data)
+    assert read.verdict == "clean"
+    assert read.robot is not None
+    configuration = Configuration(read.robot, {"j7": 0.5})
+    last = configuration.pose("l19999")
+    assert last.translation == pytest.approx((19.999, 0.0, 0.0), abs=1e-9)
+    assert last.rotation == pytest.approx(rotation_about((1.0, 0.0, 0.0), 0.5), abs=1e-9)
+    assert configuration.pose("l0", relative_to="l19999").translation[0] == pytest.approx(-19.999, abs=1e-9)
+    assert len(configuration.between("l19999", "l1")) == 19_998
+    assert process_time() - start < 5.0
+
+
+def test_time_grows_with_the_number_of_links() -> None:
+    """A link of a chain of 10,000 takes less than four times as long as one of 1,000."""
+    assert seconds_for(10_000) / 10 < 4 * seconds_for(1_000)
+
+
+def asking_all_takes(links: int, joints: list[Joint]) -> float:
+    """The processor time until each link's pose is refused or known."""
+    configuration = Configuration(Robot("r", tuple(Link(f"l{index}") for index in range(links)), tuple(joints)))
+    start = process_time()
+    for index in range(links):
+        with suppress(MissingElement):
+            configuration.pose(f"l{index}")
+    return process_time() - start
+
+
+def test_links_on_a_long_loop_are_refused_in_linear_time() -> None:
+    """Asking for each of 6,000 links on a loop does not walk the loop 6,000 times."""
+    count = 6000
+    joints = [Joint(f"j{index}", "fixed", f"l{index}", f"l{(index + 1) % count}") for index in range(count)]
+    assert asking_all_takes(count, joints) < 1.0
+
+
+def test_links_behind_a_defect_are_refused_in_linear_time() -> None:
+    """Asking for each of 6,000 links behind a zero axis does not walk up to it 6,000 times."""
+    count = 6000
+    joints = [Joint(f"j{index}", "fixed", f"l{index}", f"l{index + 1}") for index in range(1, count - 1)]
+    joints.append(Joint("j0", "continuous", "l0", "l1", axis=(0.0, 0.0, 0.0)))
+    assert asking_all_takes(count, joints) < 1.0
+
+
+def assert_finite_or_missing(configuration: Configuration) -> None:
+    """Every pose, from the root and between any two links, is finite or refused."""
+    names: Sequence[str] = [link.name for link in configuration.robot.links]
+    for link in names:
+        for relative_to in (None, *names):
+            try:
+                pose = configuration.pose(link, relative_to=relative_to)
+            except MissingElement:
+                continue
+            assert all(isfinite(each) for each in (*pose.rotation, *pose.translation)), (link, relative_to)
+
+
+huge = st.sampled_from((1.7e308, -1.7e308, 1e308, 1e300, 1e154, 1.0, 0.0, -1e-300)) | st.floats(
+    allow_nan=False, allow_infinity=False
+)
+huge_vectors = st.tuples(huge, huge, huge)
+
+
+@settings(suppress_health_check=[HealthCheck.too_slow])
+@given(
+    xyz=st.lists(huge_vectors, min_size=3, max_size=3),
+    rpy=st.lists(huge_vectors, min_size=3, max_size=3),
+    axis=huge_vectors,
+    kind=st.sampled_from(("fixed", "continuous", "prismatic")),
+    position=huge,
+)
+def test_huge_numbers_never_give_nan(
+    xyz: list[Vector], rpy: list[Vector], axis: Vector, kind: str, position: float
+) -> None:
+    """A pose is finite or refused; the link beside the huge ones keeps its own."""
+    extreme = robot(
+        joint("ab", origin=Origin(xyz[0], rpy[0])),
+        joint("bc", kind, origin=Origin(xyz[1], rpy[1]), axis=axis),
+        joint("ad", origin=Origin(xyz[2], rpy[2])),
+        joint("ae", origin=at(1, 2, 3)),
+    )
+    configuration = Configuration(extreme, {"bc": position} if kind != "fixed" else None)
+    assert_finite_or_missing(configuration)
+    assert configuration.pose("e").translation == (1.0, 2.0, 3.0)
+
+
+@given(multipliers=st.lists(huge, min_size=2, max_size=2), offsets=st.lists(huge, min_size=2, max_size=2), start=huge)
+def test_huge_mimics_never_give_nan(multipliers: list[float], offsets: list[float], start: float) -> None:
+    """Where following a mimic overflows, the pose is refused like any other that is not defined."""
+    following = robot(
+        joint("ab", "continuous", axis=Z),
+        joint("ac", "continuous", axis=Z, mimic=Mimic("ab", multipliers[0], offsets[0])),
+        joint("ad", "continuous", axis=Z, mimic=Mimic("ac", multipliers[1], offsets[1])),
+        joint("ae", "prismatic", axis=Z, mimic=Mimic("ac", multipliers[1], offsets[1])),
+    )
+    assert_finite_or_missing(Configuration(following))
+    assert_finite_or_missing(Configuration(following, {"ab": start}))
+
+
+@pytest.mark.parametrize("position", [inf, -inf, float("nan")])
+@pytest.mark.parametrize("kind", ["continuous", "prismatic"])
+def test_positions_that_are_no_numbers(kind: str, position: float) -> None:
+    """An infinite or undefined position is refused, at once or when the pose is asked for."""
+    moving = robot(joint("ab", kind, axis=Z))
+    with pytest.raises((ValueError, MissingElement)):
+        Configuration(moving, {"ab": position}).pose("b")
+
+
+def test_a_wheel_by_hand() -> None:
+    """A wheel turned a quarter about x: its z axis is the base's y, and a point on its rim goes round it."""
+    wheel = robot(joint("bw", "continuous", origin=Origin((0.0, 0.2, 0.0), (-pi / 2, 0.0, 0.0)), axis=Z))
+    rim = (0.1, 0.0, 0.0)
+    pose = Configuration(wheel, {"bw": 0.3}).pose("w")
+    assert pose.rotate(Z) == pytest.approx((0.0, 1.0, 0.0))
+    assert pose.apply(rim) == pytest.approx((0.1 * cos(0.3), 0.2, -0.1 * sin(0.3)))
+    assert minus(pose.apply((0.0, 0.0, 0.025)), (0.0, 0.2, 0.0)) == pytest.approx((0.0, 0.025, 0.0))

@@ -1,0 +1,191 @@
+"""Support points, extents and volumes against points on the surfaces and against closed forms."""
+
+from collections.abc import Callable
+from math import cos, hypot, pi, sin
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grader.robot.model import Box, Cylinder, Geometry, Mesh, Sphere
+from grader.robot.shapes import (
+    Shape,
+    UnknownShape,
+    extent,
+    farthest,
+    half_width,
+    is_empty,
+    reach,
+    support,
+    volume,
+)
+from grader.robot.transforms import IDENTITY, Transform, Vector, dot, rotation_from_rpy, unit
+
+_sizes = st.floats(-3, 1).map(lambda power: 10.0**power) | st.sampled_from((0.0, -0.3, 1.0))
+shapes = (
+    st.builds(Box, st.tuples(_sizes, _sizes, _sizes)) | st.builds(Cylinder, _sizes, _sizes) | st.builds(Sphere, _sizes)
+)
+_coordinates = st.floats(-2, 2)
+vectors = st.tuples(_coordinates, _coordinates, _coordinates)
+_components = _coordinates | st.sampled_from((0.0, 1.0, -1.0, 1e-7))
+directions = (
+    st.tuples(_components, _components, _components).map(unit).filter(bool).map(lambda found: found or (1, 0, 0))
+)
+poses = st.builds(lambda rpy, xyz: Transform(rotation_from_rpy(rpy), xyz), vectors, vectors)
+
+LYING = Transform(rotation_from_rpy((pi / 2, 0.0, 0.0)), (1.0, 2.0, 3.0))
+MESH = Mesh("wheel.stl")
+
+
+def surface(shape: Shape) -> list[Vector]:
+    """Points on the surface of a shape, its corners and rims among them."""
+    steps = [-1.0, -0.5, 0.0, 0.5, 1.0]
+    around = [(cos(turn * pi / 180), sin(turn * pi / 180)) for turn in range(360)]
+    if isinstance(shape, Box):
+        a, b, c = (size / 2 for size in shape.size)
+        return [(a * x, b * y, c * z) for x in steps for y in steps for z in steps]
+    if isinstance(shape, Cylinder):
+        r, h = shape.radius, shape.length / 2
+        return [(r * part * x, r * part * y, h * z) for x, y in around for z in (-1.0, 0.0, 1.0) for part in (0.0, 1.0)]
+    rings = [turn * pi / 36 for turn in range(37)]
+    r = shape.radius
+    return [(r * sin(ring) * x, r * sin(ring) * y, r * cos(ring)) for x, y in around[::10] for ring in rings]
+
+
+def inside(shape: Shape, point: Vector) -> bool:
+    """Whether a shape holds a point, give or take rounding."""
+    x, y, z = point
+    if isinstance(shape, Box):
+        return all(abs(at) <= abs(size) / 2 + 1e-12 for at, size in zip(point, shape.size, strict=True))
+    if isinstance(shape, Cylinder):
+        return hypot(x, y) <= abs(shape.radius) + 1e-12 and abs(z) <= abs(shape.length) / 2 + 1e-12
+    return hypot(x, y, z) <= abs(shape.radius) + 1e-12
+
+
+@given(shape=shapes, direction=directions)
+def test_no_point_of_the_surface_lies_beyond_the_support_point(shape: Shape, direction: Vector) -> None:
+    """The support point belongs to the shape, and nothing on its surface is farther along the direction."""
+    found = support(shape, direction)
+    assert inside(shape, found)
+    assert dot(found, direction) >= max(dot(point, direction) for point in surface(shape)) - 1e-7
+    assert dot(found, direction) == pytest.approx(half_width(shape, direction), abs=1e-7)
+
+
+@given(shape=shapes, direction=directions, factor=st.sampled_from((2.0**-900, 0.125, 4.0, 2.0**900)))
+def test_the_length_of_a_direction_does_not_matter(shape: Shape, direction: Vector, factor: float) -> None:
+    """Support points are the same for a direction of any length."""
+    x, y, z = direction
+    longer = support(shape, (factor * x, factor * y, factor * z))
+    assert longer == pytest.approx(support(shape, direction), abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("shape", "direction", "middle"),
+    [
+        (Box((2.0, 4.0, 6.0)), (0.0, 0.0, -1.0), (0.0, 0.0, -3.0)),
+        (Box((2.0, 4.0, 6.0)), (0.0, 1.0, -1.0), (0.0, 2.0, -3.0)),
+        (Box((2.0, 4.0, 6.0)), (1.0, 1.0, 1.0), (1.0, 2.0, 3.0)),
+        (Box((2.0, 4.0, 6.0)), (1e-10, 1.0, -1e-10), (0.0, 2.0, 0.0)),
+        (Box((2.0, 4.0, 6.0)), (1e-6, 1.0, -1e-6), (1.0, 2.0, -3.0)),
+        (Box((-2.0, 0.0, 6.0)), (1.0, 1.0, 1.0), (1.0, 0.0, 3.0)),
+        (Cylinder(1.0, 4.0), (0.0, 0.0, 5.0), (0.0, 0.0, 2.0)),
+        (Cylinder(1.0, 4.0), (1e-10, 0.0, 1.0), (0.0, 0.0, 2.0)),
+        (Cylinder(1.0, 4.0), (0.0, -1.0, 1e-10), (0.0, -1.0, 0.0)),
+        (Cylinder(-1.0, -4.0), (3.0, 4.0, 1.0), (0.6, 0.8, 2.0)),
+        (Sphere(-5.0), (0.0, 3.0, 4.0), (0.0, 3.0, 4.0)),
+        (Box((2.0, 4.0, 6.0)), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
+        (Cylinder(1.0, 4.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
+        (Sphere(1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
+    ],
+)
+def test_many_farthest_points_give_their_middle(shape: Shape, direction: Vector, middle: Vector) -> None:
+    """A face, an edge or a line that is farthest as a whole answers with its centre."""
+    assert support(shape, direction) == pytest.approx(middle, abs=1e-12)
+
+
+def test_the_lowest_point_of_a_lying_cylinder_is_the_middle_of_its_contact_line() -> None:
+    """A wheel on its side touches the ground below its centre."""
+    assert farthest(Cylinder(0.1, 0.05), LYING, (0.0, 0.0, -1.0)) == pytest.approx((1.0, 2.0, 2.9))
+
+
+@given(shape=shapes, pose=poses, direction=directions, shift=vectors)
+def test_extents_move_with_the_shape(shape: Shape, pose: Transform, direction: Vector, shift: Vector) -> None:
+    """Moving a shape moves both ends of its extent by as much as it moved along the direction."""
+    (a, b, c), (x, y, z) = shift, pose.translation
+    moved = Transform(pose.rotation, (x + a, y + b, z + c))
+    low, high = extent(shape, pose, direction)
+    along = dot(shift, direction)
+    assert extent(shape, moved, direction) == pytest.approx((low + along, high + along), abs=1e-12)
+
+
+@given(shape=shapes, pose=poses, direction=directions)
+def test_extents_reach_and_farthest_points_agree(shape: Shape, pose: Transform, direction: Vector) -> None:
+    """The high end is the reach and where the farthest point lies; the low end is the reach the other way."""
+    low, high = extent(shape, pose, direction)
+    x, y, z = direction
+    assert high == pytest.approx(reach(shape, pose, direction), abs=1e-12)
+    assert low == pytest.approx(-reach(shape, pose, (-x, -y, -z)), abs=1e-12)
+    assert dot(farthest(shape, pose, direction), direction) == pytest.approx(high, abs=1e-7)
+    assert reach(shape, IDENTITY, direction) == pytest.approx(reach(shape, IDENTITY, (-x, -y, -z)))
+
+
+def test_a_cylinder_leaning_by_a_nanoradian_reaches_farther_by_its_radius_times_that() -> None:
+    """Nothing cancels near the axis of a cylinder."""
+    assert half_width(Cylinder(1.0, 0.0), (1e-9, 0.0, 1.0)) == pytest.approx(1e-9, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("shape", "expected"),
+    [
+        (Box((2.0, 3.0, 4.0)), 24.0),
+        (Box((2.0, -3.0, 4.0)), 24.0),
+        (Box((2.0, 0.0, 4.0)), 0.0),
+        (Cylinder(2.0, 3.0), 12 * pi),
+        (Cylinder(-2.0, -3.0), 12 * pi),
+        (Sphere(3.0), 36 * pi),
+        (Sphere(-3.0), 36 * pi),
+    ],
+)
+def test_volumes(shape: Shape, expected: float) -> None:
+    """Volumes are the textbook ones, a negative size counting like a positive one."""
+    assert volume(shape) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(
+    ("geometry", "expected"),
+    [
+        (Box((1.0, 1.0, 1.0)), False),
+        (Box((1.0, 1.0, 0.0)), False),
+        (Box((1.0, 0.0, 0.0)), True),
+        (Box((0.0, -0.0, 0.0)), True),
+        (Cylinder(1.0, 0.0), False),
+        (Cylinder(0.0, 1.0), True),
+        (Sphere(0.0), True),
+        (Sphere(-1.0), False),
+        (MESH, False),
+        (Mesh("wheel.stl", (0.0, 0.0, 1.0)), False),
+        (Mesh("wheel.stl", (0.0, 0.0, 0.0)), True),
+    ],
+)
+def test_what_has_no_area_is_empty(geometry: Geometry, expected: bool) -> None:
+    """Plates and discs can be seen; lines and points cannot."""
+    assert is_empty(geometry) is expected
+
+
+@pytest.mark.parametrize(
+    "ask",
+    [
+        lambda: support(MESH, (1.0, 0.0, 0.0)),
+        lambda: half_width(MESH, (1.0, 0.0, 0.0)),
+        lambda: reach(MESH, IDENTITY, (1.0, 0.0, 0.0)),
+        lambda: extent(MESH, IDENTITY, (1.0, 0.0, 0.0)),
+        lambda: farthest(MESH, IDENTITY, (1.0, 0.0, 0.0)),
+        lambda: volume(MESH),
+    ],
+)
+def test_the_size_of_a_mesh_is_unknown(ask: Callable[[], Any]) -> None:
+    """Every question about the size of a mesh is refused, with the mesh named."""
+    with pytest.raises(UnknownShape, match=r"'wheel\.stl' is unknown: mesh files are not opened") as caught:
+        ask()
+    assert caught.value.geometry is MESH

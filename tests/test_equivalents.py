@@ -1,0 +1,244 @@
+"""Full marks for every way to build the reference, and the same marks for a mistake in whichever form it comes."""
+
+from dataclasses import dataclass
+from decimal import Decimal
+
+import pytest
+from hypothesis import HealthCheck, given, note, settings
+from hypothesis import strategies as st
+from lxml import etree
+
+from grader.grading.grade import grade
+from grader.grading.report import Report
+from grader.grading.rubric import load_rubric
+from grader.submission.submission import read_submission
+from tests.rewriting import BEHAVING, Element, Step, parse, rewritings, rewritten
+
+RUBRIC = load_rubric("lab6")
+REFERENCE = parse((RUBRIC.path.parent / RUBRIC.reference / RUBRIC.urdf).read_bytes())
+
+LIDAR = "joint[@name='base_lidar_joint']"
+LEFT = "joint[@name='base_left_wheel_joint']"
+RIGHT = "joint[@name='base_right_wheel_joint']"
+CASTER = "joint[@name='base_caster_wheel_joint']"
+BASE = "joint[@name='base_joint']"
+BOX = "link[@name='base_link']/visual"
+DISC = "link[@name='lidar']/visual"
+LEFT_DISC = "link[@name='left_wheel']/visual"
+RIGHT_DISC = "link[@name='right_wheel']/visual"
+BALL = "link[@name='caster_wheel']/visual"
+FOOTPRINT = "link[@name='base_footprint']"
+
+
+@dataclass(frozen=True, slots=True)
+class Break:
+    """One mistake: an attribute of the reference set to another value (None: left out), and what it costs."""
+
+    name: str
+    path: str
+    attribute: str
+    value: str | None
+    lost: str
+
+    def applied(self) -> Element:
+        """The reference with this mistake in it."""
+        robot = etree.fromstring(etree.tostring(REFERENCE))
+        elements = robot.findall(self.path) if self.path else [robot]
+        assert elements, self.path
+        for element in elements:
+            if self.value is None:
+                del element.attrib[self.attribute]
+            else:
+                element.set(self.attribute, self.value)
+        return robot
+
+
+def both(*criteria: str) -> str:
+    """Criteria of both wheels."""
+    return " ".join(f"{side}-wheel-{each}" for side in ("left", "right") for each in criteria)
+
+
+_GROUND = "footprint-at-wheel-bottoms stands-on-ground"
+
+BREAKS = (
+    Break("lidar-buried", f"{LIDAR}/origin", "xyz", "0.15 0 0.2", "lidar-frame lidar-on-top"),
+    Break("lidar-floating", f"{LIDAR}/origin", "xyz", "0.15 0 0.25", "lidar-frame lidar-on-top"),
+    Break("lidar-in-the-middle", f"{LIDAR}/origin", "xyz", "0 0 0.225", "lidar-frame"),
+    Break("lidar-aside", f"{LIDAR}/origin", "xyz", "0.15 0.005 0.225", "lidar-frame"),
+    Break("lidar-over-the-edge", f"{LIDAR}/origin", "xyz", "0.3 0 0.225", "lidar-frame lidar-on-top"),
+    Break("lidar-slanted", f"{LIDAR}/origin", "rpy", "0 0.3 0", "lidar-on-top"),
+    Break("lidar-turning", LIDAR, "type", "continuous", "lidar-fixed"),
+    Break("lidar-planar", LIDAR, "type", "planar", "lidar-fixed"),
+    Break(
+        "lidar-on-the-footprint",
+        f"{LIDAR}/parent",
+        "link",
+        "base_footprint",
+        "lidar-fixed lidar-frame lidar-on-top joint-names",
+    ),
+    Break(
+        "lidar-misspelt",
+        f"{LIDAR}/child",
+        "link",
+        "lidr",
+        "urdf-loads lidar-fixed lidar-frame lidar-on-top joint-names",
+    ),
+    Break("lidar-wide", f"{DISC}/geometry/cylinder", "radius", "0.2", "lidar-shape lidar-on-top"),
+    Break("lidar-narrow", f"{DISC}/geometry/cylinder", "radius", "0.05", "lidar-shape"),
+    Break("lidar-long", f"{DISC}/geometry/cylinder", "length", "0.1", "lidar-shape lidar-on-top"),
+    Break("lidar-too-dark", "material[@name='white']/color", "rgba", "0.5 0.5 0.5 1", "lidar-white"),
+    Break("lidar-yellowish", "material[@name='white']/color", "rgba", "0.9 0.9 0.7 1", "lidar-white"),
+    Break("lidar-undefined-material", f"{DISC}/material", "name", "snow", "lidar-white"),
+    Break("lidar-joint-misnamed", LIDAR, "name", "lidar_joint", "joint-names"),
+    Break("green-full", "material[@name='green']/color", "rgba", "0 1 0 1", "base-green"),
+    Break("green-transparent", "material[@name='green']/color", "rgba", "0 0.6 0 0.5", "base-green"),
+    Break("green-a-little-off", "material[@name='green']/color", "rgba", "0 0.62 0 1", "base-green"),
+    Break("green-in-255", "material[@name='green']/color", "rgba", "0 153 0 255", "base-green"),
+    Break("green-of-three", "material[@name='green']/color", "rgba", "0 0.6 0", "base-green"),
+    Break("gray-too-dark", "material[@name='gray']/color", "rgba", "0.5 0.5 0.5 1", both("gray")),
+    Break("gray-bluish", "material[@name='gray']/color", "rgba", "0.7 0.7 0.72 1", both("gray")),
+    Break("wheel-green", f"{LEFT_DISC}/material", "name", "green", "left-wheel-gray"),
+    Break(
+        "box-size-swapped",
+        f"{BOX}/geometry/box",
+        "size",
+        "0.4 0.6 0.2",
+        f"base-box lidar-on-top {both('clear')}",
+    ),
+    Break("box-low", f"{BOX}/geometry/box", "size", "0.6 0.4 0.1", "base-box base-on-ground lidar-on-top"),
+    Break("box-high", f"{BOX}/geometry/box", "size", "0.6 0.4 0.21", "base-box base-on-ground lidar-on-top"),
+    Break("box-long", f"{BOX}/geometry/box", "size", "0.61 0.4 0.2", "base-box"),
+    Break("box-sunk", f"{BOX}/origin", "xyz", "0 0 0", "base-on-ground lidar-on-top"),
+    Break("box-raised", f"{BOX}/origin", "xyz", "0 0 0.11", "base-on-ground lidar-on-top"),
+    Break("box-over-a-wheel", f"{BOX}/origin", "xyz", "0 0.01 0.1", "left-wheel-clear"),
+    Break(
+        "left-mirrored",
+        f"{LEFT}/origin",
+        "rpy",
+        "1.57 0 0",
+        "left-wheel-placed left-wheel-forward left-wheel-axis left-wheel-clear",
+    ),
+    Break(
+        "right-mirrored",
+        f"{RIGHT}/origin",
+        "rpy",
+        "1.57 0 0",
+        "right-wheel-placed right-wheel-forward right-wheel-axis right-wheel-clear",
+    ),
+    Break(
+        "left-in-degrees",
+        f"{LEFT}/origin",
+        "rpy",
+        "-180 0 0",
+        "left-wheel-placed left-wheel-forward left-wheel-axis left-wheel-clear footprint-at-wheel-bottoms stands-on-ground",
+    ),
+    Break("left-axis-negated", f"{LEFT}/axis", "xyz", "0 0 -1", "left-wheel-forward"),
+    Break("left-axis-y", f"{LEFT}/axis", "xyz", "0 1 0", "left-wheel-forward left-wheel-spins"),
+    Break("right-axis-x", f"{RIGHT}/axis", "xyz", "1 0 0", "right-wheel-forward right-wheel-spins"),
+    Break("left-axis-slanted", f"{LEFT}/axis", "xyz", "0 0.2 1", "left-wheel-spins"),
+    Break(
+        "left-axis-zero",
+        f"{LEFT}/axis",
+        "xyz",
+        "0 0 0",
+        "left-wheel-placed left-wheel-forward left-wheel-axis left-wheel-spins left-wheel-clear footprint-at-wheel-bottoms stands-on-ground",
+    ),
+    Break("left-fixed", LEFT, "type", "fixed", "left-wheel-continuous left-wheel-forward left-wheel-spins"),
+    Break("right-revolute", RIGHT, "type", "revolute", "urdf-loads right-wheel-continuous"),
+    Break("left-too-far-out", f"{LEFT}/origin", "xyz", "-0.15 0.25 0", "left-wheel-placed"),
+    Break("left-at-the-front", f"{LEFT}/origin", "xyz", "0.15 0.2 0", "left-wheel-placed"),
+    Break("left-too-high", f"{LEFT}/origin", "xyz", "-0.15 0.2 0.01", f"left-wheel-placed {_GROUND}"),
+    Break("left-joint-misnamed", LEFT, "name", "left_wheel_joint", "joint-names"),
+    Break("left-half-inside", f"{LEFT_DISC}/origin", "xyz", "0 0 0", "left-wheel-placed left-wheel-clear"),
+    Break("right-inside", f"{RIGHT_DISC}/origin", "xyz", "0 0 0.025", "right-wheel-placed right-wheel-clear"),
+    Break("left-off-centre", f"{LEFT_DISC}/origin", "xyz", "0.01 0 0.025", "left-wheel-placed left-wheel-spins"),
+    Break(
+        "left-off-centre-down",
+        f"{LEFT_DISC}/origin",
+        "xyz",
+        "0 0.01 0.025",
+        f"left-wheel-placed left-wheel-spins {_GROUND}",
+    ),
+    Break("left-lying", f"{LEFT_DISC}/origin", "rpy", "1.57 0 0", f"left-wheel-spins left-wheel-clear {_GROUND}"),
+    Break("left-small", f"{LEFT_DISC}/geometry/cylinder", "radius", "0.05", f"left-wheel-shape {_GROUND}"),
+    Break("right-broad", f"{RIGHT_DISC}/geometry/cylinder", "length", "0.1", "right-wheel-shape right-wheel-clear"),
+    Break("caster-large", f"{BALL}/geometry/sphere", "radius", "0.1", "caster-shape stands-on-ground"),
+    Break("caster-behind", f"{CASTER}/origin", "xyz", "-0.2 0 -0.05", "caster-placed"),
+    Break("caster-low", f"{CASTER}/origin", "xyz", "0.2 0 -0.06", "caster-placed stands-on-ground"),
+    Break("caster-turning", CASTER, "type", "continuous", "caster-placed"),
+    Break("footprint-low", f"{BASE}/origin", "xyz", "0 0 0.2", _GROUND),
+    Break("footprint-high", f"{BASE}/origin", "xyz", "0 0 0.05", _GROUND),
+    Break("footprint-ahead", f"{BASE}/origin", "xyz", "0.1 0 0.1", "footprint-at-wheel-bottoms"),
+    Break("footprint-turned", f"{BASE}/origin", "rpy", "0 0 0.1", "footprint-at-wheel-bottoms"),
+    Break("footprint-tilted", f"{BASE}/origin", "rpy", "0 0.1 0", _GROUND),
+    Break("footprint-loose", BASE, "type", "continuous", "footprint-root"),
+    Break("robot-without-name", "", "name", None, "urdf-loads"),
+    Break("robot-of-version-2", "", "version", "2.0", "urdf-loads"),
+)
+
+each_break = pytest.mark.parametrize("mistake", BREAKS, ids=lambda mistake: mistake.name)
+
+
+def graded(data: bytes) -> Report:
+    """The report on a URDF."""
+    return grade(RUBRIC, read_submission(data, identity="student", path="my_robot.urdf"))
+
+
+def lost(report: Report) -> set[str]:
+    """The criteria that did not pass; none may be a fault of ours."""
+    assert report.counts("errored") == 0, [result.traceback for result in report.results if result.traceback]
+    return {result.criterion.id for result in report.results if result.outcome.status != "passed"}
+
+
+@settings(max_examples=600, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(data=rewritings(REFERENCE))
+def test_every_way_to_write_the_reference_gets_full_marks(data: bytes) -> None:
+    """Nothing is lost by any composition of equivalent rewritings."""
+    note(data.decode())
+    report = graded(data)
+    assert {result.criterion.id: result.outcome.message for result in report.results if result.points == 0} == {}
+    assert report.score == report.max_score == Decimal(70)
+    assert report.submission.urdf.verdict == "clean"
+
+
+@pytest.mark.parametrize("step", BEHAVING, ids=lambda step: step.__name__)
+def test_each_rewriting_alone_gets_full_marks(step: Step) -> None:
+    """Nothing is lost by a rewriting that stands alone, three times over."""
+
+    @settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.too_slow], database=None)
+    @given(data=rewritten(REFERENCE, (step, step, step)))
+    def check(data: bytes) -> None:
+        note(data.decode())
+        assert lost(graded(data)) == set()
+
+    check()
+
+
+@each_break
+def test_a_mistake_costs_what_it_should(mistake: Break) -> None:
+    """One changed attribute of the reference loses exactly its criteria."""
+    assert lost(graded(etree.tostring(mistake.applied()))) == set(mistake.lost.split())
+
+
+@each_break
+@settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(draw=st.data())
+def test_a_mistake_is_recognised_in_every_form(mistake: Break, draw: st.DataObject) -> None:
+    """The same criteria are lost after any composition of equivalent rewritings."""
+    data = draw.draw(rewritings(mistake.applied()))
+    note(data.decode())
+    assert lost(graded(data)) == set(mistake.lost.split())
+
+
+@pytest.mark.parametrize("kind", ["planar", "floating"])
+def test_a_wheel_that_moves_otherwise_does_not_roll(kind: str) -> None:
+    """A planar or floating joint is no wheel's joint, and has no small positive angle to turn by."""
+    mistake = Break(kind, LEFT, "type", kind, "left-wheel-continuous left-wheel-forward")
+    missing = lost(graded(etree.tostring(mistake.applied())))
+    assert set(mistake.lost.split()) <= missing <= {*mistake.lost.split(), "left-wheel-spins"}
+
+
+def test_every_criterion_is_lost_by_some_mistake() -> None:
+    """The mistakes cover the rubric, the footprint's visibility apart, which is no attribute."""
+    covered = {criterion for mistake in BREAKS for criterion in mistake.lost.split()}
+    assert {criterion.id for criterion in RUBRIC.criteria} - covered == {"footprint-virtual"}

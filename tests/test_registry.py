@@ -1,0 +1,235 @@
+"""Every check is documented, has a signature that a rubric can be held against, and is tested both ways."""
+
+import ast
+import inspect
+import re
+from collections.abc import Callable, Mapping
+from decimal import Decimal
+from importlib.metadata import EntryPoint, EntryPoints
+from pathlib import Path
+from types import UnionType
+from typing import Any, Literal, get_args, get_origin
+
+import pytest
+
+import grader.checks
+from grader.checks.outcome import Outcome, judged
+from grader.checks.registry import CHECKS, ENTRY_POINTS, Check, check_names, describe, find_check
+from grader.errors import RubricError
+from grader.grading.arguments import convert, type_words
+from grader.grading.rubric import load_rubric
+from grader.report.rubrics import checks_text, explanation
+from grader.robot.kinematics import Configuration
+from tests.checks.asking import ask
+from tests.checks.cases import CASE, CASES
+
+NAMES = [function.__name__ for function in CHECKS]
+SHARED = {"__init__", "outcome", "registry", "shown"}
+# A value of each annotation that a parameter may have, as TOML gives it.
+SAMPLES: Mapping[Any, Any] = {float: 1, int: 1, str: "a", bool: True}
+
+every_check = pytest.mark.parametrize("check", [describe(function) for function in CHECKS], ids=NAMES)
+
+
+@every_check
+def test_the_first_paragraph_is_one_sentence(check: Check) -> None:
+    """A check's docstring begins with one sentence, the fact that it decides, which ends in a period."""
+    first, *_ = (inspect.getdoc(check.function) or "").split("\n\n")
+    sentence = " ".join(first.split())
+    assert sentence == check.fact
+    assert re.fullmatch(r"[A-Z][^.!?]*(?:[.!?]\S[^.!?]*)*\.", sentence), sentence
+
+
+@every_check
+def test_the_signature_is_a_schema(check: Check) -> None:
+    """A check takes its subject, and then by name only what a rubric can give, in types that TOML has."""
+    subject, *rest = inspect.signature(check.function).parameters.values()
+    assert subject.name == check.subject
+    assert subject.kind is subject.POSITIONAL_OR_KEYWORD
+    assert [each.kind for each in rest] == [inspect.Parameter.KEYWORD_ONLY] * len(rest)
+    assert list(check.parameters) == [each.name for each in rest]
+    for parameter in check.parameters.values():
+        assert is_supported(parameter.type), parameter
+        assert type_words(parameter.type)
+        assert convert(sample(parameter.type), parameter.type) is not None
+        assert parameter.required == (parameter.default is None)
+        assert parameter.required or convert(as_toml(parameter.default), parameter.type) == parameter.default
+
+
+@every_check
+def test_a_check_passes_and_fails_somewhere(check: Check) -> None:
+    """The table of cases has a robot that passes and one that fails for every check, with arguments that a rubric can give."""
+    case = CASE[check.name]
+    assert case.check is check.function
+    assert ask(check.function, case.passing, **case.arguments).status == "passed"
+    assert ask(check.function, case.failing, **case.arguments).status == "failed"
+    required = {each.name for each in check.parameters.values() if each.required}
+    assert required <= set(case.arguments) <= set(check.parameters)
+    for name, value in case.arguments.items():
+        assert convert(as_toml(value), check.parameters[name].type) == value
+
+
+@every_check
+def test_a_check_can_be_explained(check: Check) -> None:
+    """`explain` has the check's sentence and each argument in words, and the list of checks has them too."""
+    for text in (explanation(check.name, load_rubric("lab6")), checks_text()):
+        assert check.name in text
+        assert check.fact in " ".join(text.split())
+        for parameter in check.parameters.values():
+            assert f"{parameter.name}: {type_words(parameter.type)}" in text
+
+
+@every_check
+def test_a_check_is_found_by_its_name(check: Check) -> None:
+    """The name that a rubric writes is the function's name."""
+    assert find_check(check.name) == check
+    assert check.name in check_names()
+    assert re.fullmatch(r"[a-z][a-z0-9]*(_[a-z0-9]+)*", check.name)
+
+
+def test_names_are_unique() -> None:
+    """No two checks have one name, and no case is for a check that is not there."""
+    assert len(set(NAMES)) == len(NAMES)
+    assert sorted(case.name for case in CASES) == sorted(NAMES)
+
+
+def test_no_check_is_forgotten() -> None:
+    """Whatever in a family's module takes a subject and gives an outcome is in the list."""
+    written = {name for path in families() for name in checks_in(path)}
+    assert written == set(NAMES)
+
+
+def test_every_check_is_tested_in_its_family() -> None:
+    """Each family has a file of tests, which names each of its checks."""
+    for path in families():
+        tests = Path(__file__).parent / "checks" / f"test_{path.stem}.py"
+        text = tests.read_text(encoding="utf-8")
+        for name in checks_in(path):
+            assert re.search(rf"\b{name}\b", text), f"{tests.name} does not test {name}"
+
+
+def test_an_unknown_check_is_not_found() -> None:
+    """A name that nobody registered is no check."""
+    assert find_check("shows_bax") is None
+    assert find_check("") is None
+    assert find_check("describe") is None
+
+
+def has_links(robot: Configuration, *, at_least: float) -> Outcome:
+    """A robot has at least so many links."""
+    count = len(robot.robot.links)
+    return judged(count >= at_least, f"{count} links", actual=float(count), expected=at_least)
+
+
+def shows_box(robot: Configuration) -> Outcome:
+    """Another package's check of a name that is taken."""
+    raise NotImplementedError
+
+
+@pytest.fixture
+def installed(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """As if another distribution registered its checks; the groups that were asked for are noted."""
+    asked: list[str] = []
+    points = [EntryPoint(name, f"{__name__}:{name}", ENTRY_POINTS) for name in ("has_links", "shows_box")]
+
+    def entry_points(*, group: str) -> EntryPoints:
+        asked.append(group)
+        return EntryPoints(points if group == ENTRY_POINTS else [])
+
+    monkeypatch.setattr("importlib.metadata.entry_points", entry_points)
+    return asked
+
+
+def test_another_distribution_adds_a_check(installed: list[str]) -> None:
+    """A check that is registered under the entry-point group is found, listed and described as our own are."""
+    check = find_check("has_links")
+    assert check is not None
+    assert (check.name, check.function, check.subject) == ("has_links", has_links, "robot")
+    assert check.fact == "A robot has at least so many links."
+    assert list(check.parameters) == ["at_least"]
+    assert check_names()[: len(NAMES)] == NAMES
+    assert "has_links" in check_names()
+    assert set(installed) == {"grader.checks"}
+
+
+def test_our_own_check_wins(installed: list[str]) -> None:
+    """A foreign check cannot take the name of one of ours; others are not even asked for it."""
+    check = find_check("shows_box")
+    assert check is not None
+    assert check.function is CASE["shows_box"].check
+    assert installed == []
+
+
+def test_a_rubric_can_name_a_foreign_check(installed: list[str], tmp_path: Path) -> None:
+    """A rubric holds a foreign check's arguments against its signature, and offers its name for a misspelt one."""
+    text = (
+        'id = "r"\ntitle = "R"\n[[part]]\nid = "a"\ntitle = "A"\n'
+        '[[criterion]]\nid = "c"\npart = "a"\ntitle = "C"\npoints = 1\ncheck = "{}"\nwith = {{ {} }}\n'
+    )
+    path = tmp_path / "rubric.toml"
+    path.write_text(text.format("has_links", "at_least = 2"), encoding="utf-8")
+    criterion = load_rubric(str(path)).criteria[0]
+    assert criterion.check.function is has_links
+    assert criterion.arguments == {"at_least": 2.0}
+    path.write_text(text.format("has_links", "at_lest = 2"), encoding="utf-8")
+    with pytest.raises(RubricError, match="the check has_links takes no 'at_lest'; did you mean 'at_least'"):
+        load_rubric(str(path))
+    path.write_text(text.format("has_link", ""), encoding="utf-8")
+    with pytest.raises(RubricError, match="there is no check 'has_link'; did you mean 'has_links'"):
+        load_rubric(str(path))
+
+
+def families() -> list[Path]:
+    """The modules that hold checks."""
+    folder = Path(inspect.getfile(grader.checks)).parent
+    return sorted(path for path in folder.glob("*.py") if path.stem not in SHARED)
+
+
+def checks_in(path: Path) -> list[str]:
+    """The public functions of a module that give an outcome."""
+    body = ast.parse(path.read_text(encoding="utf-8")).body
+    functions = [each for each in body if isinstance(each, ast.FunctionDef) and not each.name.startswith("_")]
+    return [each.name for each in functions if each.returns is not None and ast.unparse(each.returns) == "Outcome"]
+
+
+def is_supported(annotation: Any) -> bool:
+    """Whether a rubric's table can hold a value of this annotation."""
+    origin, inner = get_origin(annotation), get_args(annotation)
+    if origin is UnionType:
+        return all(map(is_supported, inner))
+    if origin is Literal:
+        return all(isinstance(each, str) for each in inner)
+    if origin is list:
+        return inner[0] in SAMPLES
+    if origin is tuple:
+        return all(each is float or each is Ellipsis for each in inner)
+    if origin is not None:
+        return issubclass(origin, Mapping) and inner == (str, str)
+    return annotation in SAMPLES
+
+
+def sample(annotation: Any) -> Any:
+    """A value for a parameter, as TOML gives it."""
+    origin, inner = get_origin(annotation), get_args(annotation)
+    if origin is UnionType:
+        return sample(inner[0])
+    if origin is Literal:
+        return inner[0]
+    if origin is list:
+        return [SAMPLES[inner[0]]]
+    if origin is tuple:
+        return [1] * (3 if Ellipsis in inner else len(inner))
+    return {"a": "b"} if origin is not None else SAMPLES[annotation]
+
+
+def as_toml(value: object) -> object:
+    """A Python value as tomllib would have given it: lists for tuples, exact numbers for floats."""
+    if isinstance(value, tuple):
+        return [as_toml(each) for each in value]
+    return Decimal(repr(value)) if isinstance(value, float) else value
+
+
+def test_the_samples_of_types_are_complete() -> None:
+    """Types that a rubric cannot give are refused by this file's own yardstick."""
+    for annotation in (bytes, complex, dict[str, int], Callable[[], None], list[list[float]], set[str], int | bytes):
+        assert not is_supported(annotation)
