@@ -20,7 +20,8 @@ class RubricError(GraderError):
 class MissingElement(LookupError):
     """Something that a question needs is not there: a link, a shape, a chain of joints, a defined pose.
 
-    `kind` and `name` tell two questions apart that fail for the same reason; `known` names what there is instead.
+    `kind` and `name` are alike for questions that fail for the same reason; `known` names what there is instead;
+    `location` is the spot in the file to look at, or None.
     """
 
     def __init__(

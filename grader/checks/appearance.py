@@ -7,8 +7,11 @@ from grader.checks.outcome import SLACK, Outcome, failed, judged, measured, pass
 from grader.checks.shown import body, shape_name, visuals
 from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration
-from grader.robot.model import Box, Cylinder, Sphere, Visual
+from grader.robot.model import Box, Cylinder, Material, Sphere, Visual
 from grader.robot.transforms import IDENTITY_ROTATION, Vector, rotation_from_rpy
+
+Rgb = tuple[float, float, float]
+Rgba = tuple[float, float, float, float]
 
 _ALIGNED = cos(radians(1.0))
 
@@ -33,14 +36,16 @@ def shows_cylinder(robot: Configuration, *, link: str, radius: float, length: fl
     found = [visual.geometry for visual in visuals(robot, link) if isinstance(visual.geometry, Cylinder)]
     if not found:
         return _other_shape(robot, link, "cylinder")
-    best = min(found, key=lambda shape: max(abs(shape.radius - radius), abs(shape.length - length)))
-    actual, expected = (best.radius, best.length), (radius, length)
-    fine = within(best.radius, radius, tolerance) and within(best.length, length, tolerance)
+    sizes = [((abs(shape.radius), abs(shape.length)), shape) for shape in found]
+    expected = (radius, length)
+    actual, best = min(sizes, key=lambda each: max(abs(a - b) for a, b in zip(each[0], expected, strict=True)))
+    right_radius, right_length = (within(a, b, tolerance) for a, b in zip(actual, expected, strict=True))
+    fine = right_radius and right_length
     message = f"{link!r} shows a cylinder of radius {point(actual[:1])} m and length {point(actual[1:])} m"
     at = place(best.mark)
     if not fine:
         message += f", expected radius {point((radius,))} m and length {point((length,))} m"
-        at = place(best.mark, "length" if within(best.radius, radius, tolerance) else "radius")
+        at = place(best.mark, "length" if right_radius else "radius")
     return judged(fine, message, actual=actual, expected=expected, tolerance=tolerance, unit="m", at=at)
 
 
@@ -49,16 +54,16 @@ def shows_sphere(robot: Configuration, *, link: str, radius: float, tolerance: f
     found = [visual.geometry for visual in visuals(robot, link) if isinstance(visual.geometry, Sphere)]
     if not found:
         return _other_shape(robot, link, "sphere")
-    best = min(found, key=lambda shape: abs(shape.radius - radius))
+    best = min(found, key=lambda shape: abs(abs(shape.radius) - radius))
     what = f"the radius of the sphere that {link!r} shows"
     at = place(best.mark, "radius")
-    return measured(what, actual=best.radius, expected=radius, tolerance=tolerance, unit="m", at=at)
+    return measured(what, actual=abs(best.radius), expected=radius, tolerance=tolerance, unit="m", at=at)
 
 
-def shows_colour(robot: Configuration, *, link: str, colour: tuple[float, ...], tolerance: float) -> Outcome:
+def shows_colour(robot: Configuration, *, link: str, colour: Rgb | Rgba, tolerance: float) -> Outcome:
     """A link is shown in a colour: red, green, blue and, where a fourth channel is given, opacity, each in 0..1."""
     visual = body(robot, link)
-    if visual.material is None:
+    if visual.material is None or _is_only_a_picture(visual.material):
         return _colourless(link, visual)
     actual = visual.material.rgba[: len(colour)]
     fine = all(within(a, b, tolerance) for a, b in zip(actual, colour, strict=True))
@@ -72,7 +77,7 @@ def shows_colour(robot: Configuration, *, link: str, colour: tuple[float, ...], 
 def shows_grey(robot: Configuration, *, link: str, at_least: float, tolerance: float) -> Outcome:
     """A link is shown in a grey (red = green = blue) of at least the given level in 0..1; opacity does not matter."""
     visual = body(robot, link)
-    if visual.material is None:
+    if visual.material is None or _is_only_a_picture(visual.material):
         return _colourless(link, visual)
     actual = visual.material.rgba[:3]
     message = f"{link!r} is shown in rgb {point(actual)}"
@@ -102,13 +107,14 @@ def shows_nothing(robot: Configuration, *, link: str) -> Outcome:
 def _edges(visual: Visual) -> Vector | None:
     """The edge lengths of a box along its link's axes; None where they are not along them."""
     assert isinstance(visual.geometry, Box)
+    a, b, c = visual.geometry.size
+    size = (abs(a), abs(b), abs(c))  # RViz shows a negative size as a positive one
     rotation = rotation_from_rpy(visual.origin.rpy)
-    size = visual.geometry.size
     if rotation is IDENTITY_ROTATION:
-        return (abs(size[0]), abs(size[1]), abs(size[2]))
+        return size
     for order in permutations((0, 1, 2)):
         if all(abs(rotation[3 * row + column]) >= _ALIGNED for row, column in enumerate(order)):
-            return (abs(size[order[0]]), abs(size[order[1]]), abs(size[order[2]]))
+            return (size[order[0]], size[order[1]], size[order[2]])
     return None
 
 
@@ -122,7 +128,14 @@ def _other_shape(robot: Configuration, link: str, wanted: str) -> Outcome:
     raise MissingElement(wanted, link, message=message, location=place(visual.geometry.mark))
 
 
+def _is_only_a_picture(material: Material) -> bool:
+    # ROS 2 gives a material black where it has a texture and no colour.
+    return material.texture != "" and material.rgba == Material("").rgba
+
+
 def _colourless(link: str, visual: Visual) -> Outcome:
+    if visual.material is not None:
+        return Outcome("pending", f"{link!r} is shown with a picture on it, which is not opened; a person has to look")
     if visual.material_name:
         message = f"{link!r} has no colour: its material {visual.material_name!r} is not defined where it is used"
     else:

@@ -4,17 +4,19 @@ from collections.abc import Mapping
 
 from grader.checks.outcome import Outcome, failed, listing, passed, place
 from grader.errors import MissingElement
-from grader.robot.joints import JOINT_TYPES, MOVING_TYPES
+from grader.robot.joints import JOINT_TYPES, MOVING_TYPES, JointType
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
 from grader.robot.names import did_you_mean
 
 
-def held_by(robot: Configuration, *, link: str, parent: str, joint_type: str) -> Outcome:
+def held_by(robot: Configuration, *, link: str, parent: str, joint_type: JointType) -> Outcome:
     """Joints lead from the parent down to the link, one of the given type and otherwise only fixed ones."""
     chain = robot.chain(link, above=parent)
     if chain is None:
         return _not_below(robot, link, parent)
+    if not chain:
+        return failed(f"{link!r} is itself the parent, so no joint holds it", place(robot.link(link).mark))
     held = robot.holding[link]
     at = place(held.mark, "type")
     moving = [joint for joint in chain if joint.type != "fixed"]
@@ -24,18 +26,20 @@ def held_by(robot: Configuration, *, link: str, parent: str, joint_type: str) ->
     if not moving:
         message = f"{link!r} cannot move: joint {held.name!r} is fixed, expected {joint_type}"
         raise MissingElement("moving joint", link, message=message, location=at)
-    if not any(joint.type in MOVING_TYPES for joint in moving):
-        wrong = moving[0]
+    unknown = [joint for joint in moving if joint.type not in MOVING_TYPES]
+    if unknown:
+        wrong = unknown[0]
         guess = did_you_mean(wrong.type, JOINT_TYPES)
         message = (
             f"joint {wrong.name!r}, which holds {link!r}, has the type {wrong.type!r}, which does not exist{guess}"
         )
-        if not wanted:
+        if not wanted or len(unknown) < len(moving):
             return failed(message, place(wrong.mark, "type"))
         raise MissingElement("moving joint", link, message=message, location=place(wrong.mark, "type"))
     if len(moving) > 1:
         names = listing([joint.name for joint in moving])
-        return failed(f"several joints move {link!r}: {names}; expected one {joint_type} joint", at)
+        expected = "only fixed joints" if not wanted else f"one {joint_type} joint"
+        return failed(f"several joints move {link!r}: {names}; expected {expected}", at)
     at = place(moving[0].mark, "type")
     return failed(f"joint {moving[0].name!r}, which holds {link!r}, is {moving[0].type}, expected {joint_type}", at)
 

@@ -5,14 +5,14 @@ from math import atan2, degrees, hypot
 from grader.checks.outcome import SLACK, Outcome, judged, place, point, quantity, size
 from grader.checks.shown import body, pose_of, visuals
 from grader.errors import MissingElement
-from grader.robot.joints import MOVING_TYPES
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Cylinder, Joint
-from grader.robot.shapes import extent, farthest
+from grader.robot.shapes import extent, farthest, volume
 from grader.robot.transforms import Vector, cross, dot, minus, unit
 
 _SMALL_ANGLE = 1e-3  # rad; also metres for a sliding joint
 _STANDSTILL = 1e-9  # metres
+_TURNING_TYPES = ("continuous", "revolute")
 
 
 def rolls_forward(
@@ -29,7 +29,7 @@ def rolls_forward(
     The lowest point of the wheel must move opposite to `forward`, a direction in the base's frame, within `tolerance`
     degrees in the ground plane across `up`.
     """
-    joint = _moving_joint(robot, link, base)
+    joint = _turning_joint(robot, link, base)
     ahead, upward = unit(forward) or forward, unit(up) or up
     T_base_wheel = robot.pose(link, relative_to=base)
     contact = _lowest_point(robot, link, base, upward)
@@ -66,11 +66,12 @@ def axis_along(
 
 def turns_about_itself(robot: Configuration, *, link: str, base: str, tolerance: float, angle: float) -> Outcome:
     """A cylinder turns about its own axis: the joint's axis has its direction (`angle`, degrees) and place (metres)."""
-    visual = body(robot, link)
+    cylinders = [each for each in visuals(robot, link) if isinstance(each.geometry, Cylinder)]
+    visual = max(cylinders, key=lambda each: volume(each.geometry)) if cylinders else body(robot, link)
     if not isinstance(visual.geometry, Cylinder):
         message = f"{link!r} shows no cylinder, so it has no axis to turn about"
         raise MissingElement("cylinder", link, message=message, location=place(visual.geometry.mark))
-    joint = _moving_joint(robot, link, base)
+    joint = _turning_joint(robot, link, base)
     T_joint_wheel = pose_of(robot, link, visual, joint.child)
     turning, own = robot.axis(joint.name), T_joint_wheel.rotate((0.0, 0.0, 1.0))
     tilt = min(_angle(turning, own), 180.0 - _angle(turning, own))
@@ -91,12 +92,12 @@ def turns_about_itself(robot: Configuration, *, link: str, base: str, tolerance:
     return judged(fine, message, actual=away, expected=0.0, tolerance=tolerance, unit="m", at=at)
 
 
-def _moving_joint(robot: Configuration, link: str, base: str) -> Joint:
-    """The moving joint next to a link on the way to the base; raises MissingElement where nothing moves."""
+def _turning_joint(robot: Configuration, link: str, base: str) -> Joint:
+    """The turning joint next to a link on the way to the base; raises MissingElement where nothing turns."""
     way = robot.between(base, link)
-    moving = [joint for joint in way if joint.type in MOVING_TYPES]
+    moving = [joint for joint in way if joint.type in _TURNING_TYPES]
     if not moving:
-        message = f"no joint between {base!r} and {link!r} moves"
+        message = f"no joint between {base!r} and {link!r} turns"
         raise MissingElement("moving joint", link, message=message, location=place(way[-1].mark if way else None))
     return moving[-1]
 
@@ -123,5 +124,6 @@ def _axis_name(axis: Vector) -> str:
 
 
 def _angle(one: Vector, other: Vector) -> float:
-    """The angle between two unit vectors in degrees; as exact near 0 as it is elsewhere."""
-    return degrees(atan2(hypot(*cross(one, other)), dot(one, other)))
+    """The angle between two unit vectors in degrees, as exact near 0 as elsewhere; NaN where one has no direction."""
+    sine, cosine = hypot(*cross(one, other)), dot(one, other)
+    return degrees(atan2(sine, cosine)) if sine or cosine else float("nan")

@@ -104,7 +104,9 @@ def size(value: float, unit: str) -> str:
 
 def quantity(value: float, unit: str) -> str:
     """A value with its unit, rounded for reading."""
-    return f"{round(value, 1):g} degrees" if unit == "deg" else f"{_short(value)} {unit}".rstrip()
+    if unit != "deg":
+        return f"{_short(value)} {unit}".rstrip()
+    return f"{value:.3g} degree{'' if f'{value:.3g}' == '1' else 's'}"
 
 
 def point(values: tuple[float, ...]) -> str:

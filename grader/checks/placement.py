@@ -1,6 +1,7 @@
 """Checks of where things are, measured by forward kinematics with every joint at 0."""
 
 from collections.abc import Callable, Sequence
+from itertools import product
 from math import acos, degrees
 
 from grader.checks.outcome import (
@@ -49,6 +50,8 @@ def centre_at(
 ) -> Outcome:
     """The centre of what a link shows is at a point in another link's frame; if rigid, no moving joint lies between."""
     visual = body(robot, link)
+    if isinstance(visual.geometry, Mesh):
+        raise UnknownShape(visual.geometry)
     pose = pose_of(robot, link, visual, relative_to)
     if rigid:
         loose = [joint for joint in robot.between(relative_to, link) if joint.type != "fixed"]
@@ -123,18 +126,24 @@ def stands_on(robot: Configuration, *, link: str, on: str, tolerance: float) -> 
 
 
 def clear_of(robot: Configuration, *, link: str, of: str, tolerance: float) -> Outcome:
-    """What a link shows does not cut into what another shows; touching is fine. Depths in metres."""
-    one, other = body(robot, link), body(robot, of)
-    if isinstance(one.geometry, Mesh):
-        raise UnknownShape(one.geometry)
-    if isinstance(other.geometry, Mesh):
-        raise UnknownShape(other.geometry)
-    T_of_one, T_of_other = pose_of(robot, link, one, of), pose_of(robot, of, other, of)
-    depth = penetration(one.geometry, T_of_one, other.geometry, T_of_other, allowed=tolerance)
-    fine = depth <= tolerance
-    message = f"{link!r} does not cut into {of!r}" if fine else f"{link!r} cuts {size(depth, 'm')} deep into {of!r}"
-    at = place(one.origin.mark, "xyz") or place(one.mark)
-    return judged(fine, message, actual=round(depth, 4), expected=0.0, tolerance=tolerance, unit="m", at=at)
+    """Nothing that a link shows cuts into what another shows, deeper than the tolerance in metres; touching is fine."""
+    ours = [(visual, pose_of(robot, link, visual, of)) for visual in visuals(robot, link)]
+    theirs = [(visual.geometry, pose_of(robot, of, visual, of)) for visual in visuals(robot, of)]
+    deepest, culprit = 0.0, ours[0][0]
+    unknown: Geometry | None = None
+    for (visual, pose), (geometry, other) in product(ours, theirs):
+        if isinstance(visual.geometry, Mesh) or isinstance(geometry, Mesh):
+            unknown = visual.geometry if isinstance(visual.geometry, Mesh) else geometry
+            continue
+        depth = penetration(visual.geometry, pose, geometry, other, allowed=tolerance)
+        if depth > deepest:
+            deepest, culprit = depth, visual
+    fine = deepest <= tolerance
+    if fine and isinstance(unknown, Mesh):
+        raise UnknownShape(unknown)
+    message = f"{link!r} does not cut into {of!r}" if fine else f"{link!r} cuts {size(deepest, 'm')} deep into {of!r}"
+    at = place(culprit.origin.mark, "xyz") or place(culprit.mark)
+    return judged(fine, message, actual=round(deepest, 4), expected=0.0, tolerance=tolerance, unit="m", at=at)
 
 
 def under_the_base(

@@ -2,7 +2,7 @@
 
 import inspect
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal, get_type_hints
 
 from grader.checks.appearance import shows_box, shows_colour, shows_cylinder, shows_grey, shows_nothing, shows_sphere
@@ -19,6 +19,7 @@ from grader.checks.placement import (
     stands_on,
     under_the_base,
 )
+from grader.errors import InputError
 
 ENTRY_POINTS = "grader.checks"
 
@@ -101,7 +102,12 @@ def find_check(name: str) -> Check | None:
         if function.__name__ == name:
             return describe(function)
     entry = _entry_points().get(name)
-    return describe(entry.load()) if entry is not None else None
+    if entry is None:
+        return None
+    try:
+        return replace(describe(entry.load()), name=name)
+    except Exception as error:  # noqa: BLE001  another package's fault, whatever it is
+        raise InputError(f"the check {name} of another package cannot be loaded: {error}") from None
 
 
 def _entry_points() -> dict[str, Any]:

@@ -1,9 +1,11 @@
 """The `with` table of a criterion against the signature of its check, which is its schema."""
 
 from collections.abc import Mapping
+from contextlib import suppress
 from decimal import Decimal
-from types import GenericAlias
-from typing import Any, get_args, get_origin
+from math import isfinite
+from types import GenericAlias, UnionType
+from typing import Any, Literal, get_args, get_origin
 
 from grader.checks.registry import Check
 from grader.robot.names import did_you_mean
@@ -24,6 +26,8 @@ def bind(check: Check, given: Mapping[str, Any]) -> tuple[dict[str, Any], list[F
             continue
         try:
             arguments[name] = convert(value, parameter.type)
+            if name == "tolerance" and arguments[name] < 0:
+                faults.append(((name,), f"a tolerance is at least 0, not {_shown(value)}"))
         except TypeError:
             faults.append(
                 ((name,), f"{name} of {check.name} must be {type_words(parameter.type)}, not {_shown(value)}")
@@ -40,14 +44,26 @@ def convert(value: Any, wanted: Any) -> Any:
         if isinstance(value, wanted):
             return value
     elif wanted is float:
-        if isinstance(value, int | Decimal) and not isinstance(value, bool) and Decimal(value).is_finite():
-            return float(value)
+        if isinstance(value, int | Decimal) and not isinstance(value, bool):
+            try:
+                number = float(value)
+            except OverflowError:
+                raise TypeError from None
+            if isfinite(number):
+                return number
     elif wanted is int:
         if isinstance(value, int) and not isinstance(value, bool):
             return value
+    elif get_origin(wanted) is Literal:
+        if value in get_args(wanted):
+            return value
+    elif get_origin(wanted) is UnionType:
+        for each in get_args(wanted):
+            with suppress(TypeError):
+                return convert(value, each)
     elif get_origin(wanted) in (list, tuple):
         return _convert_list(value, wanted)
-    elif isinstance(value, dict):
+    elif isinstance(value, dict) and value:
         return {key: convert(each, get_args(wanted)[1]) for key, each in value.items()}
     raise TypeError
 
@@ -58,6 +74,10 @@ def type_words(wanted: Any) -> str:
     if wanted in words:
         return words[wanted]
     inner = get_args(wanted)
+    if get_origin(wanted) is Literal:
+        return f"one of {', '.join(inner)}"
+    if get_origin(wanted) is UnionType:
+        return " or ".join(map(type_words, inner))
     if get_origin(wanted) is tuple and Ellipsis not in inner:
         return f"{len(inner)} numbers"
     kind = {float: "numbers", str: "texts"}

@@ -8,7 +8,7 @@ from grader.grading.report import Report, Result
 from grader.grading.rubric import Criterion, Rubric
 from grader.robot.kinematics import Configuration
 from grader.robot.shapes import UnknownShape
-from grader.robot.source import Location
+from grader.robot.source import Spot
 from grader.submission.submission import Submission
 
 
@@ -42,7 +42,7 @@ class _Run:
         """The criterion whose failure keeps this one from being decided."""
         for name in criterion.requires:
             required = self.results.get(name)
-            if required is not None and required.outcome.status not in ("passed", "pending"):
+            if required is not None and required.outcome.status in ("failed", "skipped"):
                 return required.because or name
         if self.robot is None and criterion.check.subject == "robot":
             asked = (each for each in self.results.values() if each.criterion.check.subject == "urdf")
@@ -72,7 +72,7 @@ class _Run:
         first = self.missed.setdefault(key, criterion.id)
         if first != criterion.id:
             return Result(criterion, _skipped(first), first)
-        at = missing.location if isinstance(missing.location, Location) else None
+        at = missing.location.location() if isinstance(missing.location, Spot) else None
         return Result(criterion, Outcome("failed", str(missing), location=at))
 
 

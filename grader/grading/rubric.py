@@ -30,6 +30,7 @@ _CRITERION = {
     "requires": _TEXTS,
     "feedback": _TEXT,
 }
+_MOST_POINTS = 1_000_000
 _NEEDS = ("urdf",)
 _OPTIONAL = {"reference", "urdf", "needs", "about", "with", "requires", "feedback"}
 
@@ -111,14 +112,14 @@ def find_rubric(name: str) -> Path:
 def load_rubric(name: str) -> Rubric:
     """Load a rubric by its id or path; raises RubricError with one line for each mistake in it, InputError if unreadable."""
     path = find_rubric(name)
-    data = read_capped(path)
+    data = read_capped(path, advice="")
     shown = printable_path(path)
     try:
-        text = data.decode()
+        text = data.decode().removeprefix("\ufeff")
         table = tomllib.loads(text, parse_float=Decimal)
     except UnicodeDecodeError:
         raise RubricError((f"{shown}: this is not UTF-8 text",)) from None
-    except (tomllib.TOMLDecodeError, RecursionError, ArithmeticError) as error:
+    except (ValueError, RecursionError, ArithmeticError) as error:
         raise RubricError((f"{shown}: not readable as TOML: {error}",)) from None
     loader = _Loader(table)
     rubric = loader.load(path, hashlib.sha256(data).hexdigest())
@@ -198,7 +199,9 @@ class _Loader:
         for name in required:
             if not isinstance(name, str) or name in above:
                 continue
-            if name in every:
+            if name == row.get("id"):
+                message = "requires itself"
+            elif name in every:
                 message = f"requires {name!r}, which stands below: a criterion can only require those above it"
             else:
                 message = f"requires {name!r}, which does not exist{did_you_mean(name, every)}"
@@ -218,9 +221,11 @@ class _Loader:
                 hint = f"; did you mean {guess!r}?" if guess else f"; it has: {', '.join(known)}"
                 self._complain((*where, key), f"a {what} has no key {key!r}{hint}")
             elif not _has_type(value, known[key]):
-                self._complain((*where, key), f"{key} must be {known[key]}, not {_type_name(value)}")
-            elif key == "points" and (value < 0 or not Decimal(value).is_finite()):
+                self._complain((*where, key), f"{key} must be {known[key]}, not {_type_name(value, known[key])}")
+            elif key == "points" and not (Decimal(value).is_finite() and value >= 0):
                 self._complain((*where, key), f"points must be a number of at least 0, not {value}")
+            elif key == "points" and value > _MOST_POINTS:
+                self._complain((*where, key), f"points must be a number of at most {_MOST_POINTS}")
             elif key in ("id", "title") and not value.strip():
                 self._complain((*where, key), f"{key} must not be empty")
         needed = [key for key in known if key not in _OPTIONAL and (key != "points" or what == "criterion")]
@@ -240,7 +245,7 @@ class _Loader:
     def _totals(self, parts: list[dict[str, Any]], rows: list[dict[str, Any]]) -> None:
         """Compare declared totals with the sums, where all the points that they are made of can be read."""
         points = [(row.get("part"), row.get("points")) for row in rows]
-        if not all(_has_type(value, _NUMBER) and Decimal(value or 0).is_finite() for _, value in points):
+        if not all(_is_countable(value) for _, value in points):
             return
         declared: list[tuple[KeyPath, Any, str, list[Any]]] = [
             (("points",), self.table.get("points"), "the rubric", [value for _, value in points])
@@ -257,6 +262,12 @@ class _Loader:
         self.complaints.append((where, what))
 
 
+def _is_countable(value: object) -> bool:
+    if not isinstance(value, int | Decimal) or isinstance(value, bool):
+        return False
+    return Decimal(value).is_finite() and value <= _MOST_POINTS
+
+
 def _has_type(value: object, wanted: str) -> bool:
     if wanted == _NUMBER:
         return isinstance(value, int | Decimal) and not isinstance(value, bool)
@@ -267,7 +278,7 @@ def _has_type(value: object, wanted: str) -> bool:
     return wanted != _TEXT or isinstance(value, str)
 
 
-def _type_name(value: object) -> str:
+def _type_name(value: object, wanted: str) -> str:
     match value:
         case bool():
             return "true or false"
@@ -276,7 +287,7 @@ def _type_name(value: object) -> str:
         case int() | Decimal():
             return _NUMBER
         case list():
-            return "a list"
+            return "a list with other values" if wanted == _TEXTS else "a list"
         case dict():
             return _TABLE
         case _:

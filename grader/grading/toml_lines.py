@@ -1,11 +1,12 @@
 """On which line a key of a TOML file stands; tomllib does not say."""
 
 import re
+import tomllib
 
 Path = tuple[str | int, ...]
 
 _TOKEN = re.compile(
-    r'''"""(?:\\.|[^\\])*?"""|\'\'\'.*?\'\'\'|"(?:\\.|[^"\\\n])*"|'[^'\n]*'|\#[^\n]*|[\[\]{}\n=.]|[^\s"'\#\[\]{}=.]+|[ \t\r]+''',
+    r'''"""(?:\\.|[^\\])*?"""(?!")|\'\'\'.*?\'\'\'(?!\')|"(?:\\.|[^"\\\n])*"|'[^'\n]*'|\#[^\n]*|[\[\]{}\n=.]|[^\s"'\#\[\]{}=.]+|[ \t\r]+''',
     re.DOTALL,
 )
 
@@ -13,22 +14,30 @@ _TOKEN = re.compile(
 def key_lines(text: str) -> dict[Path, int]:
     """The line of every table header and key of a valid TOML text, by its path; arrays of tables are counted from 0."""
     lines: dict[Path, int] = {(): 1}
-    counts: dict[str, int] = {}
+    counts: dict[Path, int] = {}
     table: Path = ()
     for line, tokens in _statements(text):
-        if tokens[:2] == ["[", "["]:
-            name = _names(tokens[2 : tokens.index("]")])
-            index = counts[name[0]] = counts.get(name[0], -1) + 1
-            table = (name[0], index, *name[1:])
-        elif tokens[0] == "[":
-            name = _names(tokens[1 : tokens.index("]")])
-            table = (name[0], counts[name[0]], *name[1:]) if name[0] in counts else tuple(name)
+        if tokens[0] == "[":
+            is_array = tokens[1] == "["
+            table = _table(_names(tokens[1 + is_array : tokens.index("]")]), counts, is_array=is_array)
+            path = table
         else:
-            key = (*table, *_names(tokens[: tokens.index("=")])) if "=" in tokens else table
-            lines.setdefault(key, line)
-            continue
-        lines.setdefault(table, line)
+            path = (*table, *_names(tokens[: tokens.index("=")]))
+        for length in range(len(path)):
+            lines.setdefault(path[: length + 1], line)
     return lines
+
+
+def _table(names: list[str], counts: dict[Path, int], *, is_array: bool) -> Path:
+    """The path of a header's table: in each array of tables on the way, the last one so far."""
+    path: Path = ()
+    for index, name in enumerate(names):
+        path = (*path, name)
+        if is_array and index == len(names) - 1:
+            counts[path] = counts.get(path, -1) + 1
+        if path in counts:
+            path = (*path, counts[path])
+    return path
 
 
 def line_of(lines: dict[Path, int], path: Path) -> int:
@@ -57,4 +66,4 @@ def _statements(text: str) -> list[tuple[int, list[str]]]:
 
 
 def _names(tokens: list[str]) -> list[str]:
-    return [token.strip("\"'") for token in tokens if token != "."]
+    return [next(iter(tomllib.loads(f"{token}=0"))) for token in tokens if token != "."]

@@ -1,6 +1,7 @@
 """The JSON Schemas (draft 2020-12) of what the grader writes, and of the rubrics that it reads."""
 
-from typing import Any, get_args, get_origin
+from types import UnionType
+from typing import Any, Literal, get_args, get_origin
 
 from grader.checks.registry import CHECKS, Check, describe
 
@@ -150,9 +151,13 @@ def type_schema(annotation: Any) -> dict[str, Any]:
     if annotation in simple:
         return simple[annotation]
     inner = get_args(annotation)
+    if get_origin(annotation) is Literal:
+        return {"enum": list(inner)}
+    if get_origin(annotation) is UnionType:
+        return {"anyOf": [type_schema(each) for each in inner]}
     if get_origin(annotation) in (list, tuple):
         schema = {**_array(type_schema(inner[0])), "minItems": 1}
         if get_origin(annotation) is tuple and Ellipsis not in inner:
             schema |= {"minItems": len(inner), "maxItems": len(inner)}
         return schema
-    return {"type": "object", "additionalProperties": type_schema(inner[1])}
+    return {"type": "object", "additionalProperties": type_schema(inner[1]), "minProperties": 1}

@@ -1,5 +1,7 @@
 """Joints as urdfdom reads them (`joint.cpp`): every defect of a joint makes ROS 2 reject the whole file."""
 
+from typing import Literal, get_args
+
 from grader.robot import catalogue
 from grader.robot.catalogue import Kind
 from grader.robot.model import Joint, Limit, Mimic
@@ -7,7 +9,8 @@ from grader.robot.names import quoted
 from grader.robot.notes import Element, Notes, Part, children
 from grader.robot.transforms import Vector, unit
 
-JOINT_TYPES = ("fixed", "continuous", "revolute", "prismatic", "floating", "planar")
+JointType = Literal["fixed", "continuous", "revolute", "prismatic", "floating", "planar"]
+JOINT_TYPES: tuple[str, ...] = get_args(JointType)
 MOVING_TYPES = ("continuous", "revolute", "prismatic", "planar", "floating")
 _WITHOUT_AXIS = ("fixed", "floating")
 _WITH_LIMIT = ("revolute", "prismatic")

@@ -8,6 +8,7 @@ from grader.errors import MissingElement
 from grader.robot.joints import MOVING_TYPES
 from grader.robot.model import Joint, Link, Origin, Robot
 from grader.robot.names import quoted
+from grader.robot.source import Spot
 from grader.robot.transforms import (
     IDENTITY,
     Transform,
@@ -61,6 +62,8 @@ class Configuration:
         for name, position in self.positions.items():
             _check_position(robot.joint(name), position)
         self._placed: dict[str, _Placed] = {}
+        self._lost: dict[str, str] = {}  # links on or behind a loop of joints, with one name for the loop
+        self._followed: dict[str, float] = {}
         self._relative: dict[tuple[str, str | None], Transform] = {}
 
     def link(self, name: str) -> Link:
@@ -99,7 +102,7 @@ class Configuration:
         if ours.root != theirs.root:
             roots = " and ".join(sorted((ours.root, theirs.root)))
             message = f"no chain of joints leads from {quoted(theirs.root if relative_to is None else relative_to)} to {quoted(link)}"
-            raise MissingElement("connection", roots, message=message, location=_location(self.link(link)))
+            raise MissingElement("connection", roots, message=message, location=_spot(self.link(link)))
         if ours.island != theirs.island:
             way = self.between(relative_to or ours.root, link)
             raise _undefined(
@@ -154,20 +157,29 @@ class Configuration:
         return self._mimicked(joint)
 
     def _mimicked(self, joint: Joint) -> float:
-        factor, offset = 1.0, 0.0
+        """A mimic joint's position. What is found on the way is kept: long chains are followed once."""
+        way: list[Joint] = []
         followed: set[str] = set()
-        while joint.mimic is not None and joint.name not in self.positions:
-            offset += factor * joint.mimic.offset
-            factor *= joint.mimic.multiplier
+        value = (
+            0.0  # of a joint that does not exist or is not moved by one number, and of joints that go round in a circle
+        )
+        while joint.name not in followed:
+            own = self._followed.get(joint.name, self.positions.get(joint.name))
+            if own is not None or joint.mimic is None:
+                value = own if isinstance(own, int | float) else 0.0
+                break
+            way.append(joint)
             followed.add(joint.name)
-            if joint.mimic.joint in followed:
-                return 0.0  # joints that follow each other in a circle are moved by nobody
-            try:
-                joint = self.joint(joint.mimic.joint)
-            except MissingElement:
-                return offset
-        own = self.positions.get(joint.name, 0.0)
-        return factor * own + offset if isinstance(own, int | float) else offset
+            if not self.robot.has_joint(joint.mimic.joint):
+                break
+            joint = self.joint(joint.mimic.joint)
+        else:
+            self._followed.update(dict.fromkeys(followed, 0.0))
+            return 0.0
+        for each in reversed(way):
+            assert each.mimic is not None  # only such joints are put on the way
+            value = self._followed[each.name] = each.mimic.multiplier * value + each.mimic.offset
+        return value
 
     def _place(self, link: str) -> "_Placed":
         """Where a link is. Links are placed when they are asked for, each once, from the nearest placed link above.
@@ -184,12 +196,10 @@ class Configuration:
         way: list[Joint] = []
         name = link
         while name not in placed and name in holding:
+            if name in self._lost or len(way) > len(holding):
+                raise self._lose(link, name, way)
             way.append(holding[name])
             name = holding[name].parent
-            if len(way) > len(holding):
-                at = _location(self.link(link))
-                message = f"link {quoted(link)} hangs on a loop of joints: it is in no tree"
-                raise MissingElement("connection", link, message=message, location=at)
         above = placed.get(name) or placed.setdefault(name, _Placed(name, name, IDENTITY))
         for joint in reversed(way):
             pose = _past(above.pose, joint, self.position(joint))
@@ -199,6 +209,12 @@ class Configuration:
                 above = _Placed(above.root, joint.child, IDENTITY)
             placed[joint.child] = above
         return above
+
+    def _lose(self, link: str, name: str, way: list[Joint]) -> MissingElement:
+        loop = self._lost.get(name) or min(joint.child for joint in way)
+        self._lost.update((joint.child, loop) for joint in way)
+        message = f"link {quoted(link)} hangs on a loop of joints: it is in no tree"
+        return MissingElement("connection", loop, message=message, location=_spot(self.link(link)))
 
 
 class _Placed(NamedTuple):
@@ -275,19 +291,21 @@ def _check_position(joint: Joint, position: Position) -> None:
 
 
 def _undefined(joint: Joint) -> MissingElement:
-    at = joint.mark.location() if joint.mark else None
+    mark, attribute = joint.mark, None
     if joint.origin is None:
         reason = "its origin cannot be read"
     elif joint.axis is None:
         reason = "its axis cannot be read"
+        mark, attribute = joint.axis_mark, "xyz"
     elif unit(joint.axis) is None:
         reason = "its axis is 0 0 0"
-        at = joint.axis_mark.location("xyz") if joint.axis_mark else at
+        mark, attribute = joint.axis_mark, "xyz"
     else:
         reason = "its numbers are too large"
     message = f"the pose behind joint {quoted(joint.name)} is undefined: {reason}"
-    return MissingElement("pose behind joint", joint.name, message=message, location=at)
+    spot = Spot(mark, attribute) if mark is not None else None
+    return MissingElement("pose behind joint", joint.name, message=message, location=spot)
 
 
-def _location(link: Link) -> object:
-    return link.mark.location() if link.mark else None
+def _spot(link: Link) -> Spot | None:
+    return Spot(link.mark) if link.mark is not None else None

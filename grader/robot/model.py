@@ -178,6 +178,10 @@ class Robot:
         except KeyError:
             raise _missing("joint", name, self.joints) from None
 
+    def has_joint(self, name: str) -> bool:
+        """Whether a joint of this name was read."""
+        return name in self._joints
+
     def has_link(self, name: str) -> bool:
         """Whether a link of this name was read."""
         return name in self._links

@@ -90,12 +90,11 @@ def check_spelling(root: Element, notes: Notes) -> None:
 
 def _check_attributes(element: Element, notes: Notes) -> None:
     known = _ATTRIBUTES[element.tag]
+    given = set(element.keys())
     for name in map(str, element.keys()):
         if name in known or name.startswith("{"):
             continue
-        meant = _SWAPPED.get((element.tag, name)) or notes.closest(
-            name, [each for each in known if element.get(each) is None]
-        )
+        meant = _SWAPPED.get((element.tag, name)) or notes.closest(name, [each for each in known if each not in given])
         if meant:
             message = (
                 f"<{element.tag}> has no attribute {quoted(name)}, and ROS 2 ignores it; did you mean {quoted(meant)}?"

@@ -8,21 +8,28 @@ from pathlib import Path
 from grader.errors import InputError
 
 URDF_LIMIT = 1024 * 1024  # bytes
+_ADVICE = " for a URDF (--max-size raises it)"
 
 
-def read_capped(path: Path, limit: int = URDF_LIMIT) -> bytes:
-    """The bytes of a regular file of at most `limit` bytes; raises InputError, in one plain sentence, for anything else."""
+def read_capped(path: Path, limit: int = URDF_LIMIT, *, advice: str = _ADVICE) -> bytes:
+    """The bytes of a regular file of at most `limit` bytes; raises InputError, in one plain sentence, for anything else.
+
+    `advice` says what to do about a file that is too large.
+    """
     shown = printable_path(path)
     try:
         # A FIFO would block at open and a device could be endless: both are recognised without reading.
         handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
-        with os.fdopen(handle, "rb") as file:
-            if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+        try:
+            if not stat.S_ISREG(os.fstat(handle).st_mode):
                 raise InputError(f"{shown} is not a regular file")
-            data = file.read(limit + 1)
+            with os.fdopen(handle, "rb", closefd=False) as file:
+                data = file.read(limit + 1)
+        finally:
+            os.close(handle)
     except OSError as error:
         raise InputError(f"cannot read {shown}: {error.strerror or error}") from None
-    return _capped(data, limit, shown)
+    return _capped(data, limit, shown, advice)
 
 
 def read_standard_input(limit: int = URDF_LIMIT) -> bytes:
@@ -30,7 +37,7 @@ def read_standard_input(limit: int = URDF_LIMIT) -> bytes:
     if sys.stdin is None:
         raise InputError("standard input is closed")
     try:
-        return _capped(sys.stdin.buffer.read(limit + 1), limit, "standard input")
+        return _capped(sys.stdin.buffer.read(limit + 1), limit, "standard input", _ADVICE)
     except OSError as error:
         raise InputError(f"cannot read standard input: {error.strerror or error}") from None
 
@@ -41,7 +48,7 @@ def printable_path(path: Path | str) -> str:
     return "".join(c if c.isprintable() else f"\\x{ord(c):02x}" for c in text)
 
 
-def _capped(data: bytes, limit: int, shown: str) -> bytes:
+def _capped(data: bytes, limit: int, shown: str, advice: str) -> bytes:
     if len(data) > limit:
-        raise InputError(f"{shown} is larger than {limit} bytes, the limit for a URDF (--max-size raises it)")
+        raise InputError(f"{shown} is larger than {limit} bytes, the limit{advice}")
     return data

@@ -196,7 +196,7 @@ part = "task1"
 title = "Four"
 points = 1
 check = "urdf_loads"
-requires = ["five", "one", 3]  # !! requires must be a list of texts, not a list !! requires 'five', which stands below:\
+requires = ["five", "one", 3]  # !! requires must be a list of texts, not a list with other values !! requires 'five', which stands below:\
  a criterion can only require those above it
 feedback = ["a"]  # !! feedback must be a text, not a list
 about = true  # !! about must be a text, not true or false
@@ -430,7 +430,7 @@ def test_only_what_stands_above_can_be_required(tmp_path: Path) -> None:
 def test_a_criterion_cannot_require_itself(tmp_path: Path) -> None:
     """It does not stand above itself."""
     (found,) = complaints(tmp_path, GOOD + row("b", requires='["b"]'))
-    assert found.startswith("18: requires 'b', which ")
+    assert found.startswith("18: requires itself")
 
 
 def test_each_unknown_requirement_is_told(tmp_path: Path) -> None:

@@ -1,7 +1,5 @@
 """TinyXML2's dialect: never a crash, always XML that lxml reads, and the same tree where no translation is needed."""
 
-from time import process_time
-
 import pytest
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
@@ -9,6 +7,7 @@ from lxml import etree
 
 from grader.robot.dialect import Scan, is_plain, translate
 from grader.robot.reader import read_urdf
+from tests.patience import processor_time
 from tests.robot.soup import data
 
 _PARSER = etree.XMLParser(
@@ -147,7 +146,7 @@ def test_plain_soup_means_the_same_to_lxml(raw: bytes) -> None:
         return
     translated = tree(etree.fromstring(translate(decoded(raw)).xml, _PARSER))
     for (tag, attributes), (other, others) in zip(tree(root), translated, strict=True):
-        if tag.isascii() and tag.replace("_", "a").isalnum():
+        if tag.isascii() and tag.replace("_", "a").isalnum() and not tag.startswith("xml"):
             assert tag == other
         assert {name: value for name, value in attributes.items() if name.isascii() and name.isalnum()} == others
 
@@ -200,10 +199,9 @@ def test_what_the_two_read_apart_is_not_plain(text: str) -> None:
 @pytest.mark.parametrize(
     "frame", ["{}", "<robot {}", "<robot a='{}'/>", "<robot>{}</robot>", "<robot/>{}", "<robot/></x>{}"]
 )
-def test_a_megabyte_of_one_piece(piece: str, frame: str) -> None:
-    """Time is linear wherever the piece stands: 256 KiB take less than a second of processor time."""
+def test_a_long_file_of_one_piece(piece: str, frame: str) -> None:
+    """Time is linear wherever the piece stands: a quarter of a megabyte takes less than a second."""
     text = frame.format(piece * (2**18 // len(piece)))
-    start = process_time()
-    is_plain(text.encode())
-    translate(text)
-    assert process_time() - start < 1.0
+    with processor_time(1.0):
+        is_plain(text.encode())
+        translate(text)

@@ -17,6 +17,7 @@ from grader.robot.kinematics import DEGREES_OF_FREEDOM, Configuration, Position
 from grader.robot.model import Joint, Link, Mimic, Origin, Robot
 from grader.robot.reader import read_urdf
 from grader.robot.transforms import IDENTITY, Transform, Vector, dot, minus, rotation_about, rotation_from_rpy, unit
+from tests.patience import processor_time
 
 Z: Vector = (0.0, 0.0, 1.0)
 
@@ -514,17 +515,16 @@ def test_a_chain_of_20000_links() -> None:
     """It is read and solved in less than 5 s, and without recursion, of which Python has far less."""
     assert sys.getrecursionlimit() < 20_000
     data = chain_of(20_000)
-    start = process_time()
-    read = read_urdf(data)
-    assert read.verdict == "clean"
-    assert read.robot is not None
-    configuration = Configuration(read.robot, {"j7": 0.5})
-    last = configuration.pose("l19999")
-    assert last.translation == pytest.approx((19.999, 0.0, 0.0), abs=1e-9)
-    assert last.rotation == pytest.approx(rotation_about((1.0, 0.0, 0.0), 0.5), abs=1e-9)
-    assert configuration.pose("l0", relative_to="l19999").translation[0] == pytest.approx(-19.999, abs=1e-9)
-    assert len(configuration.between("l19999", "l1")) == 19_998
-    assert process_time() - start < 5.0
+    with processor_time(5.0):
+        read = read_urdf(data)
+        assert read.verdict == "clean"
+        assert read.robot is not None
+        configuration = Configuration(read.robot, {"j7": 0.5})
+        last = configuration.pose("l19999")
+        assert last.translation == pytest.approx((19.999, 0.0, 0.0), abs=1e-9)
+        assert last.rotation == pytest.approx(rotation_about((1.0, 0.0, 0.0), 0.5), abs=1e-9)
+        assert configuration.pose("l0", relative_to="l19999").translation[0] == pytest.approx(-19.999, abs=1e-9)
+        assert len(configuration.between("l19999", "l1")) == 19_998
 
 
 def test_time_grows_with_the_number_of_links() -> None:
@@ -532,21 +532,20 @@ def test_time_grows_with_the_number_of_links() -> None:
     assert seconds_for(10_000) / 10 < 4 * seconds_for(1_000)
 
 
-def asking_all_takes(links: int, joints: list[Joint]) -> float:
-    """The processor time until each link's pose is refused or known."""
+def ask_all(links: int, joints: list[Joint]) -> None:
+    """Ask for the pose of every link; it may be refused."""
     configuration = Configuration(Robot("r", tuple(Link(f"l{index}") for index in range(links)), tuple(joints)))
-    start = process_time()
     for index in range(links):
         with suppress(MissingElement):
             configuration.pose(f"l{index}")
-    return process_time() - start
 
 
 def test_links_on_a_long_loop_are_refused_in_linear_time() -> None:
     """Asking for each of 6,000 links on a loop does not walk the loop 6,000 times."""
     count = 6000
     joints = [Joint(f"j{index}", "fixed", f"l{index}", f"l{(index + 1) % count}") for index in range(count)]
-    assert asking_all_takes(count, joints) < 1.0
+    with processor_time(1.0):
+        ask_all(count, joints)
 
 
 def test_links_behind_a_defect_are_refused_in_linear_time() -> None:
@@ -554,7 +553,8 @@ def test_links_behind_a_defect_are_refused_in_linear_time() -> None:
     count = 6000
     joints = [Joint(f"j{index}", "fixed", f"l{index}", f"l{index + 1}") for index in range(1, count - 1)]
     joints.append(Joint("j0", "continuous", "l0", "l1", axis=(0.0, 0.0, 0.0)))
-    assert asking_all_takes(count, joints) < 1.0
+    with processor_time(1.0):
+        ask_all(count, joints)
 
 
 def assert_finite_or_missing(configuration: Configuration) -> None:

@@ -1,0 +1,34 @@
+"""A limit of processor time for a block, so that a slow input fails its test instead of holding up the others."""
+
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from threading import current_thread, main_thread
+from time import process_time
+from types import FrameType
+
+
+class TooSlow(AssertionError):
+    """The block has used up its processor time."""
+
+
+@contextmanager
+def processor_time(limit: float) -> Iterator[None]:
+    """Fail if the block takes more than so many seconds; where the system has no timers, only when it is done."""
+    start = process_time()
+    if hasattr(signal, "setitimer") and current_thread() is main_thread():
+
+        def stop(_number: int, _frame: FrameType | None) -> None:
+            raise TooSlow(f"more than {limit} s of processor time")
+
+        before = signal.signal(signal.SIGVTALRM, stop)
+        signal.setitimer(signal.ITIMER_VIRTUAL, limit)
+        try:
+            yield
+        finally:
+            signal.setitimer(signal.ITIMER_VIRTUAL, 0)
+            signal.signal(signal.SIGVTALRM, before)
+    else:
+        yield
+    if process_time() - start > limit:
+        raise TooSlow(f"{process_time() - start:.1f} s of processor time, allowed are {limit} s")
