@@ -230,6 +230,42 @@ def test_a_mistake_is_recognised_in_every_form(mistake: Break, draw: st.DataObje
     assert lost(graded(data)) == set(mistake.lost.split())
 
 
+_NUMBERS = "|0|0 0 0|-1|-1 -1 -1|1e308 1e308 1e308|1.7e308 -1.7e308 0|1e308|1e-308|1e-308 0 0|0 0 0 0|1 1 1 1|nan|1,2,3"
+_WORDS = "x|base_link|left_wheel|lidar|planar|floating|prismatic|revolute|fixed|gray|base_left_wheel_joint"
+_ODD = st.sampled_from(f"{_NUMBERS}|{_WORDS}".split("|"))
+_ADDED = st.sampled_from(
+    (
+        "<limit lower='-1' upper='1' effort='1' velocity='1'/>",
+        "<mimic joint='base_left_wheel_joint'/>",
+        "<mimic joint='base_right_wheel_joint' multiplier='1e308' offset='1e308'/>",
+        "<visual><geometry><mesh filename='package://a/b.stl'/></geometry></visual>",
+        "<visual><origin xyz='1e308 1e308 0'/><geometry><box size='1e308 1e308 1e308'/></geometry></visual>",
+        "<visual><geometry><sphere radius='1e-320'/></geometry></visual>",
+        "<origin xyz='1e308 0 0' rpy='1e308 0 1'/>",
+        "<axis xyz='1e-320 0 1e-320'/>",
+    )
+)
+
+
+@settings(max_examples=700, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(draw=st.data())
+def test_no_value_is_a_fault_of_ours(draw: st.DataObject) -> None:
+    """Whatever a few attributes of the reference are set to, no criterion ends in an error of the grader."""
+    robot = etree.fromstring(etree.tostring(REFERENCE))
+    elements = [each for each in robot.iter() if each.attrib]
+    for _ in range(draw.draw(st.integers(0, 4))):
+        element = draw.draw(st.sampled_from(elements))
+        element.set(draw.draw(st.sampled_from(sorted(map(str, element.attrib)))), draw.draw(_ODD))
+    for _ in range(draw.draw(st.integers(0, 2))):
+        owner = draw.draw(st.sampled_from(list(robot)))
+        owner.insert(draw.draw(st.integers(0, len(owner))), etree.fromstring(draw.draw(_ADDED)))
+    data = etree.tostring(robot)
+    note(data.decode())
+    report = graded(data)
+    lost(report)
+    assert report.submission.urdf.verdict in ("clean", "degraded", "rejected")
+
+
 @pytest.mark.parametrize("kind", ["planar", "floating"])
 def test_a_wheel_that_moves_otherwise_does_not_roll(kind: str) -> None:
     """A planar or floating joint is no wheel's joint, and has no small positive angle to turn by."""

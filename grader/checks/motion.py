@@ -105,7 +105,7 @@ def _turning_joint(robot: Configuration, link: str, base: str) -> Joint:
 def _lowest_point(robot: Configuration, link: str, base: str, up: Vector) -> Vector:
     down = (-up[0], -up[1], -up[2])
     poses = [(visual.geometry, pose_of(robot, link, visual, base)) for visual in visuals(robot, link)]
-    geometry, pose = min(poses, key=lambda each: extent(each[0], each[1], up)[0])
+    geometry, pose = poses[0] if len(poses) == 1 else min(poses, key=lambda each: extent(each[0], each[1], up)[0])
     return farthest(geometry, pose, down)
 
 

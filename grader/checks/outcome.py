@@ -109,6 +109,7 @@ def quantity(value: float, unit: str) -> str:
     return f"{value:.3g} degree{'' if f'{value:.3g}' == '1' else 's'}"
 
 
+@lru_cache(maxsize=4096)
 def point(values: tuple[float, ...]) -> str:
     """Coordinates for reading, as a URDF writes them."""
     return " ".join(map(_short, values))
@@ -125,7 +126,7 @@ def listing(names: tuple[str, ...] | list[str]) -> str:
     return quoted[0] if len(quoted) == 1 else f"{', '.join(quoted[:-1])} and {quoted[-1]}" if quoted else "none"
 
 
-@lru_cache(maxsize=1024)
+@lru_cache(maxsize=4096)
 def _short(value: float) -> str:
     text = f"{value:.4f}".rstrip("0").rstrip(".")
     return "0" if text in ("-0", "") else text

@@ -10,15 +10,13 @@ from grader.robot.transforms import Transform, Vector
 
 def visuals(robot: Configuration, link: str) -> tuple[Visual, ...]:
     """The visuals of a link that have a size; raises MissingElement where there is none."""
-    found = robot.link(link)
-    shown = found.visuals
-    for visual in shown:
-        if is_empty(visual.geometry):
-            shown = tuple(each for each in shown if not is_empty(each.geometry))
-            break
+    shown = robot.shown.get(link)
+    if shown is None:
+        shown = tuple(each for each in robot.link(link).visuals if not is_empty(each.geometry))
+        robot.shown[link] = shown
     if not shown:
         message = f"link {link!r} shows nothing: ROS 2 finds no visual with a size in it"
-        raise MissingElement("visual", link, message=message, location=place(found.mark))
+        raise MissingElement("visual", link, message=message, location=place(robot.link(link).mark))
     return shown
 
 

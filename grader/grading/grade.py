@@ -34,7 +34,7 @@ class _Run:
         self.missed: dict[tuple[str, str], str] = {}
 
     def decide(self, criterion: Criterion) -> None:
-        cause = self._cause(criterion)
+        cause = self._cause(criterion) if criterion.requires or self.robot is None else None
         result = Result(criterion, _skipped(cause), cause) if cause else self._ask(criterion)
         self.results[criterion.id] = result
 

@@ -16,7 +16,7 @@ _MOST_SHOWN = 30
 
 def wrapped(console: Console, text: Text, indent: int, head: Text | None = None) -> None:
     """Print text that keeps its indent when it wraps; `head` stands in the indent of the first line."""
-    for number, line in enumerate(text.wrap(console, max(20, console.width - indent))):
+    for number, line in enumerate(text.wrap(console, max(8, console.width - indent))):
         line.rstrip()
         start = head if head is not None and number == 0 else Text(" " * indent)
         console.print(start + line, overflow="ignore", no_wrap=True, crop=False)
@@ -29,11 +29,11 @@ def show_excerpt(console: Console, source: Source, where: Location, indent: int,
     found = _MEANT.match(line, start)
     width = len(found[0].rstrip()) if found else 1
     cut = len(line) - len(line.lstrip())
-    room = max(20, console.width - indent - len(str(where.line)) - 4)
+    room = max(8, console.width - indent - len(str(where.line)) - 3)
     if start + width - cut > room:
         cut = max(0, min(start - 4, len(line)))
     before, meant = printable(line[cut:start]), printable(line[start : start + width])
-    shown = (before + meant + printable(line[start + width :]))[:room]
+    shown = (before + meant + printable(line[start + width :]))[:room].rstrip()
     number = str(where.line)
     gutter = " " * len(number)
     mark = "\u2500" if _unicode(console) else "-"
@@ -54,11 +54,11 @@ def show_problems(console: Console, problems: tuple[Problem, ...], source: Sourc
     """Print every problem of a file with its code and place; the errors with their source line."""
     for problem in problems[:_MOST_SHOWN]:
         style = SEVERITY_STYLES[problem.severity]
-        head = Text.assemble("  ", (f"{problem.code} {problem.severity:<8}", style))
+        head = Text.assemble("  ", (f"{problem.code} {problem.severity:<7} ", style))
         place = Text(f"line {problem.location.line}: ", style="dim")
-        wrapped(console, place + Text(printable(problem.message)), 19, head)
+        wrapped(console, place + Text(printable(problem.message)), len(head), head)
         if problem.severity == "error":
-            show_excerpt(console, source, problem.location, 19)
+            show_excerpt(console, source, problem.location, min(len(head), console.width // 5))
     if len(problems) > _MOST_SHOWN:
         wrapped(console, Text(f"... and {len(problems) - _MOST_SHOWN} more"), 2)
 

@@ -21,9 +21,12 @@ def to_json(data: Mapping[str, Any]) -> str:
 
 
 def _lines(value: Any) -> str:
-    if isinstance(value, list) and value and isinstance(value[0], dict):
-        return "[\n  " + ",\n  ".join(map(_ENCODER.encode, value)) + "\n ]"
-    return _ENCODER.encode(value)
+    text = _ENCODER.encode(value)
+    if not isinstance(value, list) or not value or not isinstance(value[0], dict):
+        return text
+    # Inside a JSON string a quote has a backslash before it, so this can only be where one entry ends and another begins.
+    first = _ENCODER.encode(next(iter(value[0])))
+    return "[\n  " + text[1:-1].replace("}, {" + first, "},\n  {" + first) + "\n ]"
 
 
 def exact(points: Decimal) -> int | float:
@@ -33,15 +36,11 @@ def exact(points: Decimal) -> int | float:
 
 def rounded(value: Any) -> Any:
     """A measured value to 1e-6, so that no machine's last digit shows; never -0, null where it is not finite."""
-    match value:
-        case bool() | str() | None:
-            return value
-        case int() | float():
-            return round(value, 6) + 0.0 if value - value == 0 else None
-        case Mapping():
-            return dict(value)
-        case _:
-            return [rounded(each) for each in value]
+    if isinstance(value, float):
+        return round(value, 6) + 0.0 if value - value == 0 else None
+    if isinstance(value, tuple | list):
+        return [rounded(each) for each in value]
+    return dict(value) if isinstance(value, Mapping) else value
 
 
 def location(where: Location | None) -> dict[str, Any] | None:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from grader.errors import MissingElement
 from grader.robot.joints import MOVING_TYPES
-from grader.robot.model import Joint, Link, Origin, Robot
+from grader.robot.model import Joint, Link, Origin, Robot, Visual
 from grader.robot.names import quoted
 from grader.robot.source import Spot
 from grader.robot.transforms import (
@@ -61,6 +61,7 @@ class Configuration:
         self.holding = holding_joints(robot) if holding is None else holding
         for name, position in self.positions.items():
             _check_position(robot.joint(name), position)
+        self.shown: dict[str, tuple[Visual, ...]] = {}  # kept by those who ask what a link shows
         self._placed: dict[str, _Placed] = {}
         self._lost: dict[str, str] = {}  # links on or behind a loop of joints, with one name for the loop
         self._followed: dict[str, float] = {}
@@ -193,15 +194,15 @@ class Configuration:
     def _solve(self, link: str) -> "_Placed":
         self.link(link)
         holding, placed = self.holding, self._placed
-        way: list[Joint] = []
+        way: dict[str, Joint] = {}
         name = link
         while name not in placed and name in holding:
-            if name in self._lost or len(way) > len(holding):
+            if name in self._lost or name in way:
                 raise self._lose(link, name, way)
-            way.append(holding[name])
+            way[name] = holding[name]
             name = holding[name].parent
         above = placed.get(name) or placed.setdefault(name, _Placed(name, name, IDENTITY))
-        for joint in reversed(way):
+        for joint in reversed(way.values()):
             pose = _past(above.pose, joint, self.position(joint))
             if pose is not None and isfinite(sum(pose.translation)):
                 above = _Placed(above.root, above.island, pose)
@@ -210,9 +211,9 @@ class Configuration:
             placed[joint.child] = above
         return above
 
-    def _lose(self, link: str, name: str, way: list[Joint]) -> MissingElement:
-        loop = self._lost.get(name) or min(joint.child for joint in way)
-        self._lost.update((joint.child, loop) for joint in way)
+    def _lose(self, link: str, name: str, way: Mapping[str, Joint]) -> MissingElement:
+        loop = self._lost.get(name) or min(way)
+        self._lost.update(dict.fromkeys(way, loop))
         message = f"link {quoted(link)} hangs on a loop of joints: it is in no tree"
         return MissingElement("connection", loop, message=message, location=_spot(self.link(link)))
 

@@ -34,7 +34,7 @@ def check_tree(robot: Robot, links: dict[str, Element], joints: dict[str, Elemen
         return
     edges: Edges = {}
     for joint in robot.joints:
-        if robot.has_link(joint.parent) and robot.has_link(joint.child):
+        if joint.parent and joint.child and robot.has_link(joint.parent) and robot.has_link(joint.child):
             edges.setdefault(joint.parent, []).append(joint)
     _check_two_parents(edges, held, joints, notes)
     cycles = _cycles(edges, list(links))

@@ -131,7 +131,9 @@ def test_a_heading_is_told_in_words(yaw: float, words: str) -> None:
 
 def test_a_small_slant_is_told_though_it_passes() -> None:
     """A slant that a reader can see in the file is told; rounded angles are not."""
-    assert passes(rolls_forward, rolling(rpy="-1.57 0 0.01"), **FORWARDS) == f"{ROLLS}, 0.573 degrees off straight ahead"
+    assert (
+        passes(rolls_forward, rolling(rpy="-1.57 0 0.01"), **FORWARDS) == f"{ROLLS}, 0.573 degrees off straight ahead"
+    )
     assert passes(rolls_forward, rolling(rpy="-1.57 0 0"), **FORWARDS) == ROLLS
 
 

@@ -55,7 +55,7 @@ class TestPaths:
         os.mkfifo(tmp_path / "pipe.urdf")
         refuse(command, str(tmp_path / "pipe.urdf"), words="not a regular file")
 
-    def test_device(self, command: str, tmp_path: Path) -> None:
+    def test_device(self, command: str) -> None:
         """A device without end."""
         refuse(command, "/dev/zero", words="not a regular file")
 

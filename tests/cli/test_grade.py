@@ -52,7 +52,9 @@ def test_ids_and_paths_hold_nothing_of_the_machine(tmp_path: Path) -> None:
     for name in ("alice", "bob"):
         (tmp_path / name).mkdir()
         (tmp_path / name / "my_robot.urdf").write_bytes(REFERENCE.read_bytes())
-    one, other = (json.loads(run(("grade", str(tmp_path / name), "--format", "json")).stdout) for name in ("alice", "bob"))
+    one, other = (
+        json.loads(run(("grade", str(tmp_path / name), "--format", "json")).stdout) for name in ("alice", "bob")
+    )
     assert (one["submission"].pop("id"), other["submission"].pop("id")) == ("alice", "bob")
     assert one == other
     assert str(tmp_path) not in json.dumps(one)
@@ -65,7 +67,9 @@ def test_max_size(tmp_path: Path) -> None:
     assert run(("grade", str(tmp_path / "a.urdf"), "--max-size", "2000000")).returncode == 0
 
 
-@pytest.mark.parametrize("variables", [{"NO_COLOR": "1"}, {"TERM": "dumb"}, {"PYTHONIOENCODING": "ascii"}, {"COLUMNS": "40"}])
+@pytest.mark.parametrize(
+    "variables", [{"NO_COLOR": "1"}, {"TERM": "dumb"}, {"PYTHONIOENCODING": "ascii"}, {"COLUMNS": "40"}]
+)
 def test_a_pipe_gets_no_escape_codes(variables: dict[str, str]) -> None:
     """A report in a pipe is plain text, at any width and in any encoding."""
     done = run(("grade", "submissions/several-mistakes"), **variables)

@@ -50,5 +50,10 @@ def run(arguments: tuple[str, ...], **variables: str) -> subprocess.CompletedPro
     """Run the command line as a user does, 80 columns wide, from the project's root."""
     environment = {**os.environ, "COLUMNS": "80", "PYTHONIOENCODING": "utf-8", **variables}
     return subprocess.run(
-        [sys.executable, "-m", "grader", *arguments], cwd=ROOT, env=environment, capture_output=True, check=False, timeout=60
+        [sys.executable, "-m", "grader", *arguments],
+        cwd=ROOT,
+        env=environment,
+        capture_output=True,
+        check=False,
+        timeout=60,
     )

@@ -1,0 +1,119 @@
+"""Reports and inspections as JSON: valid under their schemas, exact, and harmless whatever a student writes."""
+
+import json
+from decimal import Decimal
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grader.grading.grade import grade
+from grader.grading.rubric import load_rubric
+from grader.report.as_json import render_json
+from grader.report.inspection import Inspection, inspection_json, main_root
+from grader.report.plain import exact, rounded, to_json
+from grader.report.schemas import INSPECT_SCHEMA, REPORT_SCHEMA, rubric_schema
+from grader.robot.kinematics import Configuration
+from grader.robot.reader import read_urdf
+from grader.submission.submission import open_submission, read_submission
+from tests.robot.edge_cases import EDGE_CASES
+
+ROOT = Path(__file__).parent.parent.parent
+SAMPLES = sorted(path.parent for path in (ROOT / "submissions").glob("*/expected.toml"))
+RUBRIC = load_rubric("lab6")
+
+
+def valid(text: str, schema: dict[str, Any]) -> Any:
+    """The data of a JSON text, which must be valid and hold no NaN."""
+    data = json.loads(text, parse_constant=pytest.fail)
+    jsonschema.Draft202012Validator(schema).validate(data)
+    return data
+
+
+def inspected(data: bytes) -> str:
+    """The inspection of a file's bytes as JSON."""
+    reading = read_urdf(data, "a.urdf")
+    robot = Configuration(reading.robot) if reading.robot is not None else None
+    return inspection_json(Inspection("a.urdf", reading, robot, main_root(robot) if robot else None))
+
+
+@pytest.mark.parametrize(
+    "schema", [REPORT_SCHEMA, INSPECT_SCHEMA, rubric_schema()], ids=["report", "inspect", "rubric"]
+)
+def test_a_schema_is_one(schema: dict[str, Any]) -> None:
+    """What is printed as a schema is a JSON Schema."""
+    jsonschema.Draft202012Validator.check_schema(schema)
+
+
+@pytest.mark.parametrize("sample", SAMPLES, ids=lambda path: path.name)
+def test_reports_are_valid(sample: Path) -> None:
+    """The report of every sample is valid, and its points add up."""
+    report = grade(RUBRIC, open_submission(str(sample), wanted=RUBRIC.urdf))
+    data = valid(render_json(report), REPORT_SCHEMA)
+    assert data["max_score"] == 70
+    assert data["score"] == sum(result["points"] for result in data["results"])
+    for result in data["results"]:
+        assert (result["status"] == "skipped") == (result["because"] is not None)
+        assert result["status"] == "failed" or (result["location"], result["feedback"]) == (None, "")
+
+
+def test_reports_and_inspections_of_every_edge_case_are_valid() -> None:
+    """Whatever the file: no exception, no NaN, no invalid Unicode."""
+    report_schema, inspect_schema = (jsonschema.Draft202012Validator(each) for each in (REPORT_SCHEMA, INSPECT_SCHEMA))
+    for case in EDGE_CASES:
+        if len(case.text) > 20_000:
+            continue
+        report = grade(RUBRIC, read_submission(case.text, identity=case.name, path="a.urdf"))
+        assert report.counts("errored") == 0, case.name
+        report_schema.validate(json.loads(render_json(report)))
+        inspect_schema.validate(json.loads(inspected(case.text)))
+
+
+def test_the_rubric_is_valid_under_its_schema() -> None:
+    """A rubric that loads is valid, and an argument of the wrong type is not."""
+    import tomllib
+
+    data = tomllib.loads(RUBRIC.path.read_text(encoding="utf-8"))
+    validator = jsonschema.Draft202012Validator(rubric_schema())
+    validator.validate(data)
+    data["criterion"][1]["with"]["size"] = [1, 2]
+    assert not validator.is_valid(data)
+    data["criterion"][1]["with"] = {}
+    assert not validator.is_valid(data)
+
+
+def test_points_are_exact() -> None:
+    """Ten tenths are one, and 99.5 is not 100."""
+    assert exact(sum([Decimal("0.1")] * 10, Decimal(0))) == 1
+    assert to_json({"a": exact(Decimal("99.5"))}) == '{\n "a": 99.5\n}\n'
+    assert isinstance(exact(Decimal("70.0")), int)
+
+
+def test_measured_values_have_no_minus_zero_and_no_nan() -> None:
+    """What no machine agrees on is rounded away; what is no number is null."""
+    assert str(rounded(-0.0)) == "0.0"
+    assert rounded((1e-9, float("nan"), float("inf"), 0.1 + 0.2)) == [0.0, None, None, 0.3]
+    assert rounded(None) is None
+    assert rounded({"a": "b"}) == {"a": "b"}
+
+
+@given(st.lists(st.tuples(st.text(), st.text() | st.none() | st.lists(st.text())), min_size=1))
+def test_lines_are_only_layout(values: list[tuple[str, Any]]) -> None:
+    """A list of objects has a line for each, whatever its texts hold, and reads back as it was."""
+    rows = [{"id": name, "x": value} for name, value in values]
+    text = to_json({"rows": rows})
+    assert json.loads(text) == {"rows": rows}
+    assert text.count("\n") == len(rows) + 4
+
+
+@given(st.text(max_size=30))
+def test_a_students_text_reaches_the_report_as_text(name: str) -> None:
+    """Quotes, control characters, lone surrogates: the JSON is valid UTF-8 and valid JSON."""
+    escaped = name.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
+    data = f'<robot name="{escaped}"><link name="{escaped}"/><link name="b"/></robot>'.encode("utf-8", "surrogatepass")
+    report = grade(RUBRIC, read_submission(data, identity="a", path="a.urdf"))
+    valid(render_json(report).encode().decode(), REPORT_SCHEMA)
+    valid(inspected(data).encode().decode(), INSPECT_SCHEMA)

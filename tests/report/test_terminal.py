@@ -1,0 +1,122 @@
+"""Reports in the terminal: readable at any width, plain in a pipe, and never commanded by a student's text."""
+
+from io import StringIO
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from rich.console import Console
+
+from grader.grading.grade import grade
+from grader.grading.rubric import load_rubric
+from grader.report.inspection import Inspection, inspection_terminal, main_root
+from grader.report.layout import show_excerpt
+from grader.report.terminal import render_terminal
+from grader.report.text import printable
+from grader.robot.kinematics import Configuration
+from grader.robot.source import Location, Source
+from grader.submission.submission import open_submission, read_submission
+
+ROOT = Path(__file__).parent.parent.parent
+RUBRIC = load_rubric("lab6")
+HOSTILE = (
+    b'<robot name="[bold red]\x1b[31m"><link name="lidar\x1b]8;;http://x\x07"/>\n'
+    b'<joint name="[/] [link=x]" type="\xe2\x80\xaefixd"><parent link="\x9b31m"/><child link="\xff\xfe"/></joint>\n'
+    b'<link name="lidar"><visual><origin xyz="\x1b[2J 0 0"/></visual></link></robot>'
+)
+
+
+def printed(data: bytes, width: int = 80, *, terminal: bool = False) -> str:
+    """A report and an inspection of a file's bytes, as a console of this width gets them."""
+    out = StringIO()
+    console = Console(file=out, width=width, force_terminal=terminal, color_system="standard" if terminal else None)
+    submission = read_submission(data, identity="a", path="a.urdf")
+    render_terminal(grade(RUBRIC, submission), console)
+    robot = Configuration(submission.urdf.robot) if submission.urdf.robot is not None else None
+    inspection_terminal(Inspection("a.urdf", submission.urdf, robot, main_root(robot) if robot else None), console)
+    return out.getvalue()
+
+
+def test_hostile_text_is_spelt_out() -> None:
+    """Escapes, hyperlinks, right-to-left marks and rich markup come out as what they are: characters."""
+    text = printed(HOSTILE)
+    assert not any(ord(character) < 0x20 and character != "\n" for character in text)
+    assert not set(text) & {"\x7f", "\x9b", "\u202e"}
+    assert "[bold red]" in text
+    coloured = printed(HOSTILE, terminal=True)
+    assert "\x1b[2J" not in coloured
+    assert "\x1b]" not in coloured
+    assert "\x1b[31m[bold" not in coloured
+
+
+@given(st.text(max_size=40))
+def test_printable_text_is_printable(text: str) -> None:
+    """No control, format or undecodable character is left, and visible text is left alone."""
+    shown = printable(text)
+    assert shown.isprintable()
+    shown.encode()
+    if text.isprintable():
+        assert shown == text
+
+
+@pytest.mark.parametrize("width", [40, 60, 80, 120])
+@pytest.mark.parametrize("name", ["reference", "several-mistakes", "raw-xacro", "links-without-joints"])
+def test_no_line_is_wider_than_the_terminal(name: str, width: int) -> None:
+    """Text wraps and source lines are cut, in a report as in an inspection's problems."""
+    out = StringIO()
+    report = grade(RUBRIC, open_submission(str(ROOT / "submissions" / name), wanted=RUBRIC.urdf))
+    render_terminal(report, Console(file=out, width=width))
+    lines = out.getvalue().splitlines()
+    assert max(map(len, lines)) <= width
+    assert not any(line != line.rstrip() for line in lines)
+
+
+def test_the_score_comes_first() -> None:
+    """The first line says the points."""
+    report = grade(RUBRIC, open_submission(str(ROOT / "submissions/several-mistakes"), wanted=RUBRIC.urdf))
+    out = StringIO()
+    render_terminal(report, Console(file=out, width=80))
+    assert out.getvalue().startswith(f"{report.score} / 70 points")
+
+
+@pytest.mark.parametrize(
+    ("line", "column", "underlined"),
+    [
+        ('  <origin xyz="0 0 0" rpy="1 2 3"/>', 11, 'xyz="0 0 0"'),
+        ('  <origin xyz = "0 0 0"/>', 11, 'xyz = "0 0 0"'),
+        ("<a b='1\" 2' c='3'/>", 4, "b='1\" 2'"),
+        ('    <link name="a"/>', 5, '<link name="a"/>'),
+        ("\t\t<x>", 3, "<x>"),
+        ('<a b="unfinished', 4, 'b="unfinished'),
+    ],
+)
+def test_what_is_meant_is_underlined(line: str, column: int, underlined: str) -> None:
+    """The marks stand under the attribute or tag, from its first character to its last."""
+    out = StringIO()
+    show_excerpt(Console(file=out, width=80), Source("a.urdf", f"\n{line}\n"), Location("a.urdf", 2, column), 4)
+    text, marks = out.getvalue().splitlines()
+    start, end = marks.index("\u2500"), marks.rindex("\u2500") + 1
+    assert text[start:end] == underlined
+
+
+def test_a_very_long_line_is_cut_around_what_is_meant() -> None:
+    """What is underlined is in view, even far to the right."""
+    out = StringIO()
+    line = "<a>" * 500 + '<b c="d"/>'
+    show_excerpt(Console(file=out, width=60), Source("a.urdf", line), Location("a.urdf", 1, 1504), 4)
+    text, marks = out.getvalue().splitlines()
+    assert 'c="d"' in text
+    assert max(len(text), len(marks)) <= 60
+    start, end = marks.index("\u2500"), marks.rindex("\u2500") + 1
+    assert text[start:end] == 'c="d"'
+
+
+def test_a_tree_of_thousands_prints() -> None:
+    """A deep chain is drawn without recursion and without indenting out of sight."""
+    links = "".join(
+        f'<link name="l{i}"/><joint name="j{i}" type="fixed"><parent link="l{i - 1}"/><child link="l{i}"/></joint>'
+        for i in range(1, 3000)
+    )
+    text = printed(f'<robot name="r"><link name="l0"/>{links}</robot>'.encode())
+    assert "l2999" in text

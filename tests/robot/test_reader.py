@@ -1,0 +1,394 @@
+"""The reader never raises, says every problem with its exact place, and is done with any file in moderate time."""
+
+from collections.abc import Callable
+from itertools import pairwise
+
+import pytest
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from grader.errors import MissingElement
+from grader.robot.catalogue import CATALOGUE
+from grader.robot.kinematics import Configuration
+from grader.robot.reader import Reading, read_urdf
+from tests.patience import processor_time
+from tests.robot.edge_cases.case import joint, links, robot
+from tests.robot.problem_samples import SAMPLES, Sample
+from tests.robot.soup import data
+
+_AT_THE_TOP = ("URDF003", "URDF005", "URDF008")  # kinds that are about the beginning of the file
+_EFFECTS = {"rejects": "rejected", "drops": "degraded", "loads": "clean"}
+
+
+def codes(read: Reading) -> list[str]:
+    """The codes of all problems."""
+    return [problem.code for problem in read.problems]
+
+
+def message(read: Reading, code: str) -> str:
+    """The message of the only problem of this code."""
+    (found,) = [problem.message for problem in read.problems if problem.code == code]
+    return found
+
+
+# --- Any bytes --------------------------------------------------------------------------------------------------------
+
+
+@settings(max_examples=1500, deadline=None)
+@given(raw=data | st.binary(max_size=100))
+@example(raw=b"")
+@example(raw=b"\xff")
+@example(raw=b"\xef\xbb\xbf")
+@example(raw=b"<robot name='\xff'><link name='\xff'/></robot>")
+@example(raw=b"<robot name='r'><link name='a'/><\xff \xfe='1' \xfe='2'/></robot>")
+def test_nothing_is_raised(raw: bytes) -> None:
+    """Any bytes give a verdict that fits the problems; each problem has a message to print and a place in the text."""
+    read = read_urdf(raw, "soup.urdf")
+    effects = {problem.kind.effect for problem in read.problems}
+    expected = next((verdict for effect, verdict in _EFFECTS.items() if effect in effects), "clean")
+    assert read.verdict == expected
+    assert read.robot is not None or read.verdict == "rejected"
+    rows = raw.decode("utf-8", "surrogateescape").split("\n")
+    for problem in read.problems:
+        at = problem.location
+        assert at.path == "soup.urdf"
+        assert 1 <= at.line <= len(rows)
+        assert 1 <= at.column <= len(rows[at.line - 1]) + 1
+        assert problem.message
+        assert problem.message.encode()
+    places = [(problem.location.line, problem.location.column) for problem in read.problems]
+    assert places == sorted(places)
+
+
+@settings(max_examples=400, deadline=None)
+@given(raw=data)
+def test_whatever_was_read_can_be_asked(raw: bytes) -> None:
+    """Every link of a robot that was read has a pose or a reason for having none."""
+    read = read_urdf(raw)
+    if read.robot is None:
+        return
+    configuration = Configuration(read.robot)
+    for link in read.robot.links:
+        try:
+            configuration.pose(link.name)
+        except MissingElement as missing:
+            assert str(missing)
+
+
+# --- Every kind of problem --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("sample", SAMPLES, ids=lambda sample: f"{sample.code}-{sample.name}")
+def test_a_problem_is_found_where_it_is(sample: Sample) -> None:
+    """Its line and column are those of the attribute or tag that is meant, and it brings no other problems with it."""
+    read = read_urdf(sample.data, "sample.urdf")
+    places = [(each.location.line, each.location.column) for each in read.problems if each.code == sample.code]
+    assert sample.place in places, [(each.code, each.message, each.location) for each in read.problems]
+    assert set(codes(read)) == {sample.code, *sample.also.split()}
+
+
+@pytest.mark.parametrize(
+    "sample",
+    [each for each in SAMPLES if each.code not in _AT_THE_TOP and "<?xml" not in each.marked[:6]],
+    ids=lambda sample: f"{sample.code}-{sample.name}",
+)
+def test_a_problem_stays_where_it_is_in_another_file(sample: Sample) -> None:
+    """Three lines of comment in front, with CR LF, move it by three lines and change nothing else."""
+    here = read_urdf(sample.data).problems
+    there = read_urdf(b"<!--\r\n\r\n-->\r\n" + sample.data.replace(b"\n", b"\r\n")).problems
+    assert [(each.code, each.location.line - 3, each.location.column) for each in there] == [
+        (each.code, each.location.line, each.location.column) for each in here
+    ]
+
+
+def test_every_kind_of_problem_has_a_sample() -> None:
+    """The catalogue holds no kind that no file brings about."""
+    assert {sample.code for sample in SAMPLES} == {kind.code for kind in CATALOGUE}
+
+
+def test_places_count_characters() -> None:
+    """A column is one more than the number of characters before it, tabs and letters beyond ASCII included."""
+    read = read_urdf("<robot name='r'>\n\t<!-- \u00fc\U0001f916 --><link name='a'/><link  name='a'/></robot>".encode())
+    (problem,) = read.problems
+    assert (problem.location.line, problem.location.column) == (2, 36)
+
+
+def test_the_attribute_that_is_meant_is_found_among_lookalikes() -> None:
+    """Not the one that ends in the same name, nor the text of another's value."""
+    read = read_urdf(
+        b"<robot name='r'><link my_name='name=' alt=\"name='b'\" name='a'/><link  x-name='a' name='a'/></robot>"
+    )
+    (problem,) = read.problems
+    assert problem.code == "URDF031"
+    assert problem.location.column == 82
+
+
+# --- What the messages say --------------------------------------------------------------------------------------------
+
+
+def test_all_roots_are_named() -> None:
+    """ROS 2 names two; we name them all."""
+    read = read_urdf(robot(links("a", "b", "c", "d", "e") + joint("a", "b")).encode())
+    text = message(read, "URDF080")
+    assert text.startswith("'c', 'd', 'e' are not joined to the robot: no joint has them as its child")
+    assert "roots are 'a', 'c', 'd', 'e'" in text
+
+
+def test_a_single_loose_link_is_named() -> None:
+    """The message is about the small part, not about the robot."""
+    read = read_urdf(robot(links("loose", "a", "b") + joint("a", "b")).encode())
+    assert message(read, "URDF080").startswith("'loose' is not joined to the robot: no joint has it as its child")
+
+
+@pytest.mark.parametrize(
+    ("ends", "code", "spelt"),
+    [
+        ("ab bc ca", "URDF081", "'a' -> 'b' -> 'c' -> 'a'"),
+        ("aa", "URDF081", "'a' -> 'a'"),
+        ("ab bc cd db", "URDF082", "'b' -> 'c' -> 'd' -> 'b'"),
+        ("ab bb", "URDF082", "'b' -> 'b'"),
+        ("xy ab ba", "URDF083", "'a' -> 'b' -> 'a'"),
+    ],
+)
+def test_loops_are_spelt_link_by_link(ends: str, code: str, spelt: str) -> None:
+    """Each link of the loop in order, back to the first, and the joints by name."""
+    names = dict.fromkeys(ends.replace(" ", ""))
+    pairs = ends.split()
+    read = read_urdf(robot(links(*names) + "".join(joint(pair[0], pair[1], f"j_{pair}") for pair in pairs)).encode())
+    text = message(read, code)
+    assert spelt in text
+    around = spelt.replace("'", "").split(" -> ")
+    for one, other in pairwise(around):
+        assert f"'j_{one}{other}'" in text
+
+
+def test_every_separate_loop_is_found() -> None:
+    """Two loops are two problems."""
+    pairs = ("ab", "ba", "cd", "de", "ec")
+    read = read_urdf(robot(links(*"xabcde") + "".join(joint(pair[0], pair[1], pair) for pair in pairs)).encode())
+    assert codes(read).count("URDF083") == 2
+
+
+def test_mimics_in_a_circle_are_spelt() -> None:
+    """The names of the joints that follow each other."""
+    followers = joint("a", "b", "one", body='<mimic joint="two"/>') + joint(
+        "a", "c", "two", body='<mimic joint="one"/>'
+    )
+    text = message(read_urdf(robot(links("a", "b", "c") + followers).encode()), "URDF076")
+    assert "'one' -> 'two' -> 'one'" in text
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "guess"),
+    [
+        (robot(links("base_link", "lidar") + joint("base_link", "lidr")), "URDF071", "did you mean 'lidar'?"),
+        (robot(links("base_link", "lidar") + joint("Base_Link", "lidar")), "URDF071", "did you mean 'base_link'?"),
+        (robot(links("a", "b") + joint("a", "b", kind="continous")), "URDF061", "did you mean 'continuous'?"),
+        (robot(links("a", "b") + joint("a", "b", kind="Fixed")), "URDF061", "write 'fixed'"),
+        (robot(links("a", "b") + joint("a", "b", kind=" fixed")), "URDF061", "write 'fixed'"),
+        (
+            robot('<link name="a"><visual><geometry><cilinder/></geometry></visual></link>'),
+            "URDF041",
+            "did you mean 'cylinder'?",
+        ),
+        (robot('<link name="a"><visul/></link>'), "URDF091", "did you mean <visual>?"),
+        (robot('<link nam="a"/>'), "URDF091", "did you mean 'name'?"),
+        (
+            robot(links("a", "b") + joint("a", "b", "first", body='<mimic joint="frist"/>')),
+            "URDF076",
+            "did you mean 'first'?",
+        ),
+        (
+            robot(
+                '<material name="gray"><color rgba="0 0 0 1"/></material>'
+                '<link name="a"><visual><geometry><sphere radius="1"/></geometry><material name="grey"/></visual></link>'
+            ),
+            "URDF051",
+            "did you mean 'gray'?",
+        ),
+    ],
+)
+def test_misspelt_names_are_guessed(text: str, code: str, guess: str) -> None:
+    """The message asks for the name that was likely meant."""
+    assert guess in message(read_urdf(text.encode()), code)
+
+
+def test_one_run_finds_all_problems() -> None:
+    """Unrelated mistakes are all reported, in file order."""
+    text = robot(
+        '<material name="m"><color rgba="255 0 0 1"/></material>\n'
+        '<link name="a"><visual/></link>\n'
+        '<link name="a"/>\n'
+        '<joint name="j" type="fixd"><parent link="a"/><child link="x"/><origin xyz="1,2,3"/></joint>'
+    )
+    assert codes(read_urdf(text.encode())) == ["URDF052", "URDF041", "URDF031", "URDF061", "URDF071", "URDF062"]
+
+
+def test_several_malformed_tags_are_found_in_one_run() -> None:
+    """A broken tag does not hide the next one."""
+    text = robot('\n<link name=a/>\n<link name="b", c="d"/>\n<parent="x"/>\n<link name="e"/>\n')
+    read = read_urdf(text.encode())
+    assert [(each.code, each.location.line) for each in read.problems] == [
+        ("URDF001", 2),
+        ("URDF001", 3),
+        ("URDF001", 4),
+    ]
+
+
+# --- Safety -----------------------------------------------------------------------------------------------------------
+
+_LINK = '<link name="a"/>'
+_MEGABYTE = 2**20
+
+
+def test_external_entities_stay_closed() -> None:
+    """No file is read: the entity stays as it is written, and the DOCTYPE is a problem."""
+    text = f'<!DOCTYPE r [<!ENTITY e SYSTEM "file:///etc/passwd">]><robot name="&e;">{_LINK}&e;</robot>'
+    read = read_urdf(text.encode())
+    assert "URDF010" in codes(read)
+    assert read.robot is not None
+    assert read.robot.name == "&e;"
+
+
+def test_entities_do_not_multiply() -> None:
+    """A billion laughs stay one."""
+    entities = '<!ENTITY l0 "lol">' + "".join(f'<!ENTITY l{n} "{f"&l{n - 1};" * 10}">' for n in range(1, 10))
+    text = f'<?xml version="1.0"?>\n<!DOCTYPE r [{entities}]>\n<robot name="&l9;">{_LINK}&l9;</robot>'
+    with processor_time(0.5):
+        read = read_urdf(text.encode())
+    assert "URDF010" in codes(read)
+    assert read.robot is None or len(read.robot.name) < 100
+
+
+def repeated(pattern: str, size: int) -> str:
+    """So many characters of a pattern; a % in it is replaced by a running number."""
+    if "%" not in pattern:
+        return pattern * (size // len(pattern))
+    count = size // (len(pattern) + 4)
+    return "".join(pattern.replace("%", str(index)) for index in range(count))
+
+
+def _filled(frame: str) -> Callable[[int], str]:
+    """A frame whose {pattern} is repeated until the file is full."""
+    head, _, rest = frame.partition("{")
+    pattern, _, tail = rest.partition("}")
+    return lambda size: head + repeated(pattern, size - len(head) - len(tail)) + tail
+
+
+_FRAMES = {
+    "nested": '<robot name="r">{<a>}',
+    "open-tags": "{<a }",
+    "less-than": "{<}",
+    "greater-than": "{>}",
+    "ampersands": "{&}",
+    "closing-tags": "{</a>}",
+    "comments-opened": "{<!--}",
+    "declarations": "{<?a?>}",
+    "doctypes": "{<!a>}" + f'<robot name="r">{_LINK}</robot>',
+    "cdata": '<robot name="r"><link name="a"/>{<![CDATA[]]>}</robot>',
+    "blank": "{ }",
+    "line-breaks": "{\n}" + f'<robot name="r">{_LINK}</robot>',
+    "byte-order-marks": "{\ufeff}",
+    "nul": "{\0}",
+    "declaration-of-spaces": '<?xml{ }version="1.0"?>' + f'<robot name="r">{_LINK}</robot>',
+    "ampersands-in-a-value": f'<robot name="{{&}}">{_LINK}</robot>',
+    "references-in-a-value": f'<robot name="{{&#}}">{_LINK}</robot>',
+    "hex-references-in-a-value": f'<robot name="{{&#x}}">{_LINK}</robot>',
+    "entities-in-a-value": f'<robot name="{{&amp;}}">{_LINK}</robot>',
+    "comments-in-a-value": f'<robot name="{{<!--}}$">{_LINK}</robot>',
+    "returns-in-a-value": f'<robot name="{{\r}}">{_LINK}</robot>',
+    "comments-behind-the-end": f'<robot name="r">{_LINK}</robot></x>{{<!--}}$',
+    "comments-with-a-dollar": f'<robot name="r">{_LINK}{{<!--$-->}}</robot>',
+    "dollars": f'<robot name="r">{_LINK}{{${{}}</robot>'.replace("{${}", "{$}"),
+    "attributes": f'<robot name="r"{{ a%=""}}>{_LINK}</robot>',
+    "attributes-like-name": f'<robot{{ nam%=""}}>{_LINK}</robot>',
+    "attributes-like-version": f'<robot name="r"{{ version%=""}}>{_LINK}</robot>',
+    "attributes-without-space": f'<robot name="r"{{a%=""}}>{_LINK}</robot>',
+    "attributes-of-an-inertia": '<robot name="r"><link name="a"><inertial><mass value="1"/><inertia{ ix%=""}/></inertial></link></robot>',
+    "namespaces": f'<robot name="r"{{ xmlns:a%="u"}}>{_LINK}</robot>',
+    "prefixed-tags": f'<robot name="r">{_LINK}{{<x:y/>}}</robot>',
+    "many-prefixes": f'<robot name="r">{_LINK}{{<x%:y/>}}</robot>',
+    "unknown-tags": f'<robot name="r">{_LINK}{{<q/>}}</robot>',
+    "misspelt-tags": f'<robot name="r">{_LINK}{{<lnk/>}}</robot>',
+    "many-misspelt-tags": f'<robot name="r">{_LINK}{{<lin%/>}}</robot>',
+    "long-name": f'<robot name="r">{_LINK}<{{x}}/></robot>',
+    "digits": '<robot name="r"><link name="a"><visual><geometry><sphere radius="{1}x"/></geometry></visual></link></robot>',
+    "digits-in-a-vector": '<robot name="r"><link name="a"><visual><geometry><box size="{1}x"/></geometry></visual></link></robot>',
+    "numbers-in-a-vector": '<robot name="r"><link name="a"><visual><geometry><box size="{1 }"/></geometry></visual></link></robot>',
+    "spaces-in-a-vector": '<robot name="r"><link name="a"><visual><geometry><box size="1{ }x"/></geometry></visual></link></robot>',
+    "percents": '<robot name="r"><link name="a"><visual><origin xyz="{%%}"/></visual></link></robot>'.replace(
+        "%%", "\x25"
+    ),
+    "version": f'<robot name="r" version="{{1.}}">{_LINK}</robot>',
+    "links": '<robot name="r">{<link name="l%"/>}</robot>',
+    "links-of-one-name": '<robot name="r">{<link name="a"/>}</robot>',
+    "bad-visuals": '<robot name="r"><link name="a">{<visual/>}</link></robot>',
+    "origins": '<robot name="r"><link name="a"><visual>{<origin/>}</visual></link></robot>',
+    "shapes": '<robot name="r"><link name="a"><visual><geometry>{<sphere radius="1"/>}</geometry></visual></link></robot>',
+    "undefined-materials": '<robot name="r"><link name="a">{<visual><geometry><sphere radius="1"/></geometry><material name="m%"/></visual>}</link></robot>',
+    "materials": f'<robot name="r">{_LINK}{{<material name="m%"/>}}</robot>',
+    "joints-of-unknown-types": f'<robot name="r">{links("a", "b")}{{<joint name="j%" type="fixd"><parent link="a"/><child link="b"/></joint>}}</robot>',
+    "joints-of-unknown-links": f'<robot name="r">{_LINK}{{<link name="l%"/><joint name="j%" type="fixed"><parent link="k%"/><child link="lnk"/></joint>}}</robot>',
+    "mimics-of-unknown-joints": f'<robot name="r">{links("a", "b")}{{<joint name="j%" type="fixed"><parent link="a"/><child link="b"/><mimic joint="k%"/></joint>}}</robot>',
+    "mimics-of-themselves": f'<robot name="r">{links("a", "b")}{{<joint name="j%" type="fixed"><parent link="a"/><child link="b"/><mimic joint="j%"/></joint>}}</robot>',
+    "self-joints": '<robot name="r">{<link name="l%"/><joint name="j%" type="fixed"><parent link="l%"/><child link="l%"/></joint>}</robot>',
+}
+
+
+@pytest.mark.parametrize("frame", _FRAMES.values(), ids=_FRAMES)
+def test_a_megabyte_is_read_in_two_seconds(frame: str) -> None:
+    """Whatever a megabyte is full of, it is read in linear time."""
+    raw = _filled(frame)(_MEGABYTE).encode()
+    with processor_time(2.0):
+        read_urdf(raw)
+
+
+def test_deep_nesting() -> None:
+    """A hundred thousand levels are refused at the 499th, without recursion."""
+    text = f'<robot name="r">{"<a>" * 100_000}{"</a>" * 100_000}</robot>'
+    with processor_time(2.0):
+        assert codes(read_urdf(text.encode())) == ["URDF007"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        robot(f'<link name="{"x" * 30_000}">{"<visual/>" * 3000}</link>'),
+        robot(f'<link name="{"x" * 30_000}"/>' + joint("a", "b") * 300),
+        robot(
+            links(*(f"{index}{'x' * 3000}" for index in range(12)))
+            + "".join(joint("p", "q", f"j{n}") for n in range(300))
+        ),
+        robot(f'<link name="a"/><material name="m"><color rgba="{"1" * 60_000}x"/></material>'),
+        robot(f'<link name="a"><visual><origin xyz="{"1" * 60_000}x"/></visual></link>'),
+        robot(links("a", "b") + "".join(joint("a", "b", f"j{n}") for n in range(600))),
+        robot(links("a", "b") + joint("a", "b", "x" * 50_000, kind="y" * 10_000)),
+        robot(links("a") + f'<{"x" * 60_000} {"y" * 3000}="1"/>'),
+        f"<{'x' * 60_000}/>",
+        f"<robot {'x' * 60_000}/>",
+        f'<robot name="r"><{"x" * 30_000}></{"y" * 30_000}></robot>',
+        robot("<lnk/>" * 10_000),
+        "<!a>" * 10_000 + robot(links("a")),
+    ],
+    ids=[
+        "bad-visuals-of-a-long-name",
+        "unknown-links-among-long-names",
+        "long-names-to-choose-from",
+        "long-colour",
+        "long-origin",
+        "many-parents",
+        "long-joint",
+        "long-tag",
+        "long-root",
+        "long-attribute",
+        "long-pair",
+        "misspelt-tags",
+        "doctypes",
+    ],
+)
+def test_what_is_said_is_not_much_longer_than_the_file(text: str) -> None:
+    """Names and values are cut in messages, and problems without end are not listed one by one."""
+    read = read_urdf(text.encode())
+    assert all(len(problem.message) < 5000 for problem in read.problems)
+    assert len(read.problems) <= 1100
+    assert sum(len(problem.message) for problem in read.problems) < 2_000_000

@@ -1,0 +1,70 @@
+"""The documentation keeps up with the code, and its commands and links are real."""
+
+import re
+import runpy
+from pathlib import Path
+
+import pytest
+
+from grader import __version__
+
+ROOT = Path(__file__).parent.parent
+PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
+MADE = runpy.run_path(str(ROOT / "docs" / "make.py"))["pages"]()
+
+
+@pytest.mark.parametrize("name", MADE)
+def test_a_made_page_is_current(name: str) -> None:
+    """What docs/make.py would write is what is there."""
+    assert (ROOT / "docs" / name).read_text(encoding="utf-8") == MADE[name], "run python docs/make.py"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_links_lead_somewhere(page: Path) -> None:
+    """Every relative link of a page is a file of the project."""
+    for target in re.findall(r"\]\(([^)#]+)", page.read_text(encoding="utf-8")):
+        if not target.startswith("http"):
+            assert (page.parent / target).exists(), f"{page.name}: {target}"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_codes_and_criteria_exist(page: Path) -> None:
+    """A code that a page names is in the catalogue."""
+    codes = set(re.findall(r"URDF\d{3}", page.read_text(encoding="utf-8")))
+    assert all(f"## {code}" in MADE["problems.md"] for code in codes)
+
+
+def test_the_lab_page_names_every_criterion() -> None:
+    """Each criterion of the rubric has its row, those of the two wheels share one."""
+    from grader.grading.rubric import load_rubric
+
+    text = (ROOT / "docs" / "lab6.md").read_text(encoding="utf-8")
+    for criterion in load_rubric("lab6").criteria:
+        name = re.sub(r"^(left|right)(?=-wheel)", "…", criterion.id)
+        assert f"| `{name}`" in text, criterion.id
+
+
+def test_every_dependency_has_its_reason() -> None:
+    """Each package of pyproject.toml has a line in the decisions."""
+    import tomllib
+
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    decisions = (ROOT / "docs" / "decisions.md").read_text(encoding="utf-8")
+    extras = [each for group in project["optional-dependencies"].values() for each in group]
+    for requirement in [*project["dependencies"], *extras]:
+        name = re.split(r"[<>=\[ ]", requirement)[0].removesuffix("-stubs")
+        assert name in decisions, name
+
+
+def test_the_readme_has_two_commands_first() -> None:
+    """The first code blocks are the command that grades a sample and the one that runs the tests."""
+    blocks = re.findall(r"```sh\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.DOTALL)
+    assert [block.count("\n") for block in blocks[:2]] == [1, 1]
+    assert "grader grade submissions/" in blocks[0]
+    assert "-m pytest" in blocks[1]
+
+
+def test_the_changelog_knows_the_version() -> None:
+    """The version is in the changelog, or what is new since stands under Unreleased."""
+    text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert f"## [{__version__}]" in text or "## [Unreleased]" in text
