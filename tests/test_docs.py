@@ -52,7 +52,7 @@ def test_every_dependency_has_its_reason() -> None:
     decisions = (ROOT / "docs" / "decisions.md").read_text(encoding="utf-8")
     extras = [each for group in project["optional-dependencies"].values() for each in group]
     for requirement in [*project["dependencies"], *extras]:
-        name = re.split(r"[<>=\[ ]", requirement)[0].removesuffix("-stubs")
+        name = re.split(r"[<>=\[ ]", requirement)[0].removesuffix("-stubs").removeprefix("types-")
         assert name in decisions, name
 
 

@@ -266,6 +266,28 @@ def test_no_value_is_a_fault_of_ours(draw: st.DataObject) -> None:
     assert report.submission.urdf.verdict in ("clean", "degraded", "rejected")
 
 
+def mimicking(*rules: tuple[str, str]) -> bytes:
+    """The reference with mimics in its joints: path of the joint, attributes of the mimic."""
+    robot = etree.fromstring(etree.tostring(REFERENCE))
+    for path, attributes in rules:
+        for joint in robot.findall(path):
+            joint.append(etree.fromstring(f"<mimic {attributes}/>"))
+    return etree.tostring(robot)
+
+
+@pytest.mark.parametrize("offset", ["0", "0.5", "-3"])
+def test_a_wheel_that_follows_the_other_rolls_like_it(offset: str) -> None:
+    """A small positive turn starts from where the joint is, which a mimic's offset may have moved."""
+    assert lost(graded(mimicking((RIGHT, f"joint='base_left_wheel_joint' offset='{offset}'")))) == set()
+
+
+def test_mimics_that_overflow_are_no_fault_of_ours() -> None:
+    """A position beyond all numbers leaves the pose undefined, which is the file's fault."""
+    left = (LEFT, "joint='base_right_wheel_joint' multiplier='1e308'")
+    right = (RIGHT, "joint='base_caster_wheel_joint' offset='1e308'")
+    assert "left-wheel-placed" in lost(graded(mimicking(left, right)))
+
+
 @pytest.mark.parametrize("kind", ["planar", "floating"])
 def test_a_wheel_that_moves_otherwise_does_not_roll(kind: str) -> None:
     """A planar or floating joint is no wheel's joint, and has no small positive angle to turn by."""

@@ -33,7 +33,9 @@ def rolls_forward(
     ahead, upward = unit(forward) or forward, unit(up) or up
     T_base_wheel = robot.pose(link, relative_to=base)
     contact = _lowest_point(robot, link, base, upward)
-    T_base_turned = robot.moved(joint.name, _SMALL_ANGLE).pose(link, relative_to=base)
+    position = robot.position(joint)  # a joint that mimics another need not be at 0
+    assert isinstance(position, int | float)  # what turns has one number for a position
+    T_base_turned = robot.moved(joint.name, position + _SMALL_ANGLE).pose(link, relative_to=base)
     moved = minus(T_base_turned.apply(T_base_wheel.inverse().apply(contact)), contact)
     lifted = dot(moved, upward)
     slide = (moved[0] - lifted * upward[0], moved[1] - lifted * upward[1], moved[2] - lifted * upward[2])

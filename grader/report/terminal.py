@@ -49,7 +49,7 @@ def render_terminal(report: Report, console: Console) -> None:
 def _show_head(report: Report, console: Console) -> None:
     score = f"{points_words(report.score)} / {points_words(report.max_score)} points"
     style = "bold green" if report.score == report.max_score else "bold"
-    console.print(Text.assemble((score, style), "  ", (printable(report.rubric.title), "bold")))
+    wrapped(console, Text.assemble((score, style), "  ", (printable(report.rubric.title), "bold")), 0)
     urdf = report.submission.urdf
     counted = [
         f"{report.counts(status)} {status}" for status in ("passed", "failed", "skipped", "pending", "errored")
@@ -64,7 +64,7 @@ def _show_group(about: str, results: tuple[Result, ...], urdf: Reading, console:
     earned = points_words(sum((result.points for result in results), Decimal(0)))
     most = points_words(sum((result.criterion.points for result in results), Decimal(0)))
     console.print()
-    console.print(Text.assemble((about, "bold"), (f"  {earned}/{most}", "dim")))
+    wrapped(console, Text.assemble((printable(about), "bold"), (f"  {earned}/{most}", "dim")), 0)
     for result in results:
         _show_result(result, urdf, console, shown)
 

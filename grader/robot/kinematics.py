@@ -102,16 +102,17 @@ class Configuration:
             return IDENTITY
         if ours.root != theirs.root:
             roots = " and ".join(sorted((ours.root, theirs.root)))
-            message = f"no chain of joints leads from {quoted(theirs.root if relative_to is None else relative_to)} to {quoted(link)}"
+            message = f"no chain of joints leads from {quoted(relative_to or theirs.root)} to {quoted(link)}"
             raise MissingElement("connection", roots, message=message, location=_spot(self.link(link)))
         if ours.island != theirs.island:
-            way = self.between(relative_to or ours.root, link)
-            raise _undefined(
-                next((each for each in way if _past(IDENTITY, each, self.position(each)) is None), way[-1])
-            )
+            deeper = max(ours, theirs, key=lambda each: each.depth)  # the way crosses into the deeper island
+            raise _undefined(self.holding[deeper.island])
         if relative_to is None or relative_to == ours.island:
             return ours.pose
-        return theirs.pose.inverse() @ ours.pose
+        pose = theirs.pose.inverse() @ ours.pose
+        if not isfinite(sum(pose.translation)):
+            raise _undefined(self.between(relative_to, link)[-1])
+        return pose
 
     def axis(self, joint: str) -> Vector:
         """The unit axis of a joint in its child link's frame; raises MissingElement where it has no direction."""
@@ -201,13 +202,13 @@ class Configuration:
                 raise self._lose(link, name, way)
             way[name] = holding[name]
             name = holding[name].parent
-        above = placed.get(name) or placed.setdefault(name, _Placed(name, name, IDENTITY))
+        above = placed.get(name) or placed.setdefault(name, _Placed(name, name, IDENTITY, 0))
         for joint in reversed(way.values()):
             pose = _past(above.pose, joint, self.position(joint))
             if pose is not None and isfinite(sum(pose.translation)):
-                above = _Placed(above.root, above.island, pose)
+                above = _Placed(above.root, above.island, pose, above.depth)
             else:
-                above = _Placed(above.root, joint.child, IDENTITY)
+                above = _Placed(above.root, joint.child, IDENTITY, above.depth + 1)
             placed[joint.child] = above
         return above
 
@@ -219,11 +220,14 @@ class Configuration:
 
 
 class _Placed(NamedTuple):
-    """Where a link is: the root of its tree, the link from which its pose is measured, and T_island_link."""
+    """Where a link is: the root of its tree, the link from which its pose is measured, T_island_link, and how many
+    islands are above its own.
+    """
 
     root: str
     island: str
     pose: Transform
+    depth: int
 
 
 def _past(T_root_parent: Transform, joint: Joint, position: Position) -> Transform | None:
@@ -239,6 +243,8 @@ def motion_of(joint: Joint, position: Position) -> Transform | None:
     """What a joint adds behind its origin; None where it is undefined, as it is for any position about a zero axis (KDL)."""
     if joint.type not in MOVING_TYPES:
         return IDENTITY
+    if isinstance(position, int | float) and not isfinite(position):
+        return None  # a mimic joint can run away
     if joint.type == "floating":
         return _floating(position)
     direction = unit(joint.axis) if joint.axis is not None else None
@@ -285,6 +291,9 @@ def _check_position(joint: Joint, position: Position) -> None:
     given = 1 if isinstance(position, int | float) else len(position)
     if wanted == 0:
         raise ValueError(f"joint {quoted(joint.name)} is {joint.type or 'without type'}: it has no position")
+    values = (position,) if isinstance(position, int | float) else position
+    if not all(map(isfinite, values)):
+        raise ValueError(f"joint {quoted(joint.name)} cannot be at {position}")
     if given != wanted or (wanted > 1 and isinstance(position, int | float)):
         raise ValueError(
             f"joint {quoted(joint.name)} is {joint.type}: its position has {wanted} number(s), not {given}"

@@ -95,8 +95,10 @@ def _why_not(text: str) -> str:
         return f"{shown} holds a comma: numbers are separated by spaces"
     if "$" in text:
         return f"{shown} is xacro, which ROS 2 does not evaluate in a .urdf file"
-    if _NUMBER.fullmatch(text.strip(" \t\n\v\f\r")) or any(c in text for c in "\t\n\v\f\r"):
+    if any(c in text for c in "\t\n\v\f\r"):
         return f"{shown} holds a tab or a line break: only plain spaces may separate numbers"
+    if _NUMBER.fullmatch(text.rstrip(" ")):
+        return f"{shown} has a space behind the number, where ROS 2 takes none"
     if any(c in text for c in "\u201c\u201d\u2018\u2019"):
         return f"{shown} holds a typographic quote, as word processors make them"
     if not text.isascii():

@@ -1,6 +1,7 @@
 """Read a URDF as ROS 2 (Jazzy) does, and say everything that is wrong with it."""
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
@@ -31,7 +32,7 @@ _PARSER = etree.XMLParser(
     remove_comments=True,
     remove_pis=True,
 )
-_XACRO = re.compile(r"<!--.*?-->|(<xacro:|\$\{|\$\()", re.DOTALL)
+_XACRO = re.compile(r"<xacro:|\$\{|\$\(")
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +78,7 @@ def _read_dialect(text: str, path: str) -> Reading:
     if not scan.xml:
         if not any(problem.kind.effect == "rejects" for problem in problems):
             message = "there is no <robot> at the top level of the file; ROS 2 loads nothing"
-            problems.append(Problem(catalogue.NO_ROBOT, message, source.at(0)))
+            problems.append(Problem(catalogue.NO_ROBOT, message, source.at(scan.first_tag)))
         return _judge(None, problems, source)
     root = etree.fromstring(scan.xml, _PARSER)
     notes = Notes(source, root)
@@ -163,20 +164,36 @@ def _check_root_inertia(robot: Robot, links: dict[str, Element], notes: Notes) -
 
 def _check_text(notes: Notes) -> None:
     text = notes.source.text
-    xacro = (
-        next(filter(lambda found: found[1], _XACRO.finditer(text)), None) if "$" in text or "xacro:" in text else None
-    )
-    if xacro:
-        message = "this is xacro, which ROS 2 does not evaluate in a .urdf: expand it first (ros2 run xacro xacro FILE)"
-        notes.problems.append(Problem(catalogue.RAW_XACRO, message, notes.source.at(xacro.start())))
-    opening = text.find("<!--")
-    while opening >= 0:
-        closing = text.find("-->", opening + 4)
-        comment = text[opening : closing if closing >= 0 else len(text)]
-        if ": " in comment or "\t" in comment:
+    at = notes.source.at
+    comments = list(_comments(text)) if "<!--" in text else []
+    if "$" in text or "xacro:" in text:
+        xacro = _outside(_XACRO, text, comments)
+        if xacro is not None:
+            message = "this is xacro, which ROS 2 does not evaluate in a .urdf: expand it (ros2 run xacro xacro FILE)"
+            notes.problems.append(Problem(catalogue.RAW_XACRO, message, at(xacro)))
+    for start, end in comments:
+        if text.find(": ", start, end) >= 0 or text.find("\t", start, end) >= 0:
             message = (
                 "a comment with a colon and a space, or a tab, can stop a launch file that passes the URDF as YAML"
             )
-            notes.problems.append(Problem(catalogue.COMMENT_TRAP, message, notes.source.at(opening)))
+            notes.problems.append(Problem(catalogue.COMMENT_TRAP, message, at(start)))
             break
-        opening = text.find("<!--", closing) if closing >= 0 else -1
+
+
+def _comments(text: str) -> Iterator[tuple[int, int]]:
+    """Where each comment begins and ends."""
+    start = text.find("<!--")
+    while start >= 0 and (end := text.find("-->", start + 4)) >= 0:
+        yield start, end
+        start = text.find("<!--", end)
+
+
+def _outside(pattern: re.Pattern[str], text: str, comments: list[tuple[int, int]]) -> int | None:
+    """Where a pattern is first found outside comments."""
+    position = 0
+    for start, end in [*comments, (len(text), len(text))]:
+        found = pattern.search(text, position, start)
+        if found:
+            return found.start()
+        position = end
+    return None

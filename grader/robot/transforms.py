@@ -5,7 +5,7 @@ gives the homogeneous matrix.
 """
 
 from dataclasses import dataclass
-from math import atan2, cos, hypot, sin
+from math import atan2, cos, hypot, inf, sin
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -140,11 +140,11 @@ def rotation_about(axis: Vector, angle: float) -> Rotation:
 def unit(vector: Vector) -> Vector | None:
     """The direction of a vector, or None where it has none. Safe from overflow and underflow."""
     largest = max(abs(vector[0]), abs(vector[1]), abs(vector[2]))
-    if largest == 0.0 or largest == float("inf") or largest != largest:
+    if not 0.0 < largest < inf:
         return None
     x, y, z = vector[0] / largest, vector[1] / largest, vector[2] / largest
     norm = hypot(x, y, z)
-    return (x / norm, y / norm, z / norm)
+    return (x / norm, y / norm, z / norm) if norm > 0.0 else None  # NaN is not above 0
 
 
 def dot(a: Vector, b: Vector) -> float:

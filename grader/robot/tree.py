@@ -10,6 +10,7 @@ from grader.robot.notes import Element, Notes
 _REJECTED = "ROS 2 loads nothing of the file"
 _MOST_PATHS = 10_000_000
 _MOST_CYCLES = 10
+_MOST_NAMED = 20
 
 Edges = dict[str, list[Joint]]
 
@@ -101,7 +102,7 @@ def _check_two_parents(edges: Edges, held: dict[str, Joint], joints: dict[str, E
         claims.setdefault(joint.child, []).append(joint)
     for child, rivals in claims.items():
         if len(rivals) > 1:
-            names = " and ".join(quoted(joint.name) for joint in rivals)
+            names = " and ".join(quoted(joint.name) for joint in rivals[:_MOST_NAMED])
             message = f"link {quoted(child)} is the child of {names}; in ROS 2 {quoted(held[child].name)} holds it (last in name order)"
             notes.add(catalogue.TWO_PARENTS, message, joints[rivals[1].name])
 

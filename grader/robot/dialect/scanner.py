@@ -13,6 +13,7 @@ _PLAIN_NAME = re.compile(r"(?!(?i:xml))[A-Za-z_][A-Za-z0-9_.\-]*")
 _DECLARATION = re.compile(
     r"""xml\s+version\s*=\s*["']1\.[0-9]+["'](\s+encoding\s*=\s*["'](?i:utf-8|us-ascii)["'])?[^<>]*"""
 )
+_NAMESPACE = re.compile(r"xmlns:([^\s=]+)")
 _MAX_DEPTH = 500  # TINYXML2_MAX_ELEMENT_DEPTH; the document itself is the first level
 _KEPT_DEPTH = 32  # urdfdom never looks deeper than robot/link/visual/geometry/box
 _MOST_ERRORS = 20
@@ -34,6 +35,7 @@ class Scan:
 
     xml: bytes = b""
     offsets: list[int] = field(default_factory=list)
+    first_tag: int = 0
     findings: list[Finding] = field(default_factory=list)
 
 
@@ -48,6 +50,7 @@ class Scanner:
             tuple[Tag, str]
         ] = []  # the open tags, each with the name under which it was written, if it was
         self._top_level: list[Tag] = []
+        self._declared: set[str] | None = None  # the prefixes of the file, once one is met
         self._noted: set[str] = set()
         self._errors = 0
         self._only_declarations = True
@@ -158,7 +161,8 @@ class Scanner:
 
     def _unknown(self, position: int) -> int | None:
         end = self._delimited(position, "<!", ">", "<!")
-        if end is not None:
+        if end is not None and "doctype" not in self._noted:
+            self._noted.add("doctype")
             message = "ROS 2 skips a DOCTYPE and leaves the entities that it defines as they stand"
             self._find(catalogue.DOCTYPE, message, position)
         return end
@@ -172,6 +176,9 @@ class Scanner:
         return end + len(closing)
 
     def _open(self, tag: Tag, end: int) -> int | None:
+        prefix, colon, _ = tag.name.partition(":")
+        if colon and "prefix" not in self._noted and prefix not in self._prefixes():
+            self._differ("prefix", f"the prefix of <{short(tag.name)}> is not declared with xmlns", tag.offset)
         written = self._write(tag)
         if tag.form == "open":
             self._stack.append((tag, written))
@@ -196,12 +203,18 @@ class Scanner:
             self._refuse(catalogue.MISMATCHED_TAG, message, tag.offset)
         return end
 
+    def _prefixes(self) -> set[str]:
+        if self._declared is None:
+            self._declared = set(_NAMESPACE.findall(self._text))
+        return self._declared
+
     def _write(self, tag: Tag) -> str:
         """Write a tag of the first top-level <robot> as XML; its name there, or nothing for what is left out."""
         if self._stack:
             wanted = self._stack[-1][1] != "" and len(self._stack) < _KEPT_DEPTH
         else:
             wanted = tag.name == "robot" and not self._out
+            self._scanned.first_tag = self._scanned.first_tag if self._top_level else tag.offset
             self._top_level.append(tag)
         if not wanted:
             return ""

@@ -56,9 +56,6 @@ def read_tag(text: str, start: int, note: Note) -> tuple[Tag, int]:
         form, position = "empty", position + 1
     if closing and (attributes or form == "empty"):
         note("closing", "a closing tag with more than its name", start)
-    prefix, colon, _ = name.partition(":")
-    if colon and f"xmlns:{prefix}" not in text:
-        note("prefix", f"the prefix of <{short(name)}> is not declared with xmlns", start)
     return Tag(name, form, attributes, start), position + 1
 
 
@@ -71,8 +68,9 @@ def behind(text: str, position: int) -> int:
 
 
 def short(text: str) -> str:
-    """A name for a message, cut where it is very long."""
-    return text if len(text) <= 40 else text[:37] + "..."
+    """A name for a message, cut where it is very long; bytes that are no UTF-8 are spelt out."""
+    cut = text if len(text) <= 40 else text[:37] + "..."
+    return cut.encode("utf-8", "backslashreplace").decode()
 
 
 def _read_attributes(text: str, start: int, position: int, tag: str, note: Note) -> tuple[dict[str, str], int]:
@@ -82,20 +80,29 @@ def _read_attributes(text: str, start: int, position: int, tag: str, note: Note)
         at = skip_blank(text, position)
         if text.startswith((">", "/>"), at):
             return attributes, at
-        found = _NAME.match(text, at)
-        if found is None:
-            raise _misfit(text, start, at, tag, attributes)
-        if at == position and attributes:
+        try:
+            end = _read_attribute(text, start, at, tag, attributes, note)
+        except MalformedTagError as error:
+            raise _unclosed_quote(text, start, tag, attributes) or error from None
+        if at == position and len(attributes) > 1:
             note("attributes", "no space between two attributes", at)
-        value, position = _read_value(text, found, tag, note)
-        if found[0] in attributes:
-            message = f"the attribute {short(found[0])!r} is given twice in <{short(tag)}>"
-            raise MalformedTagError(message, at, behind(text, position))
-        attributes[found[0]] = value
+        position = end
 
 
-def _read_value(text: str, name: re.Match[str], tag: str, note: Note) -> tuple[str, int]:
-    """The value that follows an attribute's name, and the offset behind it."""
+def _unclosed_quote(text: str, start: int, tag: str, attributes: dict[str, str]) -> MalformedTagError | None:
+    """The likelier reason for an error: a value that has swallowed the next tag, because its quote is not closed."""
+    swallowed = next((each for each, value in attributes.items() if "\n" in value and "<" in value), None)
+    if swallowed is None:
+        return None
+    message = f"the quote of {short(swallowed)!r} in <{short(tag)}> is not closed before the next tag"
+    return MalformedTagError(message, start, max(text.find("\n", start), start + 1))
+
+
+def _read_attribute(text: str, start: int, position: int, tag: str, attributes: dict[str, str], note: Note) -> int:
+    """Put the attribute that stands here to the others; the offset behind it."""
+    name = _NAME.match(text, position)
+    if name is None:
+        raise _misfit(text, start, position, tag)
     shown, offset = f"{short(name[0])!r} in <{short(tag)}>", name.start()
     at = skip_blank(text, name.end())
     if not text.startswith("=", at):
@@ -113,18 +120,18 @@ def _read_value(text: str, name: re.Match[str], tag: str, note: Note) -> tuple[s
         note("less", "< inside a value (it is written &lt;)", offset)
     if "&" in raw and REFERENCE.search(raw):
         note("reference", "a bare & or an unknown entity (& is written &amp;)", offset)
-    return decode(raw), end + 1
+    if name[0] in attributes:
+        message = f"the attribute {short(name[0])!r} is given twice in <{short(tag)}>"
+        raise MalformedTagError(message, offset, behind(text, end + 1))
+    attributes[name[0]] = decode(raw)
+    return end + 1
 
 
-def _misfit(text: str, start: int, at: int, name: str, attributes: dict[str, str]) -> MalformedTagError:
+def _misfit(text: str, start: int, at: int, name: str) -> MalformedTagError:
     """The error for what stands where an attribute should: said of the likely culprit."""
     shown = short(name)
     if at == len(text):
         return MalformedTagError(f"the file ends inside the tag <{shown}>", start, at)
-    swallowed = next((each for each, value in attributes.items() if "\n" in value and "<" in value), None)
-    if swallowed:
-        message = f"the quote of {short(swallowed)!r} in <{shown}> is not closed before the next tag"
-        return MalformedTagError(message, start, max(text.find("\n", start), start + 1))
     match text[at]:
         case "=":
             message = f'<{shown}= has no attribute name; it is written <{shown} {_MEANT.get(name, "name")}="...">'

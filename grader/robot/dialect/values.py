@@ -3,7 +3,7 @@
 import re
 
 _ENTITIES = {b"quot;": b'"', b"amp;": b"&", b"apos;": b"'", b"lt;": b"<", b"gt;": b">"}
-_CHARACTER = re.compile(rb"#(?:x(?:[^;]*x)?([0-9a-fA-F]*)|(?!x)(?:[^;]*#)?([0-9]*));")
+_DECIMAL, _HEXADECIMAL = b"0123456789", b"0123456789abcdefABCDEF"
 _AMPERSAND = ord("&")
 _FIRST_SURROGATE, _LAST_SURROGATE, _LAST_CODE_POINT, _FIVE_BYTES = 0xD800, 0xDFFF, 0x10FFFF, 0x200000
 _ESCAPES = str.maketrans(
@@ -21,6 +21,7 @@ def decode(raw: str) -> str:
     if "&" not in raw:
         return raw
     source = raw.encode("utf-8", "surrogateescape")
+    references = _References(source)
     target = bytearray(source)  # TinyXML2 decodes in place: what it passes over without writing stays as it was
     read = write = 0
     while read < len(source):
@@ -28,36 +29,59 @@ def decode(raw: str) -> str:
             target[write] = source[read]
             read, write = read + 1, write + 1
             continue
-        piece, width = _reference(source, read)
+        piece, width = references.at(read)
         if piece is not None:
             target[write : write + len(piece)] = piece
         read, write = read + width, write + (1 if piece is None else len(piece))
     return bytes(target[:write]).split(b"\0")[0].decode("utf-8", "surrogateescape")
 
 
-def _reference(source: bytes, at: int) -> tuple[bytes | None, int]:
-    """What an & stands for (None: it is passed over), and how many bytes it takes (`XMLUtil::GetCharacterRef`)."""
-    for name, value in _ENTITIES.items():
-        if source.startswith(name, at + 1):
-            return value, len(name) + 1
-    if not source.startswith(b"#", at + 1):
-        return None, 1
-    if len(source) == at + 2:
-        return b"", 1
-    found = _CHARACTER.match(source, at + 1)
-    if found is None:
-        return b"&", 1
-    code = _code_point(found[2] if found[1] is None else found[1], 10 if found[1] is None else 16)
-    return _encoded(code), len(found[0]) + 1
+class _References:
+    """What each & of a value stands for (`XMLUtil::GetCharacterRef`), asked from left to right.
 
+    A reference by number reaches to the next semicolon, and its digits are read backwards from there.
+    """
 
-def _code_point(digits: bytes, radix: int) -> int:
-    # TinyXML2 10 multiplies in 32 bits and adds in 64, so that very long numbers come out as others.
-    code, factor = 0, 1
-    for digit in reversed(digits):
-        code += factor * int(chr(digit), radix) % 2**32
-        factor = factor * radix % 2**32
-    return code
+    def __init__(self, source: bytes) -> None:
+        self._source = source
+        self._semicolon = -1
+        self._hexadecimal: tuple[int, int] | None = None  # where the digits before the semicolon begin, and their value
+        self._decimal: tuple[int, int] | None = None
+
+    def at(self, offset: int) -> tuple[bytes | None, int]:
+        """What the & at this offset stands for (None: it is passed over), and how many bytes it takes."""
+        source = self._source
+        for name, value in _ENTITIES.items():
+            if source.startswith(name, offset + 1):
+                return value, len(name) + 1
+        if not source.startswith(b"#", offset + 1):
+            return None, 1
+        if len(source) == offset + 2:
+            return b"", 1
+        if self._semicolon < offset:
+            found = source.find(b";", offset)
+            self._semicolon = found if found >= 0 else len(source)
+            self._hexadecimal = self._decimal = None
+        if self._semicolon == len(source):
+            return b"&", 1
+        if source.startswith(b"x", offset + 2):
+            self._hexadecimal = self._hexadecimal or self._number(_HEXADECIMAL, 16)
+            first, code = self._hexadecimal
+            complete = first > offset + 2 and source[first - 1 : first] == b"x"
+        else:
+            self._decimal = self._decimal or self._number(_DECIMAL, 10)
+            first, code = self._decimal
+            complete = first > offset + 1 and source[first - 1 : first] == b"#"
+        return (_encoded(code), self._semicolon + 1 - offset) if complete else (b"&", 1)
+
+    def _number(self, digits: bytes, radix: int) -> tuple[int, int]:
+        # TinyXML2 10 multiplies in 32 bits and adds in 64, so that very long numbers come out as others.
+        first, code, factor = self._semicolon, 0, 1
+        while first > 0 and self._source[first - 1] in digits:
+            first -= 1
+            code += factor * int(chr(self._source[first]), radix) % 2**32
+            factor = factor * radix % 2**32
+        return first, code
 
 
 def _encoded(code: int) -> bytes:
