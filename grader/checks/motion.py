@@ -12,6 +12,9 @@ from grader.robot.transforms import Vector, cross, dot, minus, unit
 
 _SMALL_ANGLE = 1e-3  # rad; also metres for a sliding joint
 _STANDSTILL = 1e-9  # metres
+_ROLLING = (
+    0.7  # of the way that the lowest point of a level wheel makes against its highest: up to 45 degrees off level
+)
 _TURNING_TYPES = ("continuous", "revolute")
 
 
@@ -27,22 +30,24 @@ def rolls_forward(
     """Turning a wheel's joint by a small positive angle drives the base forward, if the wheel rolls without slip.
 
     The lowest point of the wheel must move opposite to `forward`, a direction in the base's frame, within `tolerance`
-    degrees in the ground plane across `up`.
+    degrees in the ground plane across `up`; and it must move so against the wheel's highest point, as it does where a
+    wheel rolls and does not where it swivels.
     """
     joint = _turning_joint(robot, link, base)
     ahead, upward = unit(forward) or forward, unit(up) or up
-    T_base_wheel = robot.pose(link, relative_to=base)
-    contact = _lowest_point(robot, link, base, upward)
+    low, high = _lowest_and_highest(robot, link, base, upward)
     position = robot.position(joint)  # a joint that mimics another need not be at 0
     assert isinstance(position, int | float)  # what turns has one number for a position
-    T_base_turned = robot.moved(joint.name, position + _SMALL_ANGLE).pose(link, relative_to=base)
-    moved = minus(T_base_turned.apply(T_base_wheel.inverse().apply(contact)), contact)
-    lifted = dot(moved, upward)
-    slide = (moved[0] - lifted * upward[0], moved[1] - lifted * upward[1], moved[2] - lifted * upward[2])
-    travel = unit((-slide[0], -slide[1], -slide[2])) if max(map(abs, slide)) > _STANDSTILL else None
+    turned = robot.moved(joint.name, position + _SMALL_ANGLE).pose(link, relative_to=base)
+    displaced = turned @ robot.pose(link, relative_to=base).inverse()
+    moved_low = _flat(minus(displaced.apply(low), low), upward)
+    moved_high = _flat(minus(displaced.apply(high), high), upward)
+    rolled = hypot(*minus(moved_low, moved_high))
     at = place(joint.axis_mark, "xyz") or place(joint.mark)
-    if travel is None:
-        message = f"turning joint {joint.name!r} does not roll {link!r}: its lowest point stays where it is"
+    travel = unit((-moved_low[0], -moved_low[1], -moved_low[2])) if hypot(*moved_low) > _STANDSTILL else None
+    if travel is None or rolled < _ROLLING * _SMALL_ANGLE * dot(minus(high, low), upward):
+        how = "its lowest point stays where it is" if travel is None else "it swivels about an upright axis"
+        message = f"turning joint {joint.name!r} does not roll {link!r}: {how}"
         return judged(False, message, actual=None, expected=ahead, tolerance=tolerance, unit="deg", at=at)
     off = _angle(travel, ahead)
     message = f"a small positive turn of joint {joint.name!r} {_heading(off, travel, base)}"
@@ -104,11 +109,21 @@ def _turning_joint(robot: Configuration, link: str, base: str) -> Joint:
     return moving[-1]
 
 
-def _lowest_point(robot: Configuration, link: str, base: str, up: Vector) -> Vector:
-    down = (-up[0], -up[1], -up[2])
+def _lowest_and_highest(robot: Configuration, link: str, base: str, up: Vector) -> tuple[Vector, Vector]:
+    """The lowest and the highest point of what a link shows, in the base's frame; of a face or edge its middle."""
     poses = [(visual.geometry, pose_of(robot, link, visual, base)) for visual in visuals(robot, link)]
-    geometry, pose = poses[0] if len(poses) == 1 else min(poses, key=lambda each: extent(each[0], each[1], up)[0])
-    return farthest(geometry, pose, down)
+    down = (-up[0], -up[1], -up[2])
+    lowest = highest = poses[0]
+    if len(poses) > 1:
+        lowest = min(poses, key=lambda each: extent(each[0], each[1], up)[0])
+        highest = max(poses, key=lambda each: extent(each[0], each[1], up)[1])
+    return farthest(*lowest, down), farthest(*highest, up)
+
+
+def _flat(vector: Vector, up: Vector) -> Vector:
+    """What is left of a vector in the plane across a unit direction."""
+    lifted = dot(vector, up)
+    return (vector[0] - lifted * up[0], vector[1] - lifted * up[1], vector[2] - lifted * up[2])
 
 
 def _heading(off: float, travel: Vector, base: str) -> str:
