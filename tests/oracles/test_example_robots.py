@@ -28,7 +28,7 @@ def test_every_link_of_a_robot_that_loads_has_a_pose(path: Path) -> None:
     """One root, and a pose in its frame for each link."""
     read = read_urdf(path.read_bytes(), path.name)
     if read.verdict == "rejected":
-        pytest.skip("ROS 2 rejects this file")
+        return
     assert read.robot is not None
     configuration = Configuration(read.robot)
     assert len(configuration.roots) == 1

@@ -206,7 +206,7 @@ def test_both_ways_to_read_give_the_same_robot(text: str) -> None:
     ],
 )
 def test_what_the_two_read_apart_is_not_plain(text: str) -> None:
-    """Values with line breaks, CDATA, DOCTYPE, namespaces and declarations are for the translation, or mean the same."""
+    """Values with line breaks, CDATA, DOCTYPE, namespaces and odd declarations are not plain, or mean the same."""
     assert_same_if_plain(text)
 
 

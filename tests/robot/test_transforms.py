@@ -165,7 +165,7 @@ def test_directions_follow_without_translation(pose: Transform, direction: Vecto
 
 @given(axis=directions, angle=angles)
 def test_a_turn_about_an_axis(axis: Vector, angle: float) -> None:
-    """It is orthonormal, keeps its axis, turns what is across it by the angle, right-handed, and is undone backwards."""
+    """It is orthonormal, keeps its axis, turns what is across it by the angle, right-handed, and can be undone."""
     rotation = rotation_about(axis, angle)
     turned = square(rotation)
     assert np.allclose(turned.T @ turned, np.eye(3), rtol=0, atol=1e-13)
