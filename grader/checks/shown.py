@@ -2,8 +2,9 @@
 
 from grader.checks.outcome import place
 from grader.errors import MissingElement
-from grader.robot.kinematics import Configuration, behind
+from grader.robot.kinematics import Configuration
 from grader.robot.model import Geometry, Mesh, Visual
+from grader.robot.motion import behind
 from grader.robot.shapes import extent, is_empty, volume
 from grader.robot.transforms import Transform, Vector
 

@@ -10,7 +10,8 @@ from grader.cli.output import complain, draw, emit
 from grader.errors import GraderError, MissingElement
 
 if TYPE_CHECKING:
-    from grader.robot.kinematics import Configuration, Position
+    from grader.robot.kinematics import Configuration
+    from grader.robot.motion import Position
     from grader.robot.reader import Reading
 
 _MEBIBYTE = 1024 * 1024

@@ -8,31 +8,12 @@ from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
-from grader.checks.registry import Check, check_names, find_check
+from grader.checks.registry import Check
 from grader.errors import InputError, RubricError
-from grader.grading.arguments import bind
-from grader.grading.toml_lines import Path as KeyPath
+from grader.grading.rows import Rows
 from grader.grading.toml_lines import key_lines, line_of
-from grader.robot.names import closest, did_you_mean
+from grader.robot.names import did_you_mean
 from grader.submission.files import printable_path, read_capped
-
-_TEXT, _NUMBER, _TEXTS, _TABLE = "a text", "a number", "a list of texts", "a table"
-_RUBRIC = {"id": _TEXT, "title": _TEXT, "reference": _TEXT, "urdf": _TEXT, "points": _NUMBER}
-_PART = {"id": _TEXT, "title": _TEXT, "needs": _TEXT, "points": _NUMBER}
-_CRITERION = {
-    "id": _TEXT,
-    "part": _TEXT,
-    "about": _TEXT,
-    "title": _TEXT,
-    "points": _NUMBER,
-    "check": _TEXT,
-    "with": _TABLE,
-    "requires": _TEXTS,
-    "feedback": _TEXT,
-}
-_MOST_POINTS = 1_000_000
-_NEEDS = ("urdf",)
-_OPTIONAL = {"reference", "urdf", "needs", "about", "with", "requires", "feedback"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,174 +102,32 @@ def load_rubric(name: str) -> Rubric:
         raise RubricError((f"{shown}: this is not UTF-8 text",)) from None
     except (ValueError, RecursionError, ArithmeticError) as error:
         raise RubricError((f"{shown}: not readable as TOML: {error}",)) from None
-    loader = _Loader(table)
-    rubric = loader.load(path, hashlib.sha256(data).hexdigest())
-    if rubric is None:
+    rows = Rows(table)
+    if rows.complaints:
         lines = key_lines(text)
-        found = sorted((line_of(lines, where), order, what) for order, (where, what) in enumerate(loader.complaints))
+        found = sorted((line_of(lines, where), order, what) for order, (where, what) in enumerate(rows.complaints))
         raise RubricError(tuple(f"{shown}:{line}: {what}" for line, _, what in found))
-    return rubric
+    return Rubric(
+        table["id"],
+        table["title"],
+        tuple(Part(row["id"], row["title"], row.get("needs", "urdf")) for row in table["part"]),
+        tuple(_criterion(row, *bound) for row, bound in zip(table["criterion"], rows.bound, strict=True)),
+        table.get("urdf", "robot.urdf"),
+        table.get("reference", ""),
+        hashlib.sha256(data).hexdigest(),
+        path,
+    )
 
 
-class _Loader:
-    """One pass over a parsed rubric that notes every mistake with the path of the key that it is in."""
-
-    def __init__(self, table: dict[str, Any]) -> None:
-        self.table = table
-        self.complaints: list[tuple[KeyPath, str]] = []
-
-    def load(self, path: Path, sha256: str) -> Rubric | None:
-        table = self.table
-        self._keys((), table, {**_RUBRIC, "part": "tables", "criterion": "tables"}, "rubric")
-        parts, rows = self._rows("part"), self._rows("criterion")
-        for index, row in enumerate(parts):
-            self._keys(("part", index), row, _PART, "part")
-            needs = row.get("needs", "urdf")
-            if needs not in _NEEDS and isinstance(needs, str):
-                self._complain(("part", index, "needs"), f"a part cannot need {needs!r}{did_you_mean(needs, _NEEDS)}")
-        self._unique("part", parts)
-        self._unique("criterion", rows)
-        part_ids = [row["id"] for row in parts if isinstance(row.get("id"), str)]
-        criteria = [self._criterion(index, row, part_ids, rows) for index, row in enumerate(rows)]
-        self._totals(parts, rows)
-        made = [each for each in criteria if each is not None]
-        if self.complaints:
-            return None
-        return Rubric(
-            table["id"],
-            table["title"],
-            tuple(Part(row["id"], row["title"], row.get("needs", "urdf")) for row in parts),
-            tuple(made),
-            table.get("urdf", "robot.urdf"),
-            table.get("reference", ""),
-            sha256,
-            path,
-        )
-
-    def _criterion(
-        self, index: int, row: dict[str, Any], parts: list[str], rows: list[dict[str, Any]]
-    ) -> Criterion | None:
-        where: KeyPath = ("criterion", index)
-        self._keys(where, row, _CRITERION, "criterion")
-        part = row.get("part")
-        if isinstance(part, str) and part not in parts:
-            self._complain((*where, "part"), f"there is no part {part!r}{did_you_mean(part, parts)}")
-        self._requires(index, row, rows)
-        name = row.get("check")
-        check = find_check(name) if isinstance(name, str) else None
-        if isinstance(name, str) and check is None:
-            self._complain((*where, "check"), f"there is no check {name!r}{did_you_mean(name, check_names())}")
-        given = row.get("with", {})
-        if check is None or not isinstance(given, dict):
-            return None
-        arguments, faults = bind(check, given)
-        for key, fault in faults:
-            self._complain((*where, "with", *key), fault)
-        if self.complaints:
-            return None
-        requires, feedback, about = tuple(row.get("requires", ())), row.get("feedback", ""), row.get("about", "")
-        points = Decimal(row["points"])
-        return Criterion(row["id"], row["title"], part or "", points, check, arguments, requires, feedback, about)
-
-    def _requires(self, index: int, row: dict[str, Any], rows: list[dict[str, Any]]) -> None:
-        required = row.get("requires", [])
-        if not isinstance(required, list):
-            return
-        above = [each.get("id") for each in rows[:index]]
-        every = [each["id"] for each in rows if isinstance(each.get("id"), str)]
-        for name in required:
-            if not isinstance(name, str) or name in above:
-                continue
-            if name == row.get("id"):
-                message = "requires itself"
-            elif name in every:
-                message = f"requires {name!r}, which stands below: a criterion can only require those above it"
-            else:
-                message = f"requires {name!r}, which does not exist{did_you_mean(name, every)}"
-            self._complain(("criterion", index, "requires"), message)
-
-    def _rows(self, key: str) -> list[dict[str, Any]]:
-        rows = self.table.get(key)
-        if isinstance(rows, list) and rows and all(isinstance(row, dict) for row in rows):
-            return rows
-        self._complain((key,), f"a rubric has at least one [[{key}]]")
-        return []
-
-    def _keys(self, where: KeyPath, row: dict[str, Any], known: Mapping[str, str], what: str) -> None:
-        for key, value in row.items():
-            if key not in known:
-                guess = closest(key, known)
-                hint = f"; did you mean {guess!r}?" if guess else f"; it has: {', '.join(known)}"
-                self._complain((*where, key), f"a {what} has no key {key!r}{hint}")
-            elif not _has_type(value, known[key]):
-                self._complain((*where, key), f"{key} must be {known[key]}, not {_type_name(value, known[key])}")
-            elif key == "points" and not (Decimal(value).is_finite() and value >= 0):
-                self._complain((*where, key), f"points must be a number of at least 0, not {value}")
-            elif key == "points" and value > _MOST_POINTS:
-                self._complain((*where, key), f"points must be a number of at most {_MOST_POINTS}")
-            elif key in ("id", "title") and not value.strip():
-                self._complain((*where, key), f"{key} must not be empty")
-        needed = [key for key in known if key not in _OPTIONAL and (key != "points" or what == "criterion")]
-        for key in needed:
-            if key not in row and known[key] != "tables":
-                self._complain(where, f"this {what} has no {key}")
-
-    def _unique(self, key: str, rows: list[dict[str, Any]]) -> None:
-        seen: set[str] = set()
-        for index, row in enumerate(rows):
-            name = row.get("id")
-            if isinstance(name, str) and name in seen:
-                self._complain((key, index, "id"), f"there is a {key} {name!r} already")
-            elif isinstance(name, str):
-                seen.add(name)
-
-    def _totals(self, parts: list[dict[str, Any]], rows: list[dict[str, Any]]) -> None:
-        """Compare declared totals with the sums, where all the points that they are made of can be read."""
-        points = [(row.get("part"), row.get("points")) for row in rows]
-        if not all(_is_countable(value) for _, value in points):
-            return
-        declared: list[tuple[KeyPath, Any, str, list[Any]]] = [
-            (("points",), self.table.get("points"), "the rubric", [value for _, value in points])
-        ]
-        for index, row in enumerate(parts):
-            own = [value for part, value in points if part == row.get("id")]
-            declared.append((("part", index, "points"), row.get("points"), f"part {row.get('id')!r}", own))
-        for where, total, what, values in declared:
-            actual = sum(map(Decimal, values), Decimal(0))
-            if _has_type(total, _NUMBER) and Decimal(total) != actual:
-                self._complain(where, f"{what} declares {total} points, but its criteria add up to {actual}")
-
-    def _complain(self, where: KeyPath, what: str) -> None:
-        self.complaints.append((where, what))
-
-
-def _is_countable(value: object) -> bool:
-    if not isinstance(value, int | Decimal) or isinstance(value, bool):
-        return False
-    return Decimal(value).is_finite() and value <= _MOST_POINTS
-
-
-def _has_type(value: object, wanted: str) -> bool:
-    if wanted == _NUMBER:
-        return isinstance(value, int | Decimal) and not isinstance(value, bool)
-    if wanted == _TEXTS:
-        return isinstance(value, list) and all(isinstance(each, str) for each in value)
-    if wanted == _TABLE:
-        return isinstance(value, dict)
-    return wanted != _TEXT or isinstance(value, str)
-
-
-def _type_name(value: object, wanted: str) -> str:
-    match value:
-        case bool():
-            return "true or false"
-        case str():
-            return _TEXT
-        case int() | Decimal():
-            return _NUMBER
-        case list():
-            return "a list with other values" if wanted == _TEXTS else "a list"
-        case dict():
-            return _TABLE
-        case _:
-            return "a date or time"
+def _criterion(row: dict[str, Any], check: Check, arguments: dict[str, Any]) -> Criterion:
+    return Criterion(
+        row["id"],
+        row["title"],
+        row["part"],
+        Decimal(row["points"]),
+        check,
+        arguments,
+        tuple(row.get("requires", ())),
+        row.get("feedback", ""),
+        row.get("about", ""),
+    )

@@ -1,40 +1,16 @@
 """Forward kinematics: where every link is when the joints are at given positions."""
 
-from collections.abc import Mapping, Sequence
-from math import atan2, isfinite
+from collections.abc import Mapping
+from math import isfinite
 from typing import NamedTuple
 
 from grader.errors import MissingElement
-from grader.robot.joints import MOVING_TYPES
-from grader.robot.model import Joint, Link, Origin, Robot, Visual
+from grader.robot.model import Joint, Link, Robot, Visual
+from grader.robot.motion import Position, check_position, past
 from grader.robot.names import quoted
 from grader.robot.source import Spot
-from grader.robot.transforms import (
-    IDENTITY,
-    Transform,
-    Vector,
-    cross,
-    dot,
-    rotation_about,
-    rotation_from_rpy,
-    unit,
-)
+from grader.robot.transforms import IDENTITY, Transform, Vector, unit
 from grader.robot.tree import holding_joints
-
-Position = float | Sequence[float]
-
-# How many numbers the position of a joint has; the types that are not named here do not move.
-DEGREES_OF_FREEDOM = {"continuous": 1, "revolute": 1, "prismatic": 1, "planar": 3, "floating": 6}
-
-
-_NO_TURN = (0.0, 0.0, 0.0)
-
-
-def behind(T_frame_parent: Transform, origin: Origin) -> Transform:
-    """T_frame_child: the frame that an origin puts into its parent."""
-    if origin.rpy == _NO_TURN:
-        return T_frame_parent.shifted(origin.xyz)
-    return T_frame_parent @ Transform(rotation_from_rpy(origin.rpy), origin.xyz)
 
 
 class Configuration:
@@ -60,7 +36,7 @@ class Configuration:
         self.positions = dict(positions or {})
         self.holding = holding_joints(robot) if holding is None else holding
         for name, position in self.positions.items():
-            _check_position(robot.joint(name), position)
+            check_position(robot.joint(name), position)
         self.shown: dict[str, tuple[Visual, ...]] = {}  # kept by those who ask what a link shows
         self._placed: dict[str, _Placed] = {}
         self._lost: dict[str, str] = {}  # links on or behind a loop of joints, with one name for the loop
@@ -204,7 +180,7 @@ class Configuration:
             name = holding[name].parent
         above = placed.get(name) or placed.setdefault(name, _Placed(name, name, IDENTITY, 0))
         for joint in reversed(way.values()):
-            pose = _past(above.pose, joint, self.position(joint))
+            pose = past(above.pose, joint, self.position(joint))
             if pose is not None and isfinite(sum(pose.translation)):
                 above = _Placed(above.root, above.island, pose, above.depth)
             else:
@@ -228,76 +204,6 @@ class _Placed(NamedTuple):
     island: str
     pose: Transform
     depth: int
-
-
-def _past(T_root_parent: Transform, joint: Joint, position: Position) -> Transform | None:
-    """T_root_child behind a joint, or None where it is undefined."""
-    motion = motion_of(joint, position)
-    if joint.origin is None or motion is None:
-        return None
-    T_root_joint = behind(T_root_parent, joint.origin)
-    return T_root_joint if motion is IDENTITY else T_root_joint @ motion
-
-
-def motion_of(joint: Joint, position: Position) -> Transform | None:
-    """What a joint adds behind its origin; None where it is undefined, as it is for any position about a zero axis (KDL)."""
-    if joint.type not in MOVING_TYPES:
-        return IDENTITY
-    if isinstance(position, int | float) and not isfinite(position):
-        return None  # a mimic joint can run away
-    if joint.type == "floating":
-        return _floating(position)
-    direction = unit(joint.axis) if joint.axis is not None else None
-    if direction is None:
-        # KDL divides by the axis' length before it looks at the position. An unreadable axis matters to motion only.
-        return IDENTITY if joint.axis is None and not position else None
-    if joint.type == "planar":
-        return _planar(direction, position)
-    if not position:
-        return IDENTITY
-    assert isinstance(position, int | float)  # _check_position has seen to it
-    if joint.type == "prismatic":
-        x, y, z = direction
-        return Transform(translation=(x * position, y * position, z * position))
-    return Transform(rotation_about(direction, position))
-
-
-def _floating(position: Position) -> Transform:
-    if isinstance(position, int | float):
-        return IDENTITY
-    x, y, z, roll, pitch, yaw = position
-    return Transform(rotation_from_rpy((roll, pitch, yaw)), (x, y, z))
-
-
-def _planar(normal: Vector, position: Position) -> Transform:
-    """Slide in the plane across `normal`, then turn about it; x and y are the frame's where the normal is its z axis."""
-    if isinstance(position, int | float):
-        return IDENTITY
-    x, y, angle = position
-    around = cross((0.0, 0.0, 1.0), normal)
-    turn = unit(around)
-    if turn is None:
-        slide: Vector = (x, y, 0.0) if normal[2] > 0 else (x, -y, 0.0)
-    else:
-        cosine = dot((0.0, 0.0, 1.0), normal)
-        sine = dot(turn, around)
-        tilt = rotation_about(turn, atan2(sine, cosine))
-        slide = Transform(tilt).rotate((x, y, 0.0))
-    return Transform(rotation_about(normal, angle), slide)
-
-
-def _check_position(joint: Joint, position: Position) -> None:
-    wanted = DEGREES_OF_FREEDOM.get(joint.type, 0)
-    given = 1 if isinstance(position, int | float) else len(position)
-    if wanted == 0:
-        raise ValueError(f"joint {quoted(joint.name)} is {joint.type or 'without type'}: it has no position")
-    values = (position,) if isinstance(position, int | float) else position
-    if not all(map(isfinite, values)):
-        raise ValueError(f"joint {quoted(joint.name)} cannot be at {position}")
-    if given != wanted or (wanted > 1 and isinstance(position, int | float)):
-        raise ValueError(
-            f"joint {quoted(joint.name)} is {joint.type}: its position has {wanted} number(s), not {given}"
-        )
 
 
 def _undefined(joint: Joint) -> MissingElement:

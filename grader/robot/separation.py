@@ -6,26 +6,18 @@ negative the shapes cut into each other, and the smallest one is how far b must 
 test (Ericson, Real-Time Collision Detection, 2004, section 5.2.1). Everything is worked out in a's frame.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import chain, combinations, product
-from math import atan2, ceil, copysign, hypot, inf, pi, sqrt
-from typing import TYPE_CHECKING, Any
+from itertools import product
+from math import copysign, hypot
 
+from grader.robot.gap import widest_gap
 from grader.robot.model import Box, Cylinder, Sphere
-from grader.robot.shapes import Shape, half_width, support
+from grader.robot.shapes import Shape, half_width, straight_edges
 from grader.robot.transforms import Transform, Vector, cross, dot, minus, unit
 
-if TYPE_CHECKING:
-    import numpy as np
-
-    Array = np.ndarray[Any, np.dtype[np.float64]]
-
 _ROUNDING = 1e-9  # metres; what sums of coordinates may lose, so that shapes set side by side count as touching
-_GAP_ERROR = 1e-7  # metres; how far the two bounds on a gap may stay apart
-_GAP_STEPS = 200  # pairs of robot parts take fewer than 40; the cap is for what rounding may do
-_SAGITTA = 4e-5  # metres from a rim to the polygon that stands for it; two of these are less than 0.1 mm
-_BEND = 4e-6  # the same relative to the radius, so that a rim of more than 10 m has no more corners than one of 10 m
+_LEAN = 1e-5  # metres; cylinders that lean by less than this along their length are as good as parallel
 _LARGEST = 1e6  # metres; longer lengths are scaled down, for products of four of them could overflow
 
 
@@ -49,7 +41,7 @@ def separation(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> Separa
     scale = 1.0 if size <= _LARGEST else min(size, 1e308)
     a, b = _shrunk(a, scale), _shrunk(b, scale)
     T_a_b = _moved_in(T_w_a, scale).inverse() @ _moved_in(T_w_b, scale)
-    direction = _widest_gap(a, b, T_a_b) or _least_overlap(a, b, T_a_b)
+    direction = widest_gap(a, b, T_a_b) or _least_overlap(a, b, T_a_b)
     return Separation(-_overlap(a, b, T_a_b, direction) * scale, T_w_a.rotate(direction))
 
 
@@ -107,8 +99,8 @@ def _likely_directions(a: Shape, b: Shape, T_a_b: Transform) -> Iterator[Vector]
     Where no rim matters the least overlap of shapes that do cut into each other is along one of these.
     """
     c = T_a_b.translation
-    edges_a = _straight_edges(a)
-    edges_b = [T_a_b.rotate(edge) for edge in _straight_edges(b)]
+    edges_a = straight_edges(a)
+    edges_b = [T_a_b.rotate(edge) for edge in straight_edges(b)]
     yield from edges_a
     yield from edges_b
     yield unit(c) or (0.0, 0.0, 1.0)
@@ -133,88 +125,6 @@ def _beyond(shape: Shape, point: Vector) -> Vector:
     return (x, y, z)
 
 
-def _straight_edges(shape: Shape) -> list[Vector]:
-    """The directions of the straight lines on a shape, which are the normals of its flat faces too."""
-    if isinstance(shape, Box):
-        return [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
-    return [(0.0, 0.0, 1.0)] if isinstance(shape, Cylinder) else []
-
-
-def _widest_gap(a: Shape, b: Shape, T_a_b: Transform) -> Vector | None:
-    """The unit direction from a to b of the gap between their cores, or None where these touch or cut into each other.
-
-    It points to what is nearest the origin among all differences between points of b and of a (Gilbert, Johnson and
-    Keerthi, IEEE Journal of Robotics and Automation 4(2), 1988). Each step bounds the gap from both sides.
-    """
-    corners: Sequence[Vector] = ()
-    nearest, shortest = T_a_b.translation, inf
-    gap, best = 0.0, None
-    for _ in range(_GAP_STEPS):
-        length = hypot(*nearest)
-        if length <= _GAP_ERROR:
-            return None
-        direction = (nearest[0] / length, nearest[1] / length, nearest[2] / length)
-        corner = _near_end(a, b, T_a_b, direction)
-        if dot(direction, corner) > gap:
-            gap, best = dot(direction, corner), direction
-        if length - gap <= _GAP_ERROR:
-            break
-        corners, nearest = _nearest_to_origin((corner, *corners))
-        if len(corners) == 4 or hypot(*nearest) >= shortest:
-            break  # the origin is between four corners, or they are too close together for rounding to tell more
-        shortest = hypot(*nearest)
-    return best
-
-
-def _near_end(a: Shape, b: Shape, T_a_b: Transform, direction: Vector) -> Vector:
-    """The difference between points of the cores of b and of a that lies least far along a direction.
-
-    The core of a sphere is its centre: its radius shortens every gap alike.
-    """
-    x, y, z = T_a_b.translation
-    if not isinstance(a, Sphere):
-        u, v, w = support(a, direction)
-        x, y, z = x - u, y - v, z - w
-    if not isinstance(b, Sphere):
-        u, v, w = T_a_b.rotate(support(b, T_a_b.unrotate(direction)))
-        x, y, z = x - u, y - v, z - w
-    return (x, y, z)
-
-
-def _nearest_to_origin(corners: Sequence[Vector]) -> tuple[Sequence[Vector], Vector]:
-    """What is nearest the origin between up to four corners, and the corners it rests on: the first is one of them."""
-    first, *rest = corners
-    best: tuple[Sequence[Vector], Vector] = ((first,), first)
-    shortest = hypot(*first)
-    for others in chain.from_iterable(combinations(rest, count) for count in range(1, len(rest) + 1)):
-        foot = _foot(first, others)
-        if foot is not None and hypot(*foot) < shortest:
-            best, shortest = ((first, *others), foot), hypot(*foot)
-    return best
-
-
-def _foot(first: Vector, others: Sequence[Vector]) -> Vector | None:
-    """The point nearest the origin on the line or plane, or in the space, through corners, if it lies between them."""
-    edges = [minus(other, first) for other in others]
-    home = (-first[0], -first[1], -first[2])
-    match edges:
-        case [p]:
-            whole, parts = dot(p, p), [dot(home, p)]
-        case [p, q]:
-            normal = cross(p, q)
-            whole, parts = dot(normal, normal), [dot(cross(home, q), normal), dot(cross(p, home), normal)]
-        case _:
-            p, q, r = edges
-            whole, parts = dot(p, cross(q, r)), [dot(home, cross(q, r)), dot(home, cross(r, p)), dot(home, cross(p, q))]
-    weights = [part / whole for part in parts] if whole else [-1.0]
-    if min(weights) < 0.0 or sum(weights) > 1.0:
-        return None
-    x, y, z = first
-    for weight, (u, v, w) in zip(weights, edges, strict=True):
-        x, y, z = x + weight * u, y + weight * v, z + weight * w
-    return (x, y, z)
-
-
 def _least_overlap(a: Shape, b: Shape, T_a_b: Transform) -> Vector:
     """The unit direction from a to b along which two shapes that touch or cut into each other overlap least."""
 
@@ -224,66 +134,20 @@ def _least_overlap(a: Shape, b: Shape, T_a_b: Transform) -> Vector:
     best = min(_likely_directions(a, b, T_a_b), key=overlap)
     leaning = overlap(best) > _ROUNDING and _rims_matter(a, b, T_a_b)
     if leaning and not isinstance(a, Sphere) and not isinstance(b, Sphere):
-        best = min(best, _least_overlap_at_rims(a, b, T_a_b), key=overlap)
+        from grader.robot.rims import least_overlap_at_rims  # late: it loads numpy
+
+        best = min(best, least_overlap_at_rims(a, b, T_a_b), key=overlap)
     x, y, z = best
     return best if dot(best, T_a_b.translation) >= 0.0 else (-x, -y, -z)
 
 
 def _rims_matter(a: Shape, b: Shape, T_a_b: Transform) -> bool:
-    """Whether there is a cylinder that leans against all edges of the other shape by more than `_SAGITTA` allows.
+    """Whether there is a cylinder that leans against all edges of the other shape by more than `_LEAN`.
 
     A cylinder parallel to an edge, as most are, makes the overlap a flat problem, which has no rims.
     """
     if isinstance(a, Box) and isinstance(b, Box):
         return False
-    edges = product(_straight_edges(a), map(T_a_b.rotate, _straight_edges(b)))
+    edges = product(straight_edges(a), map(T_a_b.rotate, straight_edges(b)))
     tilt = min((hypot(*cross(p, q)) for p, q in edges), default=0.0)
-    return tilt * (_radius(a) + _radius(b)) > _SAGITTA / 4.0
-
-
-def _least_overlap_at_rims(a: Box | Cylinder, b: Box | Cylinder, T_a_b: Transform) -> Vector:
-    """The unit normal of least overlap among those that two straight edges, an edge and a rim, or two rims span.
-
-    Were the rims polygons, these and the normals of flat faces would be all that the separating axis test needs; a rim
-    stands out from its polygon by no more than `_SAGITTA`. Two more rounds look closer about the best normal.
-    """
-    import numpy as np  # not at the top: loading it takes longer than a grading run, and most robots' parts stay clear
-
-    rotation = np.array(T_a_b.rotation).reshape(3, 3)
-    straight = np.array([*_straight_edges(a), *map(T_a_b.rotate, _straight_edges(b))])
-    sides = ((a, np.eye(3)), (b, rotation))
-    rims = [(frame, _all_around(shape.radius)) for shape, frame in sides if isinstance(shape, Cylinder)]
-    best = straight[0]
-    for _ in range(3):
-        lines = [np.outer(np.cos(turns), f[:, 0]) + np.outer(np.sin(turns), f[:, 1]) for f, turns in rims]
-        spans = [np.cross(p[:, None], q).reshape(-1, 3) for p, q in combinations([straight, *lines], 2)]
-        normals = np.concatenate(spans)
-        lengths = np.linalg.norm(normals, axis=1)
-        normals = normals[lengths > _ROUNDING] / lengths[lengths > _ROUNDING, None]
-        overlaps = _half_widths(a, normals) + _half_widths(b, normals @ rotation) - abs(normals @ T_a_b.translation)
-        best = normals[overlaps.argmin()]
-        rims = [(f, _closer(turns, atan2(best @ f[:, 0], -(best @ f[:, 1])))) for f, turns in rims]
-    x, y, z = best.tolist()
-    return (x, y, z)
-
-
-def _all_around(radius: float) -> list[float]:
-    """The directions of a polygon's edges as angles over half a turn; across the polygon they come again."""
-    sagitta = max(_SAGITTA, _BEND * abs(radius))
-    count = max(2, ceil(pi / 2.0 * sqrt(abs(radius) / sagitta / 2.0)))  # for 1 - cos(t) is no more than t**2 / 2
-    return [step * pi / count for step in range(count)]
-
-
-def _closer(turns: list[float], middle: float) -> list[float]:
-    return [middle + (turns[1] - turns[0]) * (step / 8.0 - 1.0) for step in range(17)]
-
-
-def _half_widths(shape: Box | Cylinder, directions: "Array") -> "Array":
-    """`half_width` for directions of shape (n, 3)."""
-    x, y, z = directions.T
-    if isinstance(shape, Box):
-        a, b, c = shape.size
-        widths: Array = (abs(a * x) + abs(b * y) + abs(c * z)) / 2.0
-    else:
-        widths = abs(shape.radius) * (x * x + y * y) ** 0.5 + abs(shape.length / 2.0 * z)
-    return widths
+    return tilt * (_radius(a) + _radius(b)) > _LEAN

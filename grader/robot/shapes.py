@@ -111,6 +111,13 @@ def is_empty(geometry: Geometry) -> bool:
     return geometry.radius == 0.0
 
 
+def straight_edges(geometry: Geometry) -> list[Vector]:
+    """The directions of the straight lines on a shape, which are the normals of its flat faces too."""
+    if isinstance(geometry, Box):
+        return [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
+    return [(0.0, 0.0, 1.0)] if isinstance(geometry, Cylinder) else []
+
+
 def _end(size: float, component: float, tie: float) -> float:
     if abs(component) <= tie:
         return 0.0

@@ -1,0 +1,95 @@
+"""How one joint moves its child: what it adds behind its origin at a position."""
+
+from collections.abc import Sequence
+from math import atan2, isfinite
+
+from grader.robot.joints import MOVING_TYPES
+from grader.robot.model import Joint, Origin
+from grader.robot.names import quoted
+from grader.robot.transforms import IDENTITY, Transform, Vector, cross, dot, rotation_about, rotation_from_rpy, unit
+
+Position = float | Sequence[float]
+
+# How many numbers the position of a joint has; the types that are not named here do not move.
+DEGREES_OF_FREEDOM = {"continuous": 1, "revolute": 1, "prismatic": 1, "planar": 3, "floating": 6}
+
+
+_NO_TURN = (0.0, 0.0, 0.0)
+
+
+def behind(T_frame_parent: Transform, origin: Origin) -> Transform:
+    """T_frame_child: the frame that an origin puts into its parent."""
+    if origin.rpy == _NO_TURN:
+        return T_frame_parent.shifted(origin.xyz)
+    return T_frame_parent @ Transform(rotation_from_rpy(origin.rpy), origin.xyz)
+
+
+def past(T_root_parent: Transform, joint: Joint, position: Position) -> Transform | None:
+    """T_root_child behind a joint, or None where it is undefined."""
+    motion = motion_of(joint, position)
+    if joint.origin is None or motion is None:
+        return None
+    T_root_joint = behind(T_root_parent, joint.origin)
+    return T_root_joint if motion is IDENTITY else T_root_joint @ motion
+
+
+def motion_of(joint: Joint, position: Position) -> Transform | None:
+    """What a joint adds behind its origin; None where it is undefined, as it is for any position about a zero axis (KDL)."""
+    if joint.type not in MOVING_TYPES:
+        return IDENTITY
+    if isinstance(position, int | float) and not isfinite(position):
+        return None  # a mimic joint can run away
+    if joint.type == "floating":
+        return _floating(position)
+    direction = unit(joint.axis) if joint.axis is not None else None
+    if direction is None:
+        # KDL divides by the axis' length before it looks at the position. An unreadable axis matters to motion only.
+        return IDENTITY if joint.axis is None and not position else None
+    if joint.type == "planar":
+        return _planar(direction, position)
+    if not position:
+        return IDENTITY
+    assert isinstance(position, int | float)  # _check_position has seen to it
+    if joint.type == "prismatic":
+        x, y, z = direction
+        return Transform(translation=(x * position, y * position, z * position))
+    return Transform(rotation_about(direction, position))
+
+
+def _floating(position: Position) -> Transform:
+    if isinstance(position, int | float):
+        return IDENTITY
+    x, y, z, roll, pitch, yaw = position
+    return Transform(rotation_from_rpy((roll, pitch, yaw)), (x, y, z))
+
+
+def _planar(normal: Vector, position: Position) -> Transform:
+    """Slide in the plane across `normal`, then turn about it; x and y are the frame's where the normal is its z axis."""
+    if isinstance(position, int | float):
+        return IDENTITY
+    x, y, angle = position
+    around = cross((0.0, 0.0, 1.0), normal)
+    turn = unit(around)
+    if turn is None:
+        slide: Vector = (x, y, 0.0) if normal[2] > 0 else (x, -y, 0.0)
+    else:
+        cosine = dot((0.0, 0.0, 1.0), normal)
+        sine = dot(turn, around)
+        tilt = rotation_about(turn, atan2(sine, cosine))
+        slide = Transform(tilt).rotate((x, y, 0.0))
+    return Transform(rotation_about(normal, angle), slide)
+
+
+def check_position(joint: Joint, position: Position) -> None:
+    """Raise ValueError for a position that a joint of this type cannot have."""
+    wanted = DEGREES_OF_FREEDOM.get(joint.type, 0)
+    given = 1 if isinstance(position, int | float) else len(position)
+    if wanted == 0:
+        raise ValueError(f"joint {quoted(joint.name)} is {joint.type or 'without type'}: it has no position")
+    values = (position,) if isinstance(position, int | float) else position
+    if not all(map(isfinite, values)):
+        raise ValueError(f"joint {quoted(joint.name)} cannot be at {position}")
+    if given != wanted or (wanted > 1 and isinstance(position, int | float)):
+        raise ValueError(
+            f"joint {quoted(joint.name)} is {joint.type}: its position has {wanted} number(s), not {given}"
+        )
