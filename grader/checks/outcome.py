@@ -1,9 +1,8 @@
 """What a check found, and the ways to say it: measured against expected, how far off, in which unit and frame."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import lru_cache
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from grader.robot.source import Location, Mark, Spot
 from grader.robot.transforms import Vector
@@ -16,8 +15,7 @@ SLACK = 1e-9
 _AXES = "xyz"
 
 
-@dataclass(frozen=True, slots=True)
-class Outcome:
+class Outcome(NamedTuple):
     """What one check found: a sentence, and where it measured something, the values in `unit`."""
 
     status: Status

@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 from decimal import Decimal
+from typing import NamedTuple
 
 from grader.checks.outcome import Outcome
 from grader.grading.rubric import Criterion, Rubric
@@ -11,8 +12,7 @@ from grader.submission.submission import Submission
 _NOTHING = Decimal(0)
 
 
-@dataclass(frozen=True, slots=True)
-class Result:
+class Result(NamedTuple):
     """One criterion's outcome. `because` is the criterion that a skip is due to; `traceback` is for the maintainers."""
 
     criterion: Criterion
