@@ -24,6 +24,8 @@ def closest(name: str, known: Iterable[str]) -> str | None:
         alike = (each for each in candidates if each[:3] == lower[:3] or each[-3:] == lower[-3:])
         candidates = {each: candidates[each] for each in islice(alike, _MOST_CANDIDATES)}
     matches = get_close_matches(lower, candidates, n=1, cutoff=0.7)
+    if not matches:  # swapped letters weigh too much in short names, such as xzy for xyz
+        matches = [each for each in candidates if sorted(each) == sorted(lower)]
     return candidates[matches[0]] if matches else None
 
 

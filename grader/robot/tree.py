@@ -178,15 +178,16 @@ def _note_cycle(
     shown = [*cycle[:20], *cycle[-1:]] if len(cycle) > 20 else cycle
     steps = " -> ".join(quoted(joint.parent) for joint in shown) + f" -> {quoted(cycle[0].parent)}"
     names = ", ".join(quoted(joint.name) for joint in shown)
+    who = f"the joint {names} forms a loop" if len(cycle) == 1 else f"the joints {names} form a loop"
     element = joints[cycle[0].name]
     if cycle[0].parent in reachable:
-        message = f"the joints {names} form a loop: {steps}; ROS 2 follows it for ever and crashes"
+        message = f"{who}: {steps}; ROS 2 follows it for ever and crashes"
         notes.add(catalogue.CYCLE, message, element)
     elif has_root:
-        message = f"the joints {names} form a loop apart from the robot: {steps}; ROS 2 leaves these links out"
+        message = f"{who} apart from the robot: {steps}; ROS 2 leaves these links out"
         notes.add(catalogue.DETACHED_CYCLE, message, element)
     else:
-        message = f"there is no root link: the joints {names} form a loop: {steps}; {_REJECTED}"
+        message = f"there is no root link: {who}: {steps}; {_REJECTED}"
         notes.add(catalogue.NO_ROOT, message, element)
 
 
