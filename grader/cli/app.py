@@ -1,5 +1,6 @@
 """The `grader` command and its subcommands."""
 
+import sys
 from collections.abc import Sequence
 from typing import Annotated
 
@@ -64,7 +65,11 @@ def run(arguments: Sequence[str]) -> int:
 def _other(error: Exception) -> int:
     usage = getattr(error, "format_message", None)
     if usage is not None:  # wrong usage, as typer says it
-        complain(f"{usage()} (grader --help shows the usage)".replace("\n", " "))
+        command = getattr(getattr(error, "ctx", None), "command_path", "grader")
+        if type(error).__name__ == "NoArgsIsHelpError":
+            print(usage(), file=sys.stderr)
+        else:
+            complain(f"{usage()} ({command} --help shows the usage)".replace("\n", " "))
         return FAULT_OF_USE
     complain(f"a fault of the grader itself, please report it: {type(error).__name__}: {error}".replace("\n", " "))
     return FAULT_OF_OURS

@@ -21,16 +21,19 @@ def read_link(element: Element, notes: Notes, materials: Materials) -> Link:
     visuals: list[Visual] = []
     collisions: list[Collision] = []
     if len(element):
-        first = element.find("inertial")
-        if first is not None:
-            inertial = _read_inertial(first, notes, name)
+        parts: dict[str, list[Element]] = {"inertial": [], "visual": [], "collision": []}
+        for child in element:
+            if child.tag in parts:
+                parts[child.tag].append(child)
+        for each in parts["inertial"][:1]:
+            inertial = _read_inertial(each, notes, name)
             dropping = inertial is None
-        for each in element.iterchildren("visual"):
+        for each in parts["visual"]:
             visual = _read_visual(each, notes, name, materials if not dropping else None)
             dropping = dropping or visual is None
             if visual is not None and not dropping:
                 visuals.append(visual)
-        for each in element.iterchildren("collision"):
+        for each in parts["collision"]:
             collision = _read_collision(each, notes, name)
             dropping = dropping or collision is None
             if collision is not None and not dropping:

@@ -3,7 +3,7 @@
 from grader.robot import catalogue
 from grader.robot.model import Material
 from grader.robot.names import quoted
-from grader.robot.notes import Element, Notes, shown
+from grader.robot.notes import Element, Notes, children, shown
 from grader.robot.numbers import NumberError, rgba
 
 _BLACK = (0.0, 0.0, 0.0, 1.0)
@@ -57,9 +57,9 @@ class Materials:
 
     def _read(self, element: Element, name: str, consequence: str) -> tuple[Material | None, bool]:
         """The material defined in an element, if it is; and whether a complaint about its colour was noted."""
-        texture = element.find("texture")
+        inside = children(element)
+        texture, colour = inside.get("texture"), inside.get("color")
         filename = texture.get("filename") if texture is not None else None
-        colour = element.find("color")
         text = colour.get("rgba") if colour is not None else None
         channels, complained = None, False
         if text is not None and colour is not None:
