@@ -11,6 +11,7 @@ from grader.submission.files import URDF_LIMIT, printable_path, read_capped, rea
 from grader.submission.find import find_urdf
 
 STANDARD_INPUT = "-"
+_ARCHIVES = (".zip", ".tar", ".tar.gz", ".tgz", ".gz", ".7z", ".rar")
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +44,8 @@ def open_submission(path: str, *, wanted: str, limit: int = URDF_LIMIT) -> Submi
             raise InputError(f"{printable_path(place)} does not exist")
     except (OSError, ValueError) as error:
         raise InputError(f"cannot read {printable_path(place)}: {error}") from None
+    if not is_folder and place.name.lower().endswith(_ARCHIVES):
+        raise InputError(f"{printable_path(place)} is an archive, which this version does not open: unpack it first")
     if not is_folder:
         identity = printable_path(place.stem)
         return read_submission(read_capped(place, limit), identity=identity, path=printable_path(place.name))

@@ -39,6 +39,11 @@ class TestPaths:
         (tmp_path / "build" / "old.urdf").write_bytes(REFERENCE.read_bytes())
         refuse(command, str(tmp_path), words="holds no .urdf file")
 
+    def test_archive(self, command: str, tmp_path: Path) -> None:
+        """An archive is not taken for a URDF: it would be graded with nothing."""
+        (tmp_path / "lab6.ZIP").write_bytes(b"PK\x03\x04")
+        refuse(command, str(tmp_path / "lab6.ZIP"), words="unpack it first")
+
     def test_too_large(self, command: str, tmp_path: Path) -> None:
         """A file over the limit."""
         (tmp_path / "large.urdf").write_bytes(b" " * (2 * MEBIBYTE))
