@@ -80,7 +80,7 @@ def turns_about_itself(robot: Configuration, *, link: str, base: str, tolerance:
         raise MissingElement("cylinder", link, message=message, location=place(visual.geometry.mark))
     joint = _turning_joint(robot, link, base)
     T_joint_wheel = pose_of(robot, link, visual, joint.child)
-    turning, own = robot.axis(joint.name), T_joint_wheel.rotate((0.0, 0.0, 1.0))
+    turning, own = robot.axis(joint), T_joint_wheel.rotate((0.0, 0.0, 1.0))
     tilt = min(_angle(turning, own), 180.0 - _angle(turning, own))
     away = hypot(*cross(turning, T_joint_wheel.translation))
     at = place(joint.axis_mark, "xyz") or place(joint.mark)

@@ -13,6 +13,7 @@ Value = bool | float | str | tuple[float, ...] | tuple[str, ...] | Mapping[str, 
 # A tolerance includes its end: 0.152 is within 0.002 of 0.15, though the floats differ by a hair more.
 SLACK = 1e-9
 _AXES = "xyz"
+_FEW, _MANY = 100.0, 1e7  # from here on: no decimals, an exponent
 
 
 class Outcome(NamedTuple):
@@ -97,7 +98,10 @@ def difference(off: float, unit: str, over: str = "too large", under: str = "too
 
 def size(value: float, unit: str) -> str:
     """The size of a difference in the unit that reads best: millimetres for lengths."""
-    return f"{_short(abs(value) * 1000)} mm" if unit == "m" else quantity(abs(value), unit)
+    if unit != "m":
+        return quantity(abs(value), unit)
+    millimetres = abs(value) * 1000
+    return f"{millimetres:.0f} mm" if _FEW <= millimetres < _MANY else f"{millimetres:.3g} mm"
 
 
 def quantity(value: float, unit: str) -> str:
@@ -113,9 +117,9 @@ def point(values: tuple[float, ...]) -> str:
     return " ".join(map(_short, values))
 
 
-def place(mark: Mark | None, attribute: str | None = None) -> Spot | None:
-    """Where an element stands in the file, if it stands there at all."""
-    return Spot(mark, attribute) if mark is not None else None
+def place(mark: Mark | None, attribute: str | None = None, inside: str | None = None) -> Spot | None:
+    """Where an element stands in the file, if it stands there at all; or one of its attributes, or an element inside."""
+    return Spot(mark, attribute, inside) if mark is not None else None
 
 
 def listing(names: tuple[str, ...] | list[str]) -> str:
@@ -126,5 +130,7 @@ def listing(names: tuple[str, ...] | list[str]) -> str:
 
 @lru_cache(maxsize=4096)
 def _short(value: float) -> str:
+    if abs(value) >= _MANY:
+        return f"{value:.3g}"
     text = f"{value:.4f}".rstrip("0").rstrip(".")
     return "0" if text in ("-0", "") else text

@@ -72,10 +72,11 @@ class Configuration:
         return known
 
     def _solve_relative(self, link: str, relative_to: str | None) -> Transform:
+        if relative_to == link:
+            self.link(link)
+            return IDENTITY
         ours = self._place(link)
         theirs = self._place(relative_to) if relative_to is not None else self._place(ours.root)
-        if relative_to == link:
-            return IDENTITY
         if ours.root != theirs.root:
             roots = " and ".join(sorted((ours.root, theirs.root)))
             message = f"no chain of joints leads from {quoted(relative_to or theirs.root)} to {quoted(link)}"
@@ -90,9 +91,9 @@ class Configuration:
             raise _undefined(self.between(relative_to, link)[-1])
         return pose
 
-    def axis(self, joint: str) -> Vector:
+    def axis(self, joint: str | Joint) -> Vector:
         """The unit axis of a joint in its child link's frame; raises MissingElement where it has no direction."""
-        found = self.joint(joint)
+        found = self.joint(joint) if isinstance(joint, str) else joint
         direction = unit(found.axis) if found.axis is not None else None
         if direction is None:
             raise _undefined(found)
@@ -207,9 +208,10 @@ class _Placed(NamedTuple):
 
 
 def _undefined(joint: Joint) -> MissingElement:
-    mark, attribute = joint.mark, None
+    mark, attribute, inside = joint.mark, None, None
     if joint.origin is None:
         reason = "its origin cannot be read"
+        inside = "origin"
     elif joint.axis is None:
         reason = "its axis cannot be read"
         mark, attribute = joint.axis_mark, "xyz"
@@ -219,7 +221,7 @@ def _undefined(joint: Joint) -> MissingElement:
     else:
         reason = "its numbers are too large"
     message = f"the pose behind joint {quoted(joint.name)} is undefined: {reason}"
-    spot = Spot(mark, attribute) if mark is not None else None
+    spot = Spot(mark, attribute, inside) if mark is not None else None
     return MissingElement("pose behind joint", joint.name, message=message, location=spot)
 
 

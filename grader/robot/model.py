@@ -151,12 +151,16 @@ class Joint:
 
 @dataclass(frozen=True, slots=True)
 class Robot:
-    """Links and joints in file order. Two with one name cannot both be looked up: the first of them counts."""
+    """Links and joints in file order. Of two with one name the first is looked up.
+
+    Where ROS 2 has `rejected` the file, this is what could be read of it: a best reading, not what ROS 2 would do.
+    """
 
     name: str
     links: tuple[Link, ...] = ()
     joints: tuple[Joint, ...] = ()
     materials: tuple[Material, ...] = ()
+    rejected: bool = field(default=False, compare=False)
     _links: dict[str, Link] = field(init=False, compare=False, repr=False, hash=False)
     _joints: dict[str, Joint] = field(init=False, compare=False, repr=False, hash=False)
 

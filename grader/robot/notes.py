@@ -8,7 +8,7 @@ from lxml import etree
 
 from grader.robot import catalogue
 from grader.robot.catalogue import Effect, Kind, Problem
-from grader.robot.model import Origin
+from grader.robot.model import Joint, Origin
 from grader.robot.names import closest, did_you_mean, quoted
 from grader.robot.numbers import NumberError, number, vector
 from grader.robot.source import Mark, Source
@@ -34,11 +34,16 @@ class Notes:
         self.effects: set[Effect] = set()
         self.unlisted = 0
         self._guesses = _MOST_GUESSES
-        self._indices = {element: index for index, element in enumerate(root.iter())}
+        self._elements = list(root.iter())
+        self._indices = {element: index for index, element in enumerate(self._elements)}
 
     def mark(self, element: Element) -> Mark:
         """The place of an element, to be worked out when it is needed."""
         return Mark(self.source, self._indices[element])
+
+    def element(self, joint: Joint) -> Element:
+        """The element that a joint was read from."""
+        return self._elements[joint.mark.tag] if joint.mark is not None else self.root
 
     def add(self, kind: Kind, message: str, element: Element, attribute: str | None = None) -> None:
         """Note a problem at an element, or at one of its attributes if it has it."""

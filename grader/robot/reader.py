@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 from lxml import etree
@@ -51,7 +51,7 @@ def read_urdf(data: bytes, path: str = "robot.urdf") -> Reading:
     The verdict is ROS 2 Jazzy's (urdfdom on TinyXML2): `clean`; `degraded`, if content was dropped or links are left out
     of the tree; `rejected`. Every problem is reported, sorted by place. Never raises for any input.
     """
-    text = data.decode("utf-8", "surrogateescape")
+    text = data.decode("utf-8", "surrogateescape").removeprefix("\ufeff")
     if dialect.is_plain(data):
         try:
             root = etree.fromstring(data, _PARSER)
@@ -94,6 +94,8 @@ def _judge(robot: Robot | None, problems: list[Problem], source: Source, notes: 
         problems = [*problems, Problem(catalogue.UNLISTED, message, source.at(len(source.text)))]
     verdict: Verdict = "rejected" if "rejects" in effects else "degraded" if "drops" in effects else "clean"
     ordered = sorted(problems, key=lambda each: (each.location.line, each.location.column, each.code))
+    if robot is not None and verdict == "rejected":
+        robot = replace(robot, rejected=True)
     return Reading(verdict, robot, tuple(ordered), source)
 
 
@@ -117,28 +119,31 @@ def _read_robot(root: Element, notes: Notes) -> Robot:
     robot = Robot(
         root.get("name") or "",
         tuple(link for link, _ in links.values()),
-        tuple(joint for joint, _ in joints.values()),
+        joints,
         tuple(materials.known.values()),
     )
     link_elements = {name: element for name, (_, element) in links.items()}
-    check_tree(robot, link_elements, {name: element for name, (_, element) in joints.items()}, notes)
+    check_tree(robot, link_elements, notes)
     check_spelling(root, notes)
     _check_root_inertia(robot, link_elements, notes)
     _check_text(notes)
     return robot
 
 
-def _read_joints(root: Element, notes: Notes) -> dict[str, tuple[Joint, Element]]:
-    joints: dict[str, tuple[Joint, Element]] = {}
+def _read_joints(root: Element, notes: Notes) -> tuple[Joint, ...]:
+    joints: list[Joint] = []
+    seen: dict[str, Element] = {}
     for element in root.iterchildren("joint"):
         joint = read_joint(element, notes)
-        if joint.name in joints:
-            line = notes.mark(joints[joint.name][1]).location().line
+        joints.append(joint)
+        if element.get("name") is None:
+            continue
+        if joint.name in seen:
+            line = notes.mark(seen[joint.name]).location().line
             message = f"there is a joint {quoted(joint.name)} already, in line {line}; ROS 2 loads nothing of the file"
             notes.add(catalogue.DUPLICATE_JOINT, message, element, "name")
-        else:
-            joints[joint.name] = (joint, element)
-    return joints
+        seen.setdefault(joint.name, element)
+    return tuple(joints)
 
 
 def _check_robot(root: Element, notes: Notes) -> None:

@@ -48,6 +48,13 @@ class Source:
         start = self._tags[index]
         return self.at(start if attribute is None else self._attribute(start, attribute))
 
+    def below(self, index: int, name: str) -> int:
+        """The index of the first start tag of this name behind another one; that one where there is none."""
+        self.tag(index)
+        opening = re.compile(rf"<\s*{re.escape(name)}(?![^\s=/>])")
+        tags = self._tags or []
+        return next((each for each in range(index + 1, len(tags)) if opening.match(self.text, tags[each])), index)
+
     def line(self, number: int) -> str:
         """The text of a line, counted from 1, without its end."""
         lines = self.text.split("\n", number)
@@ -69,6 +76,10 @@ class Mark(NamedTuple):
     source: Source
     tag: int
 
+    def below(self, name: str) -> "Mark":
+        """The first element of this name that follows: one that is known to be inside."""
+        return Mark(self.source, self.source.below(self.tag, name))
+
     def location(self, attribute: str | None = None) -> Location:
         """The place of the tag, or of one of its attributes."""
         return self.source.tag(self.tag, attribute)
@@ -79,7 +90,9 @@ class Spot(NamedTuple):
 
     mark: Mark
     attribute: str | None = None
+    inside: str | None = None  # the name of an element in it that is meant instead
 
     def location(self) -> Location:
         """The place of the attribute if it is there, else of the tag."""
-        return self.mark.location(self.attribute)
+        mark = self.mark if self.inside is None else self.mark.below(self.inside)
+        return mark.location(self.attribute)

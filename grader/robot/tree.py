@@ -16,19 +16,49 @@ Edges = dict[str, list[Joint]]
 
 
 def holding_joints(robot: Robot) -> dict[str, Joint]:
-    """The joint that holds each link, by the link's name. Of two with one child, the last in name order counts."""
+    """The joint that holds each link, by the link's name.
+
+    Of two with one child the last in name order counts, as in ROS 2. Of a rejected file ROS 2 shows nothing, so there the
+    fairer reading counts: no joint that would close a loop, rather one whose name does not speak of its parent (it may be
+    the wrong way round), and then the first in the file.
+    """
+    whole = [
+        joint
+        for joint in robot.joints
+        if joint.parent and joint.child and robot.has_link(joint.parent) and robot.has_link(joint.child)
+    ]
     held: dict[str, Joint] = {}
-    for joint in robot.joints:
-        if joint.parent and joint.child and robot.has_link(joint.parent) and robot.has_link(joint.child):
-            rival = held.get(joint.child)
-            if rival is None or rival.name <= joint.name:
-                held[joint.child] = joint
+    if robot.rejected:
+        return _fairest(whole)
+    for joint in whole:
+        rival = held.get(joint.child)
+        if rival is None or rival.name <= joint.name:
+            held[joint.child] = joint
     return held
 
 
-def check_tree(robot: Robot, links: dict[str, Element], joints: dict[str, Element], notes: Notes) -> None:
-    """Note everything that keeps the links from being one tree. The tables give the elements by name."""
-    _check_names(robot, links, joints, notes)
+def _fairest(joints: list[Joint]) -> dict[str, Joint]:
+    held: dict[str, Joint] = {}
+    top: dict[str, str] = {}  # some link further up, with the ways there shortened whenever one is walked
+
+    def root(link: str) -> str:
+        passed = []
+        while link in top:
+            passed.append(link)
+            link = top[link]
+        top.update(dict.fromkeys(passed, link))
+        return link
+
+    for joint in sorted(joints, key=lambda each: each.parent in each.name):
+        if joint.child not in held and root(joint.parent) != joint.child:
+            held[joint.child] = joint
+            top[joint.child] = joint.parent
+    return held
+
+
+def check_tree(robot: Robot, links: dict[str, Element], notes: Notes) -> None:
+    """Note everything that keeps the links from being one tree. `links` gives the elements by name."""
+    _check_names(robot, links, notes)
     held = holding_joints(robot)
     roots = [link.name for link in robot.links if link.name not in held]
     if len(roots) == 1 and len(held) == len(robot.joints) and _all_reached(roots[0], robot.joints, len(links)):
@@ -37,11 +67,11 @@ def check_tree(robot: Robot, links: dict[str, Element], joints: dict[str, Elemen
     for joint in robot.joints:
         if joint.parent and joint.child and robot.has_link(joint.parent) and robot.has_link(joint.child):
             edges.setdefault(joint.parent, []).append(joint)
-    _check_two_parents(edges, held, joints, notes)
+    _check_two_parents(edges, held, notes)
     cycles = _cycles(edges, list(links))
     reachable = _reachable(roots, edges)
     for cycle in cycles[:_MOST_CYCLES]:
-        _note_cycle(cycle, reachable, has_root=bool(roots), joints=joints, notes=notes)
+        _note_cycle(cycle, reachable, has_root=bool(roots), notes=notes)
     _check_roots(robot, roots, edges, links, notes)
     if not cycles:
         _check_paths(roots, edges, links, notes)
@@ -54,7 +84,8 @@ def _all_reached(root: str, joints: Iterable[Joint], count: int) -> bool:
     return len(_reachable([root], edges)) == count
 
 
-def _check_names(robot: Robot, links: dict[str, Element], joints: dict[str, Element], notes: Notes) -> None:
+def _check_names(robot: Robot, links: dict[str, Element], notes: Notes) -> None:
+    joints = [joint.name for joint in robot.joints]
     for joint in robot.joints:
         for role, name in (("parent", joint.parent), ("child", joint.child)):
             if name and not robot.has_link(name):
@@ -64,14 +95,14 @@ def _check_names(robot: Robot, links: dict[str, Element], joints: dict[str, Elem
                 message = (
                     f"the {role} link {quoted(name)} of joint {quoted(joint.name)} does not exist: {_REJECTED}{guess}"
                 )
-                notes.add(catalogue.UNKNOWN_LINK, message, _part(joints[joint.name], role), "link")
-        if joint.mimic is not None and joint.mimic.joint not in joints:
+                notes.add(catalogue.UNKNOWN_LINK, message, _part(notes.element(joint), role), "link")
+        if joint.mimic is not None and not robot.has_joint(joint.mimic.joint):
             guess = notes.did_you_mean(joint.mimic.joint, joints)
             message = f"joint {quoted(joint.name)} mimics {quoted(joint.mimic.joint)}, which does not exist{guess}"
-            notes.add(catalogue.MIMIC_TARGET, message, _part(joints[joint.name], "mimic"), "joint")
+            notes.add(catalogue.MIMIC_TARGET, message, _part(notes.element(joint), "mimic"), "joint")
     for loop in _mimic_loops(robot):
         message = f"joint {quoted(loop[0])} mimics itself: {' -> '.join(map(quoted, (*loop[:20], loop[0])))}"
-        notes.add(catalogue.MIMIC_TARGET, message, _part(joints[loop[0]], "mimic"), "joint")
+        notes.add(catalogue.MIMIC_TARGET, message, _part(notes.element(robot.joint(loop[0])), "mimic"), "joint")
 
 
 def _part(joint: Element, tag: str) -> Element:
@@ -96,7 +127,7 @@ def _mimic_loops(robot: Robot) -> list[list[str]]:
     return loops
 
 
-def _check_two_parents(edges: Edges, held: dict[str, Joint], joints: dict[str, Element], notes: Notes) -> None:
+def _check_two_parents(edges: Edges, held: dict[str, Joint], notes: Notes) -> None:
     claims: dict[str, list[Joint]] = {}
     for joint in (each for group in edges.values() for each in group):
         claims.setdefault(joint.child, []).append(joint)
@@ -104,7 +135,7 @@ def _check_two_parents(edges: Edges, held: dict[str, Joint], joints: dict[str, E
         if len(rivals) > 1:
             names = " and ".join(quoted(joint.name) for joint in rivals[:_MOST_NAMED])
             message = f"link {quoted(child)} is the child of {names}; in ROS 2 {quoted(held[child].name)} holds it (last in name order)"
-            notes.add(catalogue.TWO_PARENTS, message, joints[rivals[1].name])
+            notes.add(catalogue.TWO_PARENTS, message, notes.element(rivals[1]))
 
 
 def _reachable(roots: Iterable[str], edges: Edges) -> set[str]:
@@ -172,14 +203,12 @@ def _without_ends(names: set[str], edges: Edges) -> set[str]:
     return left
 
 
-def _note_cycle(
-    cycle: list[Joint], reachable: set[str], *, has_root: bool, joints: dict[str, Element], notes: Notes
-) -> None:
+def _note_cycle(cycle: list[Joint], reachable: set[str], *, has_root: bool, notes: Notes) -> None:
     shown = [*cycle[:20], *cycle[-1:]] if len(cycle) > 20 else cycle
     steps = " -> ".join(quoted(joint.parent) for joint in shown) + f" -> {quoted(cycle[0].parent)}"
     names = ", ".join(quoted(joint.name) for joint in shown)
     who = f"the joint {names} forms a loop" if len(cycle) == 1 else f"the joints {names} form a loop"
-    element = joints[cycle[0].name]
+    element = notes.element(cycle[0])
     if cycle[0].parent in reachable:
         message = f"{who}: {steps}; ROS 2 follows it for ever and crashes"
         notes.add(catalogue.CYCLE, message, element)
@@ -198,7 +227,7 @@ def _check_roots(robot: Robot, roots: list[str], edges: Edges, links: dict[str, 
         return
     sizes = {name: len(_reachable([name], edges)) for name in roots} if len(roots) <= 50 else {}
     main = max(roots, key=lambda name: sizes.get(name, 0))
-    others = [name for name in roots if name != main]
+    others = [name for name in roots if name != main and name not in explained]
     named = ", ".join(map(quoted, others[:50])) + (f" and {len(others) - 50} more" if len(others) > 50 else "")
     verb = "is" if len(others) == 1 else "are"
     message = (
