@@ -4,7 +4,7 @@ from itertools import permutations
 from math import cos, radians
 
 from grader.checks.outcome import SLACK, Outcome, failed, judged, measured, passed, place, point, within
-from grader.checks.shown import body, shape_name, visuals
+from grader.checks.shown import ShapeName, body, shape_name, visuals
 from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Cylinder, Material, Sphere, Visual
@@ -23,7 +23,8 @@ def shows_box(robot: Configuration, *, link: str, size: Vector, tolerance: float
         return _other_shape(robot, link, "box")
     edges = [(_edges(visual), visual) for visual in found]
     actual, visual = min(edges, key=lambda each: _largest_gap(each[0], size))
-    at = place(visual.geometry.mark, "size")
+    turned = visual.origin.mark is not None and any(visual.origin.rpy)
+    at = place(visual.origin.mark, "rpy") if turned else place(visual.geometry.mark, "size")
     if actual is None:
         return failed(f"the box of {link!r} is turned: its edges are not along the axes of {link!r}", at)
     fine = all(within(a, b, tolerance) for a, b in zip(actual, size, strict=True))
@@ -60,9 +61,14 @@ def shows_sphere(robot: Configuration, *, link: str, radius: float, tolerance: f
     return measured(what, actual=abs(best.radius), expected=radius, tolerance=tolerance, unit="m", at=at)
 
 
-def shows_colour(robot: Configuration, *, link: str, colour: Rgb | Rgba, tolerance: float) -> Outcome:
-    """A link is shown in a colour: red, green, blue and, where a fourth channel is given, opacity, each in 0..1."""
-    visual = body(robot, link)
+def shows_colour(
+    robot: Configuration, *, link: str, colour: Rgb | Rgba, tolerance: float, shape: ShapeName = "any"
+) -> Outcome:
+    """A link is shown in a colour: red, green, blue and, where a fourth channel is given, opacity, each in 0..1.
+
+    Of several visuals the largest counts, among those of the named shape if there are any.
+    """
+    visual = body(robot, link, shape)
     if visual.material is None or _is_only_a_picture(visual.material):
         return _colourless(link, visual)
     actual = visual.material.rgba[: len(colour)]

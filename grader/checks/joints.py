@@ -30,9 +30,8 @@ def held_by(robot: Configuration, *, link: str, parent: str, joint_type: JointTy
     if unknown:
         wrong = unknown[0]
         guess = did_you_mean(wrong.type, JOINT_TYPES)
-        message = (
-            f"joint {wrong.name!r}, which holds {link!r}, has the type {wrong.type!r}, which does not exist{guess}"
-        )
+        kind = f"has the type {wrong.type!r}, which does not exist{guess}" if wrong.type else "has no type"
+        message = f"joint {wrong.name!r}, which holds {link!r}, {kind}"
         if not wanted or len(unknown) < len(moving):
             return failed(message, place(wrong.mark, "type"))
         raise MissingElement("moving joint", link, message=message, location=place(wrong.mark, "type"))
@@ -45,19 +44,34 @@ def held_by(robot: Configuration, *, link: str, parent: str, joint_type: JointTy
 
 
 def joints_named(robot: Configuration, *, parent: str, joints: Mapping[str, str]) -> Outcome:
-    """The joints that hold links to a parent have the given names (joint name: link name)."""
+    """The joints that hold links have the given names (joint name: link name).
+
+    The joint counts that has the link as its child, or joins it to `parent`, or is on the way to it from there.
+    """
     wrong: list[str] = []
     at = None
     for name, link in joints.items():
-        chain = robot.chain(link, above=parent) if robot.robot.has_link(link) else None
-        if chain is not None and any(joint.name == name for joint in chain):
+        if _is_named(robot, name, link, parent):
             continue
-        actual = robot.holding[link].name if chain else None
-        at = at or (place(robot.holding[link].mark, "name") if chain else None)
-        wrong.append(f"{link!r} is held by {actual!r}, not {name!r}" if actual else f"no joint {name!r} holds {link!r}")
+        held = robot.holding.get(link)
+        at = at or (place(held.mark, "name") if held else None)
+        wrong.append(
+            f"{link!r} is held by {held.name!r}, not {name!r}" if held else f"no joint {name!r} holds {link!r}"
+        )
     if wrong:
         return failed("; ".join(wrong), at)
     return passed(f"the joints are named {listing(list(joints))}")
+
+
+def _is_named(robot: Configuration, name: str, link: str, parent: str) -> bool:
+    if not robot.robot.has_link(link):
+        return False
+    named = [joint for joint in robot.robot.joints if joint.name == name]
+    held = robot.holding.get(link)
+    way = robot.chain(link, above=parent) if robot.robot.has_link(parent) else None
+    if held is not None:
+        return held in named or any(joint in named for joint in way or ())
+    return any(link in (joint.child, joint.parent) for joint in named)
 
 
 def root_of_tree(robot: Configuration, *, link: str, holds: str) -> Outcome:
@@ -86,7 +100,7 @@ def _not_below(robot: Configuration, link: str, parent: str) -> Outcome:
         message = f"{link!r} is above {parent!r}: joint {above.name!r} has them as parent and child the other way round"
         return failed(message, place(above.mark))
     message = f"joint {held.name!r} holds {link!r} to {held.parent!r}, expected {parent!r} as the parent"
-    return failed(message, place(held.mark))
+    return failed(message, place(held.mark, "link", "parent"))
 
 
 def _last(chain: tuple[Joint, ...] | None) -> Joint:

@@ -8,6 +8,7 @@ from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Cylinder, Joint
 from grader.robot.shapes import extent, farthest, volume
+from grader.robot.source import Spot
 from grader.robot.transforms import Vector, cross, dot, minus, unit
 
 _SMALL_ANGLE = 1e-3  # rad; also metres for a sliding joint
@@ -43,7 +44,7 @@ def rolls_forward(
     moved_low = _flat(minus(displaced.apply(low), low), upward)
     moved_high = _flat(minus(displaced.apply(high), high), upward)
     rolled = hypot(*minus(moved_low, moved_high))
-    at = place(joint.axis_mark, "xyz") or place(joint.mark)
+    at = _axis_place(joint)
     travel = unit((-moved_low[0], -moved_low[1], -moved_low[2])) if hypot(*moved_low) > _STANDSTILL else None
     if travel is None or rolled < _ROLLING * _SMALL_ANGLE * dot(minus(high, low), upward):
         how = "its lowest point stays where it is" if travel is None else "it swivels about an upright axis"
@@ -97,6 +98,14 @@ def turns_about_itself(robot: Configuration, *, link: str, base: str, tolerance:
         )
     at = place(visual.origin.mark, "xyz") or at
     return judged(fine, message, actual=away, expected=0.0, tolerance=tolerance, unit="m", at=at)
+
+
+def _axis_place(joint: Joint) -> Spot | None:
+    """Where an axis got its direction: from the joint's own turn, if it is a plain axis of a frame that is turned."""
+    origin = joint.origin
+    if origin is not None and any(origin.rpy) and joint.axis is not None and min(joint.axis) >= 0.0:
+        return place(origin.mark, "rpy")
+    return place(joint.axis_mark, "xyz") or place(joint.mark)
 
 
 def _turning_joint(robot: Configuration, link: str, base: str) -> Joint:

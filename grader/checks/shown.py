@@ -1,9 +1,11 @@
 """What a link shows, for the checks that measure it."""
 
+from typing import Literal
+
 from grader.checks.outcome import place
 from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration
-from grader.robot.model import Geometry, Mesh, Visual
+from grader.robot.model import Box, Cylinder, Geometry, Mesh, Sphere, Visual
 from grader.robot.motion import behind
 from grader.robot.shapes import extent, is_empty, volume
 from grader.robot.transforms import Transform, Vector
@@ -21,11 +23,20 @@ def visuals(robot: Configuration, link: str) -> tuple[Visual, ...]:
     return shown
 
 
-def body(robot: Configuration, link: str) -> Visual:
-    """The visual that counts for a link: its only one, else the largest; the first mesh where sizes are unknown."""
+ShapeName = Literal["any", "box", "cylinder", "sphere"]
+_SHAPES: dict[str, type[Box] | type[Cylinder] | type[Sphere]] = {"box": Box, "cylinder": Cylinder, "sphere": Sphere}
+
+
+def body(robot: Configuration, link: str, shape: ShapeName = "any") -> Visual:
+    """The visual that counts for a link: its only one, else the largest; the first mesh where sizes are unknown.
+
+    Where a shape is named and the link shows it, others do not count.
+    """
     shown = visuals(robot, link)
     if len(shown) == 1:
         return shown[0]
+    if shape != "any":
+        shown = tuple(each for each in shown if isinstance(each.geometry, _SHAPES[shape])) or shown
     for visual in shown:
         if isinstance(visual.geometry, Mesh):
             return visual

@@ -51,7 +51,7 @@ def read_urdf(data: bytes, path: str = "robot.urdf") -> Reading:
     The verdict is ROS 2 Jazzy's (urdfdom on TinyXML2): `clean`; `degraded`, if content was dropped or links are left out
     of the tree; `rejected`. Every problem is reported, sorted by place. Never raises for any input.
     """
-    text = data.decode("utf-8", "surrogateescape").removeprefix("\ufeff")
+    text = data.decode("utf-8", "surrogateescape")
     if dialect.is_plain(data):
         try:
             root = etree.fromstring(data, _PARSER)

@@ -39,7 +39,10 @@ class Source:
             lengths = (len(line) for line in self.text.split("\n"))
             self._lines = list(accumulate((length + 1 for length in lengths), initial=0))
         line = bisect_right(self._lines, offset)
-        return Location(self.path, line, offset - self._lines[line - 1] + 1)
+        start = self._lines[line - 1]
+        if line == 1 and offset > 0 and self.text.startswith("\ufeff"):
+            start = 1  # editors do not show a byte-order mark
+        return Location(self.path, line, offset - start + 1)
 
     def tag(self, index: int, attribute: str | None = None) -> Location:
         """The place of the start tag with this index in document order, or of an attribute in it if it is there."""
@@ -58,7 +61,7 @@ class Source:
     def line(self, number: int) -> str:
         """The text of a line, counted from 1, without its end."""
         lines = self.text.split("\n", number)
-        return lines[number - 1].rstrip("\r") if 0 < number <= len(lines) else ""
+        return lines[number - 1].rstrip("\r").removeprefix("\ufeff") if 0 < number <= len(lines) else ""
 
     def _attribute(self, start: int, name: str) -> int:
         name_end = _TAG_NAME.match(self.text, start)

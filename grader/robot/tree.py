@@ -19,8 +19,8 @@ def holding_joints(robot: Robot) -> dict[str, Joint]:
     """The joint that holds each link, by the link's name.
 
     Of two with one child the last in name order counts, as in ROS 2. Of a rejected file ROS 2 shows nothing, so there the
-    fairer reading counts: no joint that would close a loop, rather one whose name does not speak of its parent (it may be
-    the wrong way round), and then the first in the file.
+    fairer reading counts: no joint that would close a loop, rather one whose name does not speak of its parent alone (it may
+    be the wrong way round), and then the first in the file.
     """
     whole = [
         joint
@@ -49,7 +49,7 @@ def _fairest(joints: list[Joint]) -> dict[str, Joint]:
         top.update(dict.fromkeys(passed, link))
         return link
 
-    for joint in sorted(joints, key=lambda each: each.parent in each.name):
+    for joint in sorted(joints, key=lambda each: each.parent in each.name and each.child not in each.name):
         if joint.child not in held and root(joint.parent) != joint.child:
             held[joint.child] = joint
             top[joint.child] = joint.parent
@@ -132,7 +132,7 @@ def _check_two_parents(edges: Edges, held: dict[str, Joint], notes: Notes) -> No
     for joint in (each for group in edges.values() for each in group):
         claims.setdefault(joint.child, []).append(joint)
     for child, rivals in claims.items():
-        if len(rivals) > 1:
+        if len({joint.name for joint in rivals}) > 1:
             names = " and ".join(quoted(joint.name) for joint in rivals[:_MOST_NAMED])
             message = f"link {quoted(child)} is the child of {names}; in ROS 2 {quoted(held[child].name)} holds it (last in name order)"
             notes.add(catalogue.TWO_PARENTS, message, notes.element(rivals[1]))

@@ -228,7 +228,7 @@ def test_a_revolute_joint_turns_too() -> None:
     [
         (rolling(axis="0 0 0"), "its axis is 0 0 0", 'xyz="0 0 0"'),
         (rolling(axis="0 1"), "its axis cannot be read", 'xyz="0 1"'),
-        (rolling(xyz="1 2"), "its origin cannot be read", "<joint"),
+        (rolling(xyz="1 2"), "its origin cannot be read", '<origin xyz="1 2"'),
     ],
     ids=["zero-axis", "unreadable-axis", "unreadable-origin"],
 )

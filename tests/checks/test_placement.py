@@ -62,8 +62,8 @@ def far_away() -> Scene:
     ("found", "reason", "at"),
     [
         (hanging("continuous", axis="0 0 0"), "its axis is 0 0 0", 'xyz="0 0 0"'),
-        (hanging("fixed", xyz="1 2"), "its origin cannot be read", "<joint"),
-        (hanging("fixed", rpy="a b c"), "its origin cannot be read", "<joint"),
+        (hanging("fixed", xyz="1 2"), "its origin cannot be read", '<origin xyz="1 2"'),
+        (hanging("fixed", rpy="a b c"), "its origin cannot be read", '<origin rpy="a b c"'),
         (far_away(), "its numbers are too large", '<joint name="wheel_joint"'),
     ],
     ids=["zero-axis", "two-numbers", "letters", "overflow"],
