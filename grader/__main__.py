@@ -2,17 +2,33 @@
 
 import sys
 
+_FAULT_OF_USE, _INTERRUPTED = 2, 130
+
 
 def main() -> None:
     """Run the command line; exits with the code that the command gives."""
-    if sys.argv[1:] == ["--version"]:  # answered before anything is imported
+    try:
+        code = _run(sys.argv[1:])
+    except KeyboardInterrupt:
+        code = _INTERRUPTED
+    if code == _INTERRUPTED:
+        print("grader: interrupted", file=sys.stderr)
+    sys.exit(code)
+
+
+def _run(arguments: list[str]) -> int:
+    if arguments == ["--version"]:  # answered before anything is imported
         from grader import __version__
 
-        print(f"grader {__version__}")
-        return
+        try:
+            print(f"grader {__version__}", flush=True)
+        except OSError as error:
+            print(f"grader: cannot write: {error.strerror}", file=sys.stderr)
+            return _FAULT_OF_USE
+        return 0
     from grader.cli.app import run
 
-    sys.exit(run(sys.argv[1:]))
+    return run(arguments)
 
 
 if __name__ == "__main__":

@@ -13,7 +13,6 @@ FLOORS = {
     "submission": 2,
     "checks": 3,
     "grading": 4,
-    "classroom": 5,
     "report": 6,
     "cli": 7,
     "__main__": 8,

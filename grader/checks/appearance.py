@@ -143,7 +143,7 @@ def _colourless(link: str, visual: Visual) -> Outcome:
     if visual.material is not None:
         return Outcome("pending", f"{link!r} is shown with a picture on it, which is not opened; a person has to look")
     if visual.material_name:
-        message = f"{link!r} has no colour: its material {visual.material_name!r} is not defined where it is used"
+        message = f"{link!r} has no colour: ROS 2 knows no colour of the material {visual.material_name!r} here"
     else:
         message = f"{link!r} has no material, so RViz shows its default red"
     return failed(message, place(visual.mark))

@@ -18,7 +18,7 @@ def visuals(robot: Configuration, link: str) -> tuple[Visual, ...]:
         shown = tuple(each for each in robot.link(link).visuals if not is_empty(each.geometry))
         robot.shown[link] = shown
     if not shown:
-        message = f"link {link!r} shows nothing: ROS 2 finds no visual with a size in it"
+        message = f"link {link!r} shows nothing that has a size"
         raise MissingElement("visual", link, message=message, location=place(robot.link(link).mark))
     return shown
 

@@ -14,7 +14,7 @@ from grader.cli.rubric import rubric
 from grader.cli.schema import schema
 from grader.errors import GraderError, RubricError
 
-FAULT_OF_USE, FAULT_OF_OURS = 2, 3
+FAULT_OF_USE, FAULT_OF_OURS, INTERRUPTED = 2, 3, 130
 
 app = typer.Typer(
     name="grader",
@@ -55,7 +55,9 @@ def run(arguments: Sequence[str]) -> int:
         complain(str(error))
         return FAULT_OF_USE
     except KeyboardInterrupt:
-        complain("interrupted")
+        return INTERRUPTED
+    except OSError as error:
+        complain(f"cannot write: {error.strerror or error}")
         return FAULT_OF_USE
     except Exception as error:  # noqa: BLE001  no traceback ever reaches a user
         return _other(error)
@@ -63,6 +65,8 @@ def run(arguments: Sequence[str]) -> int:
 
 
 def _other(error: Exception) -> int:
+    if type(error).__name__ == "Abort":  # typer's word for Ctrl-C
+        return INTERRUPTED
     usage = getattr(error, "format_message", None)
     if usage is not None:  # wrong usage, as typer says it
         command = getattr(getattr(error, "ctx", None), "command_path", "grader")

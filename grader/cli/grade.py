@@ -10,12 +10,12 @@ import typer
 
 from grader.cli.output import complain, draw, emit, save
 from grader.errors import GraderError
+from grader.submission.files import URDF_LIMIT
 
 if TYPE_CHECKING:
     from grader.grading.report import Report
 
 DEFAULT_RUBRIC = "lab6"
-_MEBIBYTE = 1024 * 1024
 
 
 class Format(StrEnum):
@@ -39,7 +39,7 @@ def grade(
     fail_under: Annotated[
         str | None, typer.Option(metavar="N|N%", help="Exit 0 from this score on, in points or percent.")
     ] = None,
-    max_size: Annotated[int, typer.Option(metavar="BYTES", min=1, help="The largest URDF that is read.")] = _MEBIBYTE,
+    max_size: Annotated[int, typer.Option(metavar="BYTES", min=1, help="The largest URDF that is read.")] = URDF_LIMIT,
 ) -> int:
     """Grade one submission and say what is wrong with it, where, and how to mend it.
 
@@ -54,6 +54,7 @@ def grade(
     """
     from grader.grading.grade import grade as grade_submission
     from grader.grading.rubric import load_rubric
+    from grader.report.text import printable
     from grader.submission.submission import open_submission
 
     saves = [_split_save(each) for each in save_as or []]
@@ -67,7 +68,7 @@ def grade(
         complain(f"graded {submission.path}; passed over {', '.join(submission.passed_over)}")
     for result in report.results:
         if result.traceback:
-            complain(f"{result.criterion.id}: {result.traceback.strip().splitlines()[-1]}")
+            complain(printable(f"{result.criterion.id}: {result.traceback.strip().splitlines()[-1]}"))
     for kind, file in saves:
         save(file, _render(report, kind, to_file=True))
     emit(_render(report, output_format, to_file=False))
@@ -100,7 +101,7 @@ def _exit_code(report: "Report", threshold: _Threshold | None) -> int:
 
 def _split_save(text: str) -> tuple[Format, Path]:
     kind, equals, file = text.partition("=")
-    if kind not in list(Format) or not equals or not file:
+    if kind not in list(Format) or not equals or file in ("", "-"):
         raise GraderError(f"--save takes FORMAT=FILE with one of the formats {', '.join(Format)}, not {text!r}")
     return Format(kind), Path(file)
 

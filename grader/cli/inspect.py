@@ -8,13 +8,13 @@ import typer
 
 from grader.cli.output import complain, draw, emit
 from grader.errors import GraderError, MissingElement
+from grader.submission.files import URDF_LIMIT
 
 if TYPE_CHECKING:
     from grader.robot.kinematics import Configuration
     from grader.robot.motion import Position
     from grader.robot.reader import Reading
 
-_MEBIBYTE = 1024 * 1024
 _ANY_URDF = "robot.urdf"
 
 
@@ -39,7 +39,7 @@ def inspect(
     output_format: Annotated[
         InspectFormat, typer.Option("--format", help="The format on standard output.")
     ] = InspectFormat.TERMINAL,
-    max_size: Annotated[int, typer.Option(metavar="BYTES", min=1, help="The largest URDF that is read.")] = _MEBIBYTE,
+    max_size: Annotated[int, typer.Option(metavar="BYTES", min=1, help="The largest URDF that is read.")] = URDF_LIMIT,
 ) -> int:
     """Show a URDF as ROS 2 reads it: every problem, the tree, the joints, all poses.
 

@@ -63,16 +63,34 @@ def draw(render: Callable[["Console"], None], *, to_file: bool = False) -> str:
 
 
 def save(path: Path, text: str) -> None:
-    """Write a file so that it is there whole or not at all; raises InputError."""
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    """Write a file so that it is there whole or not at all; raises InputError.
+
+    A link is followed. What is no regular file, such as a pipe or device, is written to as it is.
+    """
+    data = text.encode("utf-8", "backslashreplace")
     try:
-        temporary.write_bytes(text.encode("utf-8", "backslashreplace"))
-        temporary.replace(path)
+        target = Path(os.path.realpath(path))
+        if target.exists() and not target.is_file():
+            with path.open("wb") as file:
+                file.write(data)
+            return
+        _replace(target, data)
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else str(error)
-        with suppress(OSError, ValueError):
-            temporary.unlink(missing_ok=True)
         raise InputError(f"cannot write {path}: {reason}") from None
+
+
+def _replace(target: Path, data: bytes) -> None:
+    temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
+    try:
+        temporary.write_bytes(data)
+        if target.exists():
+            temporary.chmod(target.stat().st_mode & 0o7777)
+        temporary.replace(target)
+    except OSError:
+        with suppress(OSError):
+            temporary.unlink(missing_ok=True)
+        raise
 
 
 class _Buffer(io.StringIO):

@@ -5,6 +5,7 @@ from typing import Annotated
 import typer
 
 from grader.cli.output import emit
+from grader.errors import RubricError
 
 rubric = typer.Typer(help="List, show and check rubrics, and the checks that they can name.", no_args_is_help=True)
 
@@ -46,10 +47,25 @@ def list_checks() -> int:
 def check_rubric(
     file: Annotated[str, typer.Argument(metavar="FILE", help="A .toml file, or the id of a rubric.")],
 ) -> int:
-    """Check a rubric: exits 2 and names every mistake in it with its line."""
+    """Check a rubric and its reference solution: exits 2 and names every mistake, each with its line."""
+    from grader.grading.grade import grade
     from grader.grading.rubric import load_rubric
     from grader.report.points import points_words
+    from grader.report.text import printable
+    from grader.submission.submission import open_submission
 
     rules = load_rubric(file)
-    emit(f"{rules.id}: {len(rules.criteria)} criteria, {points_words(rules.points)} points, no mistakes found\n")
+    summary = f"{rules.id}: {len(rules.criteria)} criteria, {points_words(rules.points)} points, no mistakes found"
+    if rules.reference:
+        report = grade(rules, open_submission(str(rules.path.parent / rules.reference), wanted=rules.urdf))
+        lost = [each for each in report.results if each.outcome.status != "passed"]
+        if lost:
+            raise RubricError(
+                tuple(
+                    printable(f"the reference does not get {each.criterion.id}: {each.outcome.message}")
+                    for each in lost
+                )
+            )
+        summary += "; its reference gets full marks"
+    emit(summary + "\n")
     return 0

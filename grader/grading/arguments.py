@@ -26,8 +26,9 @@ def bind(check: Check, given: Mapping[str, Any]) -> tuple[dict[str, Any], list[F
             continue
         try:
             arguments[name] = convert(value, parameter.type)
-            if name == "tolerance" and arguments[name] < 0:
-                faults.append(((name,), f"a tolerance is at least 0, not {_shown(value)}"))
+            fault = _out_of_range(name, arguments[name])
+            if fault:
+                faults.append(((name,), f"{name} of {check.name} {fault}, not {_shown(value)}"))
         except TypeError:
             faults.append(
                 ((name,), f"{name} of {check.name} must be {type_words(parameter.type)}, not {_shown(value)}")
@@ -96,6 +97,23 @@ def _convert_list(value: Any, wanted: GenericAlias) -> Any:
     return tuple(made) if get_origin(wanted) is tuple else made
 
 
+def _out_of_range(name: str, value: Any) -> str | None:
+    """What is wrong with an argument that no robot could ever meet, told by its name."""
+    match name:
+        case "tolerance" | "angle" | "radius" | "length" if value < 0:
+            return "must be at least 0"
+        case "size" if min(value) < 0:
+            return "must be at least 0 in each number"
+        case "colour" if min(value) < 0 or max(value) > 1:
+            return "must be from 0 to 1 in each number"
+        case "axis" | "direction" | "forward" | "up" if not any(value):
+            return "must have a direction"
+        case _:
+            return None
+
+
 def _shown(value: Any) -> str:
-    text = repr(value) if isinstance(value, str) else str(value).replace("Decimal", "")
+    if isinstance(value, list):
+        return f"[{', '.join(map(_shown, value[:6]))}{', ...' if len(value) > 6 else ''}]"
+    text = repr(value) if isinstance(value, str) else str(value)
     return text if len(text) <= 40 else text[:37] + "..."

@@ -6,7 +6,9 @@ from grader.checks.outcome import Outcome
 from grader.errors import MissingElement
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Criterion, Rubric
+from grader.robot.catalogue import BAD_INERTIAL, BAD_VISUAL
 from grader.robot.kinematics import Configuration
+from grader.robot.names import quoted
 from grader.robot.shapes import UnknownShape
 from grader.robot.source import Spot
 from grader.submission.submission import Submission
@@ -55,7 +57,10 @@ class _Run:
             return Result(criterion, Outcome("failed", "ROS 2 cannot read the file, so there is no robot to look at"))
         subject = self.robot if check.subject == "robot" else self.urdf
         try:
-            return Result(criterion, check.function(subject, **criterion.arguments))
+            outcome = check.function(subject, **criterion.arguments)
+            if outcome.status == "failed":
+                outcome = self._explained(outcome)
+            return Result(criterion, outcome)
         except MissingElement as missing:
             return self._miss(criterion, missing)
         except UnknownShape as unknown:
@@ -73,7 +78,24 @@ class _Run:
         if first != criterion.id:
             return Result(criterion, _skipped(first), first)
         at = missing.location.location() if isinstance(missing.location, Spot) else None
-        return Result(criterion, Outcome("failed", str(missing), location=at))
+        outcome = Outcome("failed", str(missing), location=at)
+        if missing.kind == "visual":
+            return Result(criterion, self._dropped(outcome, missing.name))
+        return Result(criterion, self._explained(outcome))
+
+    def _explained(self, outcome: Outcome) -> Outcome:
+        """A failure with what ROS 2 has to say of the place that it points to."""
+        for problem in self.urdf.problems:
+            if problem.location == outcome.location and problem.message not in outcome.message:
+                return outcome._replace(message=f"{outcome.message} ({problem.code}: {problem.message})")
+        return outcome
+
+    def _dropped(self, outcome: Outcome, link: str) -> Outcome:
+        """A link that shows nothing, with the reason why ROS 2 has dropped what the file gives it."""
+        for problem in self.urdf.problems:
+            if problem.kind in (BAD_VISUAL, BAD_INERTIAL) and f"link {quoted(link)}" in problem.message:
+                return outcome._replace(message=f"{outcome.message}: {problem.message}", location=problem.location)
+        return outcome
 
 
 def _skipped(cause: str) -> Outcome:

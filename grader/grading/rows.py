@@ -1,6 +1,6 @@
 """The rows of a rubric's TOML, checked: every mistake is noted with the path of the key that it is in."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from decimal import Decimal
 from typing import Any
 
@@ -47,7 +47,7 @@ class Rows:
             self._keys(("part", index), row, _PART, "part")
             needs = row.get("needs", "urdf")
             if needs not in _NEEDS and isinstance(needs, str):
-                self._complain(("part", index, "needs"), f"a part cannot need {needs!r}{did_you_mean(needs, _NEEDS)}")
+                self._complain(("part", index, "needs"), f"a part cannot need {needs!r}{_listed(_NEEDS)}")
         self._unique("part", parts)
         self._unique("criterion", rows)
         part_ids = [row["id"] for row in parts if isinstance(row.get("id"), str)]
@@ -60,12 +60,15 @@ class Rows:
         self._keys(where, row, _CRITERION, "criterion")
         part = row.get("part")
         if isinstance(part, str) and part not in parts:
-            self._complain((*where, "part"), f"there is no part {part!r}{did_you_mean(part, parts)}")
+            self._complain((*where, "part"), f"there is no part {part!r}{did_you_mean(part, parts) or _listed(parts)}")
         self._requires(index, row, rows)
         name, given = row.get("check"), row.get("with", {})
         check = find_check(name) if isinstance(name, str) else None
         if isinstance(name, str) and check is None:
-            self._complain((*where, "check"), f"there is no check {name!r}{did_you_mean(name, check_names())}")
+            self._complain(
+                (*where, "check"),
+                f"there is no check {name!r}{did_you_mean(name, check_names()) or '; `grader rubric checks` lists them'}",
+            )
         if check is None or not isinstance(given, dict):
             return
         arguments, faults = bind(check, given)
@@ -109,8 +112,10 @@ class Rows:
                 self._complain((*where, key), f"points must be a number of at least 0, not {value}")
             elif key == "points" and value > _MOST_POINTS:
                 self._complain((*where, key), f"points must be a number of at most {_MOST_POINTS}")
-            elif key in ("id", "title") and not value.strip():
+            elif key in ("id", "title", "urdf") and not value.strip():
                 self._complain((*where, key), f"{key} must not be empty")
+            elif key == "urdf" and value.rstrip("/").split("/")[-1] in ("", ".", ".."):
+                self._complain((*where, key), f"urdf must be the path of a file, not {value!r}")
         needed = [key for key in known if key not in _OPTIONAL and (key != "points" or what == "criterion")]
         for key in needed:
             if key not in row and known[key] != "tables":
@@ -143,6 +148,10 @@ class Rows:
 
     def _complain(self, where: Path, what: str) -> None:
         self.complaints.append((where, what))
+
+
+def _listed(names: Iterable[str]) -> str:
+    return f"; there are: {', '.join(names) or 'none'}"
 
 
 def _is_countable(value: object) -> bool:

@@ -58,6 +58,11 @@ class Rubric:
         """All that can be earned."""
         return sum((criterion.points for criterion in self.criteria), Decimal(0))
 
+    @property
+    def is_shipped(self) -> bool:
+        """Whether it comes with the grader, so that its id names it."""
+        return shipped_rubrics().get(self.id) == self.path
+
     def part(self, name: str) -> Part:
         """The part of this id; raises InputError, which names those that there are."""
         for part in self.parts:
@@ -84,6 +89,8 @@ def find_rubric(name: str) -> Path:
     if name in shipped:
         return shipped[name]
     path = Path(name)
+    if not name:
+        raise RubricError(("the name of the rubric is empty",))
     if path.suffix == ".toml" or path.name != name or path.exists():
         return path
     guess = did_you_mean(name, shipped) or f"; there are: {', '.join(shipped)} (or give the path of a .toml file)"

@@ -110,7 +110,7 @@ def _show_tree(robot: Configuration, console: Console) -> None:
     branch, last = symbol(console, "\u251c\u2500 ", "|- "), symbol(console, "\u2514\u2500 ", "`- ")
     bar = symbol(console, "\u2502  ", "|  ")
     for root in robot.roots:
-        console.print(Text(f"  {printable(root)}"), overflow="ignore", no_wrap=True)
+        console.print(Text(f"  {printable(root)}"), overflow="ignore", no_wrap=True, crop=False)
         waiting: list[tuple[Joint, str, bool]] = _branches(below.get(root, []), "")
         while waiting:
             joint, indent, is_last = waiting.pop()
@@ -118,7 +118,7 @@ def _show_tree(robot: Configuration, console: Console) -> None:
                 f"  {indent}{last if is_last else branch}{printable(joint.child)}  ",
                 (f"{printable(joint.name)}: {_joint_words(joint)}", "dim"),
             )
-            console.print(line, overflow="ignore", no_wrap=True)
+            console.print(line, overflow="ignore", no_wrap=True, crop=False)
             waiting += _branches(below.get(joint.child, []), (indent + ("   " if is_last else bar))[-60:])
 
 

@@ -33,8 +33,15 @@ def rubric_text(rubric: Rubric) -> str:
 
 def checks_text() -> str:
     """Every check with the fact that it states and the arguments that it takes."""
-    found = (find_check(name) for name in check_names())
-    return "\n".join(_check_lines(check) for check in found if check is not None)
+    return "\n".join(map(_listed, check_names()))
+
+
+def _listed(name: str) -> str:
+    try:
+        check = find_check(name)
+    except InputError as error:  # another package's fault must not hide the other checks
+        return f"{name}\n  {error}\n"
+    return _check_lines(check) if check is not None else ""
 
 
 def explanation(name: str, rubric: Rubric) -> str:
@@ -59,7 +66,7 @@ def _kind_text(kind: Kind) -> str:
 
 def _criterion_text(criterion: Criterion, rubric: Rubric) -> str:
     lines = [
-        f"{criterion.id} ({points_words(criterion.points)} points, part {criterion.part} of {rubric.id})",
+        f"{criterion.id} (points: {points_words(criterion.points)}; part {criterion.part} of {rubric.id})",
         "",
         _filled(f"Passes when: {criterion.title}."),
     ]

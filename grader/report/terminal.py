@@ -33,13 +33,18 @@ def render_terminal(report: Report, console: Console) -> None:
     """Print a report. Nothing of the submission is taken for markup or control codes."""
     _show_head(report, console)
     shown: set[str] = set()
-    for about, results in groupby(report.results, key=lambda result: result.criterion.about or result.criterion.part):
+    titles = {part.id: part.title for part in report.rubric.parts}
+    for about, results in groupby(report.results, key=lambda each: each.criterion.about or titles[each.criterion.part]):
         _show_group(about, tuple(results), report.submission.urdf, console, shown)
-    told = " ".join(result.outcome.message for result in report.results if result.outcome.status == "failed")
-    problems = tuple(each for each in report.submission.urdf.problems if each.message not in told)
+    told = [(each.outcome.location, each.outcome.message) for each in report.results if each.outcome.status == "failed"]
+    problems = tuple(
+        problem
+        for problem in report.submission.urdf.problems
+        if not any(where == problem.location and problem.message in message for where, message in told)
+    )
     if problems:
         console.print()
-        console.print(Text("What else ROS 2 says of the file", style="bold"))
+        console.print(Text("What else there is to say of the file", style="bold"))
         show_problems(console, problems, report.submission.urdf.source)
     if report.counts("failed"):
         console.print()
@@ -65,6 +70,12 @@ def _show_group(about: str, results: tuple[Result, ...], urdf: Reading, console:
     most = points_words(sum((result.criterion.points for result in results), Decimal(0)))
     console.print()
     wrapped(console, Text.assemble((printable(about), "bold"), (f"  {earned}/{most}", "dim")), 0)
+    causes = {result.because for result in results}
+    if len(results) > 1 and len(causes) == 1 and None not in causes:
+        text = f"{len(results)} criteria are skipped, because {results[0].because} failed"
+        head = Text.assemble("  ", (symbol(console, *_SYMBOLS["skipped"]), _STYLES["skipped"]), f" 0/{most:<3} ")
+        wrapped(console, Text(text, style="dim"), _INDENT, head)
+        return
     for result in results:
         _show_result(result, urdf, console, shown)
 
@@ -97,13 +108,15 @@ def _show_result(result: Result, urdf: Reading, console: Console, shown: set[str
 
 def _sentence(message: str) -> str:
     text = printable(message)
-    text = text[:1].upper() + text[1:]
+    if text.split(" ")[0].isalpha():  # an attribute of the file, as in xyz="0 0", stays as it is
+        text = text[:1].upper() + text[1:]
     return text if text.endswith((".", "?")) else f"{text}."
 
 
 def _advice(report: Report) -> str:
     first = next(_failed(report.results))
-    return f"`grader explain {first}` says more about a criterion, `grader inspect` shows the whole robot."
+    rubric = "" if report.rubric.is_shipped else f" --rubric {printable(report.rubric.path.name)}"
+    return f"`grader explain {first}{rubric}` says how it is decided, `grader inspect` shows the whole robot."
 
 
 def _failed(results: Iterable[Result]) -> Iterator[str]:

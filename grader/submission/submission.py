@@ -37,13 +37,16 @@ def open_submission(path: str, *, wanted: str, limit: int = URDF_LIMIT) -> Submi
     """
     if path == STANDARD_INPUT:
         return read_submission(read_standard_input(limit), identity="stdin", path="-")
+    if not path:
+        raise InputError("the path is empty")
     place = Path(path)
     try:
         is_folder = place.is_dir()
         if not is_folder and not os.path.lexists(place):
             raise InputError(f"{printable_path(place)} does not exist")
     except (OSError, ValueError) as error:
-        raise InputError(f"cannot read {printable_path(place)}: {error}") from None
+        reason = error.strerror if isinstance(error, OSError) else str(error)
+        raise InputError(f"cannot read {printable_path(place)}: {reason}") from None
     if not is_folder and place.name.lower().endswith(_ARCHIVES):
         raise InputError(f"{printable_path(place)} is an archive, which this version does not open: unpack it first")
     if not is_folder:

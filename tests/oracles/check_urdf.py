@@ -14,7 +14,7 @@ from typing import Literal
 
 import pytest
 
-_MISSING = "check_urdf is not installed: pip install 'grader[test]'"
+_MISSING = "check_urdf is not installed: pip install --editable '.[test]'"
 
 # `check_urdf` never reports a link that the root does not reach: it is only not printed. Each link but the root of an
 # accepted file is the child of a joint, so these two say which links should have been printed.

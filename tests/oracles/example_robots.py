@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-MISSING = "the oracle extra is not installed: pip install 'grader[oracle]'"
+MISSING = "the oracle extra is not installed: pip install --editable '.[oracle]'"
 
 
 def _folder() -> Path | None:

@@ -126,6 +126,8 @@ class Scanner:
             self._end()
         elif end < 0:
             message = "there is text behind the end of the robot; ROS 2 loads nothing"
+            if not self._top_level:
+                message = f"this is not XML: it begins with {short(self._text.strip()[:20])!r}; ROS 2 loads nothing"
             self._refuse(catalogue.STRAY_TEXT, message, position)
         elif not self._stack:
             self._only_declarations = False
@@ -248,7 +250,9 @@ class Scanner:
     def _differ(self, key: str, what: str, offset: int) -> None:
         if key not in self._noted:
             self._noted.add(key)
-            self._find(catalogue.NOT_WELL_FORMED, f"ROS 2 loads this, but it is not well-formed XML: {what}", offset)
+            self._find(
+                catalogue.NOT_WELL_FORMED, f"ROS 2 reads past this, but it is not well-formed XML: {what}", offset
+            )
 
 
 def _is_plain_name(name: str) -> bool:
