@@ -74,7 +74,7 @@ BREAKS = (
         f"{LIDAR}/parent",
         "link",
         "base_footprint",
-        "lidar-fixed lidar-frame lidar-on-top joint-names",
+        "lidar-fixed lidar-frame lidar-on-top",
     ),
     Break(
         "lidar-misspelt",

@@ -1,5 +1,6 @@
 """Ways to ask a check: alone, as a criterion of a rubric, and where it cannot answer."""
 
+import re
 from collections.abc import Callable
 from decimal import Decimal
 from pathlib import Path
@@ -18,6 +19,8 @@ from tests.checks.robots import PATH, Scene
 
 AnyCheck = Callable[..., Outcome]
 Arguments = dict[str, Any]
+
+_EXPLANATION = re.compile(r" \(URDF\d{3}: .*\)\Z", re.DOTALL)
 
 
 def ask(check: AnyCheck, scene: Scene, **arguments: Any) -> Outcome:
@@ -49,9 +52,14 @@ def passes(check: AnyCheck, scene: Scene, **arguments: Any) -> str:
 
 
 def fails(check: AnyCheck, scene: Scene, *, at: str | None = None, **arguments: Any) -> str:
-    """The message of a check, which must fail; `at` begins at the place that it must point to."""
+    """The own message of a check, which must fail; `at` begins at the place that it must point to."""
     outcome = graded(check, scene, **arguments)
     assert outcome.status == "failed", outcome
     expected: Location | None = scene.place(at) if at is not None else outcome.location
     assert outcome.location == expected, (outcome, expected)
-    return outcome.message
+    return own_words(outcome)
+
+
+def own_words(outcome: Outcome) -> str:
+    """A message without what a grade run adds to it: the reader's problem at the same place, in parentheses."""
+    return _EXPLANATION.sub("", outcome.message)

@@ -33,7 +33,7 @@ FORWARD = turned(roll=-90)
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """A check with arguments, a scene that passes and one that fails, and where in it the failure stands."""
+    """A check with arguments, a scene that passes and one that fails, and where in it the failure stands, if anywhere."""
 
     check: AnyCheck
     arguments: Mapping[str, Any]
@@ -41,7 +41,7 @@ class Case:
     says: str
     failing: Scene
     complains: str
-    at: str
+    at: str | None
 
     @property
     def name(self) -> str:
@@ -207,7 +207,7 @@ CASES = (
         says="the bottoms of 'wheel', 'caster' are at z = 0 0 m in 'foot'",
         failing=standing(wheel=0.05),
         complains="the bottoms of 'wheel', 'caster' are at z = 0.05 0 m in 'foot', expected 0 m: 'wheel' is 50 mm too high",
-        at='<link name="wheel">',
+        at='xyz="-0.15 0.225 0.05"',  # of the wheel's joint
     ),
     Case(
         stands_on,
@@ -217,7 +217,7 @@ CASES = (
         failing=mounted((0.15, 0.0, 0.2)),
         complains="the bottom of 'lidar' is at z = 0.175 m in 'base' and the top of 'base' at 0.2 m:"
         " 'lidar' is sunk into it by 25 mm",
-        at='xyz="0.15 0.0 0.2"',
+        at=None,  # lidar or base: either may be in the wrong place
     ),
     Case(
         clear_of,
@@ -245,7 +245,7 @@ CASES = (
         says="a small positive turn of joint 'wheel_joint' drives 'base' forward",
         failing=rolling(rpy=turned(roll=90)),
         complains="a small positive turn of joint 'wheel_joint' drives 'base' backward, expected forward",
-        at='xyz="0 0 1"',
+        at="rpy=",
     ),
     Case(
         axis_along,

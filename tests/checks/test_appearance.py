@@ -79,8 +79,8 @@ def test_a_box_on_its_side_is_measured_along_the_links_axes(size: Vector, rpy: s
 
 
 def test_a_box_that_is_turned_the_wrong_way_is_measured_as_it_lies() -> None:
-    """The right numbers in `size` are wrong once the visual is turned."""
-    message = fails(shows_box, boxed(*SIZE, rpy=turned(yaw=90)), at="size=", **BOX)
+    """The right numbers in `size` are wrong once the visual is turned: the turn is pointed to."""
+    message = fails(shows_box, boxed(*SIZE, rpy=turned(yaw=90)), at="rpy=", **BOX)
     assert message == "'base' shows a box 0.4 0.6 0.2 m, expected 0.6 0.4 0.2 m (x, y, z)"
 
 
@@ -91,7 +91,7 @@ def test_a_box_may_be_turned_by_one_degree(angle: str) -> None:
         flat = ask(shows_box, boxed(0.5, 0.5, 0.5, rpy=turned(**{angle: off})), **{**BOX, "size": (0.5, 0.5, 0.5)})
         assert flat.status == "passed"
     for off in (1.01, -1.01, 45.0, 88.99):
-        message = fails(shows_box, boxed(*SIZE, rpy=turned(**{angle: off})), at="size=", **BOX)
+        message = fails(shows_box, boxed(*SIZE, rpy=turned(**{angle: off})), at="rpy=", **BOX)
         assert message == "the box of 'base' is turned: its edges are not along the axes of 'base'"
 
 
@@ -291,7 +291,7 @@ def test_an_undefined_material_is_no_colour() -> None:
     """A material that is named but defined nowhere is quoted."""
     found = scene(link("base", visual(box(*SIZE), material='<material name="gren"/>')), paint("0 0.6 0 1", "green"))
     message = fails(shows_colour, found, at="<visual>", **GREEN)
-    assert message == "'base' has no colour: its material 'gren' is not defined where it is used"
+    assert message == "'base' has no colour: ROS 2 knows no colour of the material 'gren' here"
 
 
 def test_three_numbers_are_black() -> None:
@@ -322,6 +322,26 @@ def test_the_largest_visual_has_the_colour() -> None:
     assert "1 0 0 1" in fails(
         shows_colour, scene(link("base", large, visual(sphere(9.0), material=paint("1 0 0 1")))), **GREEN
     )
+
+
+def test_the_colour_of_the_named_shape_counts() -> None:
+    """A larger shape of another kind does not matter where the rubric names one; a shape that is not shown names none."""
+    body = visual(box(*SIZE), material=paint("0 0.6 0 1", "green"))
+    ball = visual(sphere(9.0), material=paint("1 0 0 1", "red"))
+    for found in (scene(link("base", body, ball)), scene(link("base", ball, body))):
+        passes(shows_colour, found, **GREEN, shape="box")
+        for shape in ("any", "sphere", "cylinder"):
+            assert "rgba 1 0 0 1" in fails(shows_colour, found, at='rgba="1 0 0 1"', **GREEN, shape=shape)
+    beside_a_mesh = scene(link("base", visual(mesh(), material=paint("1 0 0 1", "red")), body))
+    passes(shows_colour, beside_a_mesh, **GREEN, shape="box")
+
+
+def test_of_several_of_the_named_shape_the_largest_counts() -> None:
+    """A small box does not give the base its colour."""
+    small = visual(box(0.1, 0.1, 0.1), material=paint("1 0 0 1", "red"))
+    large = visual(box(*SIZE), material=paint("0 0.6 0 1", "green"))
+    for order in ((small, large), (large, small)):
+        passes(shows_colour, scene(link("base", *order)), **GREEN, shape="box")
 
 
 def test_a_mesh_has_a_colour() -> None:

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from grader.checks.joints import held_by, joints_named, root_of_tree
 from grader.robot.joints import JOINT_TYPES
-from tests.checks.asking import Arguments, ask, fails, graded, missing, passes
+from tests.checks.asking import Arguments, ask, fails, graded, missing, own_words, passes
 from tests.checks.cases import BASE, FOOT, LIDAR, WHEEL, Case, cases_of
 from tests.checks.robots import Scene, joint, link, scene
 
@@ -54,9 +54,9 @@ def test_the_type_of_the_joint_decides(kind: str, wanted: str) -> None:
     if kind == wanted:
         assert outcome.message == f"a {kind} joint, 'j', holds 'wheel' to 'base'"
     elif kind == "fixed":
-        assert outcome.message == f"'wheel' cannot move: joint 'j' is fixed, expected {wanted}"
+        assert own_words(outcome) == f"'wheel' cannot move: joint 'j' is fixed, expected {wanted}"
     else:
-        assert outcome.message == f"joint 'j', which holds 'wheel', is {kind}, expected {wanted}"
+        assert own_words(outcome) == f"joint 'j', which holds 'wheel', is {kind}, expected {wanted}"
 
 
 def test_a_wrong_type_is_pointed_to() -> None:
@@ -74,7 +74,7 @@ def test_a_link_that_cannot_move_misses_a_moving_joint() -> None:
 
 @pytest.mark.parametrize(
     ("kind", "guess"),
-    [("Continuous", "continuous"), ("continous", "continuous"), ("fixd", "fixed"), ("", None), ("wheel", None)],
+    [("Continuous", "continuous"), ("continous", "continuous"), ("fixd", "fixed"), ("wheel", None)],
 )
 def test_an_unknown_type_is_quoted(kind: str, guess: str | None) -> None:
     """A type that does not exist is told as it is written, with the one that may be meant."""
@@ -82,6 +82,23 @@ def test_an_unknown_type_is_quoted(kind: str, guess: str | None) -> None:
         message = fails(held_by, held(kind), at=f'type="{kind}"', **arguments)
         hint = f"; did you mean {guess!r}?" if guess else ""
         assert message == f"joint 'j', which holds 'wheel', has the type {kind!r}, which does not exist{hint}"
+
+
+def test_a_joint_without_a_type_has_none() -> None:
+    """A type that is empty or left out is told as missing; without the attribute the joint is pointed to."""
+    without = Scene(held("fixed").text.replace(' type="fixed"', ""))
+    for found, at in ((held(""), 'type=""'), (without, "<joint")):
+        for arguments in (HELD, FIXED):
+            assert fails(held_by, found, at=at, **arguments) == "joint 'j', which holds 'wheel', has no type"
+
+
+def test_a_grade_run_adds_what_ros_makes_of_an_unknown_type() -> None:
+    """What the reader says of the same place follows in parentheses, with its code."""
+    outcome = graded(held_by, held("wheel"), **FIXED)
+    assert outcome.message == (
+        "joint 'j', which holds 'wheel', has the type 'wheel', which does not exist"
+        " (URDF061: joint 'j' has the type 'wheel', which does not exist: ROS 2 loads nothing of the file)"
+    )
 
 
 def test_an_unknown_type_moves_nothing() -> None:
@@ -140,9 +157,9 @@ def test_in_a_swapped_chain_the_joint_below_the_link_is_named() -> None:
 
 
 def test_another_parent_is_named() -> None:
-    """A link that is held to something else fails, and what holds it is told."""
+    """A link that is held to something else fails, what holds it is told, and the parent in its joint pointed to."""
     beside = scene(BASE, LIDAR, WHEEL, joint("a", "fixed", "lidar", "base"), joint("b", "continuous", "lidar", "wheel"))
-    message = fails(held_by, beside, at='<joint name="b"', **HELD)
+    message = fails(held_by, beside, at='link="lidar"/>\n<child link="wheel"', **HELD)
     assert message == "joint 'b' holds 'wheel' to 'lidar', expected 'base' as the parent"
 
 
@@ -193,6 +210,9 @@ def test_a_chain_holds_a_link_just_where_its_moving_joints_are_those_asked_for(k
 # --- joints_named -----------------------------------------------------------------------------------------------------
 
 NAMED: Arguments = {"parent": "base", "joints": {"lidar_joint": "lidar", "wheel_joint": "wheel"}}
+
+
+LIDAR_NAMED: Arguments = {"parent": "base", "joints": {"lidar_joint": "lidar"}}
 
 
 def named(lidar: str, wheel: str) -> Scene:
@@ -248,10 +268,43 @@ def test_any_joint_on_the_way_may_have_the_name() -> None:
         passes(joints_named, found, parent="base", joints={"lidar_joint": "lidar"})
 
 
-def test_a_joint_to_another_parent_does_not_count() -> None:
-    """A name is asked of the joints that hold a link to the parent."""
+def test_a_joint_the_wrong_way_round_has_its_name() -> None:
+    """Which link is the parent is another criterion: a joint at a link that nothing holds counts."""
     swapped = scene(BASE, LIDAR, joint("lidar_joint", "fixed", "lidar", "base"))
-    fails(joints_named, swapped, parent="base", joints={"lidar_joint": "lidar"})
+    passes(joints_named, swapped, **LIDAR_NAMED)
+
+
+def test_a_joint_to_another_parent_has_its_name() -> None:
+    """So it is with a link that hangs on something else, and where the parent is called otherwise."""
+    beside = scene(
+        BASE, LIDAR, WHEEL, joint("a", "fixed", "base", "wheel"), joint("lidar_joint", "fixed", "wheel", "lidar")
+    )
+    passes(joints_named, beside, **LIDAR_NAMED)
+    passes(joints_named, beside, **{**LIDAR_NAMED, "parent": "base_link"})
+
+
+def test_the_joint_above_the_parent_does_not_count() -> None:
+    """What is beyond the parent does not hold the link to it, and without the parent there is no way."""
+    found = scene(
+        FOOT, BASE, LIDAR, joint("lidar_joint", "fixed", "foot", "base"), joint("b", "fixed", "base", "lidar")
+    )
+    for parent in ("base", "base_link"):
+        message = fails(joints_named, found, at='name="b"', **{**LIDAR_NAMED, "parent": parent})
+        assert message == "'lidar' is held by 'b', not 'lidar_joint'"
+
+
+def test_a_joint_below_a_link_that_is_held_does_not_count() -> None:
+    """The name belongs to the joint that holds the link, not to one that the link holds."""
+    found = scene(
+        BASE, LIDAR, WHEEL, joint("a", "fixed", "base", "lidar"), joint("lidar_joint", "fixed", "lidar", "wheel")
+    )
+    assert fails(joints_named, found, at='name="a"', **LIDAR_NAMED) == "'lidar' is held by 'a', not 'lidar_joint'"
+
+
+def test_a_joint_to_a_link_that_is_missing_has_its_name() -> None:
+    """A joint whose parent does not exist holds nothing; it has its name all the same."""
+    found = scene(BASE, LIDAR, joint("lidar_joint", "fixed", "bas", "lidar"))
+    passes(joints_named, found, **LIDAR_NAMED)
 
 
 def test_a_single_name_is_listed_alone() -> None:

@@ -64,12 +64,19 @@ def test_every_way_to_turn_about_the_left_is_forward(rpy: str, axis: str) -> Non
 
 
 @pytest.mark.parametrize(
-    ("rpy", "axis"), [(turned(roll=90), "0 0 1"), (FORWARD, "0 0 -1")], ids=["mirrored", "negated"]
+    ("rpy", "axis", "at"),
+    [
+        (turned(roll=90), "0 0 1", "rpy="),
+        (FORWARD, "0 0 -1", 'xyz="0 0 -1"'),
+        ("", "0 -1 0", 'xyz="0 -1 0"'),
+        (turned(yaw=180), "0 1 0", "rpy="),
+    ],
+    ids=["mirrored", "negated", "negated-unturned", "turned-round"],
 )
-def test_a_wheel_the_other_way_round_drives_backward(rpy: str, axis: str) -> None:
-    """A mirrored frame or a negated axis turns the wheel the other way: the axis is where to look."""
-    found = rolling(rpy=rpy, axis=axis)
-    message = fails(rolls_forward, found, at=f'xyz="{axis}"', **FORWARDS)
+def test_a_wheel_the_other_way_round_drives_backward(rpy: str, axis: str, at: str) -> None:
+    """A mirrored frame or a negated axis turns the wheel the other way: that is where to look."""
+    found = with_wheel(visual(sphere(0.1)), rpy=rpy, axis=axis)
+    message = fails(rolls_forward, found, at=at, **FORWARDS)
     assert message == "a small positive turn of joint 'wheel_joint' drives 'base' backward, expected forward"
     assert ask(rolls_forward, found, **FORWARDS).measured == pytest.approx((-1.0, 0.0, 0.0))
     assert ask(rolls_forward, found, **FORWARDS).expected == (1.0, 0.0, 0.0)
@@ -78,7 +85,7 @@ def test_a_wheel_the_other_way_round_drives_backward(rpy: str, axis: str) -> Non
 def test_a_wheel_along_x_drives_sideways() -> None:
     """A wheel whose axis lies along the base's x axis rolls to the side."""
     for pitch, y in ((90, "-1"), (-90, "1")):
-        message = fails(rolls_forward, rolling(rpy=turned(pitch=pitch)), **FORWARDS)
+        message = fails(rolls_forward, rolling(rpy=turned(pitch=pitch)), at="rpy=", **FORWARDS)
         assert message == (
             f"a small positive turn of joint 'wheel_joint' drives 'base' sideways, along 0 {y} 0, expected forward"
         )
