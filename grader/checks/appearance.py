@@ -8,7 +8,7 @@ from grader.checks.shown import ShapeName, body, shape_name, visuals
 from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Cylinder, Material, Sphere, Visual
-from grader.robot.transforms import IDENTITY_ROTATION, Vector, rotation_from_rpy
+from grader.robot.transforms import IDENTITY_ROTATION, Vector, minus, rotation_from_rpy
 
 Rgb = tuple[float, float, float]
 Rgba = tuple[float, float, float, float]
@@ -23,8 +23,8 @@ def shows_box(robot: Configuration, *, link: str, size: Vector, tolerance: float
         return _other_shape(robot, link, "box")
     edges = [(_edges(visual), visual) for visual in found]
     actual, visual = min(edges, key=lambda each: _largest_gap(each[0], size))
-    turned = visual.origin.mark is not None and any(visual.origin.rpy)
-    at = place(visual.origin.mark, "rpy") if turned else place(visual.geometry.mark, "size")
+    turned = actual is None or within(max(map(abs, minus(_sorted(actual), _sorted(size)))), 0.0, tolerance)
+    at = place(visual.origin.mark, "rpy") if turned and any(visual.origin.rpy) else place(visual.geometry.mark, "size")
     if actual is None:
         return failed(f"the box of {link!r} is turned: its edges are not along the axes of {link!r}", at)
     fine = all(within(a, b, tolerance) for a, b in zip(actual, size, strict=True))
@@ -124,6 +124,11 @@ def _edges(visual: Visual) -> Vector | None:
     return None
 
 
+def _sorted(size: Vector) -> Vector:
+    a, b, c = sorted(size)
+    return (a, b, c)
+
+
 def _largest_gap(actual: Vector | None, expected: Vector) -> float:
     return float("inf") if actual is None else max(abs(a - b) for a, b in zip(actual, expected, strict=True))
 
@@ -146,7 +151,7 @@ def _colourless(link: str, visual: Visual) -> Outcome:
         message = f"{link!r} has no colour: ROS 2 knows no colour of the material {visual.material_name!r} here"
     else:
         message = f"{link!r} has no material, so RViz shows its default red"
-    return failed(message, place(visual.mark))
+    return failed(message, place(visual.mark, "name", "material") if visual.material_name else place(visual.mark))
 
 
 def _channels(colour: tuple[float, ...]) -> str:

@@ -46,7 +46,8 @@ def held_by(robot: Configuration, *, link: str, parent: str, joint_type: JointTy
 def joints_named(robot: Configuration, *, parent: str, joints: Mapping[str, str]) -> Outcome:
     """The joints that hold links have the given names (joint name: link name).
 
-    The joint counts that has the link as its child, or joins it to `parent`, or is on the way to it from there.
+    The joint counts that holds the link, or is on the way to it from `parent`; where nothing holds the link, any joint
+    of that name that has it as its child or parent.
     """
     wrong: list[str] = []
     at = None

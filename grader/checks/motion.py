@@ -16,6 +16,7 @@ _STANDSTILL = 1e-9  # metres
 _ROLLING = (
     0.7  # of the way that the lowest point of a level wheel makes against its highest: up to 45 degrees off level
 )
+_NONE, _Z_AXIS = (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)
 _TURNING_TYPES = ("continuous", "revolute")
 
 
@@ -39,7 +40,7 @@ def rolls_forward(
     low, high = _lowest_and_highest(robot, link, base, upward)
     position = robot.position(joint)  # a joint that mimics another need not be at 0
     assert isinstance(position, int | float)  # what turns has one number for a position
-    turned = robot.moved(joint.name, position + _SMALL_ANGLE).pose(link, relative_to=base)
+    turned = robot.moved(joint, position + _SMALL_ANGLE).pose(link, relative_to=base)
     displaced = turned @ robot.pose(link, relative_to=base).inverse()
     moved_low = _flat(minus(displaced.apply(low), low), upward)
     moved_high = _flat(minus(displaced.apply(high), high), upward)
@@ -101,9 +102,9 @@ def turns_about_itself(robot: Configuration, *, link: str, base: str, tolerance:
 
 
 def _axis_place(joint: Joint) -> Spot | None:
-    """Where an axis got its direction: from the joint's own turn, if it is a plain axis of a frame that is turned."""
+    """Where an axis got its direction: from the joint's own turn, if it is the z axis of a frame that is turned."""
     origin = joint.origin
-    if origin is not None and any(origin.rpy) and joint.axis is not None and min(joint.axis) >= 0.0:
+    if origin is not None and any(origin.rpy) and joint.axis_mark is not None and unit(joint.axis or _NONE) == _Z_AXIS:
         return place(origin.mark, "rpy")
     return place(joint.axis_mark, "xyz") or place(joint.mark)
 

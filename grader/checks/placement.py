@@ -18,7 +18,7 @@ from grader.checks.outcome import (
     size,
     within,
 )
-from grader.checks.shown import ShapeName, body, pose_of, span, visuals
+from grader.checks.shown import ShapeName, body, pose_of, shape_name, span, visuals
 from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Geometry, Mesh, Visual
@@ -66,9 +66,10 @@ def centre_at(
         raise UnknownShape(visual.geometry)
     pose = pose_of(robot, link, visual, relative_to)
     if rigid:
-        loose = next((joint for joint in robot.between(relative_to, link) if joint.type != "fixed"), None)
+        way = robot.between(relative_to, link)
+        loose = next((joint for joint in way if joint.type != "fixed"), None)
         held = robot.holding.get(link)
-        if loose is not None and held is not None and loose is not held:
+        if loose is not None and held is not None and held in way and loose is not held:
             message = f"joint {held.name!r} holds {link!r} to {held.parent!r}, which moves: joint {loose.name!r} is {loose.type}"
             return failed(message, place(held.mark, "link", "parent"))
         if loose is not None:
@@ -93,7 +94,7 @@ def bottom_at_height(
     Where a shape is named and the link shows it, only the largest of these counts.
     """
     visual = body(robot, link, shape)
-    if shape == "any":
+    if shape == "any" or shape_name(visual.geometry) != f"a {shape}":
         lowest, _ = span(robot, link, relative_to, _UP)
     else:
         lowest, _ = extent(visual.geometry, pose_of(robot, link, visual, relative_to), _UP)
@@ -204,7 +205,7 @@ def under_the_base(
     actual = (x, y, *lowest.values())
     off = {wheel: value for wheel, value in lowest.items() if not within(value, 0.0, tolerance)}
     at = _origin_place(robot, base)
-    if len(off) == len(faults) < len(wheels):  # the frame is where it should be, and some wheel is not
+    if len(off) == len(faults) < len(lowest):  # the frame is where it should be, and some wheel is not
         at = _origin_place(robot, next(iter(off), base))
     return judged(not faults, message, actual=actual, expected=0.0, tolerance=tolerance, unit="m", at=at)
 

@@ -6,12 +6,23 @@ from grader.checks.outcome import Outcome
 from grader.errors import MissingElement
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Criterion, Rubric
-from grader.robot.catalogue import BAD_INERTIAL, BAD_VISUAL
+from grader.robot.catalogue import (
+    BAD_COLOUR,
+    BAD_INERTIAL,
+    BAD_VISUAL,
+    COLOUR_COUNT,
+    DEFAULT_AXIS,
+    DEGREES,
+    UNDEFINED_MATERIAL,
+)
 from grader.robot.kinematics import Configuration
 from grader.robot.names import quoted
 from grader.robot.shapes import UnknownShape
 from grader.robot.source import Spot
 from grader.submission.submission import Submission
+
+# Problems that say why a measurement came out as it did.
+_TELLING = (BAD_COLOUR, COLOUR_COUNT, DEGREES, UNDEFINED_MATERIAL)
 
 
 def grade(rubric: Rubric, submission: Submission, parts: Sequence[str] = ()) -> Report:
@@ -86,7 +97,8 @@ class _Run:
     def _explained(self, outcome: Outcome) -> Outcome:
         """A failure with what ROS 2 has to say of the place that it points to."""
         for problem in self.urdf.problems:
-            if problem.location == outcome.location and problem.message not in outcome.message:
+            tells = problem.kind in _TELLING or (problem.kind is DEFAULT_AXIS and outcome.unit == "deg")
+            if tells and problem.location == outcome.location:
                 return outcome._replace(message=f"{outcome.message} ({problem.code}: {problem.message})")
         return outcome
 

@@ -28,20 +28,21 @@ class Configuration:
         *,
         holding: Mapping[str, Joint] | None = None,
     ) -> None:
-        """`holding` is holding_joints(robot), if it is known already.
+        """`holding` is holding_joints(robot), if it is known already; positions are taken as checked then.
 
         Raises MissingElement for a joint that is not there, ValueError for a position of the wrong shape.
         """
         self.robot = robot
         self.positions = dict(positions or {})
         self.holding = holding_joints(robot) if holding is None else holding
-        for name, position in self.positions.items():
-            check_position(robot.joint(name), position)
+        self._relative: dict[tuple[str, str | None], Transform] = {}
+        if holding is None:
+            for name, position in self.positions.items():
+                check_position(robot.joint(name), position)
         self.shown: dict[str, tuple[Visual, ...]] = {}  # kept by those who ask what a link shows
         self._placed: dict[str, _Placed] = {}
         self._lost: dict[str, str] = {}  # links on or behind a loop of joints, with one name for the loop
         self._followed: dict[str, float] = {}
-        self._relative: dict[tuple[str, str | None], Transform] = {}
 
     def link(self, name: str) -> Link:
         """The link of this name; raises MissingElement."""
@@ -125,9 +126,11 @@ class Configuration:
             shared += 1
         return (*reversed(up[shared:]), *down[shared:])
 
-    def moved(self, joint: str, position: Position) -> "Configuration":
-        """The same robot with one joint elsewhere."""
-        return Configuration(self.robot, {**self.positions, joint: position}, holding=self.holding)
+    def moved(self, joint: str | Joint, position: Position) -> "Configuration":
+        """The same robot with one joint elsewhere; raises ValueError for a position that it cannot have."""
+        found = self.joint(joint) if isinstance(joint, str) else joint
+        check_position(found, position)
+        return Configuration(self.robot, {**self.positions, found.name: position}, holding=self.holding)
 
     def position(self, joint: Joint) -> Position:
         """Where a joint is: its own position, that of the joint that it mimics, or 0."""

@@ -19,8 +19,8 @@ def holding_joints(robot: Robot) -> dict[str, Joint]:
     """The joint that holds each link, by the link's name.
 
     Of two with one child the last in name order counts, as in ROS 2. Of a rejected file ROS 2 shows nothing, so there the
-    fairer reading counts: no joint that would close a loop, rather one whose name does not speak of its parent alone (it may
-    be the wrong way round), and then the first in the file.
+    fairer reading counts: no joint that would close a loop, rather one whose name speaks of its child than one whose name
+    speaks of its parent alone (it may be the wrong way round), and then the first in the file.
     """
     whole = [
         joint
@@ -37,6 +37,11 @@ def holding_joints(robot: Robot) -> dict[str, Joint]:
     return held
 
 
+def _oddity(joint: Joint) -> tuple[bool, bool]:
+    speaks_of_child = joint.child in joint.name
+    return (joint.parent in joint.name and not speaks_of_child, not speaks_of_child)
+
+
 def _fairest(joints: list[Joint]) -> dict[str, Joint]:
     held: dict[str, Joint] = {}
     top: dict[str, str] = {}  # some link further up, with the ways there shortened whenever one is walked
@@ -49,7 +54,7 @@ def _fairest(joints: list[Joint]) -> dict[str, Joint]:
         top.update(dict.fromkeys(passed, link))
         return link
 
-    for joint in sorted(joints, key=lambda each: each.parent in each.name and each.child not in each.name):
+    for joint in sorted(joints, key=_oddity):
         if joint.child not in held and root(joint.parent) != joint.child:
             held[joint.child] = joint
             top[joint.child] = joint.parent

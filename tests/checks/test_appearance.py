@@ -290,7 +290,7 @@ def test_a_link_without_a_material_is_red() -> None:
 def test_an_undefined_material_is_no_colour() -> None:
     """A material that is named but defined nowhere is quoted."""
     found = scene(link("base", visual(box(*SIZE), material='<material name="gren"/>')), paint("0 0.6 0 1", "green"))
-    message = fails(shows_colour, found, at="<visual>", **GREEN)
+    message = fails(shows_colour, found, at='name="gren"', **GREEN)
     assert message == "'base' has no colour: ROS 2 knows no colour of the material 'gren' here"
 
 

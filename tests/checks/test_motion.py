@@ -69,7 +69,7 @@ def test_every_way_to_turn_about_the_left_is_forward(rpy: str, axis: str) -> Non
         (turned(roll=90), "0 0 1", "rpy="),
         (FORWARD, "0 0 -1", 'xyz="0 0 -1"'),
         ("", "0 -1 0", 'xyz="0 -1 0"'),
-        (turned(yaw=180), "0 1 0", "rpy="),
+        (turned(yaw=180), "0 1 0", 'xyz="0 1 0"'),
     ],
     ids=["mirrored", "negated", "negated-unturned", "turned-round"],
 )
