@@ -4,10 +4,10 @@ from itertools import permutations
 
 import pytest
 
+from grader.robot.holding import holding_joints
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint, Link, Robot
 from grader.robot.reader import read_urdf
-from grader.robot.tree import holding_joints
 
 
 def joint(name: str, parent: str, child: str) -> Joint:
