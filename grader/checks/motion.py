@@ -38,10 +38,7 @@ def rolls_forward(
     joint = _turning_joint(robot, link, base)
     ahead, upward = unit(forward) or forward, unit(up) or up
     low, high = _lowest_and_highest(robot, link, base, upward)
-    position = robot.position(joint)  # a joint that mimics another need not be at 0
-    assert isinstance(position, int | float)  # what turns has one number for a position
-    turned = robot.moved(joint, position + _SMALL_ANGLE).pose(link, relative_to=base)
-    displaced = turned @ robot.pose(link, relative_to=base).inverse()
+    displaced = robot.displacement(link, joint, _SMALL_ANGLE, relative_to=base)
     moved_low = _flat(minus(displaced.apply(low), low), upward)
     moved_high = _flat(minus(displaced.apply(high), high), upward)
     rolled = hypot(*minus(moved_low, moved_high))

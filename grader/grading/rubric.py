@@ -1,6 +1,5 @@
 """A rubric: which facts are asked of a submission, and what each is worth. Loaded strictly, all mistakes at once."""
 
-import hashlib
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -13,7 +12,7 @@ from grader.errors import InputError, RubricError
 from grader.grading.rows import Rows
 from grader.grading.toml_lines import key_lines, line_of
 from grader.robot.names import did_you_mean
-from grader.submission.files import printable_path, read_capped
+from grader.submission.files import printable_path, read_capped, sha256_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +41,7 @@ class Criterion:
 
 @dataclass(frozen=True, slots=True)
 class Rubric:
-    """A lab as data. Criteria run in file order. `sha256` is that of the file's bytes."""
+    """A lab as data. Criteria run in file order."""
 
     id: str
     title: str
@@ -50,8 +49,13 @@ class Rubric:
     criteria: tuple[Criterion, ...]
     urdf: str
     reference: str
-    sha256: str
+    data: bytes = field(repr=False)
     path: Path = field(compare=False)
+
+    @property
+    def sha256(self) -> str:
+        """The hash of the file's bytes."""
+        return sha256_of(self.data)
 
     @property
     def points(self) -> Decimal:
@@ -121,7 +125,7 @@ def load_rubric(name: str) -> Rubric:
         tuple(_criterion(row, *bound) for row, bound in zip(table["criterion"], rows.bound, strict=True)),
         table.get("urdf", "robot.urdf"),
         table.get("reference", ""),
-        hashlib.sha256(data).hexdigest(),
+        data,
         path,
     )
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from grader.errors import MissingElement
 from grader.robot.holding import holding_joints
 from grader.robot.model import Joint, Link, Robot, Visual
-from grader.robot.motion import Position, check_position, past
+from grader.robot.motion import Position, check_position, motion_of, past
 from grader.robot.names import quoted
 from grader.robot.source import Spot
 from grader.robot.transforms import IDENTITY, Transform, Vector, unit
@@ -131,6 +131,19 @@ class Configuration:
         found = self.joint(joint) if isinstance(joint, str) else joint
         check_position(found, position)
         return Configuration(self.robot, {**self.positions, found.name: position}, holding=self.holding)
+
+    def displacement(self, link: str, joint: Joint, angle: float, *, relative_to: str) -> Transform:
+        """Where points on a link go, both seen from another link, when a joint that turns or slides moves by `angle` from here."""
+        self.axis(joint)  # raises where it has no direction
+        way = self.chain(link, above=relative_to) or ()
+        if joint in way and not self.positions and all(each.mimic is None for each in way):
+            T_relative_joint = self.pose(joint.child, relative_to=relative_to)  # what is behind the joint turns as one
+            turn = motion_of(joint, angle)
+            return T_relative_joint @ (turn or IDENTITY) @ T_relative_joint.inverse()
+        position = self.position(joint)
+        assert isinstance(position, int | float)  # its position is one number
+        moved = self.moved(joint, position + angle).pose(link, relative_to=relative_to)
+        return moved @ self.pose(link, relative_to=relative_to).inverse()
 
     def position(self, joint: Joint) -> Position:
         """Where a joint is: its own position, that of the joint that it mimics, or 0."""

@@ -42,6 +42,13 @@ def read_standard_input(limit: int = URDF_LIMIT) -> bytes:
         raise InputError(f"cannot read standard input: {error.strerror or error}") from None
 
 
+def sha256_of(data: bytes) -> str:
+    """The hash of some bytes, in hexadecimal digits."""
+    from hashlib import sha256  # late: loading it takes longer than reading a URDF, and only some reports show it
+
+    return sha256(data).hexdigest()
+
+
 def printable_path(path: Path | str) -> str:
     """A path for a message: bytes that are no UTF-8 are replaced, control characters are spelt out."""
     text = os.fsencode(path).decode("utf-8", "replace")

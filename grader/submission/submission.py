@@ -1,13 +1,12 @@
 """A submission: one URDF so far, wherever it stands in what was handed in."""
 
-import hashlib
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from grader.errors import InputError
 from grader.robot.reader import Reading, read_urdf
-from grader.submission.files import URDF_LIMIT, printable_path, read_capped, read_standard_input
+from grader.submission.files import URDF_LIMIT, printable_path, read_capped, read_standard_input, sha256_of
 from grader.submission.find import find_urdf
 
 STANDARD_INPUT = "-"
@@ -20,14 +19,19 @@ class Submission:
 
     id: str
     path: str
-    sha256: str
+    data: bytes = field(repr=False)
     urdf: Reading
     passed_over: tuple[str, ...] = ()
+
+    @property
+    def sha256(self) -> str:
+        """The hash of the URDF's bytes."""
+        return sha256_of(self.data)
 
 
 def read_submission(data: bytes, *, identity: str, path: str, passed_over: tuple[str, ...] = ()) -> Submission:
     """The submission that the bytes of one URDF make."""
-    return Submission(identity, path, hashlib.sha256(data).hexdigest(), read_urdf(data, path), passed_over)
+    return Submission(identity, path, data, read_urdf(data, path), passed_over)
 
 
 def open_submission(path: str, *, wanted: str, limit: int = URDF_LIMIT) -> Submission:

@@ -38,7 +38,7 @@ def missing(check: AnyCheck, scene: Scene, **arguments: Any) -> MissingElement:
 def graded(check: AnyCheck, scene: Scene, **arguments: Any) -> Outcome:
     """The outcome of a rubric's only criterion, which names this check."""
     criterion = Criterion("only", "The only one", "all", Decimal(1), describe(check), arguments)
-    rubric = Rubric("test", "Test", (Part("all", "All"),), (criterion,), "robot.urdf", "", "", Path("test.toml"))
+    rubric = Rubric("test", "Test", (Part("all", "All"),), (criterion,), "robot.urdf", "", b"", Path("test.toml"))
     report = grade(rubric, read_submission(scene.text.encode(), identity="test", path=PATH))
     return report.results[0].outcome
 

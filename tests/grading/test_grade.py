@@ -76,7 +76,7 @@ def ask(
 
 def run(*criteria: Criterion, on: Scene | None = None, parts: Sequence[str] = ()) -> Report:
     """The report on a robot under a rubric with these criteria, in parts a and b."""
-    rubric = Rubric("r", "R", (Part("a", "A"), Part("b", "B")), criteria, "robot.urdf", "", "", Path("r.toml"))
+    rubric = Rubric("r", "R", (Part("a", "A"), Part("b", "B")), criteria, "robot.urdf", "", b"", Path("r.toml"))
     robot = on if on is not None else scene(BASE)
     return grade(rubric, read_submission(robot.text.encode(), identity="me", path=PATH), parts)
 

@@ -5,7 +5,8 @@ from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from lxml import etree
 
-from grader.robot.dialect import Scan, is_plain, translate
+from grader.robot.dialect import is_plain, translate
+from grader.robot.dialect.scanner import Scan
 from grader.robot.reader import read_urdf
 from tests.patience import processor_time
 from tests.robot.soup import data

@@ -6,10 +6,10 @@ Nothing outside this package knows of the dialect.
 """
 
 import re
+from typing import TYPE_CHECKING
 
-from grader.robot.dialect.scanner import Finding, Scan, Scanner
-
-__all__ = ["Finding", "Scan", "is_plain", "translate"]
+if TYPE_CHECKING:
+    from grader.robot.dialect.scanner import Scan
 
 # lxml turns a line break or tab in a value into a space, TinyXML2 keeps it. Only the bytes that matter are looked at.
 _UNIMPORTANT = bytes(sorted(set(range(256)) - set(b"=\"'\t\n\r")))
@@ -32,6 +32,8 @@ def is_plain(data: bytes) -> bool:
     )
 
 
-def translate(text: str) -> Scan:
+def translate(text: str) -> "Scan":
     """Read a text by TinyXML2's rules and write its first <robot> as XML, with the offset of every tag kept."""
+    from grader.robot.dialect.scanner import Scanner  # most files are plain, and its patterns take long to compile
+
     return Scanner(text).scan()
