@@ -37,11 +37,11 @@ def shows_cylinder(robot: Configuration, *, link: str, radius: float, length: fl
     found = [visual.geometry for visual in visuals(robot, link) if isinstance(visual.geometry, Cylinder)]
     if not found:
         return _other_shape(robot, link, "cylinder")
-    sizes = [((abs(shape.radius), abs(shape.length)), shape) for shape in found]
     expected = (radius, length)
-    actual, best = min(sizes, key=lambda each: max(abs(a - b) for a, b in zip(each[0], expected, strict=True)))
-    right_radius, right_length = (within(a, b, tolerance) for a, b in zip(actual, expected, strict=True))
-    fine = right_radius and right_length
+    best = min(found, key=lambda shape: max(abs(abs(shape.radius) - radius), abs(abs(shape.length) - length)))
+    actual = (abs(best.radius), abs(best.length))
+    right_radius = within(actual[0], radius, tolerance)
+    fine = right_radius and within(actual[1], length, tolerance)
     message = f"{link!r} shows a cylinder of radius {point(actual[:1])} m and length {point(actual[1:])} m"
     at = place(best.mark)
     if not fine:

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 Vector = tuple[float, float, float]
 Rotation = tuple[float, float, float, float, float, float, float, float, float]  # rows of a 3 x 3 matrix, one by one
 
+_AXES = frozenset({(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)})
 IDENTITY_ROTATION: Rotation = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 
 
@@ -139,6 +140,8 @@ def rotation_about(axis: Vector, angle: float) -> Rotation:
 
 def unit(vector: Vector) -> Vector | None:
     """The direction of a vector, or None where it has none. Safe from overflow and underflow."""
+    if vector in _AXES:  # most of those that are asked for
+        return vector
     largest = max(abs(vector[0]), abs(vector[1]), abs(vector[2]))
     if not 0.0 < largest < inf:
         return None
