@@ -69,9 +69,10 @@ def _is_named(robot: Configuration, name: str, link: str, parent: str) -> bool:
         return False
     named = [joint for joint in robot.robot.joints if joint.name == name]
     held = robot.holding.get(link)
-    way = robot.chain(link, above=parent) if robot.robot.has_link(parent) else None
     if held is not None:
-        return held in named or any(joint in named for joint in way or ())
+        joined = robot.robot.has_link(parent) and robot.root_of(parent) == robot.root_of(link)
+        way = robot.between(parent, link) if joined else (held,)
+        return any(joint in named for joint in (*way, held))
     return any(link in (joint.child, joint.parent) for joint in named)
 
 
