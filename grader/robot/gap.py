@@ -8,7 +8,8 @@ from grader.robot.model import Sphere
 from grader.robot.shapes import Shape, support
 from grader.robot.transforms import Transform, Vector, cross, dot, minus
 
-_GAP_ERROR = 1e-7  # metres; how far the two bounds on a gap may stay apart
+_TOUCHING = 1e-7  # metres; a smaller gap is none
+_GAP_ERROR = 1e-10  # metres between the two bounds on a gap; its direction errs by the root of that, which is much more
 _GAP_STEPS = 200  # pairs of robot parts take fewer than 40; the cap is for what rounding may do
 
 
@@ -23,7 +24,7 @@ def widest_gap(a: Shape, b: Shape, T_a_b: Transform) -> Vector | None:
     gap, best = 0.0, None
     for _ in range(_GAP_STEPS):
         length = hypot(*nearest)
-        if length <= _GAP_ERROR:
+        if length <= _TOUCHING:
             return None
         direction = (nearest[0] / length, nearest[1] / length, nearest[2] / length)
         corner = _near_end(a, b, T_a_b, direction)
