@@ -10,17 +10,13 @@ from grader.checks.registry import CHECKS, describe
 from grader.grading.arguments import type_words
 from grader.grading.grade import grade
 from grader.grading.rubric import load_rubric
+from grader.report.rubrics import EFFECTS
 from grader.report.terminal import render_terminal
 from grader.robot.catalogue import CATALOGUE
 from grader.submission.submission import open_submission
 
 DOCS = Path(__file__).resolve().parent
 SHOWN = DOCS.parent / "submissions" / "lidar-offset-in-visual"
-EFFECTS = {
-    "rejects": "ROS 2 rejects the file.",
-    "drops": "ROS 2 loads the file, but drops content of it.",
-    "loads": "ROS 2 loads the file.",
-}
 
 
 def pages() -> dict[str, str]:

@@ -27,7 +27,7 @@ def _run(arguments: list[str]) -> int:
             print(f"grader: cannot write: {error.strerror}", file=sys.stderr)
             return _FAULT_OF_USE
         return 0
-    # One command makes little garbage and ends soon; looking for cycles while modules load takes a tenth of the start.
+    # One command makes little garbage and ends soon; looking for cycles while modules load costs some 7 % of a run.
     gc.disable()
     from grader.cli.app import run
 

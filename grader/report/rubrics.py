@@ -13,9 +13,9 @@ from grader.robot.catalogue import CATALOGUE, Kind
 from grader.robot.names import did_you_mean
 
 _WIDTH = 80
-_EFFECTS = {
+EFFECTS = {
     "rejects": "ROS 2 rejects the file.",
-    "drops": "ROS 2 drops content of the file.",
+    "drops": "ROS 2 loads the file, but drops content of it.",
     "loads": "ROS 2 loads the file.",
 }
 
@@ -61,7 +61,7 @@ def explanation(name: str, rubric: Rubric) -> str:
 
 
 def _kind_text(kind: Kind) -> str:
-    return f"{kind.code} ({kind.severity}): {kind.title}\n\n{_filled(kind.explanation)}\n\n{_EFFECTS[kind.effect]}\n"
+    return f"{kind.code} ({kind.severity}): {kind.title}\n\n{_filled(kind.explanation)}\n\n{EFFECTS[kind.effect]}\n"
 
 
 def _criterion_text(criterion: Criterion, rubric: Rubric) -> str:

@@ -63,11 +63,6 @@ def support(geometry: Geometry, direction: Vector) -> Vector:
     raise UnknownShape(geometry)
 
 
-def reach(geometry: Geometry, T_frame_shape: Transform, direction: Vector) -> float:
-    """The largest coordinate of a shape along a unit direction of the frame, metres; UnknownShape for a mesh."""
-    return dot(T_frame_shape.translation, direction) + half_width(geometry, T_frame_shape.unrotate(direction))
-
-
 def extent(geometry: Geometry, T_frame_shape: Transform, direction: Vector) -> tuple[float, float]:
     """The smallest and the largest coordinate of a shape along a unit direction of the frame, metres.
 
