@@ -28,7 +28,7 @@ from grader.submission.submission import read_submission
 
 ROOT = Path(__file__).resolve().parent.parent
 SAMPLE = ROOT / "submissions" / "reference"
-URDF = SAMPLE / "my_robot" / "urdf" / "my_robot.urdf"
+URDF = SAMPLE / "roscourse_sim_ws" / "src" / "my_robot" / "urdf" / "my_robot.urdf"
 BARE = "import typer, lxml, numpy, rich"
 BARE_USED = "import typer, lxml.etree, numpy, rich.console"
 CHAIN = (10, 100, 1_000, 10_000)

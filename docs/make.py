@@ -10,13 +10,12 @@ from grader.checks.registry import CHECKS, describe
 from grader.grading.arguments import type_words
 from grader.grading.grade import grade
 from grader.grading.rubric import load_rubric
-from grader.report.rubrics import EFFECTS
+from grader.report.rubrics import EFFECTS, EVERY_KIND
 from grader.report.terminal import render_terminal
-from grader.robot.catalogue import CATALOGUE
 from grader.submission.submission import open_submission
 
 DOCS = Path(__file__).resolve().parent
-SHOWN = DOCS.parent / "submissions" / "lidar-offset-in-visual"
+SHOWN = DOCS.parent / "submissions" / "lidar-offset-in-visual" / "my_robot.urdf"
 
 
 def pages() -> dict[str, str]:
@@ -39,10 +38,10 @@ def problems() -> str:
         "|---|---|---|",
     ]
     lines += [
-        f"| [{kind.code}](#{kind.code.lower()}) | {kind.severity} | {escaped(kind.title)} |" for kind in CATALOGUE
+        f"| [{kind.code}](#{kind.code.lower()}) | {kind.severity} | {escaped(kind.title)} |" for kind in EVERY_KIND
     ]
-    for kind in CATALOGUE:
-        lines += ["", f"## {kind.code}", "", f"**{escaped(kind.title)}** ({kind.severity}). {EFFECTS[kind.effect]}", ""]
+    for kind in EVERY_KIND:
+        lines += ["", f"## {kind.code}", "", f"**{escaped(kind.title)}** ({kind.severity}). {EFFECTS[kind.effect]}".rstrip(), ""]
         lines += [escaped(kind.explanation)]
     return "\n".join(lines) + "\n"
 
@@ -72,7 +71,7 @@ def checks() -> str:
 def picture() -> str:
     """A real report as a terminal shows it."""
     rubric = load_rubric("lab6")
-    report = grade(rubric, open_submission(str(SHOWN), wanted=rubric.urdf))
+    report = grade(rubric, open_submission(str(SHOWN), wanted=rubric.urdf, package=rubric.package))
     console = Console(
         record=True, width=80, file=StringIO(), force_terminal=True, color_system="truecolor", highlight=False
     )

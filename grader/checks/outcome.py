@@ -38,6 +38,11 @@ def failed(message: str, at: Spot | None = None) -> Outcome:
     return Outcome("failed", message, location=at.location() if at else None)
 
 
+def judged_as(status: Status, message: str, at: Location | None = None) -> Outcome:
+    """A finding about a file other than the URDF, with the place to look at."""
+    return Outcome(status, message, location=at)
+
+
 def judged(
     fine: bool,
     message: str,

@@ -3,13 +3,16 @@
 import inspect
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Literal, get_type_hints
+from typing import Any, Literal, get_args, get_type_hints
 
 from grader.checks.appearance import shows_box, shows_colour, shows_cylinder, shows_grey, shows_nothing, shows_sphere
+from grader.checks.handed_in import answered, evidence_shown
 from grader.checks.joints import held_by, joints_named, root_of_tree
+from grader.checks.launch import launch_finds_files, launch_found, launch_starts
 from grader.checks.loading import urdf_loads
 from grader.checks.motion import axis_along, rolls_forward, turns_about_itself
 from grader.checks.outcome import Outcome
+from grader.checks.package import build_installs, installs_files, package_found, package_type, setup_imports
 from grader.checks.placement import (
     bottom_at_height,
     bottoms_at_height,
@@ -19,6 +22,7 @@ from grader.checks.placement import (
     stands_on,
     under_the_base,
 )
+from grader.checks.rviz import rviz_display_on, rviz_fixed_frame, rviz_found, rviz_shows_robot
 from grader.errors import InputError
 
 ENTRY_POINTS = "grader.checks"
@@ -44,9 +48,23 @@ CHECKS: tuple[Callable[..., Outcome], ...] = (
     rolls_forward,
     axis_along,
     turns_about_itself,
+    package_found,
+    package_type,
+    build_installs,
+    installs_files,
+    setup_imports,
+    launch_found,
+    launch_starts,
+    launch_finds_files,
+    rviz_found,
+    rviz_fixed_frame,
+    rviz_shows_robot,
+    rviz_display_on,
+    answered,
+    evidence_shown,
 )
 
-Subject = Literal["urdf", "robot"]
+Subject = Literal["urdf", "robot", "package", "submission"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +79,10 @@ class Parameter:
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """A check as a rubric sees it. `subject` is what it is asked of: the file as read, or the robot in it."""
+    """A check as a rubric sees it.
+
+    `subject` is what it is asked of: the URDF as it was read, the robot in it, the package, or all that was handed in.
+    """
 
     name: str
     function: Callable[..., Outcome]
@@ -88,7 +109,9 @@ def describe(function: Callable[..., Outcome]) -> Check:
         )
         for each in rest
     }
-    return Check(function.__name__, function, "urdf" if subject.name == "urdf" else "robot", parameters)
+    known: tuple[Subject, ...] = get_args(Subject)
+    asked: Subject = next((each for each in known if each == subject.name), "robot")
+    return Check(function.__name__, function, asked, parameters)
 
 
 def check_names() -> list[str]:

@@ -27,7 +27,10 @@ class Format(StrEnum):
 
 def grade(
     path: Annotated[
-        str, typer.Argument(metavar="PATH", help="A .urdf file, a folder with one in it, or - for standard input.")
+        str,
+        typer.Argument(
+            metavar="PATH", help="A .urdf file, a package, a workspace, a repository, a .zip or .tar.gz, or -."
+        ),
     ],
     rubric: Annotated[str, typer.Option(metavar="ID|FILE", help="The rubric: an id or a .toml file.")] = DEFAULT_RUBRIC,
     part: Annotated[list[str] | None, typer.Option(metavar="ID", help="Grade only this part; repeatable.")] = None,
@@ -62,10 +65,8 @@ def grade(
     rules = load_rubric(rubric)
     for name in part or []:
         rules.part(name)
-    submission = open_submission(path, wanted=rules.urdf, limit=max_size)
+    submission = open_submission(path, wanted=rules.urdf, package=rules.package, limit=max_size)
     report = grade_submission(rules, submission, part or [])
-    if submission.passed_over:
-        complain(f"graded {submission.path}; passed over {', '.join(submission.passed_over)}")
     for result in report.results:
         if result.traceback:
             complain(printable(f"{result.criterion.id}: {result.traceback.strip().splitlines()[-1]}"))

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from grader.cli.output import complain, draw, emit
-from grader.errors import GraderError, MissingElement
-from grader.submission.files import URDF_LIMIT
+from grader.errors import GraderError, InputError, MissingElement
+from grader.submission.files import URDF_LIMIT, printable_path
 
 if TYPE_CHECKING:
     from grader.robot.kinematics import Configuration
@@ -27,7 +27,7 @@ class InspectFormat(StrEnum):
 
 def inspect(
     path: Annotated[
-        str, typer.Argument(metavar="PATH", help="A .urdf file, a folder with one in it, or - for standard input.")
+        str, typer.Argument(metavar="PATH", help="A .urdf file, a folder or archive with one in it, or -.")
     ],
     joint: Annotated[
         list[str] | None,
@@ -54,7 +54,9 @@ def inspect(
 
     submission = open_submission(path, wanted=_ANY_URDF, limit=max_size)
     if submission.passed_over:
-        complain(f"inspected {submission.path}; passed over {', '.join(submission.passed_over)}")
+        complain(f"inspected {submission.path}; passed over {', '.join(each.path for each in submission.passed_over)}")
+    if submission.urdf is None or submission.path is None:
+        raise InputError(f"{printable_path(path)} holds no URDF: no file has a <robot> in it")
     robot = _configure(submission.urdf, joint or [])
     frame = relative_to
     if robot is not None and frame is None:

@@ -57,8 +57,10 @@ def check_rubric(
     rules = load_rubric(file)
     summary = f"{rules.id}: {len(rules.criteria)} criteria, {points_words(rules.points)} points, no mistakes found"
     if rules.reference:
-        report = grade(rules, open_submission(str(rules.path.parent / rules.reference), wanted=rules.urdf))
-        lost = [each for each in report.results if each.outcome.status != "passed"]
+        report = grade(
+            rules, open_submission(str(rules.path.parent / rules.reference), wanted=rules.urdf, package=rules.package)
+        )
+        lost = [each for each in report.results if each.outcome.status not in ("passed", "pending")]
         if lost:
             raise RubricError(
                 tuple(

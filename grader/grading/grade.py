@@ -3,9 +3,12 @@
 from collections.abc import Sequence
 
 from grader.checks.outcome import Outcome
+from grader.checks.package import no_package
+from grader.checks.registry import Subject
 from grader.errors import MissingElement
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Criterion, Rubric
+from grader.grading.scope import chosen_parts, exhibits_of
 from grader.robot.catalogue import (
     BAD_COLOUR,
     BAD_INERTIAL,
@@ -14,11 +17,13 @@ from grader.robot.catalogue import (
     DEFAULT_AXIS,
     DEGREES,
     UNDEFINED_MATERIAL,
+    Problem,
 )
 from grader.robot.kinematics import Configuration
 from grader.robot.names import quoted
 from grader.robot.shapes import UnknownShape
-from grader.robot.source import Spot
+from grader.robot.source import Location, Spot
+from grader.submission.remarks import remarks
 from grader.submission.submission import Submission
 
 # Problems that say why a measurement came out as it did.
@@ -27,24 +32,32 @@ _TELLING = (BAD_COLOUR, COLOUR_COUNT, DEGREES, UNDEFINED_MATERIAL)
 
 def grade(rubric: Rubric, submission: Submission, parts: Sequence[str] = ()) -> Report:
     """The report on a submission, for all parts of the rubric or those that are named (raises InputError for others)."""
-    chosen = tuple(part.id for part in rubric.parts if not parts or part.id in parts)
-    for name in parts:
-        rubric.part(name)
+    chosen, notes = chosen_parts(rubric, submission, parts)
     run = _Run(submission)
     for criterion in rubric.criteria:
         if criterion.part in chosen:
             run.decide(criterion)
-    return Report(submission, rubric, chosen, tuple(run.results.values()))
+    problems = submission.urdf.problems if submission.urdf is not None else ()
+    if submission.package is not None and any(rubric.part(each).needs == "package" for each in chosen):
+        problems += remarks(submission.package)
+    exhibits, others = exhibits_of(rubric, submission, chosen)
+    return Report(submission, rubric, chosen, tuple(run.results.values()), problems, exhibits, others, notes)
 
 
 class _Run:
     """The criteria decided so far, and which of them was the first to miss a thing."""
 
     def __init__(self, submission: Submission) -> None:
+        self.submission = submission
         self.urdf = submission.urdf
-        self.robot = Configuration(self.urdf.robot) if self.urdf.robot is not None else None
+        robot = self.urdf.robot if self.urdf is not None else None
+        self.robot = Configuration(robot) if robot is not None else None
         self.results: dict[str, Result] = {}
         self.missed: dict[tuple[str, str], str] = {}
+
+    @property
+    def _problems(self) -> tuple[Problem, ...]:
+        return self.urdf.problems if self.urdf is not None else ()
 
     def decide(self, criterion: Criterion) -> None:
         cause = self._cause(criterion) if criterion.requires or self.robot is None else None
@@ -63,12 +76,8 @@ class _Run:
         return None
 
     def _ask(self, criterion: Criterion) -> Result:
-        check = criterion.check
-        if check.subject == "robot" and self.robot is None:
-            return Result(criterion, Outcome("failed", "ROS 2 cannot read the file, so there is no robot to look at"))
-        subject = self.robot if check.subject == "robot" else self.urdf
         try:
-            outcome = check.function(subject, **criterion.arguments)
+            outcome = criterion.check.function(self._subject(criterion.check.subject), **criterion.arguments)
             if outcome.status == "failed":
                 outcome = self._explained(outcome)
             return Result(criterion, outcome)
@@ -82,21 +91,38 @@ class _Run:
             message = f"the grader itself failed here ({type(error).__name__}); please report it"
             return Result(criterion, Outcome("errored", message), traceback=format_exc())
 
+    def _subject(self, name: Subject) -> object:
+        """What a check is asked of; raises MissingElement where it was not handed in."""
+        match name:
+            case "submission":
+                return self.submission
+            case "package":
+                if self.submission.package is None:
+                    raise no_package()
+                return self.submission.package
+            case _ if self.urdf is None:
+                raise MissingElement("URDF", "", message=_no_urdf(self.submission))
+            case "urdf":
+                return self.urdf
+        if self.robot is None:
+            raise MissingElement("robot", "", message="ROS 2 cannot read the file, so there is no robot to look at")
+        return self.robot
+
     def _miss(self, criterion: Criterion, missing: MissingElement) -> Result:
         """The first criterion that misses a thing fails; those after it would only repeat it, and are skipped."""
         key = (missing.kind, missing.name)
         first = self.missed.setdefault(key, criterion.id)
         if first != criterion.id:
             return Result(criterion, _skipped(first), first)
-        at = missing.location.location() if isinstance(missing.location, Spot) else None
-        outcome = Outcome("failed", str(missing), location=at)
+        at = missing.location.location() if isinstance(missing.location, Spot) else missing.location
+        outcome = Outcome("failed", str(missing), location=at if isinstance(at, Location) else None)
         if missing.kind == "visual":
             return Result(criterion, self._dropped(outcome, missing.name))
         return Result(criterion, self._explained(outcome))
 
     def _explained(self, outcome: Outcome) -> Outcome:
         """A failure with what ROS 2 has to say of the place that it points to."""
-        for problem in self.urdf.problems:
+        for problem in self._problems:
             tells = problem.kind in _TELLING or (problem.kind is DEFAULT_AXIS and outcome.unit == "deg")
             if tells and problem.location == outcome.location:
                 return outcome._replace(message=f"{outcome.message} ({problem.code}: {problem.message})")
@@ -104,7 +130,7 @@ class _Run:
 
     def _dropped(self, outcome: Outcome, link: str) -> Outcome:
         """A link that shows nothing, with the reason why ROS 2 has dropped what the file gives it."""
-        for problem in self.urdf.problems:
+        for problem in self._problems:
             if problem.kind in (BAD_VISUAL, BAD_INERTIAL) and f"link {quoted(link)}" in problem.message:
                 return outcome._replace(message=f"{outcome.message}: {problem.message}", location=problem.location)
         return outcome
@@ -112,3 +138,9 @@ class _Run:
 
 def _skipped(cause: str) -> Outcome:
     return Outcome("skipped", f"not decided, because {cause} failed")
+
+
+def _no_urdf(submission: Submission) -> str:
+    count = len(submission.tree.files)
+    files = f"none of the {count} files holds a <robot>" if count > 1 else "the only file holds no <robot>"
+    return f"no URDF was submitted: {files}" if count else "no URDF was submitted"

@@ -6,7 +6,9 @@ from decimal import Decimal
 from typing import NamedTuple
 
 from grader.checks.outcome import Outcome
-from grader.grading.rubric import Criterion, Rubric
+from grader.grading.rubric import Criterion, Evidence, Rubric
+from grader.robot.catalogue import Problem
+from grader.submission.evidence import Exhibit
 from grader.submission.submission import Submission
 
 _NOTHING = Decimal(0)
@@ -26,14 +28,29 @@ class Result(NamedTuple):
         return self.criterion.points if self.outcome.status == "passed" else _NOTHING
 
 
+class Exhibits(NamedTuple):
+    """The files that were found for a piece of evidence, if any."""
+
+    evidence: Evidence
+    files: tuple[Exhibit, ...]
+
+
 @dataclass(frozen=True, slots=True)
 class Report:
-    """What one submission earns under one rubric, part by part."""
+    """What one submission earns under one rubric, part by part.
+
+    `problems` are those of the URDF and, where a package is graded, of its files. `others` are pictures that no piece of
+    evidence asks for. `notes` say in a sentence each what is worth knowing of how the submission was read.
+    """
 
     submission: Submission
     rubric: Rubric
     parts: tuple[str, ...]
     results: tuple[Result, ...]
+    problems: tuple[Problem, ...] = ()
+    exhibits: tuple[Exhibits, ...] = ()
+    others: tuple[Exhibit, ...] = ()
+    notes: tuple[str, ...] = ()
 
     @property
     def score(self) -> Decimal:

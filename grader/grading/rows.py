@@ -10,7 +10,7 @@ from grader.grading.toml_lines import Path
 from grader.robot.names import closest, did_you_mean
 
 _TEXT, _NUMBER, _TEXTS, _TABLE = "a text", "a number", "a list of texts", "a table"
-_RUBRIC = {"id": _TEXT, "title": _TEXT, "reference": _TEXT, "urdf": _TEXT, "points": _NUMBER}
+_RUBRIC = {"id": _TEXT, "title": _TEXT, "reference": _TEXT, "urdf": _TEXT, "package": _TEXT, "points": _NUMBER}
 _PART = {"id": _TEXT, "title": _TEXT, "needs": _TEXT, "points": _NUMBER}
 _CRITERION = {
     "id": _TEXT,
@@ -23,9 +23,10 @@ _CRITERION = {
     "requires": _TEXTS,
     "feedback": _TEXT,
 }
+_EVIDENCE = {"id": _TEXT, "part": _TEXT, "title": _TEXT, "names": _TEXTS}
 _MOST_POINTS = 1_000_000
-_NEEDS = ("urdf",)
-_OPTIONAL = {"reference", "urdf", "needs", "about", "with", "requires", "feedback"}
+_NEEDS = ("urdf", "package", "files")
+_OPTIONAL = {"reference", "urdf", "package", "needs", "about", "with", "requires", "feedback"}
 
 
 Bound = tuple[Check, dict[str, Any]]
@@ -41,7 +42,7 @@ class Rows:
         self.table = table
         self.complaints: list[tuple[Path, str]] = []
         self.bound: list[Bound] = []
-        self._keys((), table, {**_RUBRIC, "part": "tables", "criterion": "tables"}, "rubric")
+        self._keys((), table, {**_RUBRIC, "part": "tables", "criterion": "tables", "evidence": "tables"}, "rubric")
         parts, rows = self._rows("part"), self._rows("criterion")
         for index, row in enumerate(parts):
             self._keys(("part", index), row, _PART, "part")
@@ -53,14 +54,20 @@ class Rows:
         part_ids = [row["id"] for row in parts if isinstance(row.get("id"), str)]
         for index, row in enumerate(rows):
             self._criterion(index, row, part_ids, rows)
+        for index, row in enumerate(self._rows("evidence") if "evidence" in table else []):
+            self._keys(("evidence", index), row, _EVIDENCE, "piece of evidence")
+            self._part(("evidence", index), row, part_ids)
         self._totals(parts, rows)
+
+    def _part(self, where: Path, row: dict[str, Any], parts: list[str]) -> None:
+        part = row.get("part")
+        if isinstance(part, str) and part not in parts:
+            self._complain((*where, "part"), f"there is no part {part!r}{did_you_mean(part, parts) or _listed(parts)}")
 
     def _criterion(self, index: int, row: dict[str, Any], parts: list[str], rows: list[dict[str, Any]]) -> None:
         where: Path = ("criterion", index)
         self._keys(where, row, _CRITERION, "criterion")
-        part = row.get("part")
-        if isinstance(part, str) and part not in parts:
-            self._complain((*where, "part"), f"there is no part {part!r}{did_you_mean(part, parts) or _listed(parts)}")
+        self._part(where, row, parts)
         self._requires(index, row, rows)
         name, given = row.get("check"), row.get("with", {})
         check = find_check(name) if isinstance(name, str) else None
@@ -97,7 +104,8 @@ class Rows:
         rows = self.table.get(key)
         if isinstance(rows, list) and rows and all(isinstance(row, dict) for row in rows):
             return rows
-        self._complain((key,), f"a rubric has at least one [[{key}]]")
+        need = f"a rubric has at least one [[{key}]]" if key in ("part", "criterion") else f"each {key} is a [[{key}]]"
+        self._complain((key,), need)
         return []
 
     def _keys(self, where: Path, row: dict[str, Any], known: Mapping[str, str], what: str) -> None:

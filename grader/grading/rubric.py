@@ -17,11 +17,21 @@ from grader.submission.files import printable_path, read_capped, sha256_of
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A task of the lab; `needs` says what it is graded on."""
+    """A task of the lab; `needs` says what it is graded on: a urdf alone, a package, or all files that were handed in."""
 
     id: str
     title: str
     needs: str = "urdf"
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """A proof that the lab asks for. `names` says how its file is named, however it is spelt: task 1 step 8."""
+
+    id: str
+    part: str
+    title: str
+    names: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +61,8 @@ class Rubric:
     reference: str
     data: bytes = field(repr=False)
     path: Path = field(compare=False)
+    package: str = ""
+    evidence: tuple[Evidence, ...] = ()
 
     @property
     def sha256(self) -> str:
@@ -127,7 +139,13 @@ def load_rubric(name: str) -> Rubric:
         table.get("reference", ""),
         data,
         path,
+        table.get("package", ""),
+        tuple(_evidence(row) for row in table.get("evidence", ())),
     )
+
+
+def _evidence(row: dict[str, Any]) -> Evidence:
+    return Evidence(row["id"], row["part"], row["title"], tuple(row["names"]))
 
 
 def _criterion(row: dict[str, Any], check: Check, arguments: dict[str, Any]) -> Criterion:

@@ -3,8 +3,10 @@
 from typing import Any
 
 from grader import __version__
-from grader.grading.report import Report, Result
+from grader.grading.report import Exhibits, Report, Result
 from grader.report.plain import exact, location, problem, rounded, to_json
+from grader.submission.evidence import Exhibit
+from grader.submission.submission import Submission
 
 
 def render_json(report: Report) -> str:
@@ -19,14 +21,39 @@ def report_data(report: Report) -> dict[str, Any]:
         "schema": "grader/report/v1",
         "grader": {"version": __version__},
         "rubric": {"id": rubric.id, "title": rubric.title, "sha256": rubric.sha256},
-        "submission": {"id": submission.id, "path": submission.path, "sha256": submission.sha256},
+        "submission": {
+            "id": submission.id,
+            "path": submission.path,
+            "sha256": submission.sha256,
+            "package": package_path(submission),
+            "passed_over": [{"path": each.path, "because": each.because} for each in submission.passed_over],
+            "left_out": list(submission.tree.left_out),
+        },
+        "notes": list(report.notes),
         "parts": list(report.parts),
         "score": exact(report.score),
         "max_score": exact(report.max_score),
         "pending": exact(report.pending),
-        "problems": [problem(each) for each in submission.urdf.problems],
+        "problems": [problem(each) for each in report.problems],
         "results": [_result(result) for result in report.results],
+        "evidence": [_exhibits(each) for each in report.exhibits],
+        "other_pictures": [_exhibit(each) for each in report.others],
     }
+
+
+def package_path(submission: Submission) -> str | None:
+    """The folder of the package that is graded, `.` for the submission itself; None where there is none."""
+    return (submission.package.folder or ".") if submission.package is not None else None
+
+
+def _exhibits(found: Exhibits) -> dict[str, Any]:
+    evidence = found.evidence
+    files = [_exhibit(each) for each in found.files]
+    return {"id": evidence.id, "part": evidence.part, "title": evidence.title, "files": files}
+
+
+def _exhibit(exhibit: Exhibit) -> dict[str, Any]:
+    return {"path": exhibit.path, "size": exhibit.size, "width": exhibit.width, "height": exhibit.height}
 
 
 def _result(result: Result) -> dict[str, Any]:

@@ -85,7 +85,7 @@ def inspection_terminal(inspection: Inspection, console: Console) -> None:
     if reading.problems:
         console.print()
         console.print(Text("Problems", style="bold"))
-        show_problems(console, reading.problems, reading.source)
+        show_problems(console, reading.problems, lambda _: reading.source, inspection.path)
     if robot is None:
         return
     console.print()

@@ -1,6 +1,7 @@
 """The pieces that reports in the terminal are made of: source excerpts, lists of problems, lines that wrap."""
 
 import re
+from collections.abc import Callable
 
 from rich.console import Console
 from rich.text import Text
@@ -50,15 +51,23 @@ def show_excerpt(console: Console, source: Source, where: Location, indent: int,
     )
 
 
-def show_problems(console: Console, problems: tuple[Problem, ...], source: Source) -> None:
-    """Print every problem of a file with its code and place; the errors with their source line."""
+def show_problems(
+    console: Console, problems: tuple[Problem, ...], source_of: Callable[[str], Source | None], main: str | None
+) -> None:
+    """Print every problem with its code and place; the errors with their source line.
+
+    `main` is the file that most of them are about: in all others the place names the file, too.
+    """
     for problem in problems[:_MOST_SHOWN]:
         style = SEVERITY_STYLES[problem.severity]
         head = Text.assemble("  ", (f"{problem.code} {problem.severity:<7} ", style))
-        place = Text(f"line {problem.location.line}: ", style="dim")
+        where = problem.location
+        named = f"line {where.line}" if where.path == main else f"{printable(where.path)}:{where.line}"
+        place = Text(f"{named}: ", style="dim")
         wrapped(console, place + Text(printable(problem.message)), len(head), head)
-        if problem.severity == "error":
-            show_excerpt(console, source, problem.location, min(len(head), console.width // 5))
+        source = source_of(where.path) if problem.severity == "error" else None
+        if source is not None:
+            show_excerpt(console, source, where, min(len(head), console.width // 5))
     if len(problems) > _MOST_SHOWN:
         wrapped(console, Text(f"... and {len(problems) - _MOST_SHOWN} more"), 2)
 

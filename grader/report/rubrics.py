@@ -11,12 +11,15 @@ from grader.report.points import points_words
 from grader.report.text import printable
 from grader.robot.catalogue import CATALOGUE, Kind
 from grader.robot.names import did_you_mean
+from grader.submission.catalogue import PACKAGE_CATALOGUE
 
 _WIDTH = 80
+EVERY_KIND = (*CATALOGUE, *PACKAGE_CATALOGUE)
 EFFECTS = {
     "rejects": "ROS 2 rejects the file.",
     "drops": "ROS 2 loads the file, but drops content of it.",
     "loads": "ROS 2 loads the file.",
+    "other": "",
 }
 
 
@@ -46,7 +49,7 @@ def _listed(name: str) -> str:
 
 def explanation(name: str, rubric: Rubric) -> str:
     """What is to say about a code, a criterion or a check; raises InputError for a name that is none of them."""
-    for kind in CATALOGUE:
+    for kind in EVERY_KIND:
         if kind.code == name.upper():
             return _kind_text(kind)
     for criterion in rubric.criteria:
@@ -55,13 +58,14 @@ def explanation(name: str, rubric: Rubric) -> str:
     check = find_check(name)
     if check is not None:
         return _check_text(check)
-    known = [kind.code for kind in CATALOGUE] + [each.id for each in rubric.criteria] + check_names()
+    known = [kind.code for kind in EVERY_KIND] + [each.id for each in rubric.criteria] + check_names()
     guess = did_you_mean(name, known) or "; a code (URDF051), a check (frame_at) or a criterion (lidar-frame) is wanted"
     raise InputError(f"there is nothing to explain under {name!r}{guess}")
 
 
 def _kind_text(kind: Kind) -> str:
-    return f"{kind.code} ({kind.severity}): {kind.title}\n\n{_filled(kind.explanation)}\n\n{EFFECTS[kind.effect]}\n"
+    effect = f"\n{EFFECTS[kind.effect]}\n" if EFFECTS[kind.effect] else ""
+    return f"{kind.code} ({kind.severity}): {kind.title}\n\n{_filled(kind.explanation)}\n{effect}"
 
 
 def _criterion_text(criterion: Criterion, rubric: Rubric) -> str:

@@ -55,6 +55,9 @@ _RESULT = _object(
         "hints": _array(_object({"message": _TEXT, "edit": {"type": "object"}, "verified": {"type": "boolean"}})),
     }
 )
+_EXHIBIT = _object(
+    {"path": _TEXT, "size": {"type": "integer", "minimum": 0}, "width": _nullable(_COUNT), "height": _nullable(_COUNT)}
+)
 
 REPORT_SCHEMA: dict[str, Any] = {
     "$schema": _DIALECT,
@@ -64,13 +67,25 @@ REPORT_SCHEMA: dict[str, Any] = {
             "schema": {"const": "grader/report/v1"},
             "grader": _object({"version": _TEXT}),
             "rubric": _object({"id": _TEXT, "title": _TEXT, "sha256": _HASH}),
-            "submission": _object({"id": _TEXT, "path": _TEXT, "sha256": _HASH}),
+            "submission": _object(
+                {
+                    "id": _TEXT,
+                    "path": _nullable(_TEXT),
+                    "sha256": _nullable(_HASH),
+                    "package": _nullable(_TEXT),
+                    "passed_over": _array(_object({"path": _TEXT, "because": _TEXT})),
+                    "left_out": _array(_TEXT),
+                }
+            ),
+            "notes": _array(_TEXT),
             "parts": _array(_TEXT),
             "score": _POINTS,
             "max_score": _POINTS,
             "pending": _POINTS,
             "problems": _array(_PROBLEM),
             "results": _array(_RESULT),
+            "evidence": _array(_object({"id": _TEXT, "part": _TEXT, "title": _TEXT, "files": _array(_EXHIBIT)})),
+            "other_pictures": _array(_EXHIBIT),
         }
     ),
 }
@@ -119,18 +134,24 @@ def rubric_schema() -> dict[str, Any]:
         optional=("about", "with", "requires", "feedback"),
     )
     criterion["allOf"] = [_arguments_rule(check) for check in checks]
-    part = _object({"id": _TEXT, "title": _TEXT, "needs": {"enum": ["urdf"]}, "points": _POINTS}, ("needs", "points"))
+    part = _object(
+        {"id": _TEXT, "title": _TEXT, "needs": {"enum": ["urdf", "package", "files"]}, "points": _POINTS},
+        ("needs", "points"),
+    )
+    evidence = _object({"id": _TEXT, "part": _TEXT, "title": _TEXT, "names": {**_array(_TEXT), "minItems": 1}})
     rubric = _object(
         {
             "id": _TEXT,
             "title": _TEXT,
             "reference": _TEXT,
             "urdf": _TEXT,
+            "package": _TEXT,
             "points": _POINTS,
             "part": {**_array(part), "minItems": 1},
             "criterion": {**_array(criterion), "minItems": 1},
+            "evidence": {**_array(evidence), "minItems": 1},
         },
-        optional=("reference", "urdf", "points"),
+        optional=("reference", "urdf", "package", "points", "evidence"),
     )
     return {"$schema": _DIALECT, "title": "grader rubric", **rubric}
 

@@ -7,11 +7,12 @@ from itertools import groupby
 from rich.console import Console
 from rich.text import Text
 
-from grader.grading.report import Report, Result
+from grader.grading.report import Exhibits, Report, Result
 from grader.report.layout import place_words, show_excerpt, show_problems, symbol, wrapped
 from grader.report.points import points_words
 from grader.report.text import printable
-from grader.robot.reader import Reading
+from grader.robot.catalogue import Problem
+from grader.submission.evidence import Exhibit
 
 _STYLES = {"passed": "green", "failed": "bold red", "skipped": "yellow", "pending": "cyan", "errored": "bold magenta"}
 _SYMBOLS = {
@@ -27,6 +28,7 @@ _VERDICTS = {
     "degraded": "ROS 2 loads the file, but drops some of it",
     "rejected": "ROS 2 rejects the file",
 }
+_MOST_LISTED = 12
 
 
 def render_terminal(report: Report, console: Console) -> None:
@@ -34,53 +36,87 @@ def render_terminal(report: Report, console: Console) -> None:
     _show_head(report, console)
     shown: set[str] = set()
     titles = {part.id: part.title for part in report.rubric.parts}
-    for about, results in groupby(report.results, key=lambda each: each.criterion.about or titles[each.criterion.part]):
-        _show_group(about, tuple(results), report.submission.urdf, console, shown)
-    told = [(each.outcome.location, each.outcome.message) for each in report.results if each.outcome.status == "failed"]
-    problems = tuple(
-        problem
-        for problem in report.submission.urdf.problems
-        if not any(where == problem.location and problem.message in message for where, message in told)
-    )
+    for part, of_part in groupby(report.results, key=lambda each: each.criterion.part):
+        results = tuple(of_part)
+        if len(report.parts) > 1:
+            console.print()
+            heading = f"{printable(titles[part])}  {_earned(results)}"
+            wrapped(console, Text(heading, style="bold underline"), 0)
+        for about, group in groupby(results, key=lambda each: each.criterion.about or titles[each.criterion.part]):
+            is_part = len(report.parts) > 1 and about == titles[part]
+            _show_group(None if is_part else about, tuple(group), report, console, shown)
+    _show_evidence(report, console)
+    problems = tuple(_untold(report))
     if problems:
         console.print()
-        console.print(Text("What else there is to say of the file", style="bold"))
-        show_problems(console, problems, report.submission.urdf.source)
+        what = "file" if report.submission.is_single else "files"
+        console.print(Text(f"What else there is to say of the {what}", style="bold"))
+        show_problems(console, problems, report.submission.source, report.submission.path)
     if report.counts("failed"):
         console.print()
         wrapped(console, Text(_advice(report), style="dim"), 0)
 
 
+def _untold(report: Report) -> Iterator[Problem]:
+    """The problems that no failed criterion has told already."""
+    told = [(each.outcome.location, each.outcome.message) for each in report.results if each.outcome.status == "failed"]
+    for problem in report.problems:
+        if not any(where == problem.location and problem.message in message for where, message in told):
+            yield problem
+
+
 def _show_head(report: Report, console: Console) -> None:
     score = f"{points_words(report.score)} / {points_words(report.max_score)} points"
-    style = "bold green" if report.score == report.max_score else "bold"
+    style = "bold green" if report.score + report.pending == report.max_score else "bold"
     wrapped(console, Text.assemble((score, style), "  ", (printable(report.rubric.title), "bold")), 0)
-    urdf = report.submission.urdf
+    submission = report.submission
     counted = [
         f"{report.counts(status)} {status}" for status in ("passed", "failed", "skipped", "pending", "errored")
         if report.counts(status)
     ]  # fmt: skip
-    wrapped(console, Text(f"{printable(report.submission.path)}: {_VERDICTS[urdf.verdict]}; {', '.join(counted)}"), 0)
+    graded = "no URDF was submitted"
+    if submission.path is not None and submission.urdf is not None:
+        graded = f"{printable(submission.path)}: {_VERDICTS[submission.urdf.verdict]}"
+    wrapped(console, Text(f"{graded}; {', '.join(counted)}"), 0)
     if report.pending:
         wrapped(console, Text(f"{points_words(report.pending)} points wait for a person", style="cyan"), 0)
+    for note in report.notes:
+        wrapped(console, Text(f"Note: {printable(note)}", style="cyan"), 0)
+    passed_over = [f"Passed over {each.path}: {each.because}" for each in submission.passed_over]
+    _show_lines([*passed_over, *(f"Left out: {each}" for each in submission.tree.left_out)], console)
 
 
-def _show_group(about: str, results: tuple[Result, ...], urdf: Reading, console: Console, shown: set[str]) -> None:
-    earned = points_words(sum((result.points for result in results), Decimal(0)))
-    most = points_words(sum((result.criterion.points for result in results), Decimal(0)))
-    console.print()
-    wrapped(console, Text.assemble((printable(about), "bold"), (f"  {earned}/{most}", "dim")), 0)
+def _show_lines(lines: list[str], console: Console) -> None:
+    for line in lines[:_MOST_LISTED]:
+        wrapped(console, Text(printable(line), style="dim"), 0)
+    if len(lines) > _MOST_LISTED:
+        wrapped(console, Text(f"... and {len(lines) - _MOST_LISTED} more", style="dim"), 0)
+
+
+def _earned(results: tuple[Result, ...]) -> str:
+    earned = sum((result.points for result in results), Decimal(0))
+    most = sum((result.criterion.points for result in results), Decimal(0))
+    return f"{points_words(earned)}/{points_words(most)}"
+
+
+def _show_group(
+    about: str | None, results: tuple[Result, ...], report: Report, console: Console, shown: set[str]
+) -> None:
+    if about is not None:
+        console.print()
+        wrapped(console, Text.assemble((printable(about), "bold"), (f"  {_earned(results)}", "dim")), 0)
     causes = {result.because for result in results}
     if len(results) > 1 and len(causes) == 1 and None not in causes:
         text = f"{len(results)} criteria are skipped, because {results[0].because} failed"
+        most = _earned(results).partition("/")[2]
         head = Text.assemble("  ", (symbol(console, *_SYMBOLS["skipped"]), _STYLES["skipped"]), f" 0/{most:<3} ")
         wrapped(console, Text(text, style="dim"), _INDENT, head)
         return
     for result in results:
-        _show_result(result, urdf, console, shown)
+        _show_result(result, report, console, shown)
 
 
-def _show_result(result: Result, urdf: Reading, console: Console, shown: set[str]) -> None:
+def _show_result(result: Result, report: Report, console: Console, shown: set[str]) -> None:
     criterion, outcome = result.criterion, result.outcome
     style = _STYLES[outcome.status]
     points = f"{points_words(result.points)}/{points_words(criterion.points)}"
@@ -96,14 +132,53 @@ def _show_result(result: Result, urdf: Reading, console: Console, shown: set[str
         return
     wrapped(console, title + Text(f"  {criterion.id}", style="dim"), _INDENT, head.append(" "))
     wrapped(console, Text(_sentence(outcome.message), style=style if outcome.status == "errored" else ""), _INDENT)
+    if outcome.status == "pending" and isinstance(outcome.expected, str):
+        _show_answer(outcome.measured, outcome.expected, console)
     if outcome.status != "failed":
         return
     if outcome.location is not None:
         wrapped(console, Text(place_words(outcome.location), style="dim"), _INDENT)
-        show_excerpt(console, urdf.source, outcome.location, _INDENT)
+        source = report.submission.source(outcome.location.path)
+        if source is not None:
+            show_excerpt(console, source, outcome.location, _INDENT)
     if criterion.feedback and criterion.feedback not in shown:
         shown.add(criterion.feedback)
         wrapped(console, Text(criterion.feedback, style="italic"), _INDENT)
+
+
+def _show_answer(found: object, model: str, console: Console) -> None:
+    """What was answered, beside the model answer."""
+    for words, text in (("Found", found), ("Model answer", model)):
+        if not isinstance(text, str):
+            continue
+        wrapped(console, Text(f"{words}:", style="bold"), _INDENT)
+        for line in filter(str.strip, text.splitlines()):
+            wrapped(console, Text(printable(line)), _INDENT + 2)
+
+
+def _show_evidence(report: Report, console: Console) -> None:
+    if not report.exhibits:
+        return
+    console.print()
+    console.print(Text("Evidence", style="bold"))
+    parts = {part.id: part.title for part in report.rubric.parts}
+    for part, asked in groupby(report.exhibits, key=lambda each: each.evidence.part):
+        wrapped(console, Text(f"{printable(parts[part])}", style="dim"), 2)
+        for found in asked:
+            _show_exhibits(found, console)
+    if report.others:
+        wrapped(console, Text("Other pictures and documents", style="dim"), 2)
+        for exhibit in report.others[:_MOST_LISTED]:
+            wrapped(console, Text(f"{printable(exhibit.words)}"), 4)
+        if len(report.others) > _MOST_LISTED:
+            wrapped(console, Text(f"... and {len(report.others) - _MOST_LISTED} more"), 4)
+
+
+def _show_exhibits(found: Exhibits, console: Console) -> None:
+    names: tuple[Exhibit, ...] = found.files[:_MOST_LISTED]
+    listed = ", ".join(printable(exhibit.words) for exhibit in names)
+    style = "" if names else "yellow"
+    wrapped(console, Text(f"{printable(found.evidence.title)}: {listed or 'missing'}", style=style), 4)
 
 
 def _sentence(message: str) -> str:
@@ -116,7 +191,8 @@ def _sentence(message: str) -> str:
 def _advice(report: Report) -> str:
     first = next(_failed(report.results))
     rubric = "" if report.rubric.is_shipped else f" --rubric {printable(report.rubric.path.name)}"
-    return f"`grader explain {first}{rubric}` says how it is decided, `grader inspect` shows the whole robot."
+    whole = "`grader inspect` shows the whole robot" if report.submission.urdf is not None else "mend that first"
+    return f"`grader explain {first}{rubric}` says how it is decided, {whole}."
 
 
 def _failed(results: Iterable[Result]) -> Iterator[str]:

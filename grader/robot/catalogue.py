@@ -9,14 +9,15 @@ from typing import Literal
 from grader.robot.source import Location
 
 Severity = Literal["error", "warning", "note"]
-Effect = Literal["rejects", "drops", "loads"]
+Effect = Literal["rejects", "drops", "loads", "other"]
 
 
 @dataclass(frozen=True, slots=True)
 class Kind:
     """One kind of problem: a code that never changes, its title, what ROS 2 does and how to mend the file.
 
-    The effect decides the verdict: ROS 2 rejects the file, drops content of it, or loads it all the same.
+    The effect of a URDF's problems decides the verdict: ROS 2 rejects the file, drops content of it, or loads it all the same.
+    A problem of another file has an effect of its `other` kind.
     """
 
     code: str

@@ -6,8 +6,9 @@ from grader.robot import catalogue
 from grader.robot.catalogue import Kind
 from grader.robot.model import Joint, Limit, Mimic
 from grader.robot.names import quoted
-from grader.robot.notes import Element, Notes, Part, children
+from grader.robot.notes import Notes, Part, children
 from grader.robot.transforms import Vector, unit
+from grader.robot.xml import Element
 
 JointType = Literal["fixed", "continuous", "revolute", "prismatic", "floating", "planar"]
 JOINT_TYPES: tuple[str, ...] = get_args(JointType)

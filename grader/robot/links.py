@@ -3,7 +3,8 @@
 from grader.robot import catalogue
 from grader.robot.materials import Materials
 from grader.robot.model import Box, Collision, Cylinder, Geometry, Inertial, Link, Mesh, Sphere, Visual
-from grader.robot.notes import Element, Notes, Part, children
+from grader.robot.notes import Notes, Part, children
+from grader.robot.xml import Element
 
 _SHAPES = ("box", "cylinder", "sphere", "mesh")
 _VISUAL_LOST = "ROS 2 drops this visual of link {}, those behind it and all its collisions"

@@ -3,8 +3,9 @@
 from grader.robot import catalogue
 from grader.robot.model import Material
 from grader.robot.names import quoted
-from grader.robot.notes import Element, Notes, children, shown
+from grader.robot.notes import Notes, children, shown
 from grader.robot.numbers import NumberError, rgba
+from grader.robot.xml import Element
 
 _BLACK = (0.0, 0.0, 0.0, 1.0)
 

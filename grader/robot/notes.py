@@ -4,8 +4,6 @@ import re
 from collections.abc import Iterable
 from typing import TypeVar
 
-from lxml import etree
-
 from grader.robot import catalogue
 from grader.robot.catalogue import Effect, Kind, Problem
 from grader.robot.model import Joint, Origin
@@ -13,8 +11,8 @@ from grader.robot.names import closest, did_you_mean, quoted
 from grader.robot.numbers import NumberError, number, vector
 from grader.robot.source import Mark, Source
 from grader.robot.transforms import Vector
+from grader.robot.xml import Element
 
-Element = etree._Element  # noqa: SLF001  lxml has no public name for it
 Default = TypeVar("Default")
 
 _FORMAT_DIRECTIVE = re.compile(r"%[-+ #0-9.$*'hlLqjzt]*n")

@@ -14,24 +14,15 @@ from grader.robot.links import read_link
 from grader.robot.materials import Materials
 from grader.robot.model import Joint, Link, Robot
 from grader.robot.names import quoted
-from grader.robot.notes import Element, Notes
+from grader.robot.notes import Notes
 from grader.robot.numbers import is_version_one
 from grader.robot.source import Source
 from grader.robot.spelling import check_spelling
 from grader.robot.tree import check_tree
+from grader.robot.xml import Element, XMLSyntaxError, parse_xml
 
 Verdict = Literal["clean", "degraded", "rejected"]
 
-# The reader hands over bytes that it has capped itself: no file, no network and no entity is opened by lxml.
-_PARSER = etree.XMLParser(
-    resolve_entities=False,
-    no_network=True,
-    load_dtd=False,
-    dtd_validation=False,
-    huge_tree=False,
-    remove_comments=True,
-    remove_pis=True,
-)
 _XACRO = re.compile(r"<xacro:|\$\{|\$\(")
 
 
@@ -54,8 +45,8 @@ def read_urdf(data: bytes, path: str = "robot.urdf") -> Reading:
     text = data.decode("utf-8", "surrogateescape")
     if dialect.is_plain(data):
         try:
-            root = etree.fromstring(data, _PARSER)
-        except etree.XMLSyntaxError:
+            root = parse_xml(data)
+        except XMLSyntaxError:
             pass
         else:
             return _read_plain(root, Source(path, text))
@@ -80,7 +71,7 @@ def _read_dialect(text: str, path: str) -> Reading:
             message = "there is no <robot> at the top level of the file; ROS 2 loads nothing"
             problems.append(Problem(catalogue.NO_ROBOT, message, source.at(scan.first_tag)))
         return _judge(None, problems, source)
-    root = etree.fromstring(scan.xml, _PARSER)
+    root = parse_xml(scan.xml)
     notes = Notes(source, root)
     robot = _read_robot(root, notes)
     return _judge(robot, problems + notes.problems, source, notes)

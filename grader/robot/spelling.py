@@ -2,7 +2,8 @@
 
 from grader.robot import catalogue
 from grader.robot.names import quoted
-from grader.robot.notes import Element, Notes
+from grader.robot.notes import Notes
+from grader.robot.xml import Element
 
 # What urdfdom reads: the attributes of each element, and the elements that may stand in it.
 _ATTRIBUTES: dict[str, tuple[str, ...]] = {

@@ -6,7 +6,8 @@ from grader.robot import catalogue
 from grader.robot.holding import holding_joints
 from grader.robot.model import Joint, Robot
 from grader.robot.names import quoted
-from grader.robot.notes import Element, Notes
+from grader.robot.notes import Notes
+from grader.robot.xml import Element
 
 _REJECTED = "ROS 2 loads nothing of the file"
 _MOST_PATHS = 10_000_000

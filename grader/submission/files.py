@@ -16,6 +16,11 @@ def read_capped(path: Path, limit: int = URDF_LIMIT, *, advice: str = _ADVICE) -
 
     `advice` says what to do about a file that is too large.
     """
+    return capped(read_start(path, limit + 1), limit, printable_path(path), advice)
+
+
+def read_start(path: Path, count: int) -> bytes:
+    """The first bytes of a regular file; raises InputError, in one plain sentence, for anything else."""
     shown = printable_path(path)
     try:
         # A FIFO would block at open and a device could be endless: both are recognised without reading.
@@ -24,12 +29,11 @@ def read_capped(path: Path, limit: int = URDF_LIMIT, *, advice: str = _ADVICE) -
             if not stat.S_ISREG(os.fstat(handle).st_mode):
                 raise InputError(f"{shown} is not a regular file")
             with os.fdopen(handle, "rb", closefd=False) as file:
-                data = file.read(limit + 1)
+                return file.read(count)
         finally:
             os.close(handle)
     except OSError as error:
         raise InputError(f"cannot read {shown}: {error.strerror or error}") from None
-    return _capped(data, limit, shown, advice)
 
 
 def read_standard_input(limit: int = URDF_LIMIT) -> bytes:
@@ -37,7 +41,7 @@ def read_standard_input(limit: int = URDF_LIMIT) -> bytes:
     if sys.stdin is None:
         raise InputError("standard input is closed")
     try:
-        return _capped(sys.stdin.buffer.read(limit + 1), limit, "standard input", _ADVICE)
+        return capped(sys.stdin.buffer.read(limit + 1), limit, "standard input")
     except OSError as error:
         raise InputError(f"cannot read standard input: {error.strerror or error}") from None
 
@@ -55,7 +59,8 @@ def printable_path(path: Path | str) -> str:
     return "".join(c if c.isprintable() else f"\\x{ord(c):02x}" for c in text)
 
 
-def _capped(data: bytes, limit: int, shown: str, advice: str) -> bytes:
+def capped(data: bytes, limit: int, shown: str, advice: str = _ADVICE) -> bytes:
+    """The bytes that were read of a file, one more than the limit at most; raises InputError where it is too large."""
     if len(data) > limit:
         raise InputError(f"{shown} is larger than {limit} bytes, the limit{advice}")
     return data

@@ -1,58 +1,125 @@
-"""Which URDF of a folder is the one that was meant."""
+"""Which URDF and which package of a submission are the ones that were meant."""
 
-import os
-from pathlib import Path
+import re
+from typing import NamedTuple
 
 from grader.errors import InputError
-from grader.submission.files import printable_path
+from grader.submission.tree import File, Tree
 
-# Products of a build, tools' folders and other people's code: what a student wrote is not in them.
-_IGNORED = frozenset(
-    {"build", "install", "log", "node_modules", "site-packages", "venv", "env", "__pycache__", "__MACOSX"}
+_SNIFFED = 4096  # bytes in which <robot has to stand
+_MOST_SNIFFED = 400
+_MOST_PACKAGES = 40
+_TEXTS = frozenset({"", ".urdf", ".xacro", ".xml", ".txt", ".sdf"})
+_ROBOT = re.compile(rb"<\s*robot[\s>/]")
+
+
+class PassedOver(NamedTuple):
+    """A file that might have been graded, and why it is not."""
+
+    path: str
+    because: str
+
+
+class Found(NamedTuple):
+    """The file that is graded, if there is one, and those that might have been."""
+
+    path: str | None
+    passed_over: tuple[PassedOver, ...]
+
+
+class _Candidate(NamedTuple):
+    """How good a file is, best first: the tuple sorts."""
+
+    tier: int
+    outside: bool
+    depth: int
+    path: str
+
+
+_TIERS = (
+    "",
+    "it has the right name, but does not stand at {wanted}",
+    "its name only begins as that of {wanted} does",
+    "it has another name than {wanted}",
+    "it is not named as a URDF",
+    "it is empty",
 )
-_MOST_FILES = 50_000
 
 
-def find_urdf(folder: Path, wanted: str) -> tuple[Path, tuple[Path, ...]]:
-    """The URDF of a folder that is graded, and those passed over, relative to the folder.
+def find_urdf(tree: Tree, wanted: str, package: str | None = None) -> Found:
+    """The URDF that is graded.
 
-    `wanted` is the path that the rubric gives, such as urdf/my_robot.urdf. A file at the end of whose path it stands comes
-    first, then one with its name, then any .urdf; among equals the one nearest to the top, then the first in the alphabet.
-    Raises InputError where there is none.
+    `wanted` is the path that the rubric gives, such as urdf/my_robot.urdf. A file at the end of whose path it stands comes first,
+    then one with its name, then one whose name begins alike, then any .urdf, then any text with <robot in it. Among equals
+    come those in `package` (a folder), then the nearest to the top, then the first in the alphabet.
     """
-    found = _urdfs(folder)
-    if not found:
-        raise InputError(
-            f"{printable_path(folder)} holds no .urdf file (build, install, log and hidden folders are skipped)"
-        )
-    parts = Path(wanted).parts
-
-    def rank(path: Path) -> tuple[bool, bool, int, str]:
-        return (path.parts[-len(parts) :] != parts, path.name != parts[-1], len(path.parts), path.as_posix())
-
-    best, *others = sorted(found, key=rank)
-    return best, tuple(others)
+    ranked = sorted(_candidates(tree, wanted, package))
+    if not ranked:
+        return Found(None, _generated(tree))
+    best, *others = ranked
+    passed_over = [PassedOver(each.path, _reason(best, each, wanted)) for each in others]
+    return Found(best.path, (*passed_over, *_generated(tree)))
 
 
-def _urdfs(folder: Path) -> list[Path]:
-    top = os.path.realpath(folder)
-    found: list[Path] = []
-    seen = 0
+def find_packages(tree: Tree, wanted: str) -> list[str]:
+    """The folders of packages: those with a package.xml, and those of the wanted name that hold at least a setup.py."""
+    with_manifest = [path.rpartition("/")[0] for path in tree.files if path.rpartition("/")[2] == "package.xml"]
+    with_setup = [path.rpartition("/")[0] for path in tree.files if path.rpartition("/")[2] == "setup.py"]
+    named = [folder for folder in with_setup if folder not in with_manifest and folder.rpartition("/")[2] == wanted]
+    if not with_manifest and not named:
+        named = with_setup
+    folders = sorted([*with_manifest, *named], key=lambda folder: (folder.count("/") + bool(folder), folder))
+    return folders[:_MOST_PACKAGES]
 
-    def refuse(error: OSError) -> None:
-        if not found and error.filename == os.fspath(folder):
-            raise InputError(f"cannot read {printable_path(folder)}: {error.strerror}")
 
-    for where, folders, files in os.walk(folder, onerror=refuse):
-        folders[:] = sorted(name for name in folders if name not in _IGNORED and not name.startswith("."))
-        seen += len(files) + len(folders)
-        if seen > _MOST_FILES:
-            raise InputError(
-                f"{printable_path(folder)} holds more than {_MOST_FILES} files: name the package or the URDF"
-            )
-        for name in files:
-            if name.lower().endswith(".urdf") and not name.startswith("."):
-                path = Path(where, name)
-                if os.path.realpath(path).startswith(top + os.sep):  # a link that leads out is not theirs to hand in
-                    found.append(path.relative_to(folder))
+def _candidates(tree: Tree, wanted: str, package: str | None) -> list[_Candidate]:
+    parts = [part for part in wanted.split("/") if part not in ("", ".")]
+    stem = parts[-1].split(".")[0].lower()
+    found: list[_Candidate] = []
+    sniffed = 0
+    for path, file in tree.files.items():
+        outside = package is not None and not path.startswith(package + "/" if package else "")
+        steps = path.split("/")
+        is_named = steps[-1].lower().endswith(".urdf") or steps[-1] == parts[-1]
+        if not is_named:
+            if file.suffix not in _TEXTS or sniffed >= _MOST_SNIFFED or not file.size or steps[-1] in _NO_ROBOTS:
+                continue
+            sniffed += 1
+            if not _is_robot(file):
+                continue
+        if is_named and not file.size:
+            tier = 5
+        elif steps[-len(parts) :] == parts:
+            tier = 0
+        elif steps[-1] == parts[-1]:
+            tier = 1
+        elif steps[-1].lower().startswith(stem):
+            tier = 2
+        else:
+            tier = 3 if is_named else 4
+        found.append(_Candidate(tier, outside, len(steps), path))
     return found
+
+
+_NO_ROBOTS = frozenset({"package.xml", "CMakeLists.txt", "requirements.txt", "COLCON_IGNORE", "LICENSE"})
+
+
+def _is_robot(file: File) -> bool:
+    try:
+        return _ROBOT.search(file.read(_SNIFFED, first=True)) is not None
+    except InputError:
+        return False
+
+
+def _reason(best: _Candidate, other: _Candidate, wanted: str) -> str:
+    if other.tier != best.tier:
+        return _TIERS[other.tier].format(wanted=wanted)
+    if other.outside != best.outside:
+        return "it stands outside of the package that is graded"
+    if other.depth != best.depth:
+        return "it is equally good, but stands deeper in the folders"
+    return "it is equally good, but comes later in the alphabet"
+
+
+def _generated(tree: Tree) -> tuple[PassedOver, ...]:
+    return tuple(PassedOver(path, "a build made it: only the source is graded") for path in tree.generated[:20])

@@ -1,42 +1,67 @@
-"""A submission: one URDF so far, wherever it stands in what was handed in."""
+"""A submission: what was handed in, which URDF and which package of it are graded, and what was passed over."""
 
-import os
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from grader.errors import InputError
 from grader.robot.reader import Reading, read_urdf
+from grader.robot.source import Source
 from grader.submission.files import URDF_LIMIT, printable_path, read_capped, read_standard_input, sha256_of
-from grader.submission.find import find_urdf
+from grader.submission.find import PassedOver, find_urdf
+from grader.submission.opening import open_tree, tree_name
+from grader.submission.package import Package, read_packages
+from grader.submission.tree import Tree, make_tree
 
 STANDARD_INPUT = "-"
-_ARCHIVES = (".zip", ".tar", ".tar.gz", ".tgz", ".gz", ".7z", ".rar")
+_NO_FILES = make_tree("", (), ())
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Submission:
-    """What was handed in. `path` is relative to it, `passed_over` names the URDFs that are not graded."""
+    """What was handed in. `path` is that of the URDF, relative to it; without a URDF `path`, `data` and `urdf` are None.
+
+    `is_single` tells a URDF on its own from a folder or archive. `packages` begins with the one that is graded.
+    """
 
     id: str
-    path: str
-    data: bytes = field(repr=False)
-    urdf: Reading
-    passed_over: tuple[str, ...] = ()
+    path: str | None
+    data: bytes | None = field(repr=False)
+    urdf: Reading | None
+    passed_over: tuple[PassedOver, ...] = ()
+    tree: Tree = field(default=_NO_FILES, repr=False)
+    packages: tuple[Package, ...] = field(default=(), repr=False)
+    is_single: bool = True
 
     @property
-    def sha256(self) -> str:
+    def sha256(self) -> str | None:
         """The hash of the URDF's bytes."""
-        return sha256_of(self.data)
+        return sha256_of(self.data) if self.data is not None else None
+
+    @property
+    def package(self) -> Package | None:
+        """The package that is graded."""
+        return self.packages[0] if self.packages else None
+
+    def source(self, path: str) -> Source | None:
+        """The text of one of its files, for quoting; None where it cannot be read."""
+        if self.urdf is not None and path == self.path:
+            return self.urdf.source
+        file = self.tree.files.get(path)
+        try:
+            return Source(path, file.read(URDF_LIMIT).decode("utf-8", "replace")) if file is not None else None
+        except InputError:
+            return None
 
 
-def read_submission(data: bytes, *, identity: str, path: str, passed_over: tuple[str, ...] = ()) -> Submission:
+def read_submission(data: bytes, *, identity: str, path: str) -> Submission:
     """The submission that the bytes of one URDF make."""
-    return Submission(identity, path, data, read_urdf(data, path), passed_over)
+    return Submission(identity, path, data, read_urdf(data, path))
 
 
-def open_submission(path: str, *, wanted: str, limit: int = URDF_LIMIT) -> Submission:
-    """Read a URDF file, the URDF of a folder (`wanted`: where the rubric expects it), or standard input for `-`.
+def open_submission(path: str, *, wanted: str, package: str = "", limit: int = URDF_LIMIT) -> Submission:
+    """Read what was handed in at a path: a URDF, a folder, an archive, or standard input for `-`.
 
+    `wanted` is where the rubric expects the URDF in its package, `package` the name that it expects this one to have.
     Raises InputError, with one plain sentence, for what cannot be read.
     """
     if path == STANDARD_INPUT:
@@ -44,22 +69,34 @@ def open_submission(path: str, *, wanted: str, limit: int = URDF_LIMIT) -> Submi
     if not path:
         raise InputError("the path is empty")
     place = Path(path)
-    try:
-        is_folder = place.is_dir()
-        if not is_folder and not os.path.lexists(place):
-            raise InputError(f"{printable_path(place)} does not exist")
-    except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise InputError(f"cannot read {printable_path(place)}: {reason}") from None
-    if not is_folder and place.name.lower().endswith(_ARCHIVES):
-        raise InputError(f"{printable_path(place)} is an archive, which this version does not open: unpack it first")
-    if not is_folder:
+    tree = open_tree(place)
+    if tree is None:
         identity = printable_path(place.stem)
         return read_submission(read_capped(place, limit), identity=identity, path=printable_path(place.name))
-    chosen, others = find_urdf(place, wanted)
-    name = printable_path(chosen.as_posix())
-    data = read_capped(place / chosen, limit)
-    identity = printable_path(place.resolve().name or "submission")
-    return read_submission(
-        data, identity=identity, path=name, passed_over=tuple(printable_path(each.as_posix()) for each in others)
+    if not tree.files and not tree.generated:
+        raise InputError(f"{printable_path(place)} is empty{_because(tree)}")
+    return submission_of(tree, tree_name(place), wanted=wanted, package=package, limit=limit)
+
+
+def submission_of(tree: Tree, identity: str, *, wanted: str, package: str = "", limit: int = URDF_LIMIT) -> Submission:
+    """The submission that a tree of files makes; raises InputError for a URDF that is too large."""
+    packages = read_packages(tree, package)
+    found = find_urdf(tree, wanted, packages[0].folder if packages else None)
+    others = [PassedOver(each.path("package.xml"), _why_not(packages[0], each)) for each in packages[1:]]
+    data = tree.files[found.path].read(limit) if found.path is not None else None
+    reading = read_urdf(data, found.path) if data is not None and found.path is not None else None
+    return Submission(
+        identity, found.path, data, reading, (*found.passed_over, *others), tree, packages, is_single=False
     )
+
+
+def _why_not(graded: Package, other: Package) -> str:
+    if other.name != graded.name:
+        return f"the package {graded.name!r} is graded, not {other.name!r}"
+    if other.folder.count("/") != graded.folder.count("/"):
+        return "it is equally good, but stands deeper in the folders"
+    return "it is equally good, but comes later in the alphabet"
+
+
+def _because(tree: Tree) -> str:
+    return f": {tree.left_out[0]}" if tree.left_out else " (hidden files and folders of builds are not looked at)"

@@ -9,7 +9,7 @@ import pytest
 
 from tests.golden.cases import ROOT, run
 
-REFERENCE = ROOT / "submissions/reference/my_robot/urdf/my_robot.urdf"
+REFERENCE = ROOT / "submissions/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
 MEBIBYTE = 1024 * 1024
 
 

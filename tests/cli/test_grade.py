@@ -7,8 +7,8 @@ import pytest
 
 from tests.golden.cases import ROOT, run
 
-REFERENCE = ROOT / "submissions/reference/my_robot/urdf/my_robot.urdf"
-MISTAKEN = "submissions/lidar-offset-in-visual"  # 64 of 70
+REFERENCE = ROOT / "submissions/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
+MISTAKEN = "submissions/lidar-offset-in-visual/my_robot.urdf"  # 64 of 70
 
 
 @pytest.mark.parametrize(
@@ -72,7 +72,7 @@ def test_max_size(tmp_path: Path) -> None:
 )
 def test_a_pipe_gets_no_escape_codes(variables: dict[str, str]) -> None:
     """A report in a pipe is plain text, at any width and in any encoding."""
-    done = run(("grade", "submissions/several-mistakes"), **variables)
+    done = run(("grade", "submissions/several-mistakes/my_robot.urdf"), **variables)
     assert done.returncode == 1
     assert b"\x1b" not in done.stdout
     width = int(variables.get("COLUMNS", "80"))

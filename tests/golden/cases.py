@@ -27,12 +27,12 @@ class Golden:
 GOLDEN = (
     Golden("reference", ("grade", "submissions/reference"), 0),
     Golden("reference-json", ("grade", "submissions/reference", "--format", "json"), 0),
-    Golden("several-mistakes", ("grade", "submissions/several-mistakes"), 1),
-    Golden("several-mistakes-json", ("grade", "submissions/several-mistakes", "--format", "json"), 1),
-    Golden("lidar-without-joint", ("grade", "submissions/lidar-without-joint"), 1),
-    Golden("broken-tag-parent", ("grade", "submissions/broken-tag-parent"), 1),
-    Golden("broken-tag-parent-json", ("grade", "submissions/broken-tag-parent", "--format", "json"), 1),
-    Golden("inspect-raw-xacro", ("inspect", "submissions/raw-xacro"), 1),
+    Golden("several-mistakes", ("grade", "submissions/several-mistakes/my_robot.urdf"), 1),
+    Golden("several-mistakes-json", ("grade", "submissions/several-mistakes/my_robot.urdf", "--format", "json"), 1),
+    Golden("lidar-without-joint", ("grade", "submissions/lidar-without-joint/my_robot.urdf"), 1),
+    Golden("broken-tag-parent", ("grade", "submissions/broken-tag-parent/my_robot.urdf"), 1),
+    Golden("broken-tag-parent-json", ("grade", "submissions/broken-tag-parent/my_robot.urdf", "--format", "json"), 1),
+    Golden("inspect-raw-xacro", ("inspect", "submissions/raw-xacro/my_robot.urdf"), 1),
     Golden("inspect-reference", ("inspect", "submissions/reference", "--relative-to", "base_link"), 0),
     Golden(
         "inspect-turned-json",

@@ -15,7 +15,7 @@ def test_a_command_prints_what_it_always_printed(case: Golden) -> None:
 
 def test_the_same_run_gives_the_same_bytes() -> None:
     """Hash seeds, time zones and locales change nothing."""
-    arguments = ("grade", "submissions/several-mistakes", "--format", "json")
+    arguments = ("grade", "submissions/several-mistakes/my_robot.urdf", "--format", "json")
     one = run(arguments, PYTHONHASHSEED="1", TZ="UTC", LANG="C")
     other = run(arguments, PYTHONHASHSEED="2", TZ="Asia/Tokyo", LANG="C.UTF-8")
     assert one.stdout == other.stdout

@@ -16,7 +16,8 @@ from grader.report.terminal import render_terminal
 from grader.report.text import printable
 from grader.robot.kinematics import Configuration
 from grader.robot.source import Location, Source
-from grader.submission.submission import open_submission, read_submission
+from grader.submission.submission import read_submission
+from tests.samples import SAMPLES
 
 ROOT = Path(__file__).parent.parent.parent
 RUBRIC = load_rubric("lab6")
@@ -33,6 +34,7 @@ def printed(data: bytes, width: int = 80, *, terminal: bool = False) -> str:
     console = Console(file=out, width=width, force_terminal=terminal, color_system="standard" if terminal else None)
     submission = read_submission(data, identity="a", path="a.urdf")
     render_terminal(grade(RUBRIC, submission), console)
+    assert submission.urdf is not None
     robot = Configuration(submission.urdf.robot) if submission.urdf.robot is not None else None
     inspection_terminal(Inspection("a.urdf", submission.urdf, robot, main_root(robot) if robot else None), console)
     return out.getvalue()
@@ -65,7 +67,7 @@ def test_printable_text_is_printable(text: str) -> None:
 def test_no_line_is_wider_than_the_terminal(name: str, width: int) -> None:
     """Text wraps and source lines are cut, in a report as in an inspection's problems."""
     out = StringIO()
-    report = grade(RUBRIC, open_submission(str(ROOT / "submissions" / name), wanted=RUBRIC.urdf))
+    report = SAMPLES[name].grade()
     render_terminal(report, Console(file=out, width=width))
     lines = out.getvalue().splitlines()
     assert max(map(len, lines)) <= width
@@ -74,7 +76,7 @@ def test_no_line_is_wider_than_the_terminal(name: str, width: int) -> None:
 
 def test_the_score_comes_first() -> None:
     """The first line says the points."""
-    report = grade(RUBRIC, open_submission(str(ROOT / "submissions/several-mistakes"), wanted=RUBRIC.urdf))
+    report = SAMPLES["several-mistakes"].grade()
     out = StringIO()
     render_terminal(report, Console(file=out, width=80))
     assert out.getvalue().startswith(f"{report.score} / 70 points")

@@ -1,0 +1,197 @@
+"""Checks of a package and of what its setup.py would install. Nothing is built and nothing is run."""
+
+import posixpath
+from collections.abc import Sequence
+from fnmatch import fnmatch
+from typing import Literal
+
+from grader.checks.outcome import Outcome, judged_as, listing, passed
+from grader.errors import MissingElement
+from grader.robot.names import did_you_mean
+from grader.submission.package import MANIFEST, Package
+from grader.submission.python.lookup import EmptyGlob
+from grader.submission.setup_py import Copy, Setup, Stop
+from grader.submission.submission import Submission
+
+Kind = Literal["urdf", "launch", "rviz"]
+
+_WORDS = {"urdf": "URDF", "launch": "launch file", "rviz": "RViz file"}
+_ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",)}
+
+
+def package_found(submission: Submission, *, name: str) -> Outcome:
+    """A ROS 2 package of this name was handed in."""
+    package = submission.package
+    if package is None:
+        raise no_package()
+    manifest = package.manifest
+    if manifest is None:
+        raise _no_manifest(package)
+    if manifest.name is None:
+        problem = manifest.problems[0]
+        return judged_as("failed", problem.message, at=problem.location)
+    message = f"the package is named {manifest.name!r}"
+    if manifest.name == name:
+        return Outcome("passed", message, manifest.name, name)
+    return Outcome("failed", f"{message}, expected {name!r}", manifest.name, name, location=manifest.name_location)
+
+
+def package_type(package: Package, *, build_type: str) -> Outcome:
+    """The package is of a build type, such as ament_python."""
+    manifest = package.manifest
+    if manifest is None or manifest.name is None:
+        raise _no_manifest(package)
+    actual = manifest.build_type
+    if actual == build_type:
+        return Outcome("passed", f"the build type is {actual!r}", actual, build_type)
+    message = f"the build type is {actual!r}, expected {build_type!r}{did_you_mean(actual, [build_type])}"
+    if actual == "catkin":
+        message = f"package.xml exports no build_type, which stands for catkin of ROS 1; expected {build_type!r}"
+    return Outcome("failed", message, actual, build_type, location=manifest.type_location)
+
+
+def build_installs(package: Package, *, kind: Kind, name: str) -> Outcome:
+    """A build of the package installs its URDF, launch file or RViz file, below share/<package>.
+
+    `kind` says which; `name` is the file that is meant if there are several. What setup.py lists is told by following it; what
+    cannot be told is left to a person.
+    """
+    files = files_of(package, kind, name)
+    if not files:
+        raise MissingElement(f"{_WORDS[kind]} in the package", "", message=f"the package holds no {_WORDS[kind]}")
+    return _installed(package, files, kind)
+
+
+def installs_files(package: Package, *, files: list[str]) -> Outcome:
+    """A build of the package installs at least one file that matches these patterns, below share/<package>."""
+    found = [path for path in package.tree.files if any(fnmatch(path, pattern) for pattern in files)]
+    if not found:
+        raise MissingElement("file", files[0], message=f"the package holds no file that matches {listing(files)}")
+    return _installed(package, found, None)
+
+
+def setup_imports(package: Package) -> Outcome:
+    """Every name that setup.py uses is defined, and what it imports is there."""
+    setup = readable_setup(package)
+    if not setup.faults:
+        return passed("every name that setup.py uses is defined")
+    messages = list(dict.fromkeys(fault.message for fault in setup.faults))
+    more = f" (and {len(messages) - 3} more)" if len(messages) > 3 else ""
+    return judged_as("failed", f"{'; '.join(messages[:3])}{more}", at=setup.location(setup.faults[0].at))
+
+
+def files_of(package: Package, kind: Kind, name: str) -> Sequence[str]:
+    """The files of a package that are meant: that of this name, else all of the kind."""
+    if kind == "launch":
+        chosen = package.launch_file(name)
+        return [chosen] if chosen is not None else []
+    endings = _ENDINGS[kind]
+    every = [path for path in package.tree.files if path.lower().endswith(endings)]
+    exact = [path for path in every if posixpath.basename(path) == name]
+    return exact or every
+
+
+def no_package() -> MissingElement:
+    """There is no package at all."""
+    return MissingElement("package", "", message="no ROS 2 package was handed in: there is no package.xml")
+
+
+def readable_setup(package: Package) -> Setup:
+    """The package's setup.py; raises MissingElement where there is none, or where Python cannot read it."""
+    setup = package.setup
+    if setup is None:
+        message = "the package has no setup.py, so a build of an ament_python package installs nothing"
+        raise MissingElement("setup.py", package.folder, message=message)
+    if setup.fault is not None and setup.fault.sure:
+        message = f"Python cannot read setup.py: {setup.fault.message}"
+        raise MissingElement("setup.py", package.folder, message=message, location=setup.fault.location)
+    return setup
+
+
+def _no_manifest(package: Package) -> MissingElement:
+    where = f"the folder {package.folder!r}" if package.folder else "what was handed in"
+    problem = package.manifest.problems[0] if package.manifest is not None else None
+    message = (
+        problem.message
+        if problem is not None
+        else f"{where} has a setup.py, but no package.xml: to ROS 2 it is no package"
+    )
+    return MissingElement(MANIFEST, package.folder, message=message, location=problem.location if problem else None)
+
+
+def _installed(package: Package, files: Sequence[str], kind: Kind | None) -> Outcome:
+    if package.setup is None and "CMakeLists.txt" in package.tree.files:
+        return Outcome("pending", "what CMakeLists.txt installs is not followed: a person has to look")
+    setup = readable_setup(package)
+    if setup.fault is not None:
+        return Outcome("pending", f"setup.py could not be read ({setup.fault.message}): a person has to look")
+    for stop in setup.stops:
+        owner = _owner(stop.path, package)
+        if owner is None:
+            message = f"the build stops before it installs anything: {_stopped(stop)}"
+            raise MissingElement("build", stop.path, message=message, location=setup.location(stop.at))
+        if owner == kind or posixpath.dirname(stop.path) in {posixpath.dirname(path) for path in files}:
+            return judged_as("failed", f"the build stops here: {_stopped(stop)}", at=setup.location(stop.at))
+    copies = [copy for copy in setup.copies if copy.source in files]
+    share = f"share/{package.name}/"
+    inside = [copy for copy in copies if copy.target.startswith(share)]
+    if inside:
+        return passed(f"a build installs {inside[0].source} as {inside[0].target}")
+    if setup.unknown:
+        unknown = setup.unknown[0]
+        line = f" (line {unknown.at.line} of setup.py)"
+        return Outcome("pending", f"whether {files[0]} is installed is told only by a build: {unknown.reason}{line}")
+    if copies:
+        return _elsewhere(copies[0], share, setup)
+    raise _not_installed(package, setup, files, kind)
+
+
+def _stopped(stop: Stop) -> str:
+    return f"data_files lists {stop.path!r}, but {stop.reason}"
+
+
+def _elsewhere(copy: Copy, share: str, setup: Setup) -> Outcome:
+    message = f"a build installs {copy.source} as {copy.target}, but ROS 2 looks for a package's files below {share}"
+    return judged_as("failed", message, at=setup.location(copy.at))
+
+
+def _not_installed(package: Package, setup: Setup, files: Sequence[str], kind: Kind | None) -> MissingElement:
+    message = f"a build does not install {files[0]}"
+    empty = _meant(setup.empty, files)
+    at = None
+    if not setup.is_called:
+        message += ": setup.py does not call setup()"
+    elif empty is not None:
+        folder = posixpath.dirname(empty.pattern)
+        reason = "" if not folder or folder in package.tree.folders else f", because there is no folder {folder!r}"
+        message += f": the pattern {empty.pattern!r} in setup.py finds nothing{reason}"
+        at = setup.location(empty.at)
+    else:
+        message += ": no entry of data_files in setup.py names it"
+    return MissingElement(f"installed {kind}", package.folder, message=message, location=at)
+
+
+def _meant(empty: Sequence[EmptyGlob], files: Sequence[str]) -> EmptyGlob | None:
+    """The pattern without a match that was most likely to find one of these files."""
+    from difflib import SequenceMatcher  # only where something is wrong
+
+    def likeness(glob: EmptyGlob) -> float:
+        return max(SequenceMatcher(None, glob.pattern, path).ratio() for path in files[:20])
+
+    best = max(empty, key=likeness, default=None)
+    return best if best is not None and likeness(best) > 0.4 else None
+
+
+def _owner(path: str, package: Package) -> Kind | None:
+    """The kind of file that an entry is about: by its ending, or by what else stands in its folder."""
+    if ".launch." in path or path.endswith("_launch.py"):
+        return "launch"
+    for kind, endings in _ENDINGS.items():
+        if path.lower().endswith(endings):
+            return "rviz" if kind == "rviz" else "urdf"
+    folder = posixpath.dirname(path)
+    beside = [each for each in package.tree.files if posixpath.dirname(each) == folder] if folder else []
+    kinds = {
+        _owner(each, package) for each in beside if each.endswith((*_ENDINGS["urdf"], ".rviz")) or ".launch." in each
+    }
+    return next(iter(kinds)) if len(kinds) == 1 else None

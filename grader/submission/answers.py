@@ -1,0 +1,143 @@
+"""Written answers: the passage of a document that speaks of a question. What it is worth, a person decides."""
+
+import re
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from fnmatch import fnmatch
+from typing import NamedTuple
+
+from grader.errors import InputError
+from grader.robot.source import Location
+from grader.submission import document_text
+from grader.submission.evidence import stem
+from grader.submission.labels import Label, is_meant, read_label
+from grader.submission.tree import File, Tree
+
+_TEXT_LIMIT, _DOCUMENT_LIMIT = 1024 * 1024, 32 * 1024 * 1024  # bytes
+_PATIENCE = 20  # seconds for a Word or PDF file
+_MOST_FILES, _MOST_DOCUMENTS = 40, 8
+_MOST_LINES, _MOST_TEXT = 60, 4000
+_HEADING_WORDS = 6  # a label that begins a passage stands among the first words of its line
+_MARKUP = re.compile(r"^[\s#>*\-_+|`]+")
+_NO_ANSWERS = frozenset(
+    {"CMakeLists.txt", "requirements.txt", "LICENSE.txt", "LICENSE.md", "top_level.txt", "SOURCES.txt"}
+)
+_ROBOT = re.compile(r"<\s*(?:robot|launch|package)[\s>/]")
+
+
+class Passage(NamedTuple):
+    """A piece of a document that answers a question; `location` is where it begins."""
+
+    text: str
+    location: Location
+
+
+class Search(NamedTuple):
+    """What looking for an answer has found: the passage, the documents that were read, and those that could not be."""
+
+    passage: Passage | None
+    read: tuple[str, ...]
+    unread: tuple[str, ...]
+
+
+def find_answer(tree: Tree, files: Sequence[str], places: Sequence[str]) -> Search:
+    """Look for the passage about one of `places`, such as `task 1 step 15`, in the documents whose names match `files`."""
+    read: list[str] = []
+    unread: list[str] = []
+    wanted = [read_label(place) for place in places]
+    best: Passage | None = None
+    for file, lines in _documents(tree, files, unread):
+        read.append(file.path)
+        passage = _passage(file, lines, wanted)
+        if passage is not None and best is None:
+            best = passage
+    return Search(best, tuple(read), tuple(unread))
+
+
+def _documents(tree: Tree, files: Sequence[str], unread: list[str]) -> Iterator[tuple[File, list[str]]]:
+    chosen = [
+        file
+        for file in tree.files.values()
+        if file.name not in _NO_ANSWERS and any(fnmatch(file.name.lower(), pattern.lower()) for pattern in files)
+    ]
+    documents = 0
+    for file in chosen[:_MOST_FILES]:
+        documents += file.suffix in (".docx", ".pdf")
+        if documents > _MOST_DOCUMENTS:
+            unread.append(f"{file.path}: there are more documents than are read")
+            continue
+        try:
+            text = _text(file)
+        except InputError as error:
+            unread.append(str(error))
+            continue
+        if not _ROBOT.search(text[:4096]):
+            yield file, text.splitlines()
+
+
+def _text(file: File) -> str:
+    match file.suffix:
+        case ".docx" | ".pdf":
+            return _converted(file, file.suffix[1:])
+        case ".doc" | ".odt" | ".rtf" | ".pages":
+            raise InputError(f"{file.path} is of a kind that is not read: open it yourself")
+        case _:
+            data = file.read(_TEXT_LIMIT)
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return data.decode("utf-16", "replace")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return data.decode("cp1252", "replace")
+
+
+def _converted(file: File, kind: str) -> str:
+    """The text of a Word or PDF file, read by a process that is stopped if it takes too long."""
+    data = file.read(_DOCUMENT_LIMIT)
+    command = [sys.executable, "-m", document_text.__name__, kind]
+    try:
+        done = subprocess.run(command, input=data, capture_output=True, timeout=_PATIENCE, check=False)
+    except (subprocess.TimeoutExpired, OSError):
+        raise InputError(f"{file.path} takes too long to read: open it yourself") from None
+    if done.returncode == document_text.MISSING:
+        raise InputError(f"{file.path} is read only with `pip install 'grader[documents]'`: open it yourself")
+    if done.returncode:
+        raise InputError(f"{file.path} cannot be read; it may be damaged: open it yourself")
+    return done.stdout.decode("utf-8", "replace")
+
+
+def _passage(file: File, lines: list[str], wanted: list[Label]) -> Passage | None:
+    """The lines from a heading about what is wanted up to the next heading; a file that is named for it is one as a whole."""
+    own = read_label(stem(file.name))
+    if any(is_meant(each, own) for each in wanted):
+        return _cut(file, lines, 0, len(lines))
+    task = own.task
+    for index, line in enumerate(lines):
+        label = _heading(line)
+        if label is None:
+            continue
+        task = label.task if label.task is not None else task
+        if any(is_meant(each, label, task) for each in wanted):
+            end = next(
+                (after for after in range(index + 1, len(lines)) if _heading(lines[after]) is not None), len(lines)
+            )
+            return _cut(file, lines, index, end)
+    return None
+
+
+def _heading(line: str) -> Label | None:
+    """The label that a line begins with, if it does."""
+    text = _MARKUP.sub("", line)
+    label = read_label(" ".join(text.split()[:_HEADING_WORDS]))
+    return label if label.steps or label.task is not None else None
+
+
+def _cut(file: File, lines: list[str], start: int, end: int) -> Passage | None:
+    kept = [line.rstrip() for line in lines[start : min(end, start + _MOST_LINES)]]
+    while kept and not kept[-1]:
+        kept.pop()
+    text = "\n".join(kept)
+    if not text.strip():
+        return None
+    return Passage(text[:_MOST_TEXT] + (" [...]" if len(text) > _MOST_TEXT else ""), Location(file.path, start + 1, 1))

@@ -1,0 +1,84 @@
+"""What a path leads to as a tree of files: a folder, an archive, or an archive in one of these."""
+
+import io
+import os
+from pathlib import Path
+
+from grader.errors import InputError
+from grader.submission.archive import archive_kind, read_archive, wrapper_name
+from grader.submission.files import printable_path, read_start
+from grader.submission.folder import read_folder
+from grader.submission.tree import MOST_FILES, File, Tree, make_tree
+
+_ENDINGS = (".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar")
+_INNER_LIMIT = 64 * 1024 * 1024  # bytes of an archive inside of what was handed in
+_MOST_INNER = 20
+_MOST_NESTED = 3
+_WORTH_FINDING = ("package.xml", "setup.py")
+
+
+def open_tree(path: Path) -> Tree | None:
+    """The files at a path; None where it is a single file that is no archive. Raises InputError."""
+    try:
+        is_folder = path.is_dir()
+        if not is_folder and not os.path.lexists(path):
+            raise InputError(f"{printable_path(path)} does not exist")
+    except (OSError, ValueError) as error:
+        reason = error.strerror if isinstance(error, OSError) else str(error)
+        raise InputError(f"cannot read {printable_path(path)}: {reason}") from None
+    if is_folder:
+        return _with_inner(read_folder(path))
+    shown = printable_path(path)
+    kind = archive_kind(read_start(path, 512))
+    if kind is None:
+        if path.name.lower().endswith(_ENDINGS):
+            raise InputError(f"{shown} is no archive that can be read, for all its name: it is damaged or empty")
+        return None
+    tree = read_archive(path.open("rb"), kind, shown)
+    return _with_inner(tree)
+
+
+def tree_name(path: Path) -> str:
+    """What a submission is called: the name of its folder, or of its file without the endings."""
+    try:
+        is_folder = path.is_dir()
+    except OSError:
+        is_folder = False
+    return printable_path(path.resolve().name or "submission") if is_folder else printable_path(wrapper_name(str(path)))
+
+
+def _with_inner(tree: Tree, depth: int = 0) -> Tree:
+    """The tree with what is in its archives, if nothing to grade stands beside them."""
+    archives = [file for file in tree.files.values() if file.suffix in _ENDINGS]
+    if not archives or any(file.name in _WORTH_FINDING or file.suffix == ".urdf" for file in tree.files.values()):
+        return tree
+    files, folders, left_out = list(tree.files.values()), set(tree.folders), list(tree.left_out)
+    generated = list(tree.generated)
+    kept = [tree]
+    for archive in archives[:_MOST_INNER]:
+        if depth >= _MOST_NESTED:
+            left_out.append(f"{archive.path} is an archive inside of an archive, too deep to be opened")
+            continue
+        try:
+            inner = _inner(archive)
+        except InputError as error:
+            left_out.append(str(error))
+            continue
+        if inner is None:
+            continue
+        inner = _with_inner(inner, depth + 1)
+        kept.append(inner)
+        start = archive.path + "/"
+        files += [File(start + file.path, file.size, file.read) for file in inner.files.values()]
+        folders |= {start + folder for folder in inner.folders}
+        left_out += [f"{start}{each}" for each in inner.left_out]
+        generated += [start + each for each in inner.generated]
+        if len(files) > MOST_FILES:
+            raise InputError(f"{tree.name} holds more than {MOST_FILES} files: name the package or the URDF")
+    return make_tree(tree.name, files, folders, left_out, generated, tuple(kept))
+
+
+def _inner(archive: File) -> Tree | None:
+    data = archive.read(_INNER_LIMIT)
+    kind = archive_kind(data[:512])
+    return read_archive(io.BytesIO(data), kind, archive.path) if kind is not None else None

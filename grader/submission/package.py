@@ -1,0 +1,199 @@
+"""A ROS 2 package as it was handed in: its files, read one by one when they are asked for, and never run."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import PurePosixPath
+
+from grader.errors import InputError
+from grader.robot.catalogue import Problem
+from grader.robot.names import closest
+from grader.robot.source import Location, Source
+from grader.submission import catalogue
+from grader.submission.find import find_packages
+from grader.submission.launch.model import SHARE, Fault, Launch
+from grader.submission.launch.reader import ENDINGS, read_launch
+from grader.submission.manifest import MANIFEST_LIMIT, Manifest, read_manifest
+from grader.submission.python.parse import PYTHON_LIMIT, SyntaxFault, parse
+from grader.submission.rviz import RvizFile, read_rviz
+from grader.submission.setup_py import Setup, read_setup
+from grader.submission.tree import Tree
+from grader.submission.yaml_nodes import YAML_LIMIT
+
+MANIFEST, SETUP = "package.xml", "setup.py"
+
+
+@dataclass(frozen=True)
+class Package:
+    """One package; `folder` is its path in the submission, and `tree` has its files by their paths in the package.
+
+    `known` has every package of the submission by its name, this one included.
+    """
+
+    folder: str
+    tree: Tree = field(repr=False)
+    manifest: Manifest | None = field(repr=False)
+    known: dict[str, "Package"] = field(repr=False, compare=False)
+
+    def path(self, path: str) -> str:
+        """A path of the package as one of the submission."""
+        return f"{self.folder}/{path}" if self.folder else path
+
+    @property
+    def name(self) -> str:
+        """The name that ROS 2 knows it by; without a package.xml, that of setup.py or of the folder."""
+        if self.manifest is not None and self.manifest.name is not None:
+            return self.manifest.name
+        return (self.setup.name if self.setup is not None else None) or PurePosixPath(
+            self.folder or self.tree.name
+        ).name
+
+    @cached_property
+    def setup(self) -> Setup | None:
+        """What its setup.py would install; None where there is none."""
+        file = self.tree.files.get(SETUP)
+        if file is None:
+            return None
+        try:
+            return read_setup(parse(file.read(PYTHON_LIMIT), self.path(SETUP)), self.tree)
+        except InputError as error:
+            source = Source(self.path(SETUP), "")
+            fault = SyntaxFault(source, str(error), Location(self.path(SETUP), 1, 1), sure=False)
+            return Setup(self.path(SETUP), source, fault)
+
+    @cached_property
+    def launch_files(self) -> tuple[str, ...]:
+        """The paths of its launch files: by their names, or because they stand in a folder launch."""
+        return tuple(
+            path
+            for path in self.tree.files
+            if path.endswith(ENDINGS) or (path.split("/")[-2:-1] == ["launch"] and ".launch" in path)
+        )
+
+    @cached_property
+    def rviz_files(self) -> tuple[str, ...]:
+        """The paths of its RViz files."""
+        return tuple(path for path in self.tree.files if path.lower().endswith(".rviz"))
+
+    def launch_file(self, name: str) -> str | None:
+        """The launch file of this name, in any of the three languages; else the one that is named most like it; else any."""
+        files = sorted(self.launch_files, key=lambda path: (path.count("/"), path))
+        stem = launch_stem(name)
+        exact = [path for path in files if is_launch_named(path, name)]
+        if exact:
+            return exact[0]
+        names = {path.rpartition("/")[2]: path for path in reversed(files)}
+        similar = closest(name, names) or next((each for each in names if launch_stem(each) == stem), None)
+        return names[similar] if similar else files[0] if files else None
+
+    def launch(self, path: str) -> Launch:
+        """A launch file, followed."""
+        if path not in self._launches:
+            self._launches[path] = self._read_launch(path)
+        return self._launches[path]
+
+    @cached_property
+    def _launches(self) -> dict[str, Launch]:
+        return {}
+
+    def _read_launch(self, path: str) -> Launch:
+        try:
+            data = self.tree.files[path].read(PYTHON_LIMIT)
+        except InputError as error:
+            source = Source(self.path(path), "")
+            return Launch(self.path(path), source, Fault(str(error), Location(self.path(path), 1, 1)))
+        return read_launch(
+            data, self.path(path), self.target(path) or f"share/{self.name}/{path}", self._open_installed
+        )
+
+    def rviz_file(self, name: str, launch: Launch | None) -> str | None:
+        """The RViz file that the launch file opens; else the one of this name; else any."""
+        for reference in launch.named("rviz") if launch is not None else ():
+            source = self.source_of(reference.path or "")
+            if source in self.rviz_files:
+                return source
+        files = sorted(self.rviz_files, key=lambda path: (path.rpartition("/")[2] != name, path.count("/"), path))
+        return files[0] if files else None
+
+    def rviz(self, path: str) -> RvizFile:
+        """An RViz file, read."""
+        try:
+            data = self.tree.files[path].read(YAML_LIMIT)
+        except InputError as error:
+            start = Location(self.path(path), 1, 1)
+            problem = Problem(catalogue.BAD_RVIZ, str(error), start)
+            return RvizFile(self.path(path), Source(self.path(path), ""), problem, None, start, ())
+        return read_rviz(data, self.path(path))
+
+    def target(self, path: str) -> str | None:
+        """Where a build puts a file of the package, below the prefix; None where it does not install it."""
+        copies = self.setup.copies if self.setup is not None else ()
+        return next((copy.target for copy in copies if copy.source == path), None)
+
+    def source_of(self, path: str) -> str | None:
+        """The file of the package that a build puts at this path, which begins with the stand-in for the prefix."""
+        share = f"{SHARE}/{self.name}/"
+        if self.setup is None or not path.startswith(share):
+            return None
+        return self.setup.installed().get(f"share/{self.name}/{path.removeprefix(share)}")
+
+    def _open_installed(self, path: str) -> tuple[bytes, str] | None:
+        """What the build puts at a path below the prefix, from whichever package of the submission it comes."""
+        for package in self.known.values():
+            source = package.setup.installed().get(path) if package.setup is not None else None
+            if source is not None:
+                try:
+                    return package.tree.files[source].read(PYTHON_LIMIT), package.path(source)
+                except InputError:
+                    return None
+        return None
+
+
+def is_launch_named(path: str, name: str) -> bool:
+    """Whether a launch file has this name, in any of the three languages that ros2 launch reads."""
+    own = path.rpartition("/")[2]
+    return own == name or (launch_stem(own) == launch_stem(name) and own.endswith(ENDINGS[:4]))
+
+
+def launch_stem(name: str) -> str:
+    """The name of a launch file without what tells its language."""
+    base = name.rpartition("/")[2]
+    return base.split(".launch")[0] if ".launch" in base else base.rpartition("_launch.")[0] or base
+
+
+def read_packages(tree: Tree, wanted: str) -> tuple[Package, ...]:
+    """The packages of a submission, the one that was meant first: that of the wanted name, or else the nearest to the top."""
+    known: dict[str, Package] = {}
+    found = [_read_package(tree, folder, known) for folder in find_packages(tree, wanted)]
+    found.sort(
+        key=lambda package: (
+            _distance(package, wanted),
+            package.folder.count("/") + bool(package.folder),
+            package.folder,
+        )
+    )
+    for package in found:
+        known.setdefault(package.name, package)
+    return tuple(found)
+
+
+def _distance(package: Package, wanted: str) -> int:
+    if package.manifest is not None and package.manifest.name == wanted:
+        return 0
+    if package.folder.rpartition("/")[2] == wanted:
+        return 1
+    return 2 if package.manifest is not None and closest(package.name, [wanted]) else 3
+
+
+def _read_package(tree: Tree, folder: str, known: dict[str, Package]) -> Package:
+    own = tree.below(folder)
+    file = own.files.get(MANIFEST)
+    path = f"{folder}/{MANIFEST}" if folder else MANIFEST
+    if file is None:
+        return Package(folder, own, None, known)
+    try:
+        manifest = read_manifest(file.read(MANIFEST_LIMIT), path)
+    except InputError as error:
+        start = Location(path, 1, 1)
+        problem = Problem(catalogue.BAD_MANIFEST, str(error), start)
+        manifest = Manifest(Source(path, ""), None, "", (problem,), start, start)
+    return Package(folder, own, manifest, known)

@@ -1,0 +1,77 @@
+"""What there is to say of a package's files, whatever they are graded on: problems with their codes and places."""
+
+from collections.abc import Iterator
+
+from grader.robot.catalogue import Problem
+from grader.submission import catalogue
+from grader.submission.launch.model import HOME, Launch
+from grader.submission.package import Package
+from grader.submission.setup_py import Setup
+
+_MOST_FILES = 5
+_ONE_MACHINE = (HOME, "/home/", "/Users/")
+
+
+def remarks(package: Package) -> tuple[Problem, ...]:
+    """The problems of package.xml, setup.py, launch files and RViz files, in this order, each file's by their places."""
+    found: list[Problem] = []
+    if package.manifest is not None:
+        found += _ordered(package.manifest.problems)
+    if package.setup is not None:
+        found += _ordered(_of_setup(package, package.setup))
+    for path in package.launch_files[:_MOST_FILES]:
+        found += _ordered(_of_launch(package.launch(path)))
+    for path in package.rviz_files[:_MOST_FILES]:
+        found += _ordered(package.rviz(path).problems)
+    return tuple(found)
+
+
+def _ordered(problems: "Iterator[Problem] | tuple[Problem, ...]") -> list[Problem]:
+    return sorted(problems, key=lambda each: (each.location.line, each.location.column, each.code, each.message))
+
+
+def _of_setup(package: Package, setup: Setup) -> Iterator[Problem]:
+    if setup.fault is not None:
+        kind = catalogue.SETUP_SYNTAX if setup.fault.sure else catalogue.SETUP_UNKNOWN
+        yield Problem(kind, f"Python cannot read setup.py: {setup.fault.message}", setup.fault.location)
+        return
+    for fault in setup.faults:
+        yield Problem(catalogue.SETUP_NAME, fault.message, setup.location(fault.at))
+    for stop in setup.stops:
+        message = f"data_files lists {stop.path!r}, but {stop.reason}: the build stops there"
+        yield Problem(catalogue.SETUP_STOPS, message, setup.location(stop.at))
+    for empty in setup.empty:
+        yield Problem(catalogue.EMPTY_GLOB, f"the pattern {empty.pattern!r} finds nothing", setup.location(empty.at))
+    for unknown in setup.unknown:
+        yield Problem(catalogue.SETUP_UNKNOWN, f"this is not followed: {unknown.reason}", setup.location(unknown.at))
+    yield from _of_entries(package, setup)
+
+
+def _of_entries(package: Package, setup: Setup) -> Iterator[Problem]:
+    start = setup.location(setup.called_at)
+    targets = set(setup.installed())
+    declared = package.manifest.name if package.manifest is not None else None
+    if declared is not None and setup.name is not None and setup.name != declared:
+        message = f"package.xml names the package {declared!r}, setup.py names it {setup.name!r}"
+        yield Problem(catalogue.OTHER_NAME, message, start)
+    if setup.unknown or setup.stops:
+        return
+    if f"share/ament_index/resource_index/packages/{package.name}" not in targets:
+        message = f"data_files has no entry for the resource index: resource/{package.name} is not installed"
+        yield Problem(catalogue.NO_MARKER, message, start)
+    if f"share/{package.name}/package.xml" not in targets:
+        message = f"data_files does not install package.xml to share/{package.name}"
+        yield Problem(catalogue.NO_MANIFEST_ENTRY, message, start)
+
+
+def _of_launch(launch: Launch) -> Iterator[Problem]:
+    if launch.syntax is not None:
+        yield Problem(catalogue.LAUNCH_SYNTAX, launch.syntax.message, launch.syntax.location)
+    for fault in launch.faults:
+        yield Problem(catalogue.LAUNCH_FAULT, fault.message, fault.location)
+    for unknown in launch.unknown:
+        yield Problem(catalogue.LAUNCH_UNKNOWN, unknown.message, unknown.location)
+    for named in launch.references:
+        if named.path is not None and named.path.startswith(_ONE_MACHINE):
+            shown = named.path.replace(HOME, "~")
+            yield Problem(catalogue.HARD_CODED, f"{shown} exists on one machine only", named.location)

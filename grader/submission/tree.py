@@ -1,0 +1,112 @@
+"""The files of a submission, wherever they come from: a folder or an archive looks the same from here on."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from pathlib import PurePosixPath
+from typing import Protocol
+
+from grader.errors import InputError
+from grader.submission.files import printable_path
+
+# Products of a build, tools' folders and other people's code: what a student wrote is not in them.
+BUILT = frozenset({"build", "install", "log"})
+IGNORED = BUILT | {"node_modules", "site-packages", "venv", "env", "__pycache__", "__MACOSX"}
+_LITTER = frozenset({"Thumbs.db", "desktop.ini", "Icon\r", "AMENT_IGNORE", "COLCON_IGNORE"})
+MOST_FILES = 50_000
+
+
+class Reader(Protocol):
+    """Gives the bytes of a file: of at most `limit` bytes (InputError beyond), or only the first `limit` of them."""
+
+    def __call__(self, limit: int, *, first: bool = False) -> bytes:
+        """The bytes."""
+
+
+@dataclass(frozen=True, slots=True)
+class File:
+    """One regular file; `path` is relative to the submission, with forward slashes, and printable."""
+
+    path: str
+    size: int
+    read: Reader = field(repr=False, compare=False)
+
+    @property
+    def name(self) -> str:
+        """The last part of its path."""
+        return self.path.rpartition("/")[2]
+
+    @property
+    def suffix(self) -> str:
+        """The ending of its name, in lower case: .png."""
+        return PurePosixPath(self.path).suffix.lower()
+
+
+@dataclass(frozen=True, slots=True, weakref_slot=True)
+class Tree:
+    """The files of a submission by path, in the order of the alphabet, and its folders, empty ones included.
+
+    `left_out` says in one line each what was not taken in, and why; `generated` names URDFs that a build has left.
+    """
+
+    name: str
+    files: Mapping[str, File]
+    folders: frozenset[str]
+    left_out: tuple[str, ...] = ()
+    generated: tuple[str, ...] = ()
+    kept: "tuple[Tree, ...]" = field(default=(), repr=False, compare=False)  # trees whose archives have to stay open
+
+    def below(self, folder: str) -> "Tree":
+        """The files of one folder as a tree of their own; their paths are relative to it."""
+        if not folder:
+            return self
+        start = folder + "/"
+        files = {
+            path.removeprefix(start): File(path.removeprefix(start), file.size, file.read)
+            for path, file in self.files.items()
+            if path.startswith(start)
+        }
+        folders = frozenset(each.removeprefix(start) for each in self.folders if each.startswith(start))
+        return Tree(folder.rpartition("/")[2], files, folders, kept=(self,))
+
+
+def make_tree(
+    name: str,
+    files: Iterable[File],
+    folders: Iterable[str],
+    left_out: Iterable[str] = (),
+    generated: Iterable[str] = (),
+    kept: "tuple[Tree, ...]" = (),
+) -> Tree:
+    """A tree of these files, its folders completed by those that the files stand in."""
+    by_path = {file.path: file for file in sorted(files, key=lambda each: each.path)}
+    above = set(folders).union(*(parents(path) for path in [*by_path, *folders]))
+    return Tree(name, by_path, frozenset(above), tuple(left_out), tuple(generated), kept)
+
+
+def parents(path: str) -> list[str]:
+    """The folders that a path stands in, the nearest first."""
+    return [parent.as_posix() for parent in PurePosixPath(path).parents if parent.as_posix() != "."]
+
+
+def is_ignored(path: str) -> str | None:
+    """The part of a path for which it is not looked at: a folder of tools or of a build, or something hidden."""
+    *folders, name = path.split("/")
+    for folder in folders:
+        if folder in IGNORED or folder.startswith("."):
+            return folder
+    return name if name.startswith(".") or name in _LITTER else None
+
+
+def is_generated(path: str) -> bool:
+    """Whether a path is that of a URDF which a build has copied somewhere."""
+    return path.lower().endswith(".urdf") and not BUILT.isdisjoint(path.split("/")[:-1])
+
+
+def too_many(shown: str) -> InputError:
+    """What to say of a submission with more files than anyone hands in."""
+    return InputError(f"{shown} holds more than {MOST_FILES} files: name the package or the URDF")
+
+
+def clean(path: str) -> str:
+    """A path as messages show it."""
+    return printable_path(path)

@@ -1,0 +1,53 @@
+"""The sample submissions, each with what its expected.toml says of it."""
+
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from grader.grading.grade import grade
+from grader.grading.report import Report
+from grader.grading.rubric import Rubric, load_rubric
+from grader.submission.submission import Submission, open_submission
+
+ROOT = Path(__file__).parent.parent
+LAB6 = load_rubric("lab6")
+
+
+@dataclass(frozen=True, slots=True)
+class Sample:
+    """One folder of submissions/: what is handed in stands there, or at the path that expected.toml names."""
+
+    name: str
+    expected: dict[str, Any]
+
+    @property
+    def path(self) -> Path:
+        """What is graded, from the project's root."""
+        return Path("submissions", self.name, str(self.expected.get("path", "")))
+
+    @property
+    def rubric(self) -> Rubric:
+        """The rubric that it is graded by."""
+        named = self.expected.get("rubric", LAB6.id)
+        return LAB6 if named == LAB6.id else load_rubric(named)
+
+    def open(self) -> Submission:
+        """The submission."""
+        return opened(self.path, self.rubric)
+
+    def grade(self) -> Report:
+        """Its report."""
+        return grade(self.rubric, self.open())
+
+
+def opened(path: Path | str, rubric: Rubric = LAB6) -> Submission:
+    """What is handed in at a path, seen from the project's root, opened as the command line does."""
+    return open_submission(str(ROOT / path), wanted=rubric.urdf, package=rubric.package)
+
+
+def _read(folder: Path) -> Sample:
+    return Sample(folder.name, tomllib.loads((folder / "expected.toml").read_text(encoding="utf-8")))
+
+
+SAMPLES = {path.parent.name: _read(path.parent) for path in sorted((ROOT / "submissions").glob("*/expected.toml"))}

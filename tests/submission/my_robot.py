@@ -1,0 +1,55 @@
+"""The package that the samples of setup.py stand in: its files, and what differs for a few samples."""
+
+from pathlib import Path
+
+SAMPLES = {
+    path.name.removesuffix(".py.txt"): path for path in sorted(Path(__file__).parent.glob("setup_samples/*.txt"))
+}
+
+_XML = "<!-- {} -->\n"
+_HASH = "# {}\n"
+# Every file's text is one of its own, so that it tells where an installed file comes from.
+FILES = {
+    "README.md": _HASH,
+    "config/params.yaml": _HASH,
+    "launch/my_robot_rviz.launch.py": _HASH,
+    "meshes/a/one.stl": "solid {}\n",
+    "meshes/two.stl": "solid {}\n",
+    "my_robot/__init__.py": _HASH,
+    "my_robot/version.py": _HASH + "__version__ = '0.0.0'\n",
+    "package.xml": _XML,
+    "resource/my_robot": "{}\n",
+    "rviz/my_robot.rviz": _HASH,
+    "setup.cfg": _HASH + "[develop]\nscript_dir=$base/lib/my_robot\n[install]\ninstall_scripts=$base/lib/my_robot\n",
+    "urdf/box.urdf": _XML,
+    "urdf/my_robot.urdf": _XML,
+}
+ADDED = {
+    "brackets_in_a_folder_name": ["[old]/my_robot.urdf", "o/my_robot.urdf"],
+    "folder_in_urdf": ["urdf/old/my_robot.urdf"],
+    "folder_in_urdf_passed_by": ["urdf/old/my_robot_1.urdf"],
+    "hidden_file_named": ["urdf/.hidden.urdf"],
+    "hidden_files": ["urdf/.hidden.urdf"],
+    "same_target_twice": ["other/box.urdf"],
+    "two_sources_for_one_target": ["meshes/a/two.stl"],
+    "urdf_below_resource": ["resource/deep/README", "resource/deep/er/picture.png"],
+}
+INSTEAD = {
+    "data_files_in_setup_cfg": {"setup.cfg": "[options.data_files]\nshare/my_robot = package.xml\n"},
+    "packages_in_setup_cfg": {"setup.cfg": "[options]\npackages = find:\n[options.packages.find]\ninclude = my_robot\n"},
+}
+TAKEN_AWAY = {
+    "no_launch_folder": ["launch/my_robot_rviz.launch.py"],
+}
+
+
+def make_package(sample: str, folder: Path) -> dict[str, str]:
+    """Write the package with a sample as its setup.py; the path of each file by the file's text."""
+    texts = {path: text.format(path) for path, text in FILES.items() if path not in TAKEN_AWAY.get(sample, ())}
+    texts |= {path: path + "\n" for path in ADDED.get(sample, ())}
+    texts |= INSTEAD.get(sample, {})
+    texts["setup.py"] = SAMPLES[sample].read_text(encoding="utf-8")
+    for path, text in texts.items():
+        (folder / path).parent.mkdir(parents=True, exist_ok=True)
+        (folder / path).write_text(text, encoding="utf-8")
+    return {text: path for path, text in texts.items()}
