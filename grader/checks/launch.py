@@ -15,10 +15,15 @@ def launch_found(package: Package, *, name: str) -> Outcome:
     """The package has a launch file of this name; it may be written in Python, XML or YAML."""
     path = package.launch_file(name)
     if path is None:
-        raise _no_launch_file()
+        raise _no_launch_file(package)
     if is_launch_named(path, name):
         return passed(f"the launch file is {path}")
-    return judged_as("failed", f"there is no launch file {name!r}; the package has {path}")
+    hint = (
+        ""
+        if posixpath.splitext(path)[1] in (".py", ".xml", ".yaml", ".yml")
+        else ", which ros2 launch cannot start without an ending such as .launch.py"
+    )
+    return judged_as("failed", f"there is no launch file {name!r}; the package has {path}{hint}")
 
 
 def launch_starts(package: Package, *, name: str, nodes: list[str]) -> Outcome:
@@ -67,8 +72,11 @@ def launch_finds_files(package: Package, *, name: str) -> Outcome:
         message = "; ".join(dict.fromkeys(text for text, _ in wrong))
         return judged_as("failed", message, at=wrong[0][1].location)
     for (status, text), each in verdicts:
-        if status == "skipped":
-            raise MissingElement(f"installed {each.purpose}", package.folder, message=text, location=each.location)
+        if status == "missing":
+            kind = (
+                f"installed {each.purpose}" if package.setup is not None and package.setup.fault is None else "setup.py"
+            )
+            raise MissingElement(kind, package.folder, message=text, location=each.location)
     pending = [text for (status, text), _ in verdicts if status == "pending"]
     if pending:
         return Outcome("pending", f"{pending[0]}: a person has to look")
@@ -77,15 +85,17 @@ def launch_finds_files(package: Package, *, name: str) -> Outcome:
     )
 
 
-def _no_launch_file() -> MissingElement:
+def _no_launch_file(package: Package) -> MissingElement:
     message = "the package has no launch file: none ends in .launch.py, .launch.xml or .launch.yaml"
+    if not any(posixpath.basename(folder) == "launch" for folder in package.tree.folders):
+        message += ", and there is no folder launch"
     return MissingElement("launch file in the package", "", message=message)
 
 
 def _launch(package: Package, name: str) -> Launch:
     path = package.launch_file(name)
     if path is None:
-        raise _no_launch_file()
+        raise _no_launch_file(package)
     launch = package.launch(path)
     if launch.syntax is not None:
         raise MissingElement("launch file", path, message=launch.syntax.message, location=launch.syntax.location)
@@ -98,7 +108,7 @@ def _home(executable: str) -> str:
 
 
 def _verdict(package: Package, named: Reference) -> tuple[str, str]:
-    """What becomes of a file that a launch file names: passed, failed, pending or, if it is never installed, skipped."""
+    """What becomes of a file that a launch file names: passed, failed, pending or, if it is never installed, missing."""
     what = _WORDS[named.purpose]
     if named.path is None:
         return ("failed" if named.sure else "pending", named.reason)
@@ -127,8 +137,10 @@ def _below_share(package: Package, owner: str, rest: str, what: str) -> tuple[st
             else ("pending", f"the {what} is in {owner!r}, which was not handed in")
         )
     setup = other.setup
+    if other.is_cmake or (setup is not None and setup.fault is not None and not setup.fault.sure):
+        return "pending", f"whether a build installs the {what} is not followed"
     if setup is None or setup.fault is not None:
-        return "skipped", f"without a setup.py that can be read, no {what} is installed"
+        return "missing", f"without a setup.py that Python can read, no {what} is installed"
     installed = setup.installed()
     target = f"share/{owner}/{rest}"
     if target in installed:
@@ -140,7 +152,7 @@ def _below_share(package: Package, owner: str, rest: str, what: str) -> tuple[st
     if put is not None:
         return "failed", f"it looks for the {what} at {target}, but the build puts it at {put}"
     if any(posixpath.basename(path) == name for path in other.tree.files):
-        return "skipped", f"it looks for the {what} at {target}, but the build does not install {name}"
+        return "missing", f"it looks for the {what} at {target}, but the build does not install {name}"
     similar = closest(name, {posixpath.basename(path) for path in other.tree.files})
     there = f"; there is {similar!r}" if similar else ""
     return "failed", f"it looks for the {what} at {target}, but the package has no file {name!r}{there}"

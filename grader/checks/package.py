@@ -7,7 +7,7 @@ from typing import Literal
 
 from grader.checks.outcome import Outcome, judged_as, listing, passed
 from grader.errors import MissingElement
-from grader.robot.names import did_you_mean
+from grader.robot.names import closest, did_you_mean
 from grader.submission.package import MANIFEST, Package
 from grader.submission.python.lookup import EmptyGlob
 from grader.submission.setup_py import Copy, Setup, Stop
@@ -73,6 +73,8 @@ def installs_files(package: Package, *, files: list[str]) -> Outcome:
 def setup_imports(package: Package) -> Outcome:
     """Every name that setup.py uses is defined, and what it imports is there."""
     setup = readable_setup(package)
+    if isinstance(setup, Outcome):
+        return setup
     if not setup.faults:
         return passed("every name that setup.py uses is defined")
     messages = list(dict.fromkeys(fault.message for fault in setup.faults))
@@ -96,15 +98,22 @@ def no_package() -> MissingElement:
     return MissingElement("package", "", message="no ROS 2 package was handed in: there is no package.xml")
 
 
-def readable_setup(package: Package) -> Setup:
-    """The package's setup.py; raises MissingElement where there is none, or where Python cannot read it."""
+def readable_setup(package: Package) -> Setup | Outcome:
+    """The package's setup.py, or the outcome where a person has to look.
+
+    Raises MissingElement where there is none, or where Python cannot read it.
+    """
     setup = package.setup
+    if package.is_cmake:
+        return Outcome("pending", "what CMakeLists.txt installs is not followed: a person has to look")
     if setup is None:
         message = "the package has no setup.py, so a build of an ament_python package installs nothing"
         raise MissingElement("setup.py", package.folder, message=message)
     if setup.fault is not None and setup.fault.sure:
         message = f"Python cannot read setup.py: {setup.fault.message}"
         raise MissingElement("setup.py", package.folder, message=message, location=setup.fault.location)
+    if setup.fault is not None:
+        return Outcome("pending", f"setup.py could not be read ({setup.fault.message}): a person has to look")
     return setup
 
 
@@ -120,12 +129,12 @@ def _no_manifest(package: Package) -> MissingElement:
 
 
 def _installed(package: Package, files: Sequence[str], kind: Kind | None) -> Outcome:
-    if package.setup is None and "CMakeLists.txt" in package.tree.files:
-        return Outcome("pending", "what CMakeLists.txt installs is not followed: a person has to look")
     setup = readable_setup(package)
-    if setup.fault is not None:
-        return Outcome("pending", f"setup.py could not be read ({setup.fault.message}): a person has to look")
+    if isinstance(setup, Outcome):
+        return setup
     for stop in setup.stops:
+        if stop.path == MANIFEST and package.manifest is None:
+            continue  # that it is missing is told, and counted, as what it is
         owner = _owner(stop.path, package)
         if owner is None:
             message = f"the build stops before it installs anything: {_stopped(stop)}"
@@ -172,14 +181,14 @@ def _not_installed(package: Package, setup: Setup, files: Sequence[str], kind: K
 
 
 def _meant(empty: Sequence[EmptyGlob], files: Sequence[str]) -> EmptyGlob | None:
-    """The pattern without a match that was most likely to find one of these files."""
-    from difflib import SequenceMatcher  # only where something is wrong
-
-    def likeness(glob: EmptyGlob) -> float:
-        return max(SequenceMatcher(None, glob.pattern, path).ratio() for path in files[:20])
-
-    best = max(empty, key=likeness, default=None)
-    return best if best is not None and likeness(best) > 0.4 else None
+    """The pattern without a match that was meant to find one of these files: by its folder, or by its ending."""
+    folders = {posixpath.dirname(path) for path in files}
+    endings = tuple({posixpath.splitext(path)[1] for path in files} - {""})
+    for glob in empty:
+        folder = posixpath.dirname(glob.pattern)
+        if folder in folders or (folder and closest(folder, folders)) or (endings and glob.pattern.endswith(endings)):
+            return glob
+    return None
 
 
 def _owner(path: str, package: Package) -> Kind | None:

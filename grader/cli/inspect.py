@@ -53,10 +53,10 @@ def inspect(
     from grader.submission.submission import open_submission
 
     submission = open_submission(path, wanted=_ANY_URDF, limit=max_size)
-    if submission.passed_over:
-        complain(f"inspected {submission.path}; passed over {', '.join(each.path for each in submission.passed_over)}")
     if submission.urdf is None or submission.path is None:
         raise InputError(f"{printable_path(path)} holds no URDF: no file has a <robot> in it")
+    if submission.passed_over:
+        complain(f"inspected {submission.path}; passed over {', '.join(each.path for each in submission.passed_over)}")
     robot = _configure(submission.urdf, joint or [])
     frame = relative_to
     if robot is not None and frame is None:

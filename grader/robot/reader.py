@@ -165,7 +165,10 @@ def _check_text(notes: Notes) -> None:
     if "$" in text or "xacro:" in text:
         xacro = _outside(_XACRO, text, comments)
         if xacro is not None:
-            message = "this is xacro, which ROS 2 does not evaluate in a .urdf: expand it (ros2 run xacro xacro FILE)"
+            name = notes.source.path.rpartition("/")[2]
+            message = (
+                f"this is xacro, which ROS 2 does not evaluate in a .urdf: expand it (ros2 run xacro xacro {name})"
+            )
             notes.problems.append(Problem(catalogue.RAW_XACRO, message, at(xacro)))
     for start, end in comments:
         if text.find(": ", start, end) >= 0 or text.find("\t", start, end) >= 0:

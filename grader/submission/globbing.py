@@ -12,6 +12,7 @@ from grader.submission.tree import Tree
 # A folder's names come in any order: what depends on it differs between these.
 ORDERS = ("sorted", "reversed", "rotated")
 _MAGIC = re.compile(r"[*?\[]")
+_OUTSIDE = "it looks for files outside of the package"
 _MOST_FOUND = 20_000
 _MOST_PATTERN = 1_024
 _MOST_PARTS = 50
@@ -47,14 +48,14 @@ class Listing:
     def real(self, path: str) -> str | None:
         """The file or folder that a path leads to, without dots; None where there is nothing. Raises BeyondError."""
         if path.startswith("/"):
-            raise BeyondError("it looks for files outside of the package")
+            raise BeyondError(_OUTSIDE)
         here = ""
         for index, part in enumerate(path.split("/")):
             if here not in self.folders or not path:
                 return None
             if part == "..":
                 if not here:
-                    raise BeyondError("it looks for files outside of the package")
+                    raise BeyondError(_OUTSIDE)
                 here = here.rpartition("/")[0]
             elif part not in ("", "."):
                 here = f"{here}/{part}" if here else part
@@ -62,22 +63,32 @@ class Listing:
                 return None
         return here if here in self.folders or here in self.files else None
 
-    def glob(self, pattern: str, *, recursive: bool = False, hidden: bool = False, start: str = "") -> list[str]:
+    def glob(
+        self, pattern: str, *, recursive: bool = False, hidden: bool = False, start: str = "", above: str = ""
+    ) -> list[str]:
         """The paths that glob.glob finds, spelt as it spells them. Raises BeyondError.
 
         `recursive` lets ** stand for any number of folders, `hidden` takes names that begin with a dot, too; `start` is the
-        folder that is looked in.
+        folder that is looked in; `above` is what stands before the tree's root in a full path, and so before each path.
         """
+        if pattern.startswith("/"):
+            raise BeyondError(_OUTSIDE)
         if len(pattern) > _MOST_PATTERN or pattern.count("/") > _MOST_PARTS:
             raise BeyondError("the pattern is too long to follow")
         found = _Search(self, start, recursive=recursive, hidden=hidden).find(pattern, folders_only=False)
-        return [path for path in dict.fromkeys(found) if path]
+        return [above + path for path in dict.fromkeys(found) if above or path]
 
     def path_glob(self, folder: str, pattern: str) -> list[str]:
         """The paths below a folder that pathlib's glob finds there, as Python 3.12 does. Raises BeyondError."""
         parts = [part for part in pattern.split("/") if part not in ("", ".")]
         odd = any("**" in part and part != "**" for part in parts) or ".." in parts or pattern.startswith("/")
-        if odd or not parts or pattern.endswith(("/", "/.")) or len(parts) > _MOST_PARTS or len(pattern) > _MOST_PATTERN:
+        if (
+            odd
+            or not parts
+            or pattern.endswith(("/", "/."))
+            or len(parts) > _MOST_PARTS
+            or len(pattern) > _MOST_PATTERN
+        ):
             raise BeyondError("a pattern of this kind is not followed")
         start = self.real(folder)
         found = [""] if start in self.folders else []

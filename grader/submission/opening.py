@@ -28,6 +28,8 @@ def open_tree(path: Path) -> Tree | None:
         raise InputError(f"cannot read {printable_path(path)}: {reason}") from None
     if is_folder:
         return _with_inner(read_folder(path))
+    if path.name.lower().endswith((".urdf", ".xacro", ".xml")):
+        return None
     shown = printable_path(path)
     kind = archive_kind(read_start(path, 512))
     if kind is None:

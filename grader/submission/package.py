@@ -20,6 +20,7 @@ from grader.submission.tree import Tree
 from grader.submission.yaml_nodes import YAML_LIMIT
 
 MANIFEST, SETUP = "package.xml", "setup.py"
+_LANGUAGES = (".py", ".xml", ".yaml", ".yml")
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,11 @@ class Package:
             self.folder or self.tree.name
         ).name
 
+    @property
+    def is_cmake(self) -> bool:
+        """Whether CMake, not setup.py, says what is installed."""
+        return self.setup is None and "CMakeLists.txt" in self.tree.files
+
     @cached_property
     def setup(self) -> Setup | None:
         """What its setup.py would install; None where there is none."""
@@ -63,11 +69,7 @@ class Package:
     @cached_property
     def launch_files(self) -> tuple[str, ...]:
         """The paths of its launch files: by their names, or because they stand in a folder launch."""
-        return tuple(
-            path
-            for path in self.tree.files
-            if path.endswith(ENDINGS) or (path.split("/")[-2:-1] == ["launch"] and ".launch" in path)
-        )
+        return tuple(path for path in self.tree.files if path.endswith(ENDINGS) or _may_launch(path))
 
     @cached_property
     def rviz_files(self) -> tuple[str, ...]:
@@ -146,6 +148,13 @@ class Package:
                 except InputError:
                     return None
         return None
+
+
+def _may_launch(path: str) -> bool:
+    """Whether a file is a launch file by the folder that it stands in, whatever it is named."""
+    folder, _, name = path.rpartition("/")
+    suffix = PurePosixPath(name).suffix
+    return folder.rpartition("/")[2] == "launch" and name != "__init__.py" and suffix in ("", ".launch", *_LANGUAGES)
 
 
 def is_launch_named(path: str, name: str) -> bool:

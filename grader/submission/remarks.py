@@ -38,10 +38,12 @@ def _of_setup(package: Package, setup: Setup) -> Iterator[Problem]:
     for fault in setup.faults:
         yield Problem(catalogue.SETUP_NAME, fault.message, setup.location(fault.at))
     for stop in setup.stops:
-        message = f"data_files lists {stop.path!r}, but {stop.reason}: the build stops there"
+        message = f"data_files lists {stop.path!r}, but {stop.reason}"
         yield Problem(catalogue.SETUP_STOPS, message, setup.location(stop.at))
     for empty in setup.empty:
-        yield Problem(catalogue.EMPTY_GLOB, f"the pattern {empty.pattern!r} finds nothing", setup.location(empty.at))
+        yield Problem(
+            catalogue.EMPTY_GLOB, f"the pattern {empty.pattern!r} in setup.py finds nothing", setup.location(empty.at)
+        )
     for unknown in setup.unknown:
         yield Problem(catalogue.SETUP_UNKNOWN, f"this is not followed: {unknown.reason}", setup.location(unknown.at))
     yield from _of_entries(package, setup)
@@ -74,4 +76,4 @@ def _of_launch(launch: Launch) -> Iterator[Problem]:
     for named in launch.references:
         if named.path is not None and named.path.startswith(_ONE_MACHINE):
             shown = named.path.replace(HOME, "~")
-            yield Problem(catalogue.HARD_CODED, f"{shown} exists on one machine only", named.location)
+            yield Problem(catalogue.HARD_CODED, f"{shown}, which exists on one machine only", named.location)

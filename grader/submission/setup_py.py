@@ -161,7 +161,9 @@ class _Entries:
         self._find_packages(call)
         entries = call.kwargs.get("data_files")
         if not entries and _configures(self.tree, b"data[_-]files"):
-            self.unknown.append(Unknown("data_files is set in setup.cfg or pyproject.toml, which is not followed", call.at))
+            self.unknown.append(
+                Unknown("data_files is set in setup.cfg or pyproject.toml, which is not followed", call.at)
+            )
         if entries is None:
             return
         if not isinstance(entries, list | tuple):
@@ -228,7 +230,9 @@ class _Entries:
         """Note where setuptools has to look for packages and stops, because it finds several."""
         if any(call.kwargs.get(name) is not None for name in _PACKAGES) or "src" in self.tree.folders:
             return
-        if _configures(self.tree, rb"(?m)^\s*(packages|package[_-]dir|py[_-]modules|ext[_-]modules)\b|setuptools\.packages"):
+        if _configures(
+            self.tree, rb"(?m)^\s*(packages|package[_-]dir|py[_-]modules|ext[_-]modules)\b|setuptools\.packages"
+        ):
             return
         folders = [name for name in self.listing.names("") if name in self.tree.folders and name.isidentifier()]
         found = sorted(name for name in folders if name not in _NO_PACKAGES and not name.startswith("_"))

@@ -1,8 +1,10 @@
 """Bad input: one clear line on standard error, the right exit code, nothing on standard output, no traceback."""
 
+import json
 import os
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -33,16 +35,24 @@ class TestPaths:
         """A path that is not there."""
         refuse(command, str(tmp_path / "nothing.urdf"), words="does not exist")
 
-    def test_folder_without_urdf(self, command: str, tmp_path: Path) -> None:
-        """A folder without a URDF, and one whose only URDFs are products of a build."""
-        (tmp_path / "build").mkdir()
-        (tmp_path / "build" / "old.urdf").write_bytes(REFERENCE.read_bytes())
-        refuse(command, str(tmp_path), words="holds no .urdf file")
+    def test_empty_folder(self, command: str, tmp_path: Path) -> None:
+        """A folder with nothing in it, and one with nothing but hidden files."""
+        refuse(command, str(tmp_path), words="is empty")
+        (tmp_path / ".git").mkdir()
+        (tmp_path / ".git" / "config").touch()
+        refuse(command, str(tmp_path), words="hidden files and folders of builds are not looked at")
 
-    def test_archive(self, command: str, tmp_path: Path) -> None:
-        """An archive is not taken for a URDF: it would be graded with nothing."""
+    def test_damaged_archive(self, command: str, tmp_path: Path) -> None:
+        """An archive that is cut off, one that is empty, and kinds that are not read."""
         (tmp_path / "lab6.ZIP").write_bytes(b"PK\x03\x04")
-        refuse(command, str(tmp_path / "lab6.ZIP"), words="unpack it first")
+        refuse(command, str(tmp_path / "lab6.ZIP"), words="cannot be read as an archive")
+        (tmp_path / "lab6.tar.gz").touch()
+        refuse(command, str(tmp_path / "lab6.tar.gz"), words="damaged or empty")
+        (tmp_path / "lab6.7z").write_bytes(b"7z\xbc\xaf\x27\x1c")
+        refuse(command, str(tmp_path / "lab6.7z"), words="hand in a .zip or .tar.gz")
+        with zipfile.ZipFile(tmp_path / "empty.zip", "w"):
+            pass
+        refuse(command, str(tmp_path / "empty.zip"), words="is empty")
 
     def test_too_large(self, command: str, tmp_path: Path) -> None:
         """A file over the limit."""
@@ -74,7 +84,7 @@ class TestPaths:
         folder = tmp_path / "submission"
         folder.mkdir()
         (folder / "my_robot.urdf").symlink_to(REFERENCE)
-        refuse(command, str(folder), words="holds no .urdf file")
+        refuse(command, str(folder), words="is a link that leads out of the submission")
 
     def test_name_with_nul_or_too_long(self, command: str, tmp_path: Path) -> None:
         """A name that no file can have."""
@@ -83,6 +93,26 @@ class TestPaths:
     def test_control_characters_in_a_name(self, command: str, tmp_path: Path) -> None:
         """A name with an escape sequence is spelt out."""
         refuse(command, str(tmp_path / "\x1b[31m\nred.urdf"), words="\\x1b[31m\\x0ared.urdf")
+
+
+def test_a_folder_without_a_urdf_is_graded_and_cannot_be_inspected(tmp_path: Path) -> None:
+    """What was handed in without a URDF gets a report that says so; there is nothing to inspect."""
+    (tmp_path / "build").mkdir()
+    (tmp_path / "build" / "old.urdf").write_bytes(REFERENCE.read_bytes())
+    (tmp_path / "notes.txt").write_text("no robot")
+    done = run(("grade", str(tmp_path), "--format", "json"))
+    assert (done.returncode, done.stderr) == (1, b"")
+    report = json.loads(done.stdout)
+    assert report["submission"]["path"] is None
+    assert report["submission"]["passed_over"][0]["path"] == "build/old.urdf"
+    assert report["results"][0]["message"].startswith("no URDF was submitted")
+    assert report["score"] == 0
+    refuse("inspect", str(tmp_path), words="holds no URDF")
+
+
+def test_a_urdf_alone_has_no_package() -> None:
+    """A part that needs more than a URDF cannot be asked of one."""
+    refuse("grade", str(REFERENCE), "--part", "task2", words="name the folder or archive")
 
 
 CONTENTS = {
@@ -101,8 +131,6 @@ CONTENTS = {
 @pytest.mark.parametrize("name", CONTENTS)
 def test_unreadable_content_is_a_report_like_any_other(name: str, tmp_path: Path) -> None:
     """A file that ROS 2 cannot read loses urdf-loads, the rest is skipped because of it; the exit code is 1."""
-    import json
-
     (tmp_path / "my_robot.urdf").write_bytes(CONTENTS[name])
     done = run(("grade", str(tmp_path / "my_robot.urdf"), "--format", "json"))
     assert (done.returncode, done.stderr) == (1, b"")

@@ -35,16 +35,20 @@ def test_saved_reports_equal_printed_ones(tmp_path: Path) -> None:
 
 
 def test_the_urdf_that_the_rubric_expects_comes_first(tmp_path: Path) -> None:
-    """Path, then name, then the one nearest to the top; the others are named on standard error."""
+    """Path, then name, then the one nearest to the top; the report names the others, and why they are not graded."""
     for name in ("box.urdf", "a/my_robot.urdf", "ws/src/my_robot/urdf/my_robot.urdf", "install/urdf/my_robot.urdf"):
         path = tmp_path / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(REFERENCE.read_bytes())
     done = run(("grade", str(tmp_path), "--format", "json"))
-    assert json.loads(done.stdout)["submission"]["path"] == "ws/src/my_robot/urdf/my_robot.urdf"
-    assert done.stderr.decode() == (
-        "grader: graded ws/src/my_robot/urdf/my_robot.urdf; passed over a/my_robot.urdf, box.urdf\n"
-    )
+    submission = json.loads(done.stdout)["submission"]
+    assert submission["path"] == "ws/src/my_robot/urdf/my_robot.urdf"
+    assert submission["passed_over"] == [
+        {"path": "a/my_robot.urdf", "because": "it has the right name, but does not stand at urdf/my_robot.urdf"},
+        {"path": "box.urdf", "because": "it has another name than urdf/my_robot.urdf"},
+        {"path": "install/urdf/my_robot.urdf", "because": "a build made it: only the source is graded"},
+    ]
+    assert done.stderr == b""
 
 
 def test_ids_and_paths_hold_nothing_of_the_machine(tmp_path: Path) -> None:

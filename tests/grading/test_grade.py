@@ -259,10 +259,11 @@ def test_a_check_of_the_file_is_asked_of_an_unreadable_one_too() -> None:
     assert causes(report) == [None, None, "loads"]
 
 
-def test_without_a_check_of_the_file_every_criterion_fails() -> None:
-    """Where no criterion asks whether the file loads, each says that there is no robot to look at."""
+def test_without_a_check_of_the_file_the_first_criterion_fails() -> None:
+    """Where no criterion asks whether the file loads, the first says that there is no robot to look at."""
     report = run(ask("one"), ask("two", breaks), on=NOT_XML)
-    assert statuses(report) == ["failed", "failed"]
+    assert statuses(report) == ["failed", "skipped"]
+    assert causes(report) == [None, "one"]
     assert "no robot" in report.results[0].outcome.message
     report = run(ask("loads", urdf_loads), ask("one", part="b"), on=NOT_XML, parts=["b"])
     assert statuses(report) == ["failed"]

@@ -156,7 +156,7 @@ title = "Lab 0"
 [[part]]
 id = "task1"
 title = "Task 1"
-needs = "udrf"  # !! a part cannot need 'udrf'; there are: urdf
+needs = "udrf"  # !! a part cannot need 'udrf'; there are: urdf, package, files
 colour = "red"  # !! a part has no key 'colour'; it has: id, title, needs, points
 
 [[part]]  # !! this part has no title

@@ -96,15 +96,15 @@ class _Package:
         if unknown or not plain or not isinstance(pattern, str) or not kwargs.keys() <= _GLOB_OPTIONS or len(args) > 1:
             return unknown or Unknown("this search for files is not followed", spot)
         recursive, hidden = map(bool, options)
-        folder = "" if start is None else self.inside(start)
-        if pattern.startswith("/"):
-            relative, folder = self.inside(pattern), ""
-        else:
-            relative = pattern
-        found = self.listing.glob(relative, recursive=recursive, hidden=hidden, start=folder)
+        if pattern == self.root:
+            return [pattern]
+        above = self.root + "/" if pattern.startswith(self.root + "/") else ""
+        folder = "" if start is None or above else self.inside(start)
+        pattern = pattern.removeprefix(above)
+        found = self.listing.glob(pattern, recursive=recursive, hidden=hidden, start=folder, above=above)
         if not found:
-            machine.notes.append(EmptyGlob(posixpath.join(folder, relative), spot))
-        return [f"{self.root}/{path}" for path in found] if relative != pattern else found
+            machine.notes.append(EmptyGlob(posixpath.join(folder, pattern), spot))
+        return found
 
     def escape(self, _: "Machine", args: list[Value], __: dict[str, Value], spot: Spot) -> Value:
         if len(args) == 1 and isinstance(args[0], str):

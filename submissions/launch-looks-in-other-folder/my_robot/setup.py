@@ -1,0 +1,25 @@
+import os
+from glob import glob
+
+from setuptools import find_packages, setup
+
+package_name = 'my_robot'
+
+setup(
+    name=package_name,
+    version='0.1.0',
+    packages=find_packages(exclude=['test']),
+    data_files=[
+        ('share/ament_index/resource_index/packages', ['resource/' + package_name]),
+        (os.path.join('share', package_name), ['package.xml']),
+        (os.path.join('share', package_name, 'urdf'), glob('urdf/*')),
+        (os.path.join('share', package_name, 'launch'), glob(os.path.join('launch', '*launch.[pxy][yma]*'))),
+        (os.path.join('share', package_name), glob('rviz/*')),
+    ],
+    install_requires=['setuptools'],
+    zip_safe=True,
+    maintainer='The course',
+    maintainer_email='course@example.org',
+    description='A wheeled base with a lidar.',
+    license='Apache-2.0',
+)

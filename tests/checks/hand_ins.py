@@ -1,0 +1,147 @@
+"""What students hand in, as values: files by their paths, and the submission that they make, without a disk."""
+
+import struct
+import zlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from grader.errors import InputError
+from grader.robot.source import Location
+from grader.submission.package import Package
+from grader.submission.submission import Submission, submission_of
+from grader.submission.tree import File, make_tree
+
+FOLDER = "my_robot"
+MANIFEST = "my_robot/package.xml"
+SETUP = "my_robot/setup.py"
+URDF = "my_robot/urdf/my_robot.urdf"
+LAUNCH = "my_robot/launch/my_robot_rviz.launch.py"
+RVIZ = "my_robot/rviz/my_robot.rviz"
+ANSWERS = "answers.md"
+WEBCAM = "Task3_Step3.png"
+
+_RUBRICS = Path(__file__).parents[2] / "rubrics" / "lab6"
+
+
+@dataclass(frozen=True)
+class HandIn:
+    """Files by their paths: what a student has handed in."""
+
+    files: Mapping[str, str | bytes]
+
+    @cached_property
+    def submission(self) -> Submission:
+        """What the grader sees of it."""
+        files = [_file(path, self.data(path)) for path in self.files]
+        return submission_of(make_tree("hand-in", files, ()), "hand-in", wanted="urdf/my_robot.urdf", package=FOLDER)
+
+    @property
+    def package(self) -> Package:
+        """The package that is graded; there has to be one."""
+        package = self.submission.package
+        assert package is not None, sorted(self.files)
+        return package
+
+    def data(self, path: str) -> bytes:
+        """The bytes of a file."""
+        content = self.files[path]
+        return content.encode() if isinstance(content, str) else content
+
+    def with_files(self, files: Mapping[str, str | bytes]) -> "HandIn":
+        """The same with these files, new ones or others in place of those that there are."""
+        return HandIn({**self.files, **files})
+
+    def without(self, *paths: str) -> "HandIn":
+        """The same without some files, or folders with all that is in them; each must be there."""
+        left = dict(self.files)
+        for path in paths:
+            gone = [each for each in left if each == path or each.startswith(path + "/")]
+            assert gone, f"{path} is not among {sorted(left)}"
+            for each in gone:
+                del left[each]
+        return HandIn(left)
+
+    def renaming(self, old: str, new: str) -> "HandIn":
+        """The same with a file or folder under another path."""
+        moved = {path: path.replace(old, new, 1) for path in self.files if path == old or path.startswith(old + "/")}
+        assert moved, f"{old} is not among {sorted(self.files)}"
+        return HandIn({moved.get(path, path): content for path, content in self.files.items()})
+
+    def replacing(self, path: str, old: str, new: str) -> "HandIn":
+        """The same with another text everywhere in a file, which must hold it."""
+        text = self.data(path).decode()
+        assert old in text, f"{old!r} does not stand in {path}:\n{text}"
+        return self.with_files({path: text.replace(old, new)})
+
+    def place(self, path: str, text: str) -> Location:
+        """Where a text begins in a file, which must stand there just once."""
+        whole = self.data(path).decode()
+        assert whole.count(text) == 1, f"{text!r} stands {whole.count(text)} times in {path}:\n{whole}"
+        before = whole[: whole.index(text)]
+        return Location(path, before.count("\n") + 1, len(before) - before.rfind("\n"))
+
+
+def start_of(path: str) -> Location:
+    """The place of what a file is without."""
+    return Location(path, 1, 1)
+
+
+def png(width: int = 640, height: int = 480) -> bytes:
+    """A picture with nothing on it."""
+
+    def chunk(kind: bytes, data: bytes) -> bytes:
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    header = struct.pack(">IIBBBBB", width, height, 1, 0, 0, 0, 0)
+    rows = zlib.compress(bytes((1 + (width + 7) // 8) * height))
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", rows) + chunk(b"IEND", b"")
+
+
+def gif(width: int = 320, height: int = 240) -> bytes:
+    """The beginning of a GIF, which tells its size."""
+    return b"GIF89a" + struct.pack("<HH", width, height) + b"\x00\x00\x00\x3b"
+
+
+def jpeg(width: int = 800, height: int = 600) -> bytes:
+    """The beginning of a JPEG, which tells its size."""
+    return b"\xff\xd8\xff\xc0\x00\x11\x08" + struct.pack(">HH", height, width) + b"\x03\x01\x11\x00\x02\x11\x00\x03\x11\x00\xff\xd9"
+
+
+def _file(path: str, data: bytes) -> File:
+    def read(limit: int, *, first: bool = False) -> bytes:
+        if len(data) > limit and not first:
+            raise InputError(f"{path} is larger than {limit} bytes")
+        return data[:limit]
+
+    return File(path, len(data), read)
+
+
+_FOLDER = _RUBRICS / FOLDER
+_ANSWERS = """\
+# Lab 6
+
+## Task 1, step 15
+
+The robot vanishes: two links have no parent, and a robot has one root.
+
+## Task 2, step 2
+
+robot_state_publisher publishes the transforms, rviz2 shows them.
+"""
+REFERENCE = HandIn(
+    {
+        **{
+            f"{FOLDER}/{path.relative_to(_FOLDER).as_posix()}": path.read_text(encoding="utf-8")
+            for path in sorted(_FOLDER.rglob("*"))
+            if path.is_file() and "__pycache__" not in path.parts
+        },
+        ANSWERS: _ANSWERS,
+        "Task1_Step8.png": png(),
+        "Task1_Step18.png": png(),
+        "Task1_Step36.png": png(),
+        "Task2_Step6.png": png(),
+        WEBCAM: png(),
+    }
+)
