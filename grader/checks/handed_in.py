@@ -1,8 +1,6 @@
 """Checks of what a person has to judge: the answers and pictures are found and shown, the mark is given by a person."""
 
 from grader.checks.outcome import Outcome
-from grader.submission.answers import find_answer
-from grader.submission.evidence import find_evidence, is_evidence
 from grader.submission.submission import Submission
 
 _DOCUMENTS = ("*.md", "*.txt", "*.docx", "*.pdf")
@@ -16,6 +14,8 @@ def answered(
     `answer` is the model answer, shown beside what was found. `places` says how the passage is marked, such as "task 1 step
     15" or "question 15"; `files` are patterns for the names of documents. Always pending.
     """
+    from grader.submission.answers import find_answer  # a URDF on its own has no answers
+
     found = find_answer(submission.tree, files, places)
     if found.passage is not None:
         place = found.passage.location
@@ -35,6 +35,8 @@ def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
 
     `names` says how the file is named, however it is spelt: "task 3 step 3", or plain words such as "webcam". Always pending.
     """
+    from grader.submission.evidence import find_evidence, is_evidence
+
     found = find_evidence(submission.tree, names)
     if found:
         listed = ", ".join(exhibit.words for exhibit in found[:6])

@@ -1,12 +1,16 @@
 """Checks of a launch file: that it is there, what it starts, and whether the files that it names are where a build puts them."""
 
 import posixpath
+from typing import TYPE_CHECKING
 
 from grader.checks.outcome import Outcome, judged_as, passed
 from grader.errors import MissingElement
 from grader.robot.names import closest
-from grader.submission.launch.model import HOME, PREFIX, SHARE, WORKING_FOLDER, Launch, Reference
+from grader.submission.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.submission.package import Package, is_launch_named
+
+if TYPE_CHECKING:
+    from grader.submission.launch.model import Launch, Reference
 
 _WORDS = {"urdf": "URDF", "rviz": "RViz file", "include": "launch file"}
 
@@ -92,7 +96,7 @@ def _no_launch_file(package: Package) -> MissingElement:
     return MissingElement("launch file in the package", "", message=message)
 
 
-def _launch(package: Package, name: str) -> Launch:
+def _launch(package: Package, name: str) -> "Launch":
     path = package.launch_file(name)
     if path is None:
         raise _no_launch_file(package)
@@ -107,7 +111,7 @@ def _home(executable: str) -> str:
     return executable
 
 
-def _verdict(package: Package, named: Reference) -> tuple[str, str]:
+def _verdict(package: Package, named: "Reference") -> tuple[str, str]:
     """What becomes of a file that a launch file names: passed, failed, pending or, if it is never installed, missing."""
     what = _WORDS[named.purpose]
     if named.path is None:

@@ -3,15 +3,17 @@
 import posixpath
 from collections.abc import Sequence
 from fnmatch import fnmatch
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from grader.checks.outcome import Outcome, judged_as, listing, passed
 from grader.errors import MissingElement
 from grader.robot.names import closest, did_you_mean
-from grader.submission.package import MANIFEST, Package
-from grader.submission.python.lookup import EmptyGlob
-from grader.submission.setup_py import Copy, Setup, Stop
+from grader.submission.package import MANIFEST, NO_PACKAGE, Package
 from grader.submission.submission import Submission
+
+if TYPE_CHECKING:
+    from grader.submission.python.lookup import EmptyGlob
+    from grader.submission.setup_py import Copy, Setup, Stop
 
 Kind = Literal["urdf", "launch", "rviz"]
 
@@ -23,7 +25,7 @@ def package_found(submission: Submission, *, name: str) -> Outcome:
     """A ROS 2 package of this name was handed in."""
     package = submission.package
     if package is None:
-        raise no_package()
+        raise MissingElement("package", "", message=NO_PACKAGE)
     manifest = package.manifest
     if manifest is None:
         raise _no_manifest(package)
@@ -93,12 +95,7 @@ def files_of(package: Package, kind: Kind, name: str) -> Sequence[str]:
     return exact or every
 
 
-def no_package() -> MissingElement:
-    """There is no package at all."""
-    return MissingElement("package", "", message="no ROS 2 package was handed in: there is no package.xml")
-
-
-def readable_setup(package: Package) -> Setup | Outcome:
+def readable_setup(package: Package) -> "Setup | Outcome":
     """The package's setup.py, or the outcome where a person has to look.
 
     Raises MissingElement where there is none, or where Python cannot read it.
@@ -155,16 +152,16 @@ def _installed(package: Package, files: Sequence[str], kind: Kind | None) -> Out
     raise _not_installed(package, setup, files, kind)
 
 
-def _stopped(stop: Stop) -> str:
+def _stopped(stop: "Stop") -> str:
     return f"data_files lists {stop.path!r}, but {stop.reason}"
 
 
-def _elsewhere(copy: Copy, share: str, setup: Setup) -> Outcome:
+def _elsewhere(copy: "Copy", share: str, setup: "Setup") -> Outcome:
     message = f"a build installs {copy.source} as {copy.target}, but ROS 2 looks for a package's files below {share}"
     return judged_as("failed", message, at=setup.location(copy.at))
 
 
-def _not_installed(package: Package, setup: Setup, files: Sequence[str], kind: Kind | None) -> MissingElement:
+def _not_installed(package: Package, setup: "Setup", files: Sequence[str], kind: Kind | None) -> MissingElement:
     message = f"a build does not install {files[0]}"
     empty = _meant(setup.empty, files)
     at = None
@@ -180,7 +177,7 @@ def _not_installed(package: Package, setup: Setup, files: Sequence[str], kind: K
     return MissingElement(f"installed {kind}", package.folder, message=message, location=at)
 
 
-def _meant(empty: Sequence[EmptyGlob], files: Sequence[str]) -> EmptyGlob | None:
+def _meant(empty: "Sequence[EmptyGlob]", files: Sequence[str]) -> "EmptyGlob | None":
     """The pattern without a match that was meant to find one of these files: by its folder, or by its ending."""
     folders = {posixpath.dirname(path) for path in files}
     endings = tuple({posixpath.splitext(path)[1] for path in files} - {""})

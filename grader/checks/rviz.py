@@ -1,11 +1,15 @@
 """Checks of an RViz file: that it is there, its fixed frame, and that it shows the robot."""
 
+from typing import TYPE_CHECKING
+
 from grader.checks.outcome import Outcome, judged_as, passed
 from grader.errors import MissingElement
 from grader.robot.names import did_you_mean
-from grader.submission.package import Package
-from grader.submission.rviz import Display, RvizFile, switched_on
+from grader.submission.package import NO_PACKAGE, Package
 from grader.submission.submission import Submission
+
+if TYPE_CHECKING:
+    from grader.submission.rviz import Display, RvizFile
 
 _PLUGINS = "rviz_default_plugins"
 
@@ -24,7 +28,7 @@ def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: s
     """The RViz file's Fixed Frame is this link."""
     package = submission.package
     if package is None:
-        raise MissingElement("package", "", message="no ROS 2 package was handed in: there is no package.xml")
+        raise MissingElement("package", "", message=NO_PACKAGE)
     rviz = _read(package, name, launch)
     actual = rviz.fixed_frame
     if actual is None:
@@ -70,7 +74,7 @@ def rviz_display_on(package: Package, *, name: str, kind: str, launch: str = "")
     )
 
 
-def _fault_of(model: Display, topic: str) -> tuple[str, str]:
+def _fault_of(model: "Display", topic: str) -> tuple[str, str]:
     """What keeps a RobotModel display from showing the robot."""
     if model.package != _PLUGINS:
         other = f"{model.package}/RobotModel"
@@ -82,7 +86,7 @@ def _fault_of(model: Display, topic: str) -> tuple[str, str]:
     if not model.enabled:
         return "failed", "the RobotModel display is off"
     node = model.node
-    if not switched_on(node.get("Visual Enabled"), default=True):
+    if not model.is_on("Visual Enabled"):
         return "failed", "the RobotModel display is on, but Visual Enabled is off in it, so nothing is drawn"
     source = node.get("Description Source")
     if source is not None and source.text == "File":
@@ -114,7 +118,7 @@ def _no_rviz_file() -> MissingElement:
     return MissingElement("RViz file in the package", "", message="the package has no RViz file: none ends in .rviz")
 
 
-def _read(package: Package, name: str, launch: str) -> RvizFile:
+def _read(package: Package, name: str, launch: str) -> "RvizFile":
     path = _file(package, name, launch)
     if path is None:
         raise _no_rviz_file()

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 
 from grader.checks.outcome import Outcome
-from grader.checks.package import no_package
 from grader.checks.registry import Subject
 from grader.errors import MissingElement
 from grader.grading.report import Report, Result
@@ -23,7 +22,7 @@ from grader.robot.kinematics import Configuration
 from grader.robot.names import quoted
 from grader.robot.shapes import UnknownShape
 from grader.robot.source import Location, Spot
-from grader.submission.remarks import remarks
+from grader.submission.package import NO_PACKAGE
 from grader.submission.submission import Submission
 
 # Problems that say why a measurement came out as it did.
@@ -39,6 +38,8 @@ def grade(rubric: Rubric, submission: Submission, parts: Sequence[str] = ()) -> 
             run.decide(criterion)
     problems = submission.urdf.problems if submission.urdf is not None else ()
     if submission.package is not None and any(rubric.part(each).needs == "package" for each in chosen):
+        from grader.submission.remarks import remarks  # a URDF on its own needs none of what reads a package
+
         problems += remarks(submission.package)
     exhibits, others = exhibits_of(rubric, submission, chosen)
     return Report(submission, rubric, chosen, tuple(run.results.values()), problems, exhibits, others, notes)
@@ -98,7 +99,7 @@ class _Run:
                 return self.submission
             case "package":
                 if self.submission.package is None:
-                    raise no_package()
+                    raise MissingElement("package", "", message=NO_PACKAGE)
                 return self.submission.package
             case _ if self.urdf is None:
                 raise MissingElement("URDF", "", message=_no_urdf(self.submission))

@@ -3,13 +3,15 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 from decimal import Decimal
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from grader.checks.outcome import Outcome
 from grader.grading.rubric import Criterion, Evidence, Rubric
 from grader.robot.catalogue import Problem
-from grader.submission.evidence import Exhibit
 from grader.submission.submission import Submission
+
+if TYPE_CHECKING:
+    from grader.submission.evidence import Exhibit
 
 _NOTHING = Decimal(0)
 
@@ -32,7 +34,7 @@ class Exhibits(NamedTuple):
     """The files that were found for a piece of evidence, if any."""
 
     evidence: Evidence
-    files: tuple[Exhibit, ...]
+    files: "tuple[Exhibit, ...]"
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +51,7 @@ class Report:
     results: tuple[Result, ...]
     problems: tuple[Problem, ...] = ()
     exhibits: tuple[Exhibits, ...] = ()
-    others: tuple[Exhibit, ...] = ()
+    others: "tuple[Exhibit, ...]" = ()
     notes: tuple[str, ...] = ()
 
     @property

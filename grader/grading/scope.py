@@ -1,12 +1,15 @@
 """What of a rubric a submission is graded on, and the evidence that is shown beside it."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from grader.errors import InputError
 from grader.grading.report import Exhibits
 from grader.grading.rubric import Rubric
-from grader.submission.evidence import Exhibit, describe, find_evidence, is_evidence
 from grader.submission.submission import Submission
+
+if TYPE_CHECKING:
+    from grader.submission.evidence import Exhibit
 
 _MOST_PICTURES = 50
 
@@ -35,11 +38,13 @@ def _and(names: Sequence[str]) -> str:
 
 def exhibits_of(
     rubric: Rubric, submission: Submission, chosen: Sequence[str]
-) -> tuple[tuple[Exhibits, ...], tuple[Exhibit, ...]]:
+) -> "tuple[tuple[Exhibits, ...], tuple[Exhibit, ...]]":
     """The evidence that the lab asks for, and the other pictures of a submission that has any of either."""
     asked = [each for each in rubric.evidence if each.part in chosen]
     if not asked or submission.is_single:
         return (), ()
+    from grader.submission.evidence import describe, find_evidence, is_evidence  # a URDF on its own comes with none
+
     found = tuple(Exhibits(each, find_evidence(submission.tree, each.names)) for each in asked)
     shown = {exhibit.path for each in found for exhibit in each.files}
     left = [file for file in submission.tree.files.values() if is_evidence(file) and file.path not in shown]

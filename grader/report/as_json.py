@@ -1,12 +1,14 @@
 """A report as JSON, schema grader/report/v1: `grader schema report` describes it."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from grader import __version__
 from grader.grading.report import Exhibits, Report, Result
 from grader.report.plain import exact, location, problem, rounded, to_json
-from grader.submission.evidence import Exhibit
 from grader.submission.submission import Submission
+
+if TYPE_CHECKING:
+    from grader.submission.evidence import Exhibit
 
 
 def render_json(report: Report) -> str:
@@ -52,7 +54,7 @@ def _exhibits(found: Exhibits) -> dict[str, Any]:
     return {"id": evidence.id, "part": evidence.part, "title": evidence.title, "files": files}
 
 
-def _exhibit(exhibit: Exhibit) -> dict[str, Any]:
+def _exhibit(exhibit: "Exhibit") -> dict[str, Any]:
     return {"path": exhibit.path, "size": exhibit.size, "width": exhibit.width, "height": exhibit.height}
 
 

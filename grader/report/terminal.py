@@ -12,7 +12,6 @@ from grader.report.layout import place_words, show_excerpt, show_problems, symbo
 from grader.report.points import points_words
 from grader.report.text import printable
 from grader.robot.catalogue import Problem
-from grader.submission.evidence import Exhibit
 
 _STYLES = {"passed": "green", "failed": "bold red", "skipped": "yellow", "pending": "cyan", "errored": "bold magenta"}
 _SYMBOLS = {
@@ -175,7 +174,7 @@ def _show_evidence(report: Report, console: Console) -> None:
 
 
 def _show_exhibits(found: Exhibits, console: Console) -> None:
-    names: tuple[Exhibit, ...] = found.files[:_MOST_LISTED]
+    names = found.files[:_MOST_LISTED]
     listed = ", ".join(printable(exhibit.words) for exhibit in names)
     style = "" if names else "yellow"
     wrapped(console, Text(f"{printable(found.evidence.title)}: {listed or 'missing'}", style=style), 4)

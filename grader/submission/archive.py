@@ -16,7 +16,6 @@ import zlib
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager
 from functools import partial
-from pathlib import PurePosixPath
 from typing import IO, NamedTuple
 
 from grader.errors import InputError
@@ -55,16 +54,6 @@ class _Member(NamedTuple):
     size: int
     target: str
     open: Callable[[], AbstractContextManager[IO[bytes]]]
-
-
-def archive_kind(start: bytes) -> str | None:
-    """What the first 512 bytes of a file say that it is: zip, tar, gz, bz2, xz, 7z, rar, or None."""
-    signatures = {b"PK\x03\x04": "zip", b"PK\x05\x06": "zip", b"\x1f\x8b": "gz", b"BZh": "bz2", b"\xfd7zXZ\0": "xz"}
-    signatures |= {b"7z\xbc\xaf\x27\x1c": "7z", b"Rar!": "rar"}
-    for signature, kind in signatures.items():
-        if start.startswith(signature):
-            return kind
-    return "tar" if start[257:262] == b"ustar" else None
 
 
 def read_archive(file: IO[bytes], kind: str, name: str) -> Tree:
@@ -262,12 +251,3 @@ class _Bounded(io.RawIOBase):
 def _words(error: BaseException) -> str:
     text = " ".join(str(error).split())
     return clean(text[:200]) or type(error).__name__
-
-
-def wrapper_name(path: str) -> str:
-    """The name of an archive without its endings: lab6.tar.gz is lab6."""
-    name = PurePosixPath(path).name
-    for ending in (".tar.gz", ".tar.bz2", ".tar.xz"):
-        if name.lower().endswith(ending):
-            return name[: -len(ending)]
-    return PurePosixPath(name).stem

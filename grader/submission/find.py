@@ -4,20 +4,13 @@ import re
 from typing import NamedTuple
 
 from grader.errors import InputError
-from grader.submission.tree import File, Tree
+from grader.submission.tree import File, PassedOver, Tree
 
 _SNIFFED = 4096  # bytes in which <robot has to stand
 _MOST_SNIFFED = 400
 _MOST_PACKAGES = 40
 _TEXTS = frozenset({"", ".urdf", ".xacro", ".xml", ".txt", ".sdf"})
 _ROBOT = re.compile(rb"<\s*robot[\s>/]")
-
-
-class PassedOver(NamedTuple):
-    """A file that might have been graded, and why it is not."""
-
-    path: str
-    because: str
 
 
 class Found(NamedTuple):

@@ -7,7 +7,6 @@ from grader.robot.source import Location, Source
 from grader.robot.xml import Element, XMLSyntaxError, parse_xml
 from grader.submission import catalogue
 
-MANIFEST_LIMIT = 256 * 1024
 _NEEDED = ("name", "version", "description", "maintainer", "license")
 _FORMATS = ("2", "3")
 

@@ -2,12 +2,10 @@
 
 import io
 import os
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 from grader.errors import InputError
-from grader.submission.archive import archive_kind, read_archive, wrapper_name
 from grader.submission.files import printable_path, read_start
-from grader.submission.folder import read_folder
 from grader.submission.tree import MOST_FILES, File, Tree, make_tree
 
 _ENDINGS = (".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar")
@@ -15,6 +13,16 @@ _INNER_LIMIT = 64 * 1024 * 1024  # bytes of an archive inside of what was handed
 _MOST_INNER = 20
 _MOST_NESTED = 3
 _WORTH_FINDING = ("package.xml", "setup.py")
+
+
+def archive_kind(start: bytes) -> str | None:
+    """What the first 512 bytes of a file say that it is: zip, tar, gz, bz2, xz, 7z, rar, or None."""
+    signatures = {b"PK\x03\x04": "zip", b"PK\x05\x06": "zip", b"\x1f\x8b": "gz", b"BZh": "bz2", b"\xfd7zXZ\0": "xz"}
+    signatures |= {b"7z\xbc\xaf\x27\x1c": "7z", b"Rar!": "rar"}
+    for signature, kind in signatures.items():
+        if start.startswith(signature):
+            return kind
+    return "tar" if start[257:262] == b"ustar" else None
 
 
 def open_tree(path: Path) -> Tree | None:
@@ -27,6 +35,8 @@ def open_tree(path: Path) -> Tree | None:
         reason = error.strerror if isinstance(error, OSError) else str(error)
         raise InputError(f"cannot read {printable_path(path)}: {reason}") from None
     if is_folder:
+        from grader.submission.folder import read_folder  # what a single URDF does not need is loaded late
+
         return _with_inner(read_folder(path))
     if path.name.lower().endswith((".urdf", ".xacro", ".xml")):
         return None
@@ -36,8 +46,9 @@ def open_tree(path: Path) -> Tree | None:
         if path.name.lower().endswith(_ENDINGS):
             raise InputError(f"{shown} is no archive that can be read, for all its name: it is damaged or empty")
         return None
-    tree = read_archive(path.open("rb"), kind, shown)
-    return _with_inner(tree)
+    from grader.submission.archive import read_archive
+
+    return _with_inner(read_archive(path.open("rb"), kind, shown))
 
 
 def tree_name(path: Path) -> str:
@@ -46,7 +57,11 @@ def tree_name(path: Path) -> str:
         is_folder = path.is_dir()
     except OSError:
         is_folder = False
-    return printable_path(path.resolve().name or "submission") if is_folder else printable_path(wrapper_name(str(path)))
+    return (
+        printable_path(path.resolve().name or "submission")
+        if is_folder
+        else printable_path(_without_endings(str(path)))
+    )
 
 
 def _with_inner(tree: Tree, depth: int = 0) -> Tree:
@@ -81,6 +96,17 @@ def _with_inner(tree: Tree, depth: int = 0) -> Tree:
 
 
 def _inner(archive: File) -> Tree | None:
+    from grader.submission.archive import read_archive
+
     data = archive.read(_INNER_LIMIT)
     kind = archive_kind(data[:512])
     return read_archive(io.BytesIO(data), kind, archive.path) if kind is not None else None
+
+
+def _without_endings(path: str) -> str:
+    """The name of an archive without its endings: lab6.tar.gz is lab6."""
+    name = PurePosixPath(path).name
+    for ending in (".tar.gz", ".tar.bz2", ".tar.xz"):
+        if name.lower().endswith(ending):
+            return name[: -len(ending)]
+    return PurePosixPath(name).stem

@@ -3,23 +3,27 @@
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import PurePosixPath
+from typing import TYPE_CHECKING
 
 from grader.errors import InputError
 from grader.robot.catalogue import Problem
 from grader.robot.names import closest
 from grader.robot.source import Location, Source
-from grader.submission import catalogue
-from grader.submission.find import find_packages
-from grader.submission.launch.model import SHARE, Fault, Launch
-from grader.submission.launch.reader import ENDINGS, read_launch
-from grader.submission.manifest import MANIFEST_LIMIT, Manifest, read_manifest
-from grader.submission.python.parse import PYTHON_LIMIT, SyntaxFault, parse
-from grader.submission.rviz import RvizFile, read_rviz
-from grader.submission.setup_py import Setup, read_setup
+from grader.submission.launch.places import ENDINGS, SHARE
 from grader.submission.tree import Tree
-from grader.submission.yaml_nodes import YAML_LIMIT
+
+# The readers are loaded when they are needed: a URDF on its own needs none of them.
+if TYPE_CHECKING:
+    from grader.submission.launch.model import Launch
+    from grader.submission.manifest import Manifest
+    from grader.submission.rviz import RvizFile
+    from grader.submission.setup_py import Setup
 
 MANIFEST, SETUP = "package.xml", "setup.py"
+NO_PACKAGE = "no ROS 2 package was handed in: there is no package.xml"
+PYTHON_LIMIT = 128 * 1024  # bytes; a syntax tree takes several hundred times as much
+_MANIFEST_LIMIT = 256 * 1024
+_RVIZ_LIMIT = 512 * 1024
 _LANGUAGES = (".py", ".xml", ".yaml", ".yml")
 
 
@@ -32,7 +36,7 @@ class Package:
 
     folder: str
     tree: Tree = field(repr=False)
-    manifest: Manifest | None = field(repr=False)
+    manifest: "Manifest | None" = field(repr=False)
     known: dict[str, "Package"] = field(repr=False, compare=False)
 
     def path(self, path: str) -> str:
@@ -54,11 +58,14 @@ class Package:
         return self.setup is None and "CMakeLists.txt" in self.tree.files
 
     @cached_property
-    def setup(self) -> Setup | None:
+    def setup(self) -> "Setup | None":
         """What its setup.py would install; None where there is none."""
         file = self.tree.files.get(SETUP)
         if file is None:
             return None
+        from grader.submission.python.parse import SyntaxFault, parse
+        from grader.submission.setup_py import Setup, read_setup
+
         try:
             return read_setup(parse(file.read(PYTHON_LIMIT), self.path(SETUP)), self.tree)
         except InputError as error:
@@ -87,17 +94,20 @@ class Package:
         similar = closest(name, names) or next((each for each in names if launch_stem(each) == stem), None)
         return names[similar] if similar else files[0] if files else None
 
-    def launch(self, path: str) -> Launch:
+    def launch(self, path: str) -> "Launch":
         """A launch file, followed."""
         if path not in self._launches:
             self._launches[path] = self._read_launch(path)
         return self._launches[path]
 
     @cached_property
-    def _launches(self) -> dict[str, Launch]:
+    def _launches(self) -> "dict[str, Launch]":
         return {}
 
-    def _read_launch(self, path: str) -> Launch:
+    def _read_launch(self, path: str) -> "Launch":
+        from grader.submission.launch.model import Fault, Launch
+        from grader.submission.launch.reader import read_launch
+
         try:
             data = self.tree.files[path].read(PYTHON_LIMIT)
         except InputError as error:
@@ -107,7 +117,7 @@ class Package:
             data, self.path(path), self.target(path) or f"share/{self.name}/{path}", self._open_installed
         )
 
-    def rviz_file(self, name: str, launch: Launch | None) -> str | None:
+    def rviz_file(self, name: str, launch: "Launch | None") -> str | None:
         """The RViz file that the launch file opens; else the one of this name; else any."""
         for reference in launch.named("rviz") if launch is not None else ():
             source = self.source_of(reference.path or "")
@@ -116,10 +126,13 @@ class Package:
         files = sorted(self.rviz_files, key=lambda path: (path.rpartition("/")[2] != name, path.count("/"), path))
         return files[0] if files else None
 
-    def rviz(self, path: str) -> RvizFile:
+    def rviz(self, path: str) -> "RvizFile":
         """An RViz file, read."""
+        from grader.submission import catalogue
+        from grader.submission.rviz import RvizFile, read_rviz
+
         try:
-            data = self.tree.files[path].read(YAML_LIMIT)
+            data = self.tree.files[path].read(_RVIZ_LIMIT)
         except InputError as error:
             start = Location(self.path(path), 1, 1)
             problem = Problem(catalogue.BAD_RVIZ, str(error), start)
@@ -171,6 +184,8 @@ def launch_stem(name: str) -> str:
 
 def read_packages(tree: Tree, wanted: str) -> tuple[Package, ...]:
     """The packages of a submission, the one that was meant first: that of the wanted name, or else the nearest to the top."""
+    from grader.submission.find import find_packages
+
     known: dict[str, Package] = {}
     found = [_read_package(tree, folder, known) for folder in find_packages(tree, wanted)]
     found.sort(
@@ -194,13 +209,16 @@ def _distance(package: Package, wanted: str) -> int:
 
 
 def _read_package(tree: Tree, folder: str, known: dict[str, Package]) -> Package:
+    from grader.submission import catalogue
+    from grader.submission.manifest import Manifest, read_manifest
+
     own = tree.below(folder)
     file = own.files.get(MANIFEST)
     path = f"{folder}/{MANIFEST}" if folder else MANIFEST
     if file is None:
         return Package(folder, own, None, known)
     try:
-        manifest = read_manifest(file.read(MANIFEST_LIMIT), path)
+        manifest = read_manifest(file.read(_MANIFEST_LIMIT), path)
     except InputError as error:
         start = Location(path, 1, 1)
         problem = Problem(catalogue.BAD_MANIFEST, str(error), start)

@@ -4,7 +4,8 @@ from collections.abc import Iterator
 
 from grader.robot.catalogue import Problem
 from grader.submission import catalogue
-from grader.submission.launch.model import HOME, Launch
+from grader.submission.launch.model import Launch
+from grader.submission.launch.places import HOME
 from grader.submission.package import Package
 from grader.submission.setup_py import Setup
 

@@ -22,6 +22,10 @@ class Display:
     enabled: bool
     node: Node
 
+    def is_on(self, setting: str) -> bool:
+        """Whether one of its own settings is on; what is not there is."""
+        return switched_on(self.node.get(setting), default=True)
+
     @property
     def location(self) -> Location:
         """Where it is said which class the display has."""

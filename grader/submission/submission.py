@@ -7,10 +7,9 @@ from grader.errors import InputError
 from grader.robot.reader import Reading, read_urdf
 from grader.robot.source import Source
 from grader.submission.files import URDF_LIMIT, printable_path, read_capped, read_standard_input, sha256_of
-from grader.submission.find import PassedOver, find_urdf
 from grader.submission.opening import open_tree, tree_name
 from grader.submission.package import Package, read_packages
-from grader.submission.tree import Tree, make_tree
+from grader.submission.tree import PassedOver, Tree, make_tree
 
 STANDARD_INPUT = "-"
 _NO_FILES = make_tree("", (), ())
@@ -80,6 +79,8 @@ def open_submission(path: str, *, wanted: str, package: str = "", limit: int = U
 
 def submission_of(tree: Tree, identity: str, *, wanted: str, package: str = "", limit: int = URDF_LIMIT) -> Submission:
     """The submission that a tree of files makes; raises InputError for a URDF that is too large."""
+    from grader.submission.find import find_urdf
+
     packages = read_packages(tree, package)
     found = find_urdf(tree, wanted, packages[0].folder if packages else None)
     others = [PassedOver(each.path("package.xml"), _why_not(packages[0], each)) for each in packages[1:]]

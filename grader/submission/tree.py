@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import PurePosixPath
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from grader.errors import InputError
 from grader.submission.files import printable_path
@@ -20,6 +20,13 @@ class Reader(Protocol):
 
     def __call__(self, limit: int, *, first: bool = False) -> bytes:
         """The bytes."""
+
+
+class PassedOver(NamedTuple):
+    """A file that might have been graded, and why it is not."""
+
+    path: str
+    because: str
 
 
 @dataclass(frozen=True, slots=True)

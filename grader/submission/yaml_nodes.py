@@ -7,7 +7,6 @@ import yaml
 
 from grader.robot.source import Location
 
-YAML_LIMIT = 512 * 1024
 _MOST_EVENTS = 100_000
 _MOST_ALIASES = 1000
 

@@ -5,7 +5,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from grader.robot.source import Location
-from grader.submission.launch.model import SHARE, Fault, Purpose, Reference, StartedNode
+from grader.submission.launch.model import Fault, Purpose, Reference, StartedNode
+from grader.submission.launch.places import SHARE
 from grader.submission.launch.substitutions import UNTOLD, Contents, Context, arguments_of, holds, resolve
 from grader.submission.python.values import Function, Made, Spot, Unknown, Value
 

@@ -5,12 +5,6 @@ from typing import Literal
 
 from grader.robot.source import Location, Source
 
-# Stand-ins for folders that only a machine knows; paths below them are compared as texts.
-PREFIX = "/<prefix>"  # where a build installs to
-WORKING_FOLDER = "/<current folder>"
-HOME = "/<home>"
-SHARE = f"{PREFIX}/share"
-
 Purpose = Literal["urdf", "rviz", "include"]
 
 

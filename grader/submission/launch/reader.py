@@ -7,7 +7,8 @@ from pathlib import PurePosixPath
 from grader.robot.source import Location, Source
 from grader.submission.launch.entities import read_frontend
 from grader.submission.launch.follow import Follower
-from grader.submission.launch.model import HOME, PREFIX, SHARE, WORKING_FOLDER, Fault, Launch, StartedNode
+from grader.submission.launch.model import Fault, Launch, StartedNode
+from grader.submission.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.submission.launch.substitutions import Context
 from grader.submission.python.library import plain_functions
 from grader.submission.python.machine import Library, Machine
@@ -15,7 +16,6 @@ from grader.submission.python.parse import SyntaxFault, parse
 from grader.submission.python.values import Function, Made, Spot, Unknown, Value
 from grader.submission.setup_py import place
 
-ENDINGS = (".launch.py", ".launch.xml", ".launch.yaml", ".launch.yml", "_launch.py", "_launch.xml", "_launch.yaml")
 _ENTRY = "generate_launch_description"
 _MOST_INCLUDES = 10
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import PurePosixPath
 
-from grader.submission.launch.model import HOME, PREFIX, SHARE
+from grader.submission.launch.places import HOME, PREFIX, SHARE
 from grader.submission.python.values import Made, Spot, Unknown, Value
 
 UNTOLD = "\0"  # stands in a command for a part that cannot be told

@@ -9,7 +9,6 @@ from io import BytesIO
 
 from grader.robot.source import Location, Source
 
-PYTHON_LIMIT = 128 * 1024  # bytes; a syntax tree takes several hundred times as much
 _JAZZY = (3, 12)  # the Python that ROS 2 Jazzy runs
 
 
