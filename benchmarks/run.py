@@ -24,11 +24,13 @@ from grader.grading.rubric import load_rubric
 from grader.report.as_json import render_json
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import read_urdf
-from grader.submission.submission import read_submission
+from grader.submission.submission import open_submission, read_submission
 
 ROOT = Path(__file__).resolve().parent.parent
-SAMPLE = ROOT / "submissions" / "reference"
-URDF = SAMPLE / "roscourse_sim_ws" / "src" / "my_robot" / "urdf" / "my_robot.urdf"
+WORKSPACE = ROOT / "submissions" / "reference"
+PACKAGE = WORKSPACE / "roscourse_sim_ws" / "src" / "my_robot"
+URDF = PACKAGE / "urdf" / "my_robot.urdf"
+ZIPPED = ROOT / "submissions" / "equivalent-zipped-with-wrapper" / "lab6.zip"
 BARE = "import typer, lxml, numpy, rich"
 BARE_USED = "import typer, lxml.etree, numpy, rich.console"
 CHAIN = (10, 100, 1_000, 10_000)
@@ -37,7 +39,9 @@ CHAIN = (10, 100, 1_000, 10_000)
 def main() -> None:
     """Print every figure of the page."""
     whole_process()
+    whole_packages()
     warm_grading()
+    warm_packages()
     inspecting()
     forward_kinematics()
 
@@ -48,14 +52,34 @@ def whole_process(runs: int = 15) -> None:
     commands = {
         "bare imports": [python, "-c", BARE],
         "bare imports, submodules": [python, "-c", BARE_USED],
-        "grade": [*module, "grade", str(SAMPLE)],
-        "grade --format json": [*module, "grade", str(SAMPLE), "--format", "json"],
+        "grade": [*module, "grade", str(URDF)],
+        "grade --format json": [*module, "grade", str(URDF), "--format", "json"],
         "inspect": [*module, "inspect", str(URDF)],
         "--help": [*module, "--help"],
         "--version": [*module, "--version"],
     }
     times = in_turn({name: process(command) for name, command in commands.items()}, runs)
     table("The whole process", times, "bare imports", f"python -c '{BARE}'")
+
+
+def whole_packages(runs: int = 15) -> None:
+    """A package, a workspace with answers and pictures, and the same zipped, against the URDF in them alone, as processes."""
+    module = [sys.executable, "-m", "grader"]
+    handed_in = {"the URDF alone": URDF, "package": PACKAGE, "workspace": WORKSPACE, "zip": ZIPPED}
+    times = in_turn({name: process([*module, "grade", str(path)]) for name, path in handed_in.items()}, runs)
+    table("Whole hand-ins as a whole process", times, "the URDF alone", "grade my_robot.urdf")
+
+
+def warm_packages(runs: int = 15) -> None:
+    """Opening and grading a whole hand-in in a running process against the URDF in it alone."""
+    rubric = load_rubric("lab6")
+
+    def grading(path: Path) -> Callable[[], object]:
+        return lambda: grade(rubric, open_submission(str(path), wanted=rubric.urdf, package=rubric.package))
+
+    handed_in = {"the URDF alone": URDF, "package": PACKAGE, "workspace": WORKSPACE, "zip": ZIPPED}
+    times = in_turn({name: repeated(grading(path), 10) for name, path in handed_in.items()}, runs)
+    table("Whole hand-ins, warm, from a path to the report", times, "the URDF alone", "grade my_robot.urdf")
 
 
 def warm_grading(runs: int = 25) -> None:

@@ -26,12 +26,13 @@ def pages() -> dict[str, str]:
 def problems() -> str:
     """The catalogue of what can be wrong with a URDF."""
     lines = [
-        "# Problems of a URDF",
+        "# Problems",
         "",
-        "<!-- made by docs/make.py from grader/robot/catalogue.py -->",
+        "<!-- made by docs/make.py from grader/robot/catalogue.py and grader/submission/catalogue.py -->",
         "",
-        "What `grader grade` and `grader inspect` can say of a file. Codes never change their meaning. An *error* keeps ROS 2",
-        "(Jazzy) from loading the file, a *warning* changes what it shows or does, a *note* is worth knowing.",
+        "What `grader grade` and `grader inspect` can say of a URDF (`URDF`), a package (`PKG`), a launch file (`LCH`) and an RViz",
+        "file (`RVZ`). Codes never change their meaning. An *error* keeps ROS 2 (Jazzy) from loading the file, or a build or launch",
+        "from working; a *warning* changes what is shown or done; a *note* is worth knowing.",
         "`grader explain URDF051` prints an entry.",
         "",
         "| code | | problem |",
@@ -41,7 +42,13 @@ def problems() -> str:
         f"| [{kind.code}](#{kind.code.lower()}) | {kind.severity} | {escaped(kind.title)} |" for kind in EVERY_KIND
     ]
     for kind in EVERY_KIND:
-        lines += ["", f"## {kind.code}", "", f"**{escaped(kind.title)}** ({kind.severity}). {EFFECTS[kind.effect]}".rstrip(), ""]
+        lines += [
+            "",
+            f"## {kind.code}",
+            "",
+            f"**{escaped(kind.title)}** ({kind.severity}). {EFFECTS[kind.effect]}".rstrip(),
+            "",
+        ]
         lines += [escaped(kind.explanation)]
     return "\n".join(lines) + "\n"
 
@@ -54,8 +61,8 @@ def checks() -> str:
         "<!-- made by docs/make.py from grader/checks -->",
         "",
         "What a criterion of a rubric can name as its `check`, with the arguments that its `with` table gives. Lengths are",
-        "metres, angles degrees, colour channels 0 to 1. Every check measures with forward kinematics, all joints at 0 unless",
-        "it moves one itself.",
+        "metres, angles degrees, colour channels 0 to 1. Checks of a robot measure with forward kinematics, all joints at 0",
+        "unless they move one themselves; checks of a package read its files and run none of them.",
     ]
     for function in CHECKS:
         check = describe(function)

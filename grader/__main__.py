@@ -35,4 +35,7 @@ def _run(arguments: list[str]) -> int:
 
 
 if __name__ == "__main__":
+    # `python -m` looks for modules in the current folder first, which may be a student's: nothing there may be imported.
+    if not sys.flags.safe_path:
+        del sys.path[0]
     main()

@@ -30,7 +30,7 @@ def test_links_lead_somewhere(page: Path) -> None:
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_codes_and_criteria_exist(page: Path) -> None:
     """A code that a page names is in the catalogue."""
-    codes = set(re.findall(r"URDF\d{3}", page.read_text(encoding="utf-8")))
+    codes = set(re.findall(r"(?:URDF|PKG|LCH|RVZ)\d{3}", page.read_text(encoding="utf-8")))
     assert all(f"## {code}" in MADE["problems.md"] for code in codes)
 
 

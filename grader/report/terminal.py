@@ -41,9 +41,8 @@ def render_terminal(report: Report, console: Console) -> None:
             console.print()
             heading = f"{printable(titles[part])}  {_earned(results)}"
             wrapped(console, Text(heading, style="bold underline"), 0)
-        for about, group in groupby(results, key=lambda each: each.criterion.about or titles[each.criterion.part]):
-            is_part = len(report.parts) > 1 and about == titles[part]
-            _show_group(None if is_part else about, tuple(group), report, console, shown)
+        whole = None if len(report.parts) == 1 else titles[part]
+        _show_groups(results, titles[part], whole, report, console, shown)
     _show_evidence(report, console)
     problems = tuple(_untold(report))
     if problems:
@@ -98,21 +97,43 @@ def _earned(results: tuple[Result, ...]) -> str:
     return f"{points_words(earned)}/{points_words(most)}"
 
 
-def _show_group(
-    about: str | None, results: tuple[Result, ...], report: Report, console: Console, shown: set[str]
+def _show_groups(
+    results: tuple[Result, ...], title: str, whole: str | None, report: Report, console: Console, shown: set[str]
 ) -> None:
-    if about is not None:
-        console.print()
-        wrapped(console, Text.assemble((printable(about), "bold"), (f"  {_earned(results)}", "dim")), 0)
+    """Print the criteria of a part, those about one thing under one heading; a heading like the part's is left out.
+
+    Groups in a row that are skipped for the same reason are one line.
+    """
+    named = [(name, tuple(group)) for name, group in groupby(results, key=lambda each: each.criterion.about or title)]
+    for cause, alike in groupby(named, key=lambda group: _cause(group[1])):
+        groups = list(alike)
+        skipped = tuple(result for _, group in groups for result in group)
+        if cause is None or len(skipped) == 1:
+            for name, group in groups:
+                if name != whole:
+                    _show_heading(name, group, console)
+                for result in group:
+                    _show_result(result, report, console, shown)
+        else:
+            _show_heading(", ".join(name for name, _ in groups), skipped, console)
+            _show_skipped(skipped, cause, console)
+
+
+def _cause(results: tuple[Result, ...]) -> str | None:
+    """What all of several criteria are skipped for, if there is such a thing."""
     causes = {result.because for result in results}
-    if len(results) > 1 and len(causes) == 1 and None not in causes:
-        text = f"{len(results)} criteria are skipped, because {results[0].because} failed"
-        most = _earned(results).partition("/")[2]
-        head = Text.assemble("  ", (symbol(console, *_SYMBOLS["skipped"]), _STYLES["skipped"]), f" 0/{most:<3} ")
-        wrapped(console, Text(text, style="dim"), _INDENT, head)
-        return
-    for result in results:
-        _show_result(result, report, console, shown)
+    return results[0].because if len(causes) == 1 else None
+
+
+def _show_heading(name: str, results: tuple[Result, ...], console: Console) -> None:
+    console.print()
+    wrapped(console, Text.assemble((printable(name), "bold"), (f"  {_earned(results)}", "dim")), 0)
+
+
+def _show_skipped(results: tuple[Result, ...], cause: str, console: Console) -> None:
+    most = _earned(results).partition("/")[2]
+    head = Text.assemble("  ", (symbol(console, *_SYMBOLS["skipped"]), _STYLES["skipped"]), f" 0/{most:<3} ")
+    wrapped(console, Text(f"{len(results)} criteria are skipped, because {cause} failed", style="dim"), _INDENT, head)
 
 
 def _show_result(result: Result, report: Report, console: Console, shown: set[str]) -> None:
@@ -190,8 +211,8 @@ def _sentence(message: str) -> str:
 def _advice(report: Report) -> str:
     first = next(_failed(report.results))
     rubric = "" if report.rubric.is_shipped else f" --rubric {printable(report.rubric.path.name)}"
-    whole = "`grader inspect` shows the whole robot" if report.submission.urdf is not None else "mend that first"
-    return f"`grader explain {first}{rubric}` says how it is decided, {whole}."
+    whole = ", `grader inspect` shows the whole robot" if report.submission.urdf is not None else ""
+    return f"`grader explain {first}{rubric}` says how it is decided{whole}."
 
 
 def _failed(results: Iterable[Result]) -> Iterator[str]:

@@ -42,17 +42,20 @@ class Search(NamedTuple):
 
 
 def find_answer(tree: Tree, files: Sequence[str], places: Sequence[str]) -> Search:
-    """Look for the passage about one of `places`, such as `task 1 step 15`, in the documents whose names match `files`."""
+    """Look for the passage about one of `places`, such as `task 1 step 15`, in the documents whose names match `files`.
+
+    The first place that is found anywhere counts, before the others; and a passage before a heading with nothing below it.
+    """
     read: list[str] = []
     unread: list[str] = []
     wanted = [read_label(place) for place in places]
-    best: Passage | None = None
+    found: list[tuple[int, Passage]] = []
     for file, lines in _documents(tree, files, unread):
         read.append(file.path)
-        passage = _passage(file, lines, wanted)
-        if passage is not None and best is None:
-            best = passage
-    return Search(best, tuple(read), tuple(unread))
+        for rank, label in enumerate(wanted):
+            found += [(rank, passage) for passage in _passages(file, lines, label)]
+    best = min(found, key=lambda each: (each[0], len(each[1].text.split()) <= _HEADING_WORDS), default=None)
+    return Search(best[1] if best is not None else None, tuple(read), tuple(unread))
 
 
 def _documents(tree: Tree, files: Sequence[str], unread: list[str]) -> Iterator[tuple[File, list[str]]]:
@@ -95,7 +98,8 @@ def _text(file: File) -> str:
 def _converted(file: File, kind: str) -> str:
     """The text of a Word or PDF file, read by a process that is stopped if it takes too long."""
     data = file.read(_DOCUMENT_LIMIT)
-    command = [sys.executable, "-m", document_text.__name__, kind]
+    # -P: neither the current folder, which may be the student's, nor our own is where modules are looked for.
+    command = [sys.executable, "-P", document_text.__file__, kind]
     try:
         done = subprocess.run(command, input=data, capture_output=True, timeout=_PATIENCE, check=False)
     except (subprocess.TimeoutExpired, OSError):
@@ -107,23 +111,36 @@ def _converted(file: File, kind: str) -> str:
     return done.stdout.decode("utf-8", "replace")
 
 
-def _passage(file: File, lines: list[str], wanted: list[Label]) -> Passage | None:
+def _passages(file: File, lines: list[str], wanted: Label) -> Iterator[Passage]:
     """The lines from a heading about what is wanted up to the next heading; a file that is named for it is one as a whole."""
     own = read_label(stem(file.name))
-    if any(is_meant(each, own) for each in wanted):
-        return _cut(file, lines, 0, len(lines))
+    if is_meant(wanted, own):
+        yield from _cut(file, lines, 0, len(lines))
+        return
     task = own.task
     for index, line in enumerate(lines):
         label = _heading(line)
         if label is None:
             continue
         task = label.task if label.task is not None else task
-        if any(is_meant(each, label, task) for each in wanted):
-            end = next(
-                (after for after in range(index + 1, len(lines)) if _heading(lines[after]) is not None), len(lines)
+        if is_meant(wanted, label, task):
+            is_marked = line.startswith("#")
+            after = range(index + 1, len(lines))
+            yield from _cut(
+                file, lines, index, next((at for at in after if _ends(lines[at], is_marked=is_marked)), len(lines))
             )
-            return _cut(file, lines, index, end)
-    return None
+
+
+def _ends(line: str, *, is_marked: bool) -> bool:
+    """Whether a line is the heading of another passage, not a sentence that mentions a step.
+
+    Below a heading that is marked as one, only such a heading ends a passage.
+    """
+    if _heading(line) is None:
+        return False
+    words = _MARKUP.sub("", line).split()
+    begins = read_label(" ".join(words[:2]))
+    return line.startswith("#") if is_marked else bool(begins.steps or begins.task is not None or len(words) <= _HEADING_WORDS)
 
 
 def _heading(line: str) -> Label | None:
@@ -133,11 +150,13 @@ def _heading(line: str) -> Label | None:
     return label if label.steps or label.task is not None else None
 
 
-def _cut(file: File, lines: list[str], start: int, end: int) -> Passage | None:
+def _cut(file: File, lines: list[str], start: int, end: int) -> Iterator[Passage]:
+    while start < end and not lines[start].strip():
+        start += 1
     kept = [line.rstrip() for line in lines[start : min(end, start + _MOST_LINES)]]
     while kept and not kept[-1]:
         kept.pop()
     text = "\n".join(kept)
-    if not text.strip():
-        return None
-    return Passage(text[:_MOST_TEXT] + (" [...]" if len(text) > _MOST_TEXT else ""), Location(file.path, start + 1, 1))
+    if text.strip():
+        is_cut = len(text) > _MOST_TEXT or end > start + _MOST_LINES
+        yield Passage(text[:_MOST_TEXT] + (" [...]" if is_cut else ""), Location(file.path, start + 1, 1))

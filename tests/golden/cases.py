@@ -32,6 +32,12 @@ GOLDEN = (
     Golden("lidar-without-joint", ("grade", "submissions/lidar-without-joint/my_robot.urdf"), 1),
     Golden("broken-tag-parent", ("grade", "submissions/broken-tag-parent/my_robot.urdf"), 1),
     Golden("broken-tag-parent-json", ("grade", "submissions/broken-tag-parent/my_robot.urdf", "--format", "json"), 1),
+    Golden("no-launch-folder", ("grade", "submissions/no-launch-folder", "--part", "task2"), 1),
+    Golden("launch-home-path", ("grade", "submissions/launch-home-path", "--part", "task2"), 1),
+    Golden("setup-syntax-error", ("grade", "submissions/setup-syntax-error", "--part", "task2"), 1),
+    Golden("pictures-only", ("grade", "submissions/pictures-only"), 1),
+    Golden("team-of-two-json", ("grade", "submissions/equivalent-team-of-two", "--format", "json"), 0),
+    Golden("zipped", ("grade", "submissions/equivalent-zipped-with-wrapper/lab6.zip", "--part", "questions"), 0),
     Golden("inspect-raw-xacro", ("inspect", "submissions/raw-xacro/my_robot.urdf"), 1),
     Golden("inspect-reference", ("inspect", "submissions/reference", "--relative-to", "base_link"), 0),
     Golden(
@@ -41,6 +47,7 @@ GOLDEN = (
     ),
     Golden("explain-criterion", ("explain", "lidar-frame"), 0),
     Golden("explain-code", ("explain", "URDF012"), 0),
+    Golden("explain-package-code", ("explain", "PKG014"), 0),
     Golden("explain-check", ("explain", "bottom_at_height"), 0),
     Golden("rubric-show", ("rubric", "show", "lab6"), 0),
 )

@@ -1,0 +1,81 @@
+"""A student's files are read and never run, whatever they are called and wherever the grader is started."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.samples import ROOT
+
+REFERENCE = ROOT / "submissions" / "reference"
+# Modules that the grader, or what it is built on, loads late.
+MODULES = (
+    "yaml",
+    "imagesize",
+    "docx",
+    "pypdf",
+    "ast",
+    "zipfile",
+    "lxml",
+    "numpy",
+    "rich",
+    "typer",
+    "glob",
+    "xacro",
+    "launch",
+)
+
+
+@pytest.fixture
+def trapped(tmp_path: Path) -> Path:
+    """A hand-in full of modules that leave a mark when they are imported, and of code that leaves one when it is run."""
+    folder = tmp_path / "handed-in"
+    shutil.copytree(REFERENCE, folder)
+    package = folder / "roscourse_sim_ws/src/my_robot"
+    mark = f"open({str(tmp_path / 'ran')!r}, 'w').close()\n"
+    for place in (folder, package):
+        for name in MODULES:
+            (place / f"{name}.py").write_text(mark)
+    for path in (package / "setup.py", package / "launch/my_robot_rviz.launch.py"):
+        path.write_text(mark + path.read_text())
+    (folder / "more.docx").write_bytes(b"PK\x03\x04")
+    (folder / "more.pdf").write_bytes(b"%PDF-1.7\n")
+    return folder
+
+
+@pytest.mark.parametrize("command", [["-m", "grader"], ["-c", "from grader.__main__ import main; main()"]])
+@pytest.mark.parametrize("start", [".", "roscourse_sim_ws/src/my_robot"])
+def test_nothing_of_a_hand_in_is_imported_or_run(trapped: Path, start: str, command: list[str]) -> None:
+    """Not even where the grader is started in the student's folder, which Python would search for modules first."""
+    done = subprocess.run(
+        [sys.executable, *(["-P"] if "-c" in command else []), *command, "grade", str(trapped), "--format", "json"],
+        cwd=trapped / start,
+        env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
+        capture_output=True,
+        check=False,
+        timeout=60,
+    )
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert not (trapped.parent / "ran").exists()
+
+
+def test_nothing_is_written(trapped: Path) -> None:
+    """The hand-in is as it was before, and no temporary file is left."""
+    before = sorted(trapped.rglob("*"))
+    temporary = trapped.parent / "temporary"
+    temporary.mkdir()
+    archive = shutil.make_archive(str(trapped.parent / "lab6"), "gztar", trapped)
+    for path in (str(trapped), archive):
+        subprocess.run(
+            [sys.executable, "-m", "grader", "grade", path],
+            cwd=ROOT,
+            env={**os.environ, "TMPDIR": str(temporary)},
+            capture_output=True,
+            check=False,
+            timeout=60,
+        )
+    assert sorted(trapped.rglob("*")) == before
+    assert list(temporary.iterdir()) == []
