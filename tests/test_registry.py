@@ -20,8 +20,10 @@ from grader.grading.arguments import convert, type_words
 from grader.grading.rubric import load_rubric
 from grader.report.rubrics import checks_text, explanation
 from grader.robot.kinematics import Configuration
-from tests.checks.asking import ask
+from tests.checks.asking import AnyCheck, ask
 from tests.checks.cases import CASE, CASES
+from tests.checks.hand_in_cases import HAND_IN_CASE, HAND_IN_CASES, PENDING_CASE, PENDING_CASES
+from tests.checks.hand_ins import REFERENCE
 
 NAMES = [function.__name__ for function in CHECKS]
 SHARED = {"__init__", "outcome", "registry", "shown"}
@@ -58,14 +60,25 @@ def test_the_signature_is_a_schema(check: Check) -> None:
 
 @every_check
 def test_a_check_passes_and_fails_somewhere(check: Check) -> None:
-    """The table of cases has a robot that passes and one that fails for every check, with arguments that a rubric can give."""
-    case = CASE[check.name]
-    assert case.check is check.function
-    assert ask(check.function, case.passing, **case.arguments).status == "passed"
-    assert ask(check.function, case.failing, **case.arguments).status == "failed"
+    """A table of cases has what passes and what fails for every check, with arguments that a rubric can give.
+
+    Of a robot or a hand-in, whatever the check is asked of; the checks that a person decides are in a table of their own.
+    """
+    if check.name in PENDING_CASE:
+        pending = PENDING_CASE[check.name]
+        of: tuple[AnyCheck, Mapping[str, Any]] = (pending.check, pending.arguments)
+        assert ask(check.function, REFERENCE, **pending.arguments).status == "pending"
+        assert ask(check.function, pending.without, **pending.arguments).status == "pending"
+    else:
+        case = CASE[check.name] if check.subject in ("urdf", "robot") else HAND_IN_CASE[check.name]
+        of = (case.check, case.arguments)
+        assert ask(check.function, case.passing, **case.arguments).status == "passed"
+        assert ask(check.function, case.failing, **case.arguments).status == "failed"
+    function, arguments = of
+    assert function is check.function
     required = {each.name for each in check.parameters.values() if each.required}
-    assert required <= set(case.arguments) <= set(check.parameters)
-    for name, value in case.arguments.items():
+    assert required <= set(arguments) <= set(check.parameters)
+    for name, value in arguments.items():
         assert convert(as_toml(value), check.parameters[name].type) == value
 
 
@@ -90,7 +103,12 @@ def test_a_check_is_found_by_its_name(check: Check) -> None:
 def test_names_are_unique() -> None:
     """No two checks have one name, and no case is for a check that is not there."""
     assert len(set(NAMES)) == len(NAMES)
-    assert sorted(case.name for case in CASES) == sorted(NAMES)
+    assert sorted(case.name for case in (*CASES, *HAND_IN_CASES, *PENDING_CASES)) == sorted(NAMES)
+
+
+def test_only_what_a_person_marks_is_always_pending() -> None:
+    """The checks of a written answer and of a picture are the only ones without a case that passes."""
+    assert set(PENDING_CASE) == {"answered", "evidence_shown"}
 
 
 def test_no_check_is_forgotten() -> None:
@@ -202,7 +220,7 @@ def is_supported(annotation: Any) -> bool:
     if origin is list:
         return inner[0] in SAMPLES
     if origin is tuple:
-        return all(each is float or each is Ellipsis for each in inner)
+        return all(each in (float, Ellipsis) for each in inner) or inner == (str, Ellipsis)
     if origin is not None:
         return issubclass(origin, Mapping) and inner == (str, str)
     return annotation in SAMPLES
@@ -218,7 +236,7 @@ def sample(annotation: Any) -> Any:
     if origin is list:
         return [SAMPLES[inner[0]]]
     if origin is tuple:
-        return [1] * (3 if Ellipsis in inner else len(inner))
+        return [SAMPLES[inner[0]]] * (3 if Ellipsis in inner else len(inner))
     return {"a": "b"} if origin is not None else SAMPLES[annotation]
 
 
@@ -231,5 +249,15 @@ def as_toml(value: object) -> object:
 
 def test_the_samples_of_types_are_complete() -> None:
     """Types that a rubric cannot give are refused by this file's own yardstick."""
-    for annotation in (bytes, complex, dict[str, int], Callable[[], None], list[list[float]], set[str], int | bytes):
+    for annotation in (
+        bytes,
+        complex,
+        dict[str, int],
+        Callable[[], None],
+        list[list[float]],
+        set[str],
+        int | bytes,
+        tuple[str, str],
+        tuple[bytes, ...],
+    ):
         assert not is_supported(annotation)

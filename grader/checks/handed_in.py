@@ -3,7 +3,7 @@
 from grader.checks.outcome import Outcome
 from grader.submission.submission import Submission
 
-_DOCUMENTS = ("*.md", "*.txt", "*.docx", "*.pdf")
+_DOCUMENTS = ("*.md", "*.txt", "*.docx", "*.pdf", "*.doc", "*.odt", "*.rtf", "*.pages")
 
 
 def answered(

@@ -10,16 +10,18 @@ from grader.submission.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.submission.package import Package, is_launch_named
 
 if TYPE_CHECKING:
-    from grader.submission.launch.model import Launch, Reference
+    from grader.submission.launch.model import Launch, Reference, StartedNode
 
-_WORDS = {"urdf": "URDF", "rviz": "RViz file", "include": "launch file"}
+_ONE_MACHINE = "which exists on one machine only"
+_WORDS = {"urdf": "URDF", "rviz": "RViz file", "include": "launch file", "launch": "launch file"}
+_ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".py", ".xml", ".yaml", ".yml")}
 
 
 def launch_found(package: Package, *, name: str) -> Outcome:
     """The package has a launch file of this name; it may be written in Python, XML or YAML."""
     path = package.launch_file(name)
     if path is None:
-        raise _no_launch_file(package)
+        raise _no_file(package, "launch")
     if is_launch_named(path, name):
         return passed(f"the launch file is {path}")
     hint = (
@@ -36,74 +38,105 @@ def launch_starts(package: Package, *, name: str, nodes: list[str]) -> Outcome:
     Launch files that it includes count, if they are part of the submission or of urdf_launch.
     """
     launch = _launch(package, name)
+    if launch.faults and not launch.nodes:
+        raise _stopped(package, name, launch)
     started = {node.executable for node in launch.nodes if node.when and node.package == _home(node.executable)}
+    running = sorted({_named(node) for node in launch.nodes if node.when})
     perhaps = {node.executable for node in launch.nodes if node.when is None}
     choices = [wanted.split(" or ") for wanted in nodes]
     missing = [" or ".join(choice) for choice in choices if started.isdisjoint(choice)]
     if launch.faults:
-        more = f" (and {len(launch.faults) - 1} more)" if len(launch.faults) > 1 else ""
-        return judged_as("failed", f"{launch.faults[0].message}{more}", at=launch.faults[0].location)
+        return judged_as("failed", _faults(launch), at=launch.faults[0].location)
     open_questions = [each for each in missing if not perhaps.isdisjoint(each.split(" or "))]
     if missing and (len(open_questions) == len(missing) or launch.unknown):
         reason = f": {launch.unknown[0].message}" if launch.unknown else ""
         return Outcome("pending", f"whether {_listed(missing)} is started is told only by a run{reason}")
     if not missing:
-        return Outcome("passed", f"it starts {_listed(sorted(started))}", tuple(sorted(started)), tuple(nodes))
-    message = f"it does not start {_listed(missing)}; it starts {_listed(sorted(started)) or 'nothing'}"
+        return Outcome("passed", f"it starts {_listed(running)}", tuple(running), tuple(nodes))
+    message = f"it does not start {_listed(missing)}; it starts {_listed(running) or 'nothing'}"
     forgotten = next((node for node in launch.forgotten if node.executable in " ".join(missing)), None)
     off = next((node for node in launch.nodes if node.when is False and node.executable in " ".join(missing)), None)
-    at = None
+    wanted = {each for choice in choices for each in choice} - started
+    near = next(
+        (node for node in launch.nodes if node.when and not wanted.isdisjoint((node.package, node.executable))), None
+    )
+    at = near.location if near is not None else None
     if forgotten is not None:
         message += f". The node {forgotten.executable} is made, but not part of the LaunchDescription"
         at = forgotten.location
     elif off is not None:
         message += f". A condition keeps {off.executable} from being started, unless an argument is given"
         at = off.location
-    return Outcome("failed", message, tuple(sorted(started)), tuple(nodes), location=at)
+    return Outcome("failed", message, tuple(running), tuple(nodes), location=at)
 
 
 def launch_finds_files(package: Package, *, name: str) -> Outcome:
     """The URDF and RViz files that the launch file names are where a build of the package puts them."""
     launch = _launch(package, name)
     references = launch.named("urdf", "rviz", "include")
-    if not any(each.purpose != "include" for each in references):
-        if launch.unknown:
-            return Outcome("pending", f"which files it names is told only by a run: {launch.unknown[0].message}")
-        raise MissingElement("named file", "", message="the launch file names neither a URDF nor an RViz file")
     verdicts = [(_verdict(package, each), each) for each in references]
     wrong = [(text, each) for (status, text), each in verdicts if status == "failed"]
     if wrong:
         message = "; ".join(dict.fromkeys(text for text, _ in wrong))
+        if _ONE_MACHINE in message:
+            message += f": get_package_share_directory({package.name!r}) tells where it is installed"
         return judged_as("failed", message, at=wrong[0][1].location)
     for (status, text), each in verdicts:
         if status == "missing":
-            kind = (
-                f"installed {each.purpose}" if package.setup is not None and package.setup.fault is None else "setup.py"
-            )
-            raise MissingElement(kind, package.folder, message=text, location=each.location)
+            raise _missing(package, each, text)
+    if not any(each.purpose != "include" for each in references):
+        if launch.faults:
+            raise _stopped(package, name, launch)
+        if launch.unknown:
+            return Outcome("pending", f"which files it names is told only by a run: {launch.unknown[0].message}")
+        raise MissingElement("named file", "", message="the launch file names neither a URDF nor an RViz file")
     pending = [text for (status, text), _ in verdicts if status == "pending"]
     if pending:
         return Outcome("pending", f"{pending[0]}: a person has to look")
-    return passed(
-        f"the build puts {' and '.join(dict.fromkeys(text for (_, text), _ in verdicts if text))} where it is looked for"
-    )
+    *most, last = dict.fromkeys(text for (_, text), _ in verdicts if text)
+    return passed(f"the build puts {' and '.join(filter(None, [_listed(most), last]))} where it is looked for")
 
 
-def _no_launch_file(package: Package) -> MissingElement:
-    message = "the package has no launch file: none ends in .launch.py, .launch.xml or .launch.yaml"
-    if not any(posixpath.basename(folder) == "launch" for folder in package.tree.folders):
-        message += ", and there is no folder launch"
-    return MissingElement("launch file in the package", "", message=message)
+def _no_file(package: Package, kind: str) -> MissingElement:
+    return MissingElement(f"{_WORDS[kind]} in the package", "", message=package.without(kind))
 
 
 def _launch(package: Package, name: str) -> "Launch":
     path = package.launch_file(name)
     if path is None:
-        raise _no_launch_file(package)
+        raise _no_file(package, "launch")
     launch = package.launch(path)
     if launch.syntax is not None:
         raise MissingElement("launch file", path, message=launch.syntax.message, location=launch.syntax.location)
     return launch
+
+
+def _stopped(package: Package, name: str, launch: "Launch") -> MissingElement:
+    """A fault for which nothing at all is known of a launch file."""
+    path = package.launch_file(name) or name
+    return MissingElement("launch file", path, message=_faults(launch), location=launch.faults[0].location)
+
+
+def _faults(launch: "Launch") -> str:
+    messages = list(dict.fromkeys(fault.message for fault in launch.faults))
+    return f"{messages[0]} (and {len(messages) - 1} more)" if len(messages) > 1 else messages[0]
+
+
+def _named(node: "StartedNode") -> str:
+    return node.executable if node.package == _home(node.executable) else f"{node.package}/{node.executable}"
+
+
+def _missing(package: Package, named: "Reference", text: str) -> MissingElement:
+    """What a named file is without, under the name that the checks of the package miss it by."""
+    setup = package.setup
+    what = _WORDS[named.purpose]
+    if setup is None or setup.fault is not None:
+        return MissingElement("setup.py", package.folder, message=text, location=named.location)
+    if not setup.is_called:
+        return MissingElement("call of setup", package.folder, message=text, location=named.location)
+    if not any(path.lower().endswith(_ENDINGS[named.purpose]) for path in package.tree.files):
+        return MissingElement(f"{what} in the package", "", message=text, location=named.location)
+    return MissingElement(f"installed {named.purpose}", package.folder, message=text, location=named.location)
 
 
 def _home(executable: str) -> str:
@@ -119,19 +152,21 @@ def _verdict(package: Package, named: "Reference") -> tuple[str, str]:
     path = posixpath.normpath(named.path)
     if path.startswith(f"{SHARE}/"):
         owner, _, rest = path.removeprefix(f"{SHARE}/").partition("/")
-        return _below_share(package, owner, rest, what)
+        return _below_share(package, owner, rest, named)
     if path.startswith((HOME, "/home/", "/Users/", "/root/", "/mnt/", "/media/")) or path[1:3] in (":\\", ":/"):
         shown = path.replace(HOME, "~")
-        advice = f"get_package_share_directory({package.name!r}) tells where it is installed"
-        return "failed", f"it looks for the {what} at {shown}, which exists on one machine only: {advice}"
+        return "failed", f"it looks for the {what} at {shown}, {_ONE_MACHINE}"
     if path.startswith(WORKING_FOLDER) or not path.startswith("/"):
         shown = path.removeprefix(WORKING_FOLDER + "/")
+        if shown.startswith("~"):
+            return "failed", f"it looks for the {what} at {shown}, but nothing puts the home folder in place of ~"
         return "failed", f"it looks for the {what} at {shown}, in whatever folder ros2 launch is started from"
     return "pending", f"the {what} {path.removeprefix(PREFIX)} is not part of the package"
 
 
-def _below_share(package: Package, owner: str, rest: str, what: str) -> tuple[str, str]:
-    other = package.known.get(owner)
+def _below_share(package: Package, owner: str, rest: str, named: "Reference") -> tuple[str, str]:
+    what = _WORDS[named.purpose]
+    other = package.find(owner)
     if other is None:
         if closest(owner, [package.name]):
             return "failed", f"it looks in a package {owner!r}, but this one is named {package.name!r}"
@@ -157,9 +192,13 @@ def _below_share(package: Package, owner: str, rest: str, what: str) -> tuple[st
         return "failed", f"it looks for the {what} at {target}, but the build puts it at {put}"
     if any(posixpath.basename(path) == name for path in other.tree.files):
         return "missing", f"it looks for the {what} at {target}, but the build does not install {name}"
-    similar = closest(name, {posixpath.basename(path) for path in other.tree.files})
-    there = f"; there is {similar!r}" if similar else ""
-    return "failed", f"it looks for the {what} at {target}, but the package has no file {name!r}{there}"
+    endings, own = _ENDINGS[named.purpose], posixpath.basename(named.location.path)
+    alike = sorted({posixpath.basename(path) for path in other.tree.files if path.lower().endswith(endings)} - {own})
+    message = f"it looks for the {what} at {target}, but the package has no file {name!r}"
+    if not alike and named.purpose != "include":
+        return "missing", message
+    similar = closest(name, alike) or (alike[0] if len(alike) == 1 and named.purpose != "include" else None)
+    return "failed", f"{message}; there is {similar!r}" if similar else message
 
 
 def _listed(names: list[str]) -> str:

@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING, Literal
 
 from grader.checks.outcome import Outcome, judged_as, listing, passed
 from grader.errors import MissingElement
-from grader.robot.names import closest, did_you_mean
+from grader.robot.names import closest
 from grader.submission.package import MANIFEST, NO_PACKAGE, Package
 from grader.submission.submission import Submission
 
 if TYPE_CHECKING:
+    from grader.submission.manifest import Manifest
     from grader.submission.python.lookup import EmptyGlob
-    from grader.submission.setup_py import Copy, Setup, Stop
+    from grader.submission.setup_py import Copy, Setup
 
 Kind = Literal["urdf", "launch", "rviz"]
 
@@ -27,7 +28,7 @@ def package_found(submission: Submission, *, name: str) -> Outcome:
     if package is None:
         raise MissingElement("package", "", message=NO_PACKAGE)
     manifest = package.manifest
-    if manifest is None:
+    if manifest is None or not _is_readable(manifest):
         raise _no_manifest(package)
     if manifest.name is None:
         problem = manifest.problems[0]
@@ -41,14 +42,17 @@ def package_found(submission: Submission, *, name: str) -> Outcome:
 def package_type(package: Package, *, build_type: str) -> Outcome:
     """The package is of a build type, such as ament_python."""
     manifest = package.manifest
-    if manifest is None or manifest.name is None:
+    if manifest is None or not _is_readable(manifest):
         raise _no_manifest(package)
     actual = manifest.build_type
     if actual == build_type:
         return Outcome("passed", f"the build type is {actual!r}", actual, build_type)
-    message = f"the build type is {actual!r}, expected {build_type!r}{did_you_mean(actual, [build_type])}"
+    message = f"the build type is {actual!r}"
     if actual == "catkin":
-        message = f"package.xml exports no build_type, which stands for catkin of ROS 1; expected {build_type!r}"
+        message += " of ROS 1, for which a package.xml without build_type stands, too"
+    elif not actual:
+        message = "<build_type> of package.xml is empty"
+    message += f"; expected {build_type!r}"
     return Outcome("failed", message, actual, build_type, location=manifest.type_location)
 
 
@@ -60,7 +64,7 @@ def build_installs(package: Package, *, kind: Kind, name: str) -> Outcome:
     """
     files = files_of(package, kind, name)
     if not files:
-        raise MissingElement(f"{_WORDS[kind]} in the package", "", message=f"the package holds no {_WORDS[kind]}")
+        raise MissingElement(f"{_WORDS[kind]} in the package", "", message=package.without(kind))
     return _installed(package, files, kind)
 
 
@@ -114,6 +118,12 @@ def readable_setup(package: Package) -> "Setup | Outcome":
     return setup
 
 
+def _is_readable(manifest: "Manifest") -> bool:
+    from grader.submission.catalogue import BAD_MANIFEST
+
+    return all(problem.kind is not BAD_MANIFEST for problem in manifest.problems)
+
+
 def _no_manifest(package: Package) -> MissingElement:
     where = f"the folder {package.folder!r}" if package.folder else "what was handed in"
     problem = package.manifest.problems[0] if package.manifest is not None else None
@@ -132,15 +142,12 @@ def _installed(package: Package, files: Sequence[str], kind: Kind | None) -> Out
     for stop in setup.stops:
         if stop.path == MANIFEST and package.manifest is None:
             continue  # that it is missing is told, and counted, as what it is
-        owner = _owner(stop.path, package)
-        if owner is None:
-            message = f"the build stops before it installs anything: {_stopped(stop)}"
-            raise MissingElement("build", stop.path, message=message, location=setup.location(stop.at))
+        owner = _owner(stop.path, package) or "urdf"  # one mistake costs one criterion: of what is neither, the first
         if owner == kind or posixpath.dirname(stop.path) in {posixpath.dirname(path) for path in files}:
-            return judged_as("failed", f"the build stops here: {_stopped(stop)}", at=setup.location(stop.at))
+            return judged_as("failed", f"the build stops here: {stop.words}", at=setup.location(stop.at))
     copies = [copy for copy in setup.copies if copy.source in files]
-    share = f"share/{package.name}/"
-    inside = [copy for copy in copies if copy.target.startswith(share)]
+    shares = tuple(f"share/{name}/" for name in package.names)
+    inside = [copy for copy in copies if copy.target.startswith(shares)]
     if inside:
         return passed(f"a build installs {inside[0].source} as {inside[0].target}")
     if setup.unknown:
@@ -148,12 +155,8 @@ def _installed(package: Package, files: Sequence[str], kind: Kind | None) -> Out
         line = f" (line {unknown.at.line} of setup.py)"
         return Outcome("pending", f"whether {files[0]} is installed is told only by a build: {unknown.reason}{line}")
     if copies:
-        return _elsewhere(copies[0], share, setup)
+        return _elsewhere(copies[0], shares[0], setup)
     raise _not_installed(package, setup, files, kind)
-
-
-def _stopped(stop: "Stop") -> str:
-    return f"data_files lists {stop.path!r}, but {stop.reason}"
 
 
 def _elsewhere(copy: "Copy", share: str, setup: "Setup") -> Outcome:
@@ -166,15 +169,16 @@ def _not_installed(package: Package, setup: "Setup", files: Sequence[str], kind:
     empty = _meant(setup.empty, files)
     at = None
     if not setup.is_called:
-        message += ": setup.py does not call setup()"
-    elif empty is not None:
+        message = "a build installs nothing: setup.py does not call setup()"
+        return MissingElement("call of setup", package.folder, message=message)
+    if empty is not None:
         folder = posixpath.dirname(empty.pattern)
         reason = "" if not folder or folder in package.tree.folders else f", because there is no folder {folder!r}"
         message += f": the pattern {empty.pattern!r} in setup.py finds nothing{reason}"
         at = setup.location(empty.at)
     else:
         message += ": no entry of data_files in setup.py names it"
-    return MissingElement(f"installed {kind}", package.folder, message=message, location=at)
+    return MissingElement(f"installed {kind or files[0]}", package.folder, message=message, location=at)
 
 
 def _meant(empty: "Sequence[EmptyGlob]", files: Sequence[str]) -> "EmptyGlob | None":

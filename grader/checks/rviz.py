@@ -2,13 +2,14 @@
 
 from typing import TYPE_CHECKING
 
-from grader.checks.outcome import Outcome, judged_as, passed
+from grader.checks.outcome import Outcome, Status, judged_as, passed
 from grader.errors import MissingElement
 from grader.robot.names import did_you_mean
 from grader.submission.package import NO_PACKAGE, Package
 from grader.submission.submission import Submission
 
 if TYPE_CHECKING:
+    from grader.submission.launch.model import Launch
     from grader.submission.rviz import Display, RvizFile
 
 _PLUGINS = "rviz_default_plugins"
@@ -16,11 +17,14 @@ _PLUGINS = "rviz_default_plugins"
 
 def rviz_found(package: Package, *, name: str, launch: str = "") -> Outcome:
     """The package has the RViz file: that of this name, or the one that the launch file opens."""
-    path = _file(package, name, launch)
+    opened = _followed(package, launch)
+    path = package.rviz_file(name, opened)
     if path is None:
-        raise _no_rviz_file()
-    if path.rpartition("/")[2] == name or path == _opened(package, launch):
+        raise _no_rviz_file(package)
+    if path.rpartition("/")[2] == name or (opened is not None and path == package.rviz_opened(opened)):
         return passed(f"the RViz file is {path}")
+    if opened is not None and (opened.syntax or opened.unknown or not all(each.sure for each in opened.named("rviz"))):
+        return Outcome("pending", f"whether {path} is the file that the launch file opens is told only by a run")
     return judged_as("failed", f"there is no RViz file {name!r}; the package has {path}")
 
 
@@ -31,7 +35,7 @@ def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: s
         raise MissingElement("package", "", message=NO_PACKAGE)
     rviz = _read(package, name, launch)
     actual = rviz.fixed_frame
-    if actual is None:
+    if not actual:
         return judged_as("failed", f"the RViz file sets no Fixed Frame, expected {frame!r}", at=rviz.frame_location)
     robot = submission.urdf.robot if submission.urdf is not None else None
     links = [link.name for link in robot.links] if robot is not None else []
@@ -50,41 +54,53 @@ def rviz_shows_robot(package: Package, *, name: str, topic: str = "/robot_descri
     rviz = _read(package, name, launch)
     models = [each for each in rviz.displays if each.kind == "RobotModel"]
     if not models:
-        kinds = ", ".join(dict.fromkeys(each.kind for each in rviz.displays if each.kind)) or "none"
-        return judged_as("failed", f"there is no RobotModel display; the displays are: {kinds}")
+        return judged_as("failed", f"there is no RobotModel display; {_listed(rviz)}")
     verdicts = [(_fault_of(model, topic), model) for model in models]
     fine = [model for (status, _), model in verdicts if status == "passed"]
     if fine:
         return passed(f"the display {fine[0].name or 'RobotModel'!r} shows the robot")
-    (status, reason), model = verdicts[0]
-    at = model.location if status == "failed" else None
-    return Outcome("failed" if status == "failed" else "pending", reason, location=at)
+    (status, reason), model = next((each for each in verdicts if each[0][0] == "pending"), verdicts[0])
+    return judged_as(status, reason, at=model.location)
 
 
 def rviz_display_on(package: Package, *, name: str, kind: str, launch: str = "") -> Outcome:
     """The RViz file has a display of a class, such as TF or LaserScan, and it is on."""
     rviz = _read(package, name, launch)
     found = [each for each in rviz.displays if each.kind == kind.rpartition("/")[2]]
-    if any(each.enabled and each.package != "rviz" for each in found):
+    faults = [_class_of_ros1(each) or _off(each) for each in found]
+    if "" in faults:
         return passed(f"a {kind} display is on")
     if not found:
-        return judged_as("failed", f"there is no {kind} display")
-    return judged_as(
-        "failed", f"the {kind} display is {'off' if found[0].package != 'rviz' else 'of ROS 1'}", at=found[0].location
-    )
+        return judged_as("failed", f"there is no {kind} display; {_listed(rviz)}")
+    return judged_as("failed", faults[0], at=found[0].location)
 
 
-def _fault_of(model: "Display", topic: str) -> tuple[str, str]:
+def _listed(rviz: "RvizFile") -> str:
+    return f"the displays are: {', '.join(dict.fromkeys(each.kind for each in rviz.displays if each.kind)) or 'none'}"
+
+
+def _class_of_ros1(display: "Display") -> str:
+    """What is wrong with a display's class: RViz of ROS 2 has none that are called rviz/..., and none without a package."""
+    right = f"in ROS 2 it is {_PLUGINS}/{display.kind}"
+    if not display.package:
+        return f"the class {display.kind!r} names no package; {right}"
+    return f"rviz/{display.kind} is a class of ROS 1; {right}" if display.package == "rviz" else ""
+
+
+def _off(display: "Display") -> str:
+    if display.enabled:
+        return ""
+    inside = ", for it is in a group that is off" if display.is_enabled else ""
+    return f"the {display.kind} display is off{inside}"
+
+
+def _fault_of(model: "Display", topic: str) -> tuple[Status, str]:
     """What keeps a RobotModel display from showing the robot."""
+    fault = _class_of_ros1(model) or _off(model)
+    if fault:
+        return "failed", fault
     if model.package != _PLUGINS:
-        other = f"{model.package}/RobotModel"
-        hint = "a class of ROS 1" if model.package == "rviz" else "a class that RViz does not come with"
-        return (
-            "failed" if model.package == "rviz" else "pending",
-            f"{other} is {hint}; in ROS 2 it is {_PLUGINS}/RobotModel",
-        )
-    if not model.enabled:
-        return "failed", "the RobotModel display is off"
+        return "pending", f"{model.package}/RobotModel is a class that RViz does not come with: a person has to look"
     node = model.node
     if not model.is_on("Visual Enabled"):
         return "failed", "the RobotModel display is on, but Visual Enabled is off in it, so nothing is drawn"
@@ -100,28 +116,19 @@ def _fault_of(model: "Display", topic: str) -> tuple[str, str]:
     return "failed", f"the RobotModel display reads the topic {actual!r}, expected {topic!r}"
 
 
-def _opened(package: Package, launch: str) -> str | None:
-    """The RViz file that the launch file opens, if that can be told."""
+def _followed(package: Package, launch: str) -> "Launch | None":
     path = package.launch_file(launch) if launch else None
-    if path is None:
-        return None
-    named = [package.source_of(each.path) for each in package.launch(path).named("rviz") if each.path is not None]
-    return next((each for each in named if each is not None), None)
+    return package.launch(path) if path is not None else None
 
 
-def _file(package: Package, name: str, launch: str) -> str | None:
-    path = package.launch_file(launch) if launch else None
-    return package.rviz_file(name, package.launch(path) if path is not None else None)
-
-
-def _no_rviz_file() -> MissingElement:
-    return MissingElement("RViz file in the package", "", message="the package has no RViz file: none ends in .rviz")
+def _no_rviz_file(package: Package) -> MissingElement:
+    return MissingElement("RViz file in the package", "", message=package.without("rviz"))
 
 
 def _read(package: Package, name: str, launch: str) -> "RvizFile":
-    path = _file(package, name, launch)
+    path = package.rviz_file(name, _followed(package, launch))
     if path is None:
-        raise _no_rviz_file()
+        raise _no_rviz_file(package)
     rviz = package.rviz(path)
     if rviz.fault is not None:
         raise MissingElement("RViz file", path, message=rviz.fault.message, location=rviz.fault.location)

@@ -11,7 +11,7 @@ from grader.robot.catalogue import Problem
 from grader.robot.source import Location, Source
 
 SEVERITY_STYLES = {"error": "bold red", "warning": "yellow", "note": "cyan"}
-_MEANT = re.compile(r"""[^\s=<>"'/]+\s*=\s*(?:"[^"]*"?|'[^']*'?)|<[^\s>]*[^>]*>?""")
+_MEANT = re.compile(r"""[^\s=<>"'/]+\s*=\s*(?:"[^"]*"?|'[^']*'?)|<[^\s>]*[^>]*>?|[\w.]+""")
 _MOST_SHOWN = 30
 
 

@@ -102,8 +102,10 @@ def _converted(file: File, kind: str) -> str:
     command = [sys.executable, "-P", document_text.__file__, kind]
     try:
         done = subprocess.run(command, input=data, capture_output=True, timeout=_PATIENCE, check=False)
-    except (subprocess.TimeoutExpired, OSError):
+    except subprocess.TimeoutExpired:
         raise InputError(f"{file.path} takes too long to read: open it yourself") from None
+    except OSError:
+        raise InputError(f"{file.path} could not be read on this machine: open it yourself") from None
     if done.returncode == document_text.MISSING:
         raise InputError(f"{file.path} is read only with `pip install 'grader[documents]'`: open it yourself")
     if done.returncode:
@@ -134,20 +136,26 @@ def _passages(file: File, lines: list[str], wanted: Label) -> Iterator[Passage]:
 def _ends(line: str, *, is_marked: bool) -> bool:
     """Whether a line is the heading of another passage, not a sentence that mentions a step.
 
-    Below a heading that is marked as one, only such a heading ends a passage.
+    Below a heading that is marked as one, only such a heading ends a passage, or a line that names task and step at once.
     """
     if _heading(line) is None:
         return False
-    words = _MARKUP.sub("", line).split()
+    words = _words(line)
     begins = read_label(" ".join(words[:2]))
-    return line.startswith("#") if is_marked else bool(begins.steps or begins.task is not None or len(words) <= _HEADING_WORDS)
+    if is_marked:
+        whole = read_label(" ".join(words[:4]))
+        return line.startswith("#") or (begins.task is not None and bool(whole.steps))
+    return bool(begins.steps) or begins.task is not None or len(words) <= _HEADING_WORDS
 
 
 def _heading(line: str) -> Label | None:
     """The label that a line begins with, if it does."""
-    text = _MARKUP.sub("", line)
-    label = read_label(" ".join(text.split()[:_HEADING_WORDS]))
+    label = read_label(" ".join(_words(line)[:_HEADING_WORDS]))
     return label if label.steps or label.task is not None else None
+
+
+def _words(line: str) -> list[str]:
+    return [word for word in _MARKUP.sub("", line).split() if any(map(str.isalnum, word))]
 
 
 def _cut(file: File, lines: list[str], start: int, end: int) -> Iterator[Passage]:

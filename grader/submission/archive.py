@@ -8,18 +8,20 @@ import gzip
 import io
 import lzma
 import stat
+import struct
 import tarfile
 import tempfile
 import weakref
 import zipfile
 import zlib
+from bisect import bisect_left
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager
 from functools import partial
 from typing import IO, NamedTuple
 
 from grader.errors import InputError
-from grader.submission.files import capped
+from grader.submission.files import advice, capped
 from grader.submission.tree import MOST_FILES, File, Tree, clean, is_generated, is_ignored, make_tree, parents, too_many
 
 ARCHIVE_LIMIT = 512 * 1024 * 1024  # bytes of an archive, and of what is in it
@@ -40,32 +42,63 @@ _DAMAGED = (
     OverflowError,
     MemoryError,
     OSError,
+    LookupError,
+    struct.error,
 )
+_MOST_ARCHIVES = 20  # in an archive or folder
+_ENCRYPTED = 0x1  # a zip's flag
+_LONGEST_NAME = 4096  # characters of a name, and of what a link points to
+_DEEPEST = 200
+_MOST_LINKS = 40  # in a chain
+_MOST_STEPS = 500_000  # for all links of an archive
+_READ = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)  # the others unpack without a bound, or are not known at all
+_NO_FILE = "is not a regular file, and was not read"
 
 
 _COMPRESSED = ("gz", "bz2", "xz")
 
 
 class _Member(NamedTuple):
-    """One entry: `target` is where a link points to, `open` gives what is in a file."""
+    """One entry. `reason` says why one of kind other is not read; `open` gives what is in a file.
+
+    `target` is where a link points to: from its own folder, or, if it is hard, from the top.
+    """
 
     path: str
     kind: str  # file, folder, link or other
     size: int
-    target: str
     open: Callable[[], AbstractContextManager[IO[bytes]]]
+    target: str = ""
+    is_hard: bool = False
+    reason: str = ""
 
 
-def read_archive(file: IO[bytes], kind: str, name: str) -> Tree:
+class Allowance:
+    """How many bytes an archive may unpack to, together with the archives in it."""
+
+    def __init__(self) -> None:
+        self.left = ARCHIVE_LIMIT
+        self.archives = _MOST_ARCHIVES
+
+    def spend(self, count: int, name: str) -> None:
+        """Use up some of it; raises InputError where there is not enough."""
+        self.left -= count
+        if self.left < 0:
+            raise _too_much(name)
+
+
+def read_archive(file: IO[bytes], kind: str, name: str, allowance: Allowance | None = None) -> Tree:
     """The files in an archive. `file` is closed when the tree is gone, or at once where it cannot be read (InputError)."""
     opened = [file]
+    allowance = allowance or Allowance()
     try:
-        size = _checked_size(file, kind, name)
+        limit = max(_HARMLESS, _MOST_RATIO * _checked_size(file, kind, name))
         if kind in _COMPRESSED:
             opened.append(tempfile.SpooledTemporaryFile(max_size=_IN_MEMORY))  # noqa: SIM115  it lives as long as the tree
-            _decompress(file, kind, opened[1], max(_HARMLESS, min(ARCHIVE_LIMIT, _MOST_RATIO * size)), name)
-        members = _zip_members(file) if kind == "zip" else _tar_members(opened[-1])
-        tree = _tree(members, size, name)
+            _decompress(file, kind, opened[1], name, limit, allowance)
+        tree = _tree(_members(_zip_members(file) if kind == "zip" else _tar_members(opened[-1]), name, limit), name)
+        if kind not in _COMPRESSED:
+            allowance.spend(sum(member.size for member in tree.files.values()), name)
     except _DAMAGED as error:
         _close(opened)
         raise InputError(f"{name} cannot be read as an archive: {_words(error)}") from None
@@ -91,39 +124,128 @@ def _close(files: list[IO[bytes]]) -> None:
         file.close()
 
 
-def _tree(members: Iterable[_Member], size: int, name: str) -> Tree:
+def _members(members: Iterable[_Member], name: str, limit: int) -> list[_Member]:
+    """The members of an archive: no more of them, and not more in them, than there may be."""
+    listed: list[_Member] = []
+    total = 0
+    for member in members:
+        listed.append(member)
+        total += member.size
+        if len(listed) > MOST_FILES:
+            raise too_many(name)
+        if total > min(limit, ARCHIVE_LIMIT):
+            raise _too_much(name)
+    return listed
+
+
+def _too_much(name: str) -> InputError:
+    return InputError(f"{name} would unpack to far more than anyone hands in, and was not read")
+
+
+def _tree(members: list[_Member], name: str) -> Tree:
     found: dict[str, _Member] = {}
     left_out: list[str] = []
-    generated: list[str] = []
-    total = 0
-    for count, member in enumerate(members, 1):
-        if count > MOST_FILES:
-            raise too_many(name)
-        total += member.size
-        if total > ARCHIVE_LIMIT or (total > _HARMLESS and total > _MOST_RATIO * max(size, 1)):
-            raise InputError(f"{name} would unpack to far more than anyone hands in, and was not read")
-        path = _inside(member.path)
-        if path is None:
+    generated: set[str] = set()
+    for member in members:
+        path = _inside(member.path) if len(member.path) <= _LONGEST_NAME else None
+        if len(member.path) > _LONGEST_NAME:
+            left_out.append(f"{clean(member.path[:40])}... has a name that is far too long, and was not read")
+        elif path is None:
             left_out.append(f"{clean(member.path)} has a name that leads out of the archive, and was not read")
         elif path and is_ignored(path):
-            if is_generated(path):
-                generated.append(path)
+            generated |= {path} if is_generated(path) and member.kind == "file" else set()
         elif path:
             found[path] = member
     environments = {path.rpartition("/")[0] for path in found if path.endswith("/pyvenv.cfg")}
-    files: list[File] = []
-    for path in found:
-        if environments and not environments.isdisjoint(parents(path)):
-            continue
-        real = _follow(path, found)
+    if environments:
+        found = {path: member for path, member in found.items() if environments.isdisjoint(parents(path))}
+    files: dict[str, File] = {}
+    for path, member in found.items():
+        if member.kind == "file":
+            files[path] = _file(path, member)
+        elif member.reason:
+            left_out.append(f"{path} {member.reason}")
+    folders = {path for path, member in found.items() if member.kind == "folder"}
+    folders.update(parent for path in found for parent in parents(path))
+    linked = _Links(found, folders, name)
+    left_out += [
+        f"{path} is a link that leads nowhere in the archive, and was not followed"
+        for path, member in found.items()
+        if member.kind == "link" and not linked.follow(path)
+    ]
+    return make_tree(
+        name, {**linked.files, **files}.values(), folders | linked.folders, sorted(left_out), sorted(generated)
+    )
+
+
+def _file(path: str, member: _Member) -> File:
+    return File(path, member.size, partial(_read, member, path))
+
+
+class _Links:
+    """What the links in an archive lead to: a file, or the files of a folder, which stand below the link, too."""
+
+    def __init__(self, found: dict[str, _Member], folders: set[str], name: str) -> None:
+        self._found = found
+        self._real = folders
+        self._name = name
+        self._paths = sorted(path for path, member in found.items() if member.kind == "file")
+        self._left = _MOST_STEPS
+        self.files: dict[str, File] = {}
+        self.folders: set[str] = set()
+
+    def follow(self, path: str) -> bool:
+        """Take in what a link leads to; False where that is not in the archive."""
+        real = self._end(path)
         if real is None:
-            left_out.append(f"{path} is a link that leads nowhere in the archive, and was not followed")
-        elif real.kind == "file":
-            files.append(File(path, real.size, partial(_read, real, path)))
-        elif real.kind == "other":
-            left_out.append(f"{path} is not a regular file, and was not read")
-    folders = [path for path, member in found.items() if member.kind == "folder"]
-    return make_tree(name, files, folders, sorted(left_out), sorted(generated))
+            return False
+        if real in self._real:
+            self._copy(real, path)
+        else:
+            self.files[path] = _file(path, self._found[real])
+        return True
+
+    def _copy(self, folder: str, link: str) -> None:
+        """The files of a folder once more below a link to it, if the link is not itself in the folder."""
+        start = folder + "/"
+        if link.startswith(start):
+            return
+        self.folders.add(link)
+        for path in self._paths[bisect_left(self._paths, start) :]:
+            if not path.startswith(start):
+                break
+            copied = f"{link}/{path.removeprefix(start)}"
+            self.files[copied] = _file(copied, self._found[path])
+            if len(self.files) > MOST_FILES:
+                raise too_many(self._name)
+
+    def _end(self, path: str) -> str | None:
+        """The file or folder at the end of a chain of links; None outside of the archive and in a circle."""
+        steps: list[str] = []
+        waiting = path.split("/")[::-1]
+        links = 0
+        while waiting:
+            step = clean(waiting.pop())
+            self._left -= 1
+            if (step == ".." and not steps) or len(steps) > _DEEPEST or self._left < 0:
+                return None
+            if step in ("", ".", ".."):
+                steps = steps[:-1] if step == ".." else steps
+                continue
+            steps.append(step)
+            member = self._found.get("/".join(steps))
+            if member is not None and member.kind == "link":
+                links += 1
+                if links > _MOST_LINKS or member.target.startswith("/") or len(member.target) > _LONGEST_NAME:
+                    return None
+                steps = steps[:-1] if not member.is_hard else []
+                waiting += member.target.split("/")[::-1]
+        real = "/".join(steps)
+        return real if real in self._real or self._kind(real) == "file" else None
+
+    def _kind(self, path: str) -> str:
+        member = self._found.get(path)
+        return member.kind if member is not None else ""
 
 
 def _inside(path: str) -> str | None:
@@ -134,45 +256,43 @@ def _inside(path: str) -> str | None:
     return clean("/".join(part for part in plain.split("/") if part not in ("", ".")))
 
 
-def _follow(path: str, found: dict[str, _Member]) -> _Member | None:
-    """The member that a link leads to in the end, or the member itself."""
-    member = found.get(path)
-    for _ in range(8):
-        if member is None or member.kind != "link":
-            return member
-        steps: list[str] = [] if member.target.startswith("\0") else path.split("/")[:-1]
-        for step in member.target.removeprefix("\0").split("/"):
-            if step == "..":
-                if not steps:
-                    return None
-                steps.pop()
-            elif step not in ("", "."):
-                steps.append(step)
-        path = "/".join(steps)
-        member = None if member.target.startswith("/") else found.get(path)
-    return None
-
-
 def _read(member: _Member, path: str, limit: int, *, first: bool = False) -> bytes:
     try:
         with member.open() as file:
             data = file.read(limit if first else limit + 1)
     except _DAMAGED as error:
         raise InputError(f"cannot read {path}: {_words(error)}") from None
-    return capped(data, limit, path)
+    return capped(data, limit, path, advice(path))
 
 
 def _zip_members(file: IO[bytes]) -> Iterator[_Member]:
-    archive = zipfile.ZipFile(_Bounded(file))
+    bounded = _Bounded(file)
+    archive = zipfile.ZipFile(bounded)
+    bounded.most = None
     for info in archive.infolist():
         mode = info.external_attr >> 16
-        kind = "folder" if info.is_dir() else "file"
-        target = ""
-        if stat.S_ISLNK(mode):
-            kind, target = "link", archive.open(info).read(4096).decode("utf-8", "replace")
-        elif mode and not stat.S_ISREG(mode) and not stat.S_ISDIR(mode) and stat.S_IFMT(mode):
-            kind = "other"
-        yield _Member(_zip_name(info), kind, info.file_size, target, partial(archive.open, info))
+        name = _zip_name(info)
+        member = _Member(name, "file", info.file_size, partial(archive.open, info))
+        if name.endswith(("/", "\\")):
+            member = member._replace(kind="folder", size=0)
+        elif info.flag_bits & _ENCRYPTED:
+            member = member._replace(kind="other", reason="is encrypted, and was not read")
+        elif info.compress_type not in _READ:
+            member = member._replace(kind="other", reason="is compressed in a way that is not read")
+        elif stat.S_ISLNK(mode):
+            member = member._replace(kind="link", size=0, target=_zip_link(archive, info))
+        elif stat.S_IFMT(mode) not in (0, stat.S_IFREG, stat.S_IFDIR):
+            member = member._replace(kind="other", reason=_NO_FILE)
+        yield member
+
+
+def _zip_link(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> str:
+    """What a link points to, which is what is in it; of one that cannot be read nowhere."""
+    try:
+        with archive.open(info) as file:
+            return file.read(_LONGEST_NAME).decode("utf-8", "replace")
+    except _DAMAGED:
+        return "/"
 
 
 def _zip_name(info: zipfile.ZipInfo) -> str:
@@ -192,11 +312,14 @@ def _tar_members(file: IO[bytes]) -> Iterator[_Member]:
         if archive.offset <= offset or info.size < 0:
             raise tarfile.TarError("it leads back to its own beginning")
         offset = archive.offset
-        kind = "file" if info.isfile() else "folder" if info.isdir() else "other"
-        target = ""
-        if info.issym() or info.islnk():
-            kind, target = "link", ("" if info.issym() else "\0") + info.linkname
-        yield _Member(info.name, kind, info.size, target, partial(_open_tar, archive, info))
+        member = _Member(info.name, "file", info.size, partial(_open_tar, archive, info))
+        if info.isdir():
+            member = member._replace(kind="folder", size=0)
+        elif info.issym() or info.islnk():
+            member = member._replace(kind="link", size=0, target=info.linkname, is_hard=info.islnk())
+        elif not info.isfile():
+            member = member._replace(kind="other", size=0, reason=_NO_FILE)
+        yield member
 
 
 def _open_tar(archive: tarfile.TarFile, info: tarfile.TarInfo) -> IO[bytes]:
@@ -214,24 +337,26 @@ def _unpacking(file: IO[bytes], kind: str) -> gzip.GzipFile | bz2.BZ2File | lzma
             return lzma.LZMAFile(file)
 
 
-def _decompress(file: IO[bytes], kind: str, plain: IO[bytes], limit: int, name: str) -> None:
+def _decompress(file: IO[bytes], kind: str, plain: IO[bytes], name: str, limit: int, allowance: Allowance) -> None:
     """Unpack a compressed tar into a file that is in memory or, where it is large, has no name."""
     with _unpacking(file, kind) as source:
         while chunk := source.read(_CHUNK):
             plain.write(chunk)
+            allowance.spend(len(chunk), name)
             if plain.tell() > limit:
-                raise InputError(f"{name} would unpack to far more than anyone hands in, and was not read")
+                raise _too_much(name)
     plain.seek(0)
 
 
 class _Bounded(io.RawIOBase):
-    """A file that refuses to be read in pieces as large as no table of contents of a zip is."""
+    """A file that refuses to be read in pieces of more than `most` bytes: no table of contents of a zip is as long."""
 
     def __init__(self, file: IO[bytes]) -> None:
         self._file = file
+        self.most: int | None = _DIRECTORY_LIMIT
 
     def read(self, size: int = -1) -> bytes:
-        if size > _DIRECTORY_LIMIT:
+        if self.most is not None and size > self.most:
             raise zipfile.BadZipFile("its table of contents is far too long")
         return self._file.read(size)
 

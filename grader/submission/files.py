@@ -59,6 +59,11 @@ def printable_path(path: Path | str) -> str:
     return "".join(c if c.isprintable() else f"\\x{ord(c):02x}" for c in text)
 
 
+def advice(path: str) -> str:
+    """What to say behind the limit of a file that is too large: that of a URDF can be raised."""
+    return _ADVICE if path.lower().endswith((".urdf", ".xacro")) else ""
+
+
 def capped(data: bytes, limit: int, shown: str, advice: str = _ADVICE) -> bytes:
     """The bytes that were read of a file, one more than the limit at most; raises InputError where it is too large."""
     if len(data) > limit:

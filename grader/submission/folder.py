@@ -2,11 +2,13 @@
 
 import os
 import stat
+from contextlib import suppress
 from functools import partial
+from itertools import islice
 from pathlib import Path
 
 from grader.errors import InputError
-from grader.submission.files import printable_path, read_capped, read_start
+from grader.submission.files import advice, printable_path, read_capped, read_start
 from grader.submission.tree import (
     BUILT,
     IGNORED,
@@ -26,55 +28,104 @@ _MOST_GENERATED = 10_000
 def read_folder(folder: Path) -> Tree:
     """The files of a folder. Raises InputError where it cannot be read or holds far too many.
 
-    Left out, and named: links that lead out of it, and what is neither file nor folder. Left out in silence: folders of
-    builds and tools, virtual environments, hidden files.
+    Left out, and named: links that lead out of it or nowhere, folders that cannot be opened, and what is neither file nor
+    folder. Left out in silence: folders of builds and tools, virtual environments, hidden files.
     """
-    top = os.path.realpath(folder)
-    files: list[File] = []
-    folders: list[str] = []
-    left_out: list[str] = []
-    generated: list[str] = []
-    entered: set[str] = set()
-    waiting = [""]
-    count = 0
-    while waiting:
-        where = waiting.pop()
-        for entry in _entries(folder / where, is_top=not where):
-            count += 1
-            if count > MOST_FILES:
-                raise too_many(printable_path(folder))
-            path = f"{where}/{entry.name}" if where else entry.name
-            shown = clean(path)
-            if entry.name in IGNORED or is_ignored(shown):
-                generated += _generated(folder, path) if entry.name in BUILT else ()
-                continue
-            real = os.path.realpath(entry.path)
-            if entry.is_symlink() and not real.startswith(top + os.sep):
-                left_out.append(f"{shown} is a link that leads out of the submission, and was not followed")
-            elif entry.is_dir():
-                if real not in entered and not os.path.lexists(entry.path + "/pyvenv.cfg"):
-                    entered.add(real)
-                    folders.append(shown)
-                    waiting.append(path)
-            elif entry.is_file():
-                files.append(File(shown, _size(entry), partial(_read, Path(entry.path))))
-            else:
-                left_out.append(f"{shown} is not a regular file, and was not read")
-    return make_tree(
-        printable_path(folder.resolve().name or "submission"), files, folders, sorted(left_out), sorted(generated)
-    )
+    walk = _Walk(folder)
+    walk.enter("", linked=False)
+    name = printable_path(folder.resolve().name or "submission")
+    return make_tree(name, walk.files, walk.folders, sorted(walk.left_out), sorted(walk.generated))
+
+
+class _Walk:
+    """Goes through a folder. A folder that links lead to is entered once by its own path, and once by a link."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._top = os.path.realpath(folder)
+        self._count = 0
+        self._by_link: set[str] = set()
+        self.files: list[File] = []
+        self.folders: list[str] = []
+        self.left_out: list[str] = []
+        self.generated: list[str] = []
+
+    def enter(self, start: str, *, linked: bool) -> None:
+        """Take in what is below a folder."""
+        waiting = [start]
+        links: list[str] = []
+        while waiting:
+            where = waiting.pop()
+            for entry in self._entries(where):
+                self._count += 1
+                if self._count > MOST_FILES:
+                    raise too_many(printable_path(self._folder))
+                path = f"{where}/{entry.name}" if where else entry.name
+                if not self._is_ignored(entry, path) and self._take(entry, path):
+                    (links if entry.is_symlink() else waiting).append(path)
+        for path in links:
+            real = os.path.realpath(self._folder / path)
+            if not linked and real not in self._by_link:
+                self._by_link.add(real)
+                self.folders.append(clean(path))
+                self.enter(path, linked=True)
+
+    def _is_ignored(self, entry: "os.DirEntry[str]", path: str) -> bool:
+        if entry.name not in IGNORED and not is_ignored(clean(path)):
+            return False
+        if entry.name in BUILT and not entry.is_symlink():
+            self.generated += _generated(self._folder, path)
+        return True
+
+    def _take(self, entry: "os.DirEntry[str]", path: str) -> bool:
+        """Take in a file, or say what is left out; True for a folder that is to be entered."""
+        shown = clean(path)
+        try:
+            real = os.path.realpath(entry.path) if entry.is_symlink() else ""
+            is_folder, is_file = entry.is_dir(), entry.is_file()
+        except OSError:  # such as a link to itself
+            real, is_folder, is_file = "", False, False
+        if real and real != self._top and not real.startswith(self._top.rstrip(os.sep) + os.sep):
+            self.left_out.append(f"{shown} is a link that leads out of the submission, and was not followed")
+        elif is_folder:
+            in_itself = real and f"{self._top}/{path}".startswith(real + "/")
+            if in_itself or os.path.lexists(entry.path + "/pyvenv.cfg"):
+                return False
+            if not entry.is_symlink():
+                self.folders.append(shown)
+            return True
+        elif is_file:
+            self.files.append(File(shown, _size(entry), partial(_read, Path(entry.path))))
+        elif entry.is_symlink() and not os.path.exists(entry.path):
+            self.left_out.append(f"{shown} is a link that leads nowhere, and was not followed")
+        else:
+            self.left_out.append(f"{shown} is not a regular file, and was not read")
+        return False
+
+    def _entries(self, where: str) -> list["os.DirEntry[str]"]:
+        try:
+            with os.scandir(self._folder / where) as found:
+                return sorted(islice(found, MOST_FILES + 1), key=lambda each: each.name)
+        except OSError as error:
+            if not where:
+                raise InputError(f"cannot read {printable_path(self._folder)}: {error.strerror}") from None
+            self.left_out.append(f"{clean(where)} is a folder that cannot be opened: {error.strerror}")
+            return []
 
 
 def _generated(folder: Path, path: str) -> list[str]:
     """URDFs below a folder that a build has made: named in the report, never read."""
     found: list[str] = []
     seen = 0
-    for where, folders, names in os.walk(folder / path):
-        folders.sort()
-        seen += len(names)
-        if seen > _MOST_GENERATED:
-            break
-        found += [clean(os.path.relpath(f"{where}/{name}", folder)) for name in names if is_generated("build/" + name)]
+    with suppress(RecursionError):  # which os.walk raises where folders are nested a thousand deep
+        for where, folders, names in os.walk(folder / path):
+            folders.sort()
+            seen += len(names) + len(folders)
+            if seen > _MOST_GENERATED:
+                break
+            found += [
+                clean(os.path.relpath(f"{where}/{name}", folder)) for name in names if is_generated("build/" + name)
+            ]
     return found
 
 
@@ -84,17 +135,7 @@ def single_file(path: Path) -> File:
 
 
 def _read(path: Path, limit: int, *, first: bool = False) -> bytes:
-    return read_start(path, limit) if first else read_capped(path, limit)
-
-
-def _entries(folder: Path, *, is_top: bool) -> list["os.DirEntry[str]"]:
-    try:
-        with os.scandir(folder) as found:
-            return sorted(found, key=lambda each: each.name)
-    except OSError as error:
-        if is_top:
-            raise InputError(f"cannot read {printable_path(folder)}: {error.strerror}") from None
-        return []
+    return read_start(path, limit) if first else read_capped(path, limit, advice=advice(path.name))
 
 
 def _size(entry: "os.DirEntry[str]") -> int:

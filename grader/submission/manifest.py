@@ -31,7 +31,7 @@ def read_manifest(data: bytes, path: str) -> Manifest:
         root = parse_xml(data)
     except (XMLSyntaxError, ValueError) as error:
         line, column = getattr(error, "position", (1, 1))
-        words = str(getattr(error, "msg", error)).split(", line ")[0]
+        words = " ".join(str(getattr(error, "msg", error)).split(", line ")[0].split())
         problem = Problem(catalogue.BAD_MANIFEST, f"package.xml is not readable as XML: {words}",
                           Location(path, max(line, 1), max(column, 1)))  # fmt: skip
         return Manifest(source, None, "", (problem,), start, start)
@@ -42,11 +42,14 @@ def read_manifest(data: bytes, path: str) -> Manifest:
 
 
 def _manifest(root: Element, source: Source) -> Manifest:
-    places = {element: index for index, element in enumerate(root.iter())}
+    places = {element: index for index, element in enumerate(root.iter("*"))}
     problems: list[Problem] = []
 
     def where(element: Element) -> Location:
-        return source.tag(places[element])
+        try:
+            return source.tag(places[element])
+        except IndexError:  # the text is in some encoding in which its tags are not seen
+            return Location(source.path, 1, 1)
 
     for tag in _NEEDED:
         found = root.findall(tag)
@@ -54,6 +57,9 @@ def _manifest(root: Element, source: Source) -> Manifest:
             message = f"package.xml has no <{tag}>" if not found else f"<{tag}> of package.xml is empty"
             problems.append(Problem(catalogue.INCOMPLETE_MANIFEST, message, where(found[0]) if found else where(root)))
         for element in found:
+            if tag == "maintainer" and not (element.get("email") or "").strip():
+                message = "<maintainer> of package.xml has no email"
+                problems.append(Problem(catalogue.INCOMPLETE_MANIFEST, message, where(element)))
             text = f"{element.text or ''} {element.get('email', '')}".lower()
             if tag in ("license", "maintainer", "description") and ("todo" in text):
                 problems.append(

@@ -3,14 +3,17 @@
 import io
 import os
 from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING
 
 from grader.errors import InputError
 from grader.submission.files import printable_path, read_start
-from grader.submission.tree import MOST_FILES, File, Tree, make_tree
+from grader.submission.tree import MOST_FILES, File, Tree, make_tree, too_many
+
+if TYPE_CHECKING:
+    from grader.submission.archive import Allowance
 
 _ENDINGS = (".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar")
 _INNER_LIMIT = 64 * 1024 * 1024  # bytes of an archive inside of what was handed in
-_MOST_INNER = 20
 _MOST_NESTED = 3
 _WORTH_FINDING = ("package.xml", "setup.py")
 
@@ -64,26 +67,23 @@ def tree_name(path: Path) -> str:
     )
 
 
-def _with_inner(tree: Tree, depth: int = 0) -> Tree:
+def _with_inner(tree: Tree, allowance: "Allowance | None" = None, depth: int = 0) -> Tree:
     """The tree with what is in its archives, if nothing to grade stands beside them."""
     archives = [file for file in tree.files.values() if file.suffix in _ENDINGS]
     if not archives or any(file.name in _WORTH_FINDING or file.suffix == ".urdf" for file in tree.files.values()):
         return tree
+    from grader.submission.archive import Allowance
+
+    allowance = allowance or Allowance()
     files, folders, left_out = list(tree.files.values()), set(tree.folders), list(tree.left_out)
     generated = list(tree.generated)
     kept = [tree]
-    for archive in archives[:_MOST_INNER]:
-        if depth >= _MOST_NESTED:
-            left_out.append(f"{archive.path} is an archive inside of an archive, too deep to be opened")
-            continue
+    for archive in archives:
         try:
-            inner = _inner(archive)
+            inner = _inner(archive, allowance, depth)
         except InputError as error:
             left_out.append(str(error))
             continue
-        if inner is None:
-            continue
-        inner = _with_inner(inner, depth + 1)
         kept.append(inner)
         start = archive.path + "/"
         files += [File(start + file.path, file.size, file.read) for file in inner.files.values()]
@@ -91,16 +91,25 @@ def _with_inner(tree: Tree, depth: int = 0) -> Tree:
         left_out += [f"{start}{each}" for each in inner.left_out]
         generated += [start + each for each in inner.generated]
         if len(files) > MOST_FILES:
-            raise InputError(f"{tree.name} holds more than {MOST_FILES} files: name the package or the URDF")
+            raise too_many(tree.name)
     return make_tree(tree.name, files, folders, left_out, generated, tuple(kept))
 
 
-def _inner(archive: File) -> Tree | None:
+def _inner(archive: File, allowance: "Allowance", depth: int) -> Tree:
+    """What is in an archive inside of another one, or of a folder; raises InputError."""
     from grader.submission.archive import read_archive
 
+    if depth >= _MOST_NESTED:
+        raise InputError(f"{archive.path} is an archive inside of an archive, too deep to be opened")
+    allowance.archives -= 1
+    if allowance.archives < 0:
+        raise InputError(f"{archive.path} was not opened: there are too many archives")
     data = archive.read(_INNER_LIMIT)
+    allowance.spend(len(data), archive.path)
     kind = archive_kind(data[:512])
-    return read_archive(io.BytesIO(data), kind, archive.path) if kind is not None else None
+    if kind is None:
+        raise InputError(f"{archive.path} is no archive that can be read, for all its name: it is damaged or empty")
+    return _with_inner(read_archive(io.BytesIO(data), kind, archive.path, allowance), allowance, depth + 1)
 
 
 def _without_endings(path: str) -> str:

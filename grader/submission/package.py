@@ -9,7 +9,7 @@ from grader.errors import InputError
 from grader.robot.catalogue import Problem
 from grader.robot.names import closest
 from grader.robot.source import Location, Source
-from grader.submission.launch.places import ENDINGS, SHARE
+from grader.submission.launch.places import ENDINGS, PREFIX, SHARE
 from grader.submission.tree import Tree
 
 # The readers are loaded when they are needed: a URDF on its own needs none of them.
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from grader.submission.setup_py import Setup
 
 MANIFEST, SETUP = "package.xml", "setup.py"
+_INDEX = "share/ament_index/resource_index/packages/"
 NO_PACKAGE = "no ROS 2 package was handed in: there is no package.xml"
 PYTHON_LIMIT = 128 * 1024  # bytes; a syntax tree takes several hundred times as much
 _MANIFEST_LIMIT = 256 * 1024
@@ -52,10 +53,22 @@ class Package:
             self.folder or self.tree.name
         ).name
 
+    def find(self, name: str) -> "Package | None":
+        """The package of the submission that ROS 2 finds by a name."""
+        every = self.known.values()
+        return self.known.get(name) or next((package for package in every if name in package.names), None)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """The names that ROS 2 finds it by: its own, and those that setup.py enters in the resource index."""
+        entered = [target for target in self.setup.installed() if target.startswith(_INDEX)] if self.setup else []
+        return tuple(dict.fromkeys([self.name, *(target.removeprefix(_INDEX) for target in entered)]))
+
     @property
     def is_cmake(self) -> bool:
         """Whether CMake, not setup.py, says what is installed."""
-        return self.setup is None and "CMakeLists.txt" in self.tree.files
+        other_type = self.manifest is not None and self.manifest.build_type not in ("ament_python", "")
+        return "CMakeLists.txt" in self.tree.files and (SETUP not in self.tree.files or other_type)
 
     @cached_property
     def setup(self) -> "Setup | None":
@@ -82,6 +95,16 @@ class Package:
     def rviz_files(self) -> tuple[str, ...]:
         """The paths of its RViz files."""
         return tuple(path for path in self.tree.files if path.lower().endswith(".rviz"))
+
+    def without(self, kind: str) -> str:
+        """What to say of a package that has no file of a kind: urdf, launch or rviz."""
+        if kind == "urdf":
+            return "the package has no URDF: no file ends in .urdf or .xacro"
+        if kind == "rviz":
+            return "the package has no RViz file: none ends in .rviz"
+        message = "the package has no launch file: none ends in .launch.py, .launch.xml or .launch.yaml"
+        is_there = any(folder.rpartition("/")[2] == "launch" for folder in self.tree.folders)
+        return message if is_there else f"{message}, and there is no folder launch"
 
     def launch_file(self, name: str) -> str | None:
         """The launch file of this name, in any of the three languages; else the one that is named most like it; else any."""
@@ -119,12 +142,17 @@ class Package:
 
     def rviz_file(self, name: str, launch: "Launch | None") -> str | None:
         """The RViz file that the launch file opens; else the one of this name; else any."""
-        for reference in launch.named("rviz") if launch is not None else ():
-            source = self.source_of(reference.path or "")
-            if source in self.rviz_files:
-                return source
+        opened = self.rviz_opened(launch) if launch is not None else None
         files = sorted(self.rviz_files, key=lambda path: (path.rpartition("/")[2] != name, path.count("/"), path))
-        return files[0] if files else None
+        return opened or (files[0] if files else None)
+
+    def rviz_opened(self, launch: "Launch") -> str | None:
+        """The RViz file that a launch file opens, or means to open: a wrong folder is a fault of its own."""
+        paths = [each.path for each in launch.named("rviz") if each.path is not None]
+        installed = [source for path in paths if (source := self.source_of(path)) in self.rviz_files]
+        names = {path.rpartition("/")[2] for path in paths}
+        meant = [path for path in self.rviz_files if path.rpartition("/")[2] in names]
+        return next(iter([*installed, *meant]), None)
 
     def rviz(self, path: str) -> "RvizFile":
         """An RViz file, read."""
@@ -146,10 +174,10 @@ class Package:
 
     def source_of(self, path: str) -> str | None:
         """The file of the package that a build puts at this path, which begins with the stand-in for the prefix."""
-        share = f"{SHARE}/{self.name}/"
-        if self.setup is None or not path.startswith(share):
+        shares = tuple(f"{SHARE}/{name}/" for name in self.names)
+        if self.setup is None or not path.startswith(shares):
             return None
-        return self.setup.installed().get(f"share/{self.name}/{path.removeprefix(share)}")
+        return self.setup.installed().get(path.removeprefix(f"{PREFIX}/"))
 
     def _open_installed(self, path: str) -> tuple[bytes, str] | None:
         """What the build puts at a path below the prefix, from whichever package of the submission it comes."""
@@ -167,7 +195,8 @@ def _may_launch(path: str) -> bool:
     """Whether a file is a launch file by the folder that it stands in, whatever it is named."""
     folder, _, name = path.rpartition("/")
     suffix = PurePosixPath(name).suffix
-    return folder.rpartition("/")[2] == "launch" and name != "__init__.py" and suffix in ("", ".launch", *_LANGUAGES)
+    known = suffix in ("", ".launch", *_LANGUAGES) or (suffix == ".txt" and ".launch." in name)
+    return folder.rpartition("/")[2] == "launch" and name != "__init__.py" and known
 
 
 def is_launch_named(path: str, name: str) -> bool:

@@ -39,8 +39,7 @@ def _of_setup(package: Package, setup: Setup) -> Iterator[Problem]:
     for fault in setup.faults:
         yield Problem(catalogue.SETUP_NAME, fault.message, setup.location(fault.at))
     for stop in setup.stops:
-        message = f"data_files lists {stop.path!r}, but {stop.reason}"
-        yield Problem(catalogue.SETUP_STOPS, message, setup.location(stop.at))
+        yield Problem(catalogue.SETUP_STOPS, stop.words, setup.location(stop.at))
     for empty in setup.empty:
         yield Problem(
             catalogue.EMPTY_GLOB, f"the pattern {empty.pattern!r} in setup.py finds nothing", setup.location(empty.at)
@@ -57,6 +56,7 @@ def _of_entries(package: Package, setup: Setup) -> Iterator[Problem]:
     if declared is not None and setup.name is not None and setup.name != declared:
         message = f"package.xml names the package {declared!r}, setup.py names it {setup.name!r}"
         yield Problem(catalogue.OTHER_NAME, message, start)
+        return  # what the entries lack is all of one of the names
     if setup.unknown or setup.stops:
         return
     if f"share/ament_index/resource_index/packages/{package.name}" not in targets:

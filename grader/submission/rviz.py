@@ -27,6 +27,11 @@ class Display:
         return switched_on(self.node.get(setting), default=True)
 
     @property
+    def is_enabled(self) -> bool:
+        """Whether it is on by itself, whatever group it is in; Enabled counts more than Value."""
+        return _is_enabled(self.node)
+
+    @property
     def location(self) -> Location:
         """Where it is said which class the display has."""
         named = self.node.get("Class")
@@ -90,6 +95,10 @@ def switched_on(node: Node | None, *, default: bool) -> bool:
     return node.text.lower() not in ("false", "0", "")
 
 
+def _is_enabled(display: Node) -> bool:
+    return switched_on(display.get("Enabled"), default=switched_on(display.get("Value"), default=False))
+
+
 def _displays(listed: Node | None) -> Iterator[Display]:
     """The displays of a list and of the groups in it; what is in a group that is off is off."""
     waiting = [(node, True) for node in listed.items] if listed is not None else []
@@ -99,8 +108,8 @@ def _displays(listed: Node | None) -> Iterator[Display]:
         node, shown = waiting.pop(0)
         named, title = node.get("Class"), node.get("Name")
         package, _, kind = (named.text or "" if named else "").rpartition("/")
-        enabled = shown and switched_on(node.get("Enabled"), default=False)
+        enabled = shown and _is_enabled(node)
         yield Display(package, kind, title.text or "" if title else "", enabled, node)
         inner = node.get("Displays")
-        if inner is not None:
+        if inner is not None and len(waiting) < _MOST_DISPLAYS:
             waiting += [(each, enabled) for each in inner.items]

@@ -15,7 +15,7 @@ from grader.submission.python.lookup import WRITING, EmptyGlob, file_functions
 from grader.submission.python.machine import Machine
 from grader.submission.python.methods import FOLDER, names_the_folder
 from grader.submission.python.parse import Code, SyntaxFault
-from grader.submission.python.values import Fault, Made, Spot, Unknown, Value, unknown_in
+from grader.submission.python.values import Fault, Made, Spot, TooHard, Unknown, Value, unknown_in
 from grader.submission.tree import Tree, is_ignored
 
 _ROOT = f"/{FOLDER}"
@@ -30,6 +30,8 @@ _NO_PACKAGES = frozenset(
      "unit_test", "unit_tests", "example", "examples", "scripts", "tools", "util", "utils", "python", "build", "benchmark",
      "benchmarks", "exercise", "exercises", "htmlcov", "tasks"}
 )  # fmt: skip
+_MOST_COPIES = 20_000
+_MOST_PATH = 4_096
 _MOST_SETTINGS = 64 * 1024
 # Calls that make, move or delete files: what is there afterwards is not told.
 _CHANGES = (
@@ -53,6 +55,11 @@ class Stop(NamedTuple):
     path: str
     reason: str
     at: Spot
+
+    @property
+    def words(self) -> str:
+        """What stops the build, for a sentence."""
+        return f"data_files lists {self.path!r}, but {self.reason}" if self.path else self.reason
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,8 +125,11 @@ def _follow(code: Code, tree: Tree, order: str) -> Setup:
     calls = [made for made in machine.made if made.name in _SETUPS]
     reader = _Entries(tree, listing)
     name = calls[0].kwargs.get("name") if calls else None
-    for call in calls:
-        reader.read(call)
+    try:
+        for call in calls:
+            reader.read(call)
+    except TooHard as error:
+        reader.unknown.append(Unknown(str(error), calls[0].at))
     reader.finish(next((made for made in machine.made if made.name.startswith(_CHANGES)), None))
     if machine.stopped:
         reader.unknown.append(Unknown(machine.stopped, Spot(1, 1)))
@@ -190,6 +200,9 @@ class _Entries:
         if ".." in str(folder).split("/") or names_the_folder(str(folder)) or str(folder).startswith(_ROOT):
             self.unknown.append(Unknown(f"where {str(folder).replace(FOLDER, '...')} leads to is not followed", at))
             return
+        if len(str(folder)) > _MOST_PATH:
+            self.unknown.append(Unknown("a folder in data_files is too long to follow", at))
+            return
         if isinstance(files, str) and files:
             reason = "the files of an entry are a text, not a list: write [...] around it"
             self.stops.append(Stop(files, reason, at))
@@ -201,10 +214,15 @@ class _Entries:
             self._copy(file, str(folder), at)
 
     def _copy(self, file: Value, folder: str, at: Spot) -> None:
+        if len(self.copies) + len(self.stops) + len(self.unknown) > _MOST_COPIES:
+            raise TooHard("it installs too many files to follow")
         if not isinstance(file, str | PurePosixPath):
             self.unknown.append(unknown_in(file) or Unknown("a file in data_files is not followed", at))
             return
         text = str(file).removeprefix(_ROOT + "/")
+        if len(text) > _MOST_PATH:
+            self.unknown.append(Unknown("the path of a file is too long to follow", at))
+            return
         try:
             path = self.listing.real(text)
         except BeyondError:
@@ -237,8 +255,8 @@ class _Entries:
         folders = [name for name in self.listing.names("") if name in self.tree.folders and name.isidentifier()]
         found = sorted(name for name in folders if name not in _NO_PACKAGES and not name.startswith("_"))
         if len(found) > 1:
-            reason = "packages=[...] is missing, and setuptools cannot choose among these folders"
-            self.stops.append(Stop(", ".join(found), reason, call.at))
+            reason = f"packages=[...] is missing, and setuptools cannot choose among the folders {', '.join(found)}"
+            self.stops.append(Stop("", reason, call.at))
 
     def finish(self, change: Made | None) -> None:
         """Take back what is not sure: files that get in each other's way, or that the file itself changes."""

@@ -9,6 +9,7 @@ from grader.robot.source import Location
 
 _MOST_EVENTS = 100_000
 _MOST_ALIASES = 1000
+_MOST_DEPTH = 200  # the parser takes its time over each bracket that is open
 
 
 class YamlFault(Exception):
@@ -57,7 +58,8 @@ def read_yaml(data: bytes, path: str) -> Node:
         return _compose(yaml.parse(text, Loader=loader), path)
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
-        place = Location(path, mark.line + 1, mark.column + 1) if mark else Location(path, 1, 1)
+        last = text.count("\n") + 1  # at the end of a text without a line end, the parser is one line further
+        place = Location(path, min(mark.line + 1, last), mark.column + 1) if mark else Location(path, 1, 1)
         words = " ".join(each for each in (error.context, error.problem) if each)
         raise YamlFault(words or "it is no YAML", place) from None
     except yaml.YAMLError as error:  # such as characters that YAML forbids
@@ -98,6 +100,8 @@ def _compose(events: Iterator[yaml.Event], path: str) -> Node:
             root, first = node, False
         if isinstance(event, yaml.CollectionStartEvent):
             open_nodes.append(node)
+            if len(open_nodes) > _MOST_DEPTH:
+                raise YamlFault("it is too deeply nested", node.location)
     return root
 
 
@@ -114,7 +118,7 @@ def _attach(parent: Node, node: Node) -> None:
     elif isinstance(parent.value, dict) and parent._key is None:  # noqa: SLF001  a node is built here
         parent._key = node.text if node.text is not None else f"\0{len(parent.value)}"  # noqa: SLF001
     elif isinstance(parent.value, dict):
-        parent.value.setdefault(parent._key or "", node)  # noqa: SLF001
+        parent.value[parent._key or ""] = node  # noqa: SLF001  the last one counts, for PyYAML as for RViz
         parent._key = None  # noqa: SLF001
 
 

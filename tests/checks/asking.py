@@ -1,4 +1,4 @@
-"""Ways to ask a check: alone, as a criterion of a rubric, and where it cannot answer."""
+"""Ways to ask a check about a robot or a hand-in: alone, as a criterion of a rubric, and where it cannot answer."""
 
 import re
 from collections.abc import Callable
@@ -8,39 +8,56 @@ from typing import Any
 
 import pytest
 
-from grader.checks.outcome import Outcome
+from grader.checks.outcome import Outcome, Status
 from grader.checks.registry import describe
 from grader.errors import MissingElement
 from grader.grading.grade import grade
 from grader.grading.rubric import Criterion, Part, Rubric
 from grader.robot.source import Location
 from grader.submission.submission import read_submission
+from tests.checks.hand_ins import HandIn
 from tests.checks.robots import PATH, Scene
 
 AnyCheck = Callable[..., Outcome]
 Arguments = dict[str, Any]
+Finding = tuple[Status, str, Location | None]
+Lack = tuple[str, str, str, Location | None]
 
 _EXPLANATION = re.compile(r" \(URDF\d{3}: .*\)\Z", re.DOTALL)
 
 
-def ask(check: AnyCheck, scene: Scene, **arguments: Any) -> Outcome:
+def ask(check: AnyCheck, of: Scene | HandIn, /, **arguments: Any) -> Outcome:
     """What a check finds."""
-    return check(scene.reading if describe(check).subject == "urdf" else scene.robot, **arguments)
+    return check(_subject(check, of), **arguments)
 
 
-def missing(check: AnyCheck, scene: Scene, **arguments: Any) -> MissingElement:
+def finds(check: AnyCheck, hand_in: HandIn, /, **arguments: Any) -> Finding:
+    """What a check finds in a hand-in: status, message and place."""
+    outcome = ask(check, hand_in, **arguments)
+    return outcome.status, outcome.message, outcome.location
+
+
+def missing(check: AnyCheck, of: Scene | HandIn, /, **arguments: Any) -> MissingElement:
     """What a check misses; fails the test if it finds an answer."""
     with pytest.raises(MissingElement) as caught:
-        ask(check, scene, **arguments)
+        ask(check, of, **arguments)
     return caught.value
 
 
-def graded(check: AnyCheck, scene: Scene, **arguments: Any) -> Outcome:
+def lacks(check: AnyCheck, hand_in: HandIn, /, **arguments: Any) -> Lack:
+    """What a check misses in a hand-in: kind, name, message and place."""
+    error = missing(check, hand_in, **arguments)
+    assert error.location is None or isinstance(error.location, Location)
+    return error.kind, error.name, str(error), error.location
+
+
+def graded(check: AnyCheck, of: Scene | HandIn, /, **arguments: Any) -> Outcome:
     """The outcome of a rubric's only criterion, which names this check."""
     criterion = Criterion("only", "The only one", "all", Decimal(1), describe(check), arguments)
     rubric = Rubric("test", "Test", (Part("all", "All"),), (criterion,), "robot.urdf", "", b"", Path("test.toml"))
-    report = grade(rubric, read_submission(scene.text.encode(), identity="test", path=PATH))
-    return report.results[0].outcome
+    single = of.text.encode() if isinstance(of, Scene) else b""
+    submission = of.submission if isinstance(of, HandIn) else read_submission(single, identity="test", path=PATH)
+    return grade(rubric, submission).results[0].outcome
 
 
 def passes(check: AnyCheck, scene: Scene, **arguments: Any) -> str:
@@ -58,6 +75,13 @@ def fails(check: AnyCheck, scene: Scene, *, at: str | None = None, **arguments: 
     expected: Location | None = scene.place(at) if at is not None else outcome.location
     assert outcome.location == expected, (outcome, expected)
     return own_words(outcome)
+
+
+def _subject(check: AnyCheck, of: Scene | HandIn) -> object:
+    subject = describe(check).subject
+    if isinstance(of, HandIn):
+        return of.package if subject == "package" else of.submission
+    return of.reading if subject == "urdf" else of.robot
 
 
 def own_words(outcome: Outcome) -> str:

@@ -106,7 +106,11 @@ def gif(width: int = 320, height: int = 240) -> bytes:
 
 def jpeg(width: int = 800, height: int = 600) -> bytes:
     """The beginning of a JPEG, which tells its size."""
-    return b"\xff\xd8\xff\xc0\x00\x11\x08" + struct.pack(">HH", height, width) + b"\x03\x01\x11\x00\x02\x11\x00\x03\x11\x00\xff\xd9"
+    return (
+        b"\xff\xd8\xff\xc0\x00\x11\x08"
+        + struct.pack(">HH", height, width)
+        + b"\x03\x01\x11\x00\x02\x11\x00\x03\x11\x00\xff\xd9"
+    )
 
 
 def _file(path: str, data: bytes) -> File:

@@ -36,7 +36,9 @@ ADDED = {
 }
 INSTEAD = {
     "data_files_in_setup_cfg": {"setup.cfg": "[options.data_files]\nshare/my_robot = package.xml\n"},
-    "packages_in_setup_cfg": {"setup.cfg": "[options]\npackages = find:\n[options.packages.find]\ninclude = my_robot\n"},
+    "packages_in_setup_cfg": {
+        "setup.cfg": "[options]\npackages = find:\n[options.packages.find]\ninclude = my_robot\n"
+    },
 }
 TAKEN_AWAY = {
     "no_launch_folder": ["launch/my_robot_rviz.launch.py"],

@@ -1,15 +1,21 @@
 """Launch files in XML and YAML: both say the same in two spellings, and come to what a Python launch file would make."""
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+import yaml
+
+from grader.robot.names import closest
 from grader.robot.source import Location, Source
 from grader.robot.xml import Element, XMLSyntaxError, parse_xml
 from grader.submission.launch.model import Fault
-from grader.submission.python.values import Made, Spot, Value
+from grader.submission.launch.substitutions import CMDLINE
+from grader.submission.python.values import Made, Spot, Unknown, Value
 from grader.submission.yaml_nodes import Node, YamlFault, read_yaml
 
-_MOST_DEPTH = 60
+_MOST_DEPTH = 40
+_MOST_ENTITIES = 5_000
 # What a frontend's substitution is called in Python.
 _SUBSTITUTIONS = {
     "find-pkg-share": "launch_ros.substitutions.FindPackageShare",
@@ -19,23 +25,33 @@ _SUBSTITUTIONS = {
     "find-exec": "launch.substitutions.FindExecutable",
     "dirname": "launch.substitutions.ThisLaunchFileDir",
     "env": "launch.substitutions.EnvironmentVariable",
+    "eval": "launch.substitutions.PythonExpression",
+    "file-content": "launch.substitutions.FileContent",
+    "equals": "launch.substitutions.EqualsSubstitution",
+    "not-equals": "launch.substitutions.NotEqualsSubstitution",
+    "not": "launch.substitutions.NotSubstitution",
+    "and": "launch.substitutions.AndSubstitution",
+    "or": "launch.substitutions.OrSubstitution",
+    "all": "launch.substitutions.AllSubstitution",
+    "any": "launch.substitutions.AnySubstitution",
+    "if": "launch.substitutions.IfElseSubstitution",
 }
+# Substitutions of ROS 1, and what they are called now.
 _ROS1 = {"find": "find-pkg-share", "arg": "var", "optenv": "env"}
-_OTHER = (
-    "eval",
-    "exec-in-pkg",
-    "anon",
-    "not",
-    "and",
-    "or",
-    "equals",
-    "if",
-    "filename",
-    "anonymous",
-    "file-content",
-    "contents",
-)
-_ROS1_ATTRIBUTES = {"type": "exec", "package": "pkg", "executable": "exec"}
+_ON_STDERR = ("fail", "ignore", "warn", "capture")
+# Elements and attributes that only ROS 1 has, and what stands for them.
+_ROS1_TAGS = {"param": "a <param> stands inside its <node>", "rosparam": "write <param from=.../> inside the <node>",
+              "remap": "a <remap> stands inside its <node>", "machine": "", "test": "", "env": "write <set_env>"}  # fmt: skip
+_ROS1_ATTRIBUTES: dict[str, dict[str, str | None]] = {
+    "node": {"type": "exec", "package": "pkg", "executable": "exec", "ns": "namespace", "required": None},
+    "arg": {"value": "default", "default_value": "default", "doc": "description"},
+    "param": {"command": "value", "textfile": "value"},
+    "group": {"ns": None},
+    "include": {"ns": None, "pass_all_args": None},
+}
+_NODES = {"node": "Node", "lifecycle_node": "LifecycleNode"}
+_IDLE = re.compile(r"(?:log|set|append|prepend|reset|push|pop|unset|rep|shutdown)(?:[_-]\w*)?")
+_TAGGED = yaml.SafeLoader("")  # tells which plain texts YAML takes for a number or for true and false
 
 
 @dataclass(slots=True)
@@ -56,6 +72,7 @@ class Frontend:
     description: Made | None = None
     syntax: Fault | None = None
     faults: list[tuple[str, Spot]] = field(default_factory=list)
+    unknown: list[tuple[str, Spot]] = field(default_factory=list)
 
 
 def read_frontend(data: bytes, path: str, *, is_yaml: bool) -> Frontend:
@@ -63,17 +80,17 @@ def read_frontend(data: bytes, path: str, *, is_yaml: bool) -> Frontend:
     source = Source(path, data.decode("utf-8", "replace"))
     frontend = Frontend(source)
     try:
-        root = _yaml_root(data, path) if is_yaml else _xml_root(data, source)
+        root = _YamlReader(frontend).root(data, path) if is_yaml else _xml_root(data, source)
     except YamlFault as fault:
         frontend.syntax = Fault(f"not readable as YAML: {fault}", fault.location)
         return frontend
     except (XMLSyntaxError, ValueError) as error:
         line, column = getattr(error, "position", (1, 1))
-        words = str(getattr(error, "msg", error)).split(", line ")[0]
+        words = " ".join(str(getattr(error, "msg", error)).split(", line ")[0].split())
         frontend.syntax = Fault(f"not readable as XML: {words}", Location(path, max(line, 1), max(column, 1)))
         return frontend
     if root is None or root.kind != "launch":
-        what = "the root of the file is not <launch>" if not is_yaml else "the file does not begin with launch:"
+        what = "the root of the file is not <launch>" if not is_yaml else "the file is not one list under launch:"
         frontend.syntax = Fault(f"{what}; ros2 launch reads nothing of it", Location(path, 1, 1))
         return frontend
     frontend.description = Made("launch.LaunchDescription", [_actions(root, frontend)], {}, root.at)
@@ -82,48 +99,111 @@ def read_frontend(data: bytes, path: str, *, is_yaml: bool) -> Frontend:
 
 def _xml_root(data: bytes, source: Source) -> Entity:
     root = parse_xml(data)
-    places = {element: index for index, element in enumerate(root.iter())}
+    places = {element: index for index, element in enumerate(root.iter("*"))}
 
     def entity(element: Element, depth: int) -> Entity:
-        where = source.tag(places[element])
+        try:
+            where = source.tag(places[element])
+        except IndexError:  # the text is in some encoding in which its tags are not seen
+            where = Location(source.path, 1, 1)
         made = Entity(str(element.tag), Spot(where.line, where.column), dict(element.attrib.items()))  # type: ignore[arg-type]
         if depth < _MOST_DEPTH:
-            made.children = [entity(child, depth + 1) for child in element]
+            made.children = [entity(child, depth + 1) for child in element.iterchildren("*")]
         return made
 
     return entity(root, 0)
 
 
-def _yaml_root(data: bytes, path: str) -> Entity | None:
-    node = read_yaml(data, path).get("launch")
-    return _yaml_entity("launch", node, 0) if node is not None else None
+class _YamlReader:
+    """Makes entities of YAML's lists and mappings; aliases may make them many, so they are counted."""
 
+    def __init__(self, frontend: Frontend) -> None:
+        self.frontend = frontend
+        self.count = 0
 
-def _yaml_entity(kind: str, node: Node, depth: int) -> Entity:
-    made = Entity(kind, Spot(node.location.line, node.location.column))
-    if depth > _MOST_DEPTH:
+    def root(self, data: bytes, path: str) -> Entity | None:
+        """The entity that the whole file is; None where its only key is not launch."""
+        root = read_yaml(data, path)
+        node = root.get("launch")
+        if node is None or not isinstance(root.value, dict) or len(root.value) > 1:
+            return None
+        made = Entity("launch", _spot(node))
+        made.children += self.entries(node if node.items else (node.get("children") or node), 0)
         return made
-    if isinstance(node.value, dict):
-        for key, value in node.value.items():
+
+    def entries(self, listed: Node, depth: int) -> Iterator[Entity]:
+        """The actions of a list, each under a key of its own."""
+        for item in listed.items:
+            table = item.value if isinstance(item.value, dict) else {}
+            if len(table) != 1:
+                names = ", ".join(list(table)[:4]) or "nothing"
+                message = f"one action is expected here, under one key; there is {names}. Is it indented far enough?"
+                self.frontend.faults.append((message, _spot(item)))
+            for kind, value in list(table.items())[:1]:
+                yield self.entity(kind, value, depth + 1)
+
+    def entity(self, kind: str, node: Node, depth: int) -> Entity:
+        """One action or element."""
+        made = Entity(kind, _spot(node))
+        self.count += 1
+        if depth > _MOST_DEPTH or self.count > _MOST_ENTITIES:
+            self.frontend.unknown[:] = [("it holds more than is followed", Spot(1, 1))]
+            return made
+        if not isinstance(node.value, dict):
+            made.children += self.entries(node, depth)
+            return made
+        for key, value in merged(node).items():
             if value.text is not None:
                 made.attributes[key] = value.text
+                self.check(kind, key, value)
+            elif key == "children":
+                made.children += self.entries(value, depth)
             else:
-                made.children += _yaml_children(key, value, depth)
-    elif isinstance(node.value, list):
-        made.children += _yaml_children("", node, depth)
-    return made
+                made.children += [self.entity(key, item, depth + 1) for item in value.items or [value]]
+        return made
+
+    def check(self, kind: str, key: str, value: Node) -> None:
+        """Note a number, or true or false, where launch takes a text only."""
+        if value.quoted or (kind, key) not in _TEXTS:
+            return
+        tag: str = _TAGGED.resolve(yaml.ScalarNode, value.text, (True, False))  # type: ignore[no-untyped-call]
+        if tag.rpartition(":")[2] in ("bool", "int", "float", "null"):
+            message = (
+                f"{key} of {kind} has to be a text; YAML takes {value.text!r} for something else without its quotes"
+            )
+            self.frontend.faults.append((message, _spot(value)))
 
 
-def _yaml_children(key: str, node: Node, depth: int) -> Iterator[Entity]:
-    """A list below a key: of actions, each with its own key, or of elements of the key's kind, such as param."""
-    for item in node.items or [node]:
-        table = item.value if isinstance(item.value, dict) else {}
-        inner = list(table.items())
-        if key in ("", "children", "launch") or (len(inner) == 1 and not isinstance(inner[0][1].value, str)):
-            for kind, value in inner:
-                yield _yaml_entity(kind, value, depth + 1)
-        else:
-            yield _yaml_entity(key, item, depth + 1)
+_TEXTS = frozenset(
+    (kind, key)
+    for kind, keys in {
+        "arg": ("name", "default", "value"),
+        "let": ("name", "value"),
+        "node": ("pkg", "exec", "name", "namespace", "args", "if", "unless"),
+        "include": ("file", "if", "unless"),
+        "group": ("if", "unless"),
+        "executable": ("cmd", "if", "unless"),
+    }.items()
+    for key in keys
+)
+
+
+def merged(node: Node) -> dict[str, Node]:
+    """A mapping with what `<<` merges into it."""
+    table = node.value if isinstance(node.value, dict) else {}
+    given = table.get("<<")
+    if given is None:
+        return table
+    found: dict[str, Node] = {}
+    for each in reversed(given.items or [given]):
+        found |= each.value if isinstance(each.value, dict) else {}
+    found |= table
+    del found["<<"]
+    return found
+
+
+def _spot(node: Node) -> Spot:
+    return Spot(node.location.line, node.location.column)
 
 
 def _actions(parent: Entity, frontend: Frontend) -> list[Value]:
@@ -131,6 +211,7 @@ def _actions(parent: Entity, frontend: Frontend) -> list[Value]:
 
 
 def _action(entity: Entity, frontend: Frontend) -> Made | None:
+    _note_ros1(entity, frontend)
     given = {key: _text(value, entity.at, frontend) for key, value in entity.attributes.items()}
     kwargs: dict[str, Value] = {}
     if "if" in given:
@@ -138,99 +219,141 @@ def _action(entity: Entity, frontend: Frontend) -> Made | None:
     elif "unless" in given:
         kwargs["condition"] = Made("launch.conditions.UnlessCondition", [given["unless"]], {}, entity.at)
     match entity.kind:
-        case "node":
+        case _ if entity.kind in _NODES:
             return _node(entity, given, kwargs, frontend)
         case "arg":
-            arguments = {
-                "name": entity.attributes.get("name"),
-                "default_value": given.get("default", given.get("value")),
-            }
-            return Made("launch.actions.DeclareLaunchArgument", [], arguments, entity.at)
+            default = given.get("default", given.get("value", given.get("default_value")))
+            kwargs |= {"name": entity.attributes.get("name"), "default_value": default}
+            return Made("launch.actions.DeclareLaunchArgument", [], kwargs, entity.at)
         case "let":
-            arguments = {"name": entity.attributes.get("name"), "value": given.get("value")}
-            return Made("launch.actions.SetLaunchConfiguration", [], arguments, entity.at)
+            kwargs |= {"name": entity.attributes.get("name"), "value": given.get("value")}
+            return Made("launch.actions.SetLaunchConfiguration", [], kwargs, entity.at)
         case "include":
-            inner = [each for each in entity.children if each.kind in ("arg", "let")]
             passed = [
                 (each.attributes.get("name", ""), _text(each.attributes.get("value", ""), each.at, frontend))
-                for each in inner
+                for each in entity.children
+                if each.kind in ("arg", "let")
             ]
             kwargs |= {"launch_description_source": given.get("file"), "launch_arguments": passed}
             return Made("launch.actions.IncludeLaunchDescription", [], kwargs, entity.at)
         case "executable":
-            kwargs["cmd"] = [given.get("cmd")]
+            kwargs["cmd"] = [Made(CMDLINE, given.get("cmd", []), {}, entity.at)]
             return Made("launch.actions.ExecuteProcess", [], kwargs, entity.at)
         case "group" | "timer":
             kwargs["actions"] = _actions(entity, frontend)
+            kwargs["scoped"] = entity.kind == "group" and entity.attributes.get("scoped", "true").lower() in (
+                "true",
+                "1",
+            )
             return Made("launch.actions.GroupAction", [], kwargs, entity.at)
         case _:
+            if entity.kind not in _ROS1_TAGS and not _IDLE.fullmatch(entity.kind):
+                frontend.unknown.append((f"what <{entity.kind[:40]}> starts is told only by a run", entity.at))
             return None
 
 
+def _note_ros1(entity: Entity, frontend: Frontend) -> None:
+    """Note what ROS 2's launch does not know, for all that ROS 1's did."""
+    if entity.kind in _ROS1_TAGS:
+        more = _ROS1_TAGS[entity.kind]
+        message = f"<{entity.kind}> at this place is of ROS 1, and unknown to ROS 2" + (f": {more}" if more else "")
+        frontend.faults.append((message, entity.at))
+    for element in (entity, *(each for each in entity.children if each.kind == "param")):
+        for wrong, right in _ROS1_ATTRIBUTES.get(element.kind, {}).items():
+            if wrong in element.attributes:
+                more = f"; the attribute is called {right!r}" if right else ""
+                message = f"<{element.kind}> has no {wrong!r} in ROS 2's launch files{more}"
+                frontend.faults.append((message, element.at))
+
+
 def _node(entity: Entity, given: dict[str, Value], kwargs: dict[str, Value], frontend: Frontend) -> Made:
-    for wrong, right in _ROS1_ATTRIBUTES.items():
-        if wrong in given and right not in given:
-            message = f"a node has no {wrong!r} in ROS 2's launch files; the attribute is called {right!r}"
-            frontend.faults.append((message, entity.at))
+    for wrong, right in _ROS1_ATTRIBUTES["node"].items():
+        if wrong in given and right is not None and right not in given:
             given[right] = given[wrong]
     table: dict[str, Value] = {}
     parameters: list[Value] = [table]
     for child in entity.children:
         name = child.attributes.get("name")
         if child.kind == "param" and name is not None:
-            table[name] = _text(child.attributes.get("value", ""), child.at, frontend)
+            value = next((child.attributes[key] for key in ("value", "command") if key in child.attributes), None)
+            table[name] = (
+                _text(value, child.at, frontend)
+                if value is not None
+                else Unknown("this parameter has no value", child.at)
+            )
         elif child.kind == "param":
             parameters.append(_text(child.attributes.get("from", ""), child.at, frontend))
-    kwargs |= {"package": given.get("pkg"), "executable": given.get("exec"), "parameters": parameters}
-    kwargs["arguments"] = [given["args"]] if "args" in given else []
-    return Made("launch_ros.actions.Node", [], kwargs, entity.at)
+    named = {"package": given.get("pkg"), "executable": given.get("exec")}
+    kwargs |= {"parameters": parameters, **{key: value for key, value in named.items() if value is not None}}
+    kwargs["arguments"] = [Made(CMDLINE, given["args"], {}, entity.at)] if "args" in given else []
+    return Made(f"launch_ros.actions.{_NODES[entity.kind]}", [], kwargs, entity.at)
 
 
 def _text(text: str, at: Spot, frontend: Frontend) -> list[Value]:
     """A value with its substitutions, as a list of texts and what Python would call them."""
-    pieces, _ = _pieces(text, 0, at, frontend, 0)
-    return pieces
+    return _Line(text, at, frontend).pieces("", 0)
 
 
-def _pieces(text: str, start: int, at: Spot, frontend: Frontend, depth: int) -> tuple[list[Value], int]:
-    """Texts and substitutions from a place on, up to the bracket that closes the substitution around it."""
-    pieces: list[Value] = []
-    plain = ""
-    position = start
-    while position < len(text):
-        if text.startswith("$(", position) and depth < _MOST_DEPTH:
-            if plain:
-                pieces.append(plain)
-                plain = ""
-            substitution, position = _substitution(text, position + 2, at, frontend, depth + 1)
-            pieces.append(substitution)
-        elif text[position] == ")" and depth:
-            break
-        elif depth and text[position] in "'\"":
-            position += 1
-        else:
-            plain += text[position]
-            position += 1
-    if plain or not pieces:
-        pieces.append(plain)
-    return pieces, position + 1
+class _Line:
+    """A value that is read from its beginning to its end, after the grammar of ros2/launch (grammar.lark)."""
 
+    def __init__(self, text: str, at: Spot, frontend: Frontend) -> None:
+        self.text = text
+        self.at = at
+        self.frontend = frontend
+        self.position = 0
 
-def _substitution(text: str, start: int, at: Spot, frontend: Frontend, depth: int) -> tuple[Made, int]:
-    end = start
-    while end < len(text) and text[end] not in " \t\n)":
-        end += 1
-    name = text[start:end]
-    while end < len(text) and text[end] in " \t\n":
-        end += 1
-    inner, position = _pieces(text, end, at, frontend, depth)
-    if name in _ROS1:
-        frontend.faults.append((f"$({name} ...) is of ROS 1; in ROS 2 it is $({_ROS1[name]} ...)", at))
-        name = _ROS1[name]
-    elif name not in _SUBSTITUTIONS and name not in _OTHER:
-        frontend.faults.append((f"there is no substitution $({name[:40]} ...)", at))
-    full = _SUBSTITUTIONS.get(name, f"launch.substitutions.{name}")
-    if name == "var" and len(inner) == 1 and isinstance(inner[0], str):
-        variable, _, default = inner[0].strip().partition(" ")
-        return Made(full, [variable] + ([default.strip()] if default else []), {}, at), position
-    return Made(full, [inner], {}, at), position
+    def pieces(self, ends: str, depth: int) -> list[Value]:
+        """Texts and substitutions, up to one of the characters that end them."""
+        found: list[Value] = []
+        plain: list[str] = []
+        while self.position < len(self.text) and self.text[self.position] not in ends:
+            if self.text.startswith("$(", self.position) and depth < _MOST_DEPTH:
+                found += ["".join(plain)] if plain else []
+                plain.clear()
+                self.position += 2
+                found.append(self.substitution(depth + 1))
+                continue
+            if self.text[self.position] == "\\" and self.position + 1 < len(self.text):
+                self.position += 1
+            plain.append(self.text[self.position])
+            self.position += 1
+        return [*found, "".join(plain)] if plain or not found else found
+
+    def substitution(self, depth: int) -> Made:
+        """What is in the brackets: a name, and values with a space between them, in quotes or not."""
+        start = self.position
+        while self.position < len(self.text) and self.text[self.position] not in " \t\n)":
+            self.position += 1
+        name = self.text[start : self.position]
+        values: list[Value] = []
+        while self.position < len(self.text) and self.text[self.position] != ")":
+            first = self.text[self.position]
+            if first in " \t\n":
+                self.position += 1
+            elif first in "'\"":
+                self.position += 1
+                values.append(self.pieces(first, depth))
+                self.position += 1
+            else:
+                values.append(self.pieces(" \t\n)", depth))
+        if self.position >= len(self.text):
+            self.frontend.faults.append((f"the bracket of $({name[:40]} is not closed", self.at))
+        self.position += 1
+        return self.named(name, values)
+
+    def named(self, name: str, values: list[Value]) -> Made:
+        """What a substitution is in Python."""
+        if name in _ROS1:
+            self.frontend.faults.append((f"$({name} ...) is of ROS 1; in ROS 2 it is $({_ROS1[name]} ...)", self.at))
+            name = _ROS1[name]
+        if name == "command" and len(values) > 1 and values[1] not in [[each] for each in _ON_STDERR]:
+            message = "$(command ...) takes its command in quotes: $(command 'xacro ...')"
+            self.frontend.faults.append((message, self.at))
+            values = [[part for value in values for part in (*value, " ")]]
+        similar = closest(name, _SUBSTITUTIONS) if name not in _SUBSTITUTIONS else None
+        if similar:
+            self.frontend.faults.append(
+                (f"there is no substitution $({name} ...); did you mean $({similar} ...)?", self.at)
+            )
+        return Made(_SUBSTITUTIONS.get(name, f"launch.substitutions.{name}"), values, {}, self.at)

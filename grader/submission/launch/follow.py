@@ -1,25 +1,39 @@
 """Goes through a launch description: which nodes it starts, which files they are given, what it includes."""
 
 import re
+import shlex
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
+from grader.robot.names import did_you_mean
 from grader.robot.source import Location
 from grader.submission.launch.model import Fault, Purpose, Reference, StartedNode
 from grader.submission.launch.places import SHARE
-from grader.submission.launch.substitutions import UNTOLD, Contents, Context, arguments_of, holds, resolve
-from grader.submission.python.values import Function, Made, Spot, Unknown, Value
+from grader.submission.launch.substitutions import CMDLINE, UNTOLD, Contents, Context, arguments_of, holds, resolve
+from grader.submission.python.values import Function, Made, Named, Spot, Unknown, Value
 
 _NODES = ("Node", "LifecycleNode")
 _DESCRIBED = "robot_state_publisher"
 _SHOWS = "rviz2"
-_MOST_ACTIONS = 2_000
-_MOST_DEPTH = 12
+_MOST_ACTIONS = 5_000
+_MOST_DEPTH = 40
+CIRCLE = "it includes itself, without end"
 # What urdf_launch's two launch files start (ROS 2 package urdf_launch).
 _URDF_LAUNCH = re.compile(r".*/share/urdf_launch/launch/(?P<name>display|description)\.launch\.py")
+# Actions that start nothing.
+_IDLE = re.compile(r"(?:Set|Unset|Push|Pop|Log|Append|Prepend|Reset|Replace|Clear|Emit|Shutdown|Unregister)\w*")
+_NO_PACKAGE = Unknown("a node without a package is a program of the machine", Spot(1, 1))
+_IN_CONTAINERS = ("ComposableNodeContainer", "LoadComposableNodes", "ComposableNode", "ComposableLifecycleNode")
+# What launch_ros.actions.Node takes, and what it hands on to launch.actions.ExecuteProcess (ROS 2 Jazzy).
+_NODE_TAKES = frozenset(
+    {"package", "executable", "name", "namespace", "exec_name", "parameters", "remappings", "ros_arguments", "arguments",
+     "prefix", "cwd", "env", "additional_env", "shell", "sigterm_timeout", "sigkill_timeout", "emulate_tty", "output",
+     "output_format", "cached_output", "log_cmd", "on_exit", "respawn", "respawn_delay", "respawn_max_retries", "condition",
+     "autostart", "?", "**"}
+)  # fmt: skip
 
-# Takes the path of a launch file below the prefix and the arguments for it; False where it is not among what was handed in.
-Include = Callable[[str, Context], bool]
+# Takes the path of a launch file below the prefix and the arguments for it; says why it is not followed, if it is not.
+Include = Callable[[str, Context], str]
 
 
 @dataclass(slots=True)
@@ -28,76 +42,164 @@ class Follower:
 
     place: Callable[[Spot], Location]
     include: Include
-    call: Callable[[Function, Spot], Value]
+    call: Callable[[Function, Spot, tuple[Value, ...]], Value]
     nodes: list[StartedNode] = field(default_factory=list)
     references: list[Reference] = field(default_factory=list)
     faults: list[Fault] = field(default_factory=list)
     unknown: list[Fault] = field(default_factory=list)
     seen: set[int] = field(default_factory=set)
+    steps: int = 0
+    sets_parameters: bool = False
 
     def description(self, value: Value, context: Context) -> None:
         """Follow what generate_launch_description returns."""
-        self._actions(value, context, when=True, depth=0)
-        for name, spot in context.undeclared:
-            message = f"the launch argument {name!r} is used, but DeclareLaunchArgument does not declare it before"
-            self.faults.append(Fault(message, self.place(spot)))
-        for message, spot in context.wrong:
-            self.faults.append(Fault(message, self.place(spot)))
-        context.undeclared.clear()
-        context.wrong.clear()
+        self._actions(value, context, when=context.when, depth=0)
 
     def _actions(self, value: Value, context: Context, *, when: bool | None, depth: int) -> None:
-        if depth > _MOST_DEPTH or len(self.seen) > _MOST_ACTIONS:
+        self.steps += 1
+        if depth > _MOST_DEPTH or self.steps > _MOST_ACTIONS:
+            self._untold("it holds more than is followed", Spot(1, 1))
             return
         match value:
             case list() | tuple():
                 for each in value:
-                    self._actions(each, context, when=when, depth=depth)
+                    if self.steps > _MOST_ACTIONS:
+                        return
+                    self._actions(each, context, when=when, depth=depth + 1)
             case dict():
                 self._actions(list(value.values()), context, when=when, depth=depth + 1)
             case Unknown():
-                self.unknown.append(Fault(value.reason, self.place(value.at)))
-            case Function():
-                self._actions(self.call(value, Spot(1, 1)), context, when=when, depth=depth + 1)
+                self._untold(value.reason, value.at)
+            case Named():
+                self._untold(f"what {value.name} gives is told only by a run", Spot(1, 1))
             case Made():
-                self._action(value, context, when=when, depth=depth)
+                undeclared, wrong = len(context.undeclared), len(context.wrong)
+                executed = self._when(value, context, when)
+                self._complain(context, undeclared, wrong, sure=when is True)  # the launch comes to its condition
+                self._action(value, context, when=executed, depth=depth)
+                self._complain(context, undeclared, wrong, sure=executed is True)
+
+    def _complain(self, context: Context, undeclared: int, wrong: int, *, sure: bool) -> None:
+        """Report what was wrong with an action, if it is certain that the launch comes to it."""
+        messages = [
+            (f"the launch argument {name!r} is used, but DeclareLaunchArgument does not declare it before", spot)
+            for name, spot in context.undeclared[undeclared:]
+        ]
+        for message, spot in [*messages, *context.wrong[wrong:]] if sure else ():
+            self.faults.append(Fault(message, self.place(spot)))
+        del context.undeclared[undeclared:], context.wrong[wrong:]
+
+    def _untold(self, reason: str, spot: Spot) -> None:
+        fault = Fault(reason, self.place(spot))
+        if fault not in self.unknown[-3:]:
+            self.unknown.append(fault)
+
+    def _when(self, made: Made, context: Context, when: bool | None) -> bool | None:
+        """Whether an action is executed: `when` is whether that around it is."""
+        if "?" in made.kwargs or "**" in made.kwargs:
+            when = None if when else when
+        return _both(when, holds(made.kwargs.get("condition"), context))
 
     def _action(self, made: Made, context: Context, *, when: bool | None, depth: int) -> None:
-        doubt = made.kwargs.get("?")
-        if isinstance(doubt, Unknown):
-            when = None if when else when
-        when = _both(when, holds(made.kwargs.get("condition"), context))
-        last = made.name.rpartition(".")[2]
-        if last in ("DeclareLaunchArgument", "SetLaunchConfiguration"):
-            name = resolve(made.argument(0, "name"), context)
-            if isinstance(name, str):
-                default = made.argument(1, "default_value", "value")
-                context.arguments.setdefault(name, default)
-            return
         self.seen.add(id(made))
-        if last in _NODES:
-            self._node(made, context, when)
-        elif last == "ExecuteProcess":
-            self._process(made, context, when)
-        elif last == "IncludeLaunchDescription":
-            self._include(made, context, when)
-        else:  # a group, a timer, an event handler, a description: whatever actions it holds
-            for value in [*made.args, *made.kwargs.values()]:
-                if isinstance(value, list | tuple | Made | Function):
-                    self._actions(value, context, when=when, depth=depth + 1)
-            for each in made.calls:
-                if each.name.endswith((".add_action", ".add_entity", ".append", ".extend")):
-                    self._actions(
-                        each.args, context, when=_both(when, None if "?" in each.kwargs else True), depth=depth
-                    )
+        last = made.name.rpartition(".")[2]
+        match last:
+            case "DeclareLaunchArgument" | "DeclareBooleanLaunchArgument" | "SetLaunchConfiguration":
+                self._set(made, context, when, declares=last.startswith("Declare"))
+            case _ if last in _NODES:
+                self._node(made, context, when)
+            case "ExecuteProcess" | "ExecuteLocal":
+                self._process(made, context, when)
+            case "IncludeLaunchDescription":
+                self._include(made, context, when)
+            case "LaunchDescription":
+                self._launch_description(made, context, when, depth)
+            case "GroupAction":
+                self._group(made, context, when, depth)
+            case "TimerAction" | "RosTimer":
+                self._actions(made.argument(1, "actions"), context, when=when, depth=depth + 1)
+            case "RegisterEventHandler":
+                self._actions(made.argument(0, "event_handler"), context, when=when, depth=depth + 1)
+            case _ if last.startswith("On") and last[2:3].isupper():
+                self._handler(made, context, when if last == "OnProcessStart" else when and None, depth)
+            case "OpaqueFunction":
+                self._opaque(made, context, when, depth)
+            case _ if last in _IN_CONTAINERS:
+                self._untold("what a container of nodes starts is not followed", made.at)
+            case _ if _IDLE.fullmatch(last) and made.name.startswith(("launch.", "launch_ros.")):
+                self.sets_parameters |= last in ("SetParameter", "SetParametersFromFile")
+            case _ if not made.name.startswith("?."):
+                self._untold(f"what {last} starts is told only by a run", made.at)
+
+    def _set(self, made: Made, context: Context, when: bool | None, *, declares: bool) -> None:
+        """A launch argument that is declared, or set: from here on it has a value."""
+        name = resolve(made.argument(0, "name"), context)
+        if when is False or not isinstance(name, str) or (declares and name in context.arguments):
+            return
+        value = made.argument(1, "default_value", "value")
+        if when is None:
+            known: Value = Unknown(f"the launch argument {name!r} is set under a condition", made.at)
+        elif value is None:
+            known = Unknown(f"the launch argument {name!r} has no default", made.at)
+        else:
+            known = resolve(value, context)
+        context.arguments[name] = known
+
+    def _launch_description(self, made: Made, context: Context, when: bool | None, depth: int) -> None:
+        given = made.argument(0, "initial_entities")
+        if isinstance(given, Made) or len(made.args) > 1:
+            context.wrong.append(("LaunchDescription takes one list: put [ ] around what is launched", made.at))
+        self._listed(list(made.args[1:]) if len(made.args) > 1 else [], made, context, when, depth)
+        self._listed(given, made, context, when, depth)
+        for each in made.calls:
+            if each.name.endswith((".add_action", ".add_entity")):
+                self._listed(each.args, each, context, _both(when, None if "?" in each.kwargs else True), depth)
+
+    def _listed(self, value: Value, made: Made, context: Context, when: bool | None, depth: int) -> None:
+        """The actions of a description, which may not be in lists of their own."""
+        if isinstance(value, list | tuple) and any(isinstance(each, list | tuple) for each in value):
+            context.wrong.append(("an action is expected here, and this is a list of some: write * before it", made.at))
+        self._actions(value if value is not None else [], context, when=when, depth=depth + 1)
+
+    def _group(self, made: Made, context: Context, when: bool | None, depth: int) -> None:
+        """A group of actions: what is set in it ends with it, unless scoped is False."""
+        before = dict(context.arguments)
+        own = made.kwargs.get("launch_configurations")
+        for name, value in own.items() if isinstance(own, dict) else ():
+            context.arguments[str(name)] = resolve(value, context)
+        self._actions(made.argument(0, "actions"), context, when=when, depth=depth + 1)
+        if made.kwargs.get("scoped", True) is not False:
+            context.arguments.clear()
+            context.arguments.update(before)
+
+    def _handler(self, made: Made, context: Context, when: bool | None, depth: int) -> None:
+        """What is started when something happens: it is certain only of the start of another process."""
+        for name, value in made.kwargs.items():
+            if name.startswith("on_") or name == "entities":
+                made_now = self.call(value, made.at, ()) if isinstance(value, Function) else value
+                self._actions(made_now if made_now is not None else [], context, when=when, depth=depth + 1)
+
+    def _opaque(self, made: Made, context: Context, when: bool | None, depth: int) -> None:
+        function, args = made.argument(0, "function"), made.kwargs.get("args") or []
+        if not isinstance(function, Function) or not isinstance(args, list | tuple) or made.kwargs.get("kwargs"):
+            self._untold("what an OpaqueFunction gives is told only by a run", made.at)
+            return
+        given = self.call(function, made.at, (Made("launch.LaunchContext", [], {}, made.at), *args))
+        self._actions(given if given is not None else [], context, when=when, depth=depth + 1)
 
     def _node(self, made: Made, context: Context, when: bool | None) -> None:
-        package = resolve(made.kwargs.get("package"), context)
-        executable = resolve(made.argument(0, "executable", "node_executable", "exec"), context)
+        for name in made.kwargs.keys() - _NODE_TAKES:
+            context.wrong.append((f"Node takes no argument {name!r}{did_you_mean(name, _NODE_TAKES)}", made.at))
+        if made.args:
+            context.wrong.append(("Node takes its arguments by name: package=..., executable=...", made.at))
+        if made.kwargs.keys().isdisjoint(("executable", "node_executable", "**")):
+            context.wrong.append(("a node has no executable: it is not said which program it is", made.at))
+        package = resolve(made.kwargs.get("package", _NO_PACKAGE), context)
+        executable = resolve(made.kwargs.get("executable", made.kwargs.get("node_executable")), context)
         if not isinstance(package, str) or not isinstance(executable, str):
             what = next(each for each in (package, executable) if not isinstance(each, str))
-            reason = what.reason if isinstance(what, Unknown) else "which program a node is told only by a run"
-            self.unknown.append(Fault(reason, self.place(made.at)))
+            reason = what.reason if isinstance(what, Unknown) else "which program a node is, is told only by a run"
+            self._untold(reason, made.at)
             return
         self._started(package, executable, made, context, when)
 
@@ -105,27 +207,38 @@ class Follower:
         self.nodes.append(StartedNode(package, executable, when, self.place(made.at)))
         if when is False:
             return
+        for name in ("parameters", "arguments", "remappings"):
+            if isinstance(made.kwargs.get(name), str | dict):
+                context.wrong.append((f"{name} has to be a list: put [ ] around it", made.at))
         if executable == _DESCRIBED:
             self._described(made, context)
         elif executable == _SHOWS:
-            self._shown(made.kwargs.get("arguments"), made, context)
+            self._shown(made.kwargs.get("arguments", made.kwargs.get("**")), made, context)
 
     def _process(self, made: Made, context: Context, when: bool | None) -> None:
-        words = self._words(made.argument(0, "cmd"), context)
+        """A command that starts a node: ros2 run, or rviz2 by itself."""
+        command = made.argument(0, "cmd")
+        words = self._words(command, context)
+        if made.kwargs.get("shell") is True:
+            words = " ".join(words).split()
         match words:
-            case ["ros2", "run", package, executable, *_]:
-                self.nodes.append(StartedNode(package, executable, when, self.place(made.at)))
-            case ["rviz2" as executable, *_]:
-                self.nodes.append(StartedNode(executable, executable, when, self.place(made.at)))
-            case _:
-                return
-        if _SHOWS in words[:4] and when is not False:
-            self._shown(made.argument(0, "cmd"), made, context)
+            case ["ros2", "run", package, executable, *rest]:
+                self._started(package, executable, _as_node(made, rest), context, when)
+            case ["rviz2" as executable, *rest]:
+                self._started(executable, executable, _as_node(made, rest), context, when)
+            case ["ros2", "launch", *_] if when is not False:
+                self._untold("it starts ros2 launch once more", made.at)
 
     def _words(self, value: Value, context: Context) -> list[str]:
+        """The words of a command: an entry of a list is one of them, a line of XML or YAML is split."""
         pieces = value if isinstance(value, list | tuple) else [value] if value is not None else []
-        texts = [resolve(piece, context) for piece in pieces]
-        return " ".join(text if isinstance(text, str) else UNTOLD for text in texts).split()
+        words: list[str] = []
+        for piece in pieces:
+            if isinstance(piece, Made) and piece.name == CMDLINE:
+                words += _line_words(piece, context)
+            else:
+                words.append(_told(piece, context))
+        return words
 
     def _described(self, made: Made, context: Context) -> None:
         """Where robot_state_publisher gets the robot from."""
@@ -137,14 +250,20 @@ class Follower:
         if found:
             self._description_from(found[-1], made, context)
             return
-        unclear = next((each for each in parameters if not isinstance(each, dict)), None)
+        unclear = next((each for each in parameters if not isinstance(each, dict) or "**" in each), None)
         words = self._words(made.kwargs.get("arguments"), context)
-        files = [each for each in words if not each.startswith("-") and each != UNTOLD]
+        files = [each for each in words[: _index(words, "--ros-args")] if not each.startswith("-")]
         if isinstance(unclear, Unknown):
             self._refer("urdf", unclear, made)
-        elif files:
+        elif files and files[0] != UNTOLD:
             self._refer("urdf", files[0], made)
-        elif UNTOLD in "".join(words) or unclear is not None:
+        elif (
+            words
+            or unclear is not None
+            or "**" in made.kwargs
+            or "ros_arguments" in made.kwargs
+            or self.sets_parameters
+        ):
             self._refer("urdf", Unknown("what it is given is told only by a run", made.at), made)
         else:
             message = "robot_state_publisher is started without robot_description: it has no robot to publish"
@@ -154,9 +273,10 @@ class Follower:
         known = resolve(value, context)
         match known:
             case Contents(path=path, by=by):
-                if by == "open" and path.endswith(".xacro"):
-                    message = f"{path.rpartition('/')[2]} is read as it is, but xacro has to expand it: use Command(['xacro ', ...])"
-                    self.references.append(Reference("urdf", None, self.place(made.at), message))
+                if by != "xacro" and path.endswith(".xacro"):
+                    name = path.rpartition("/")[2]
+                    message = f"{name} is read as it is; if anything of xacro is in it, use Command(['xacro ', ...])"
+                    self.references.append(Reference("urdf", None, self.place(made.at), message, sure=False))
                     return
                 self._refer("urdf", path, made, value)
             case str() if "<robot" in known:
@@ -173,31 +293,22 @@ class Follower:
             self._refer("rviz", arguments, made)
             return
         words = self._words(arguments, context)
-        for index, word in enumerate(words):
-            if word in ("-d", "--display-config"):
-                following = words[index + 1 : index + 2]
-                path = following[0] if following else ""
-            elif word.startswith("-d") and not word.startswith("--"):
-                path = word[2:]
-            elif word.startswith("--display-config="):
-                path = word.partition("=")[2]
-            else:
-                continue
-            if UNTOLD in path:
-                self._refer("rviz", self._why(arguments, made, context), made)
-            elif path:
-                self._refer("rviz", path, made)
-            else:
-                message = "rviz2 is given -d without the path of a file"
-                self.references.append(Reference("rviz", None, self.place(made.at), message))
-            return
-        if UNTOLD in "".join(words):
+        path = _display_config(words)
+        if path is None and UNTOLD not in words:
+            message = (
+                "rviz2 is started without -d and a file, so it opens its own default instead of the lab's configuration"
+            )
+            self.references.append(Reference("rviz", None, self.place(made.at), message))
+        elif path is None or UNTOLD in path:
             self._refer("rviz", self._why(arguments, made, context), made)
-            return
-        message = (
-            "rviz2 is started without -d and a file, so it opens its own default instead of the lab's configuration"
-        )
-        self.references.append(Reference("rviz", None, self.place(made.at), message))
+        elif path != path.lstrip():
+            message = "'-d' and the path have to be two entries of arguments: ['-d', path]"
+            self.references.append(Reference("rviz", None, self.place(made.at), message))
+        elif path:
+            self._refer("rviz", path, made)
+        else:
+            message = "rviz2 is given -d without the path of a file"
+            self.references.append(Reference("rviz", None, self.place(made.at), message))
 
     def _why(self, arguments: Value, made: Made, context: Context) -> Unknown:
         pieces = arguments if isinstance(arguments, list | tuple) else [arguments]
@@ -216,22 +327,27 @@ class Follower:
         if when is False:
             return
         path = resolve(made.argument(0, "launch_description_source"), context)
-        given = arguments_of(made.argument(1, "launch_arguments"))
+        given = arguments_of(made.argument(1, "launch_arguments"), context, made.at)
         if not isinstance(path, str) or given is None:
-            reason = path.reason if isinstance(path, Unknown) else "what is included is told only by a run"
-            self.unknown.append(Fault(reason, self.place(made.at)))
+            self._untold(
+                path.reason if isinstance(path, Unknown) else "what is included is told only by a run", made.at
+            )
             return
-        inner = Context(path.rpartition("/")[0], {**context.arguments, **given})
+        inner = Context(path.rpartition("/")[0], {**context.arguments, **given}, when=when, left=context.left)
         known = _URDF_LAUNCH.fullmatch(path)
         if known is not None:
             self._urdf_launch(known["name"], made, inner, when)
         else:
-            if not self.include(path, inner):
-                self.unknown.append(Fault(f"it includes {path.rpartition('/')[2]}, which is not part of the submission",
-                                          self.place(made.at)))  # fmt: skip
-            self._refer("include", path, made)
-        for name, value in inner.arguments.items():  # an include shares its arguments with what follows
-            context.arguments.setdefault(name, value)
+            self._included(path, made, inner, when)
+        context.arguments.update(inner.arguments)  # an include shares its arguments with what follows
+
+    def _included(self, path: str, made: Made, inner: Context, when: bool | None) -> None:
+        reason = self.include(path, inner)
+        if reason == CIRCLE and when:
+            self.faults.append(Fault(reason, self.place(made.at)))
+        elif reason:
+            self._untold(reason, made.at)
+        self._refer("include", path, made)
 
     def _urdf_launch(self, name: str, made: Made, context: Context, when: bool | None) -> None:
         """What urdf_launch's own files do with their arguments."""
@@ -269,4 +385,57 @@ def _both(one: bool | None, other: bool | None) -> bool | None:
 
 
 def _spot(value: Value, made: Made) -> Spot:
+    if isinstance(value, list | tuple):
+        value = next((each for each in value if isinstance(each, Made)), None)
+    while isinstance(value, Made) and isinstance(value.owner, Made):  # of open(path).read() the path is what counts
+        value = value.owner
     return value.at if isinstance(value, Made) else made.at
+
+
+def _index(words: list[str], word: str) -> int:
+    return words.index(word) if word in words else len(words)
+
+
+def _as_node(made: Made, words: list[str]) -> Made:
+    """A command as the node that it starts."""
+    arguments: list[Value] = [Unknown("a part of the command is told only by a run", made.at) if word == UNTOLD else word
+                              for word in words]  # fmt: skip
+    return Made(made.name, [], {"arguments": arguments}, made.at)
+
+
+def _told(value: Value, context: Context) -> str:
+    text = resolve(value, context)
+    return text if isinstance(text, str) else UNTOLD
+
+
+def _line_words(line: Made, context: Context) -> list[str]:
+    """The words of a line as launch splits it: its plain texts are split, what a substitution gives is not."""
+    words = [""]
+    for piece in line.args:
+        if not isinstance(piece, str):
+            words[-1] += _told(piece, context)
+            continue
+        try:
+            found = shlex.split(piece)
+        except ValueError:
+            context.wrong.append(
+                ("quotes cannot go around a substitution in a line of arguments: leave them out", line.at)
+            )
+            found = piece.replace("'", " ").replace('"', " ").split()
+        if piece[:1].isspace() or not found:
+            words.append("")
+        words[-1] += "".join(found[:1])
+        words += [*found[1:], *([""] if piece[-1:].isspace() else [])]
+    return [word for word in words if word]
+
+
+def _display_config(words: list[str]) -> str | None:
+    """The file that rviz2 is told to open; None where it is told nothing."""
+    for index, word in enumerate(words):
+        if word in ("-d", "--display-config"):
+            return "".join(words[index + 1 : index + 2])
+        if word.startswith("--display-config="):
+            return word.partition("=")[2]
+        if word.startswith("-d"):
+            return word[2:].removeprefix("=")
+    return None

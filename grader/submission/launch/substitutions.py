@@ -2,18 +2,25 @@
 
 import posixpath
 import re
-from collections.abc import Mapping
+import shlex
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import PurePosixPath
 
 from grader.submission.launch.places import HOME, PREFIX, SHARE
+from grader.submission.python.machine import Machine
+from grader.submission.python.methods import as_text
+from grader.submission.python.parse import SyntaxFault, parse
 from grader.submission.python.values import Made, Spot, Unknown, Value
 
+CMDLINE = "launch.frontend.command line"  # a line that is split into words, as XML and YAML have them
 UNTOLD = "\0"  # stands in a command for a part that cannot be told
 _MOST_DEPTH = 40
-_XACRO = re.compile(r"(?:\S*/)?(?:ros2\s+run\s+xacro\s+)?xacro(?:\.py)?\s+(?P<path>\S+)")
-_CAT = re.compile(r"(?:\S*/)?(?:cat|type)\s+(?P<path>\S+)")
+_MOST_STEPS = 50_000
+_MOST_TEXT = 100_000
+_MOST_EXPRESSION = 1_000
 _GLUED = re.compile(r"(?:xacro|cat)/")
+_PERFORMED = (".perform", ".find")
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,23 +33,30 @@ class Contents:
 
 @dataclass(slots=True)
 class Context:
-    """The launch arguments that are known so far, and the folder of the launch file as it is installed."""
+    """The launch arguments that are known so far, and the folder of the launch file as it is installed.
+
+    `when` tells whether the file is launched at all; `left` counts down the steps, also for the files that are included.
+    """
 
     folder: str
     arguments: dict[str, Value] = field(default_factory=dict)
     undeclared: list[tuple[str, Spot]] = field(default_factory=list)
     wrong: list[tuple[str, Spot]] = field(default_factory=list)
+    when: bool | None = True
+    left: list[int] = field(default_factory=lambda: [_MOST_STEPS])
 
 
 def resolve(value: Value, context: Context, depth: int = 0) -> "str | Contents | Unknown":
     """The text that a value comes to, or what is in a file; Unknown, with the reason, where only a run would tell."""
-    if depth > _MOST_DEPTH:
+    context.left[0] -= 1
+    if depth > _MOST_DEPTH or context.left[0] < 0:
         return Unknown("it is too deeply nested", Spot(1, 1))
     match value:
-        case str() | int() | float() | PurePosixPath():
-            return str(value)
-        case Unknown():
+        case Contents() | Unknown():
             return value
+        case str() | int() | float() | PurePosixPath():
+            text = as_text(value)
+            return text if text is not None else Unknown("it is too long a number", Spot(1, 1))
         case list() | tuple():
             return _joined(value, context, depth)
         case Made():
@@ -60,6 +74,8 @@ def _joined(parts: list[Value] | tuple[Value, ...], context: Context, depth: int
         if not isinstance(piece, str):
             return piece if isinstance(piece, Unknown) else Unknown("the content of a file is part of it", Spot(1, 1))
         text += piece
+        if len(text) > _MOST_TEXT:
+            return Unknown("it grows too long", Spot(1, 1))
     return text
 
 
@@ -69,18 +85,18 @@ def _made(made: Made, context: Context, depth: int) -> "str | Contents | Unknown
 
     last = made.name.rpartition(".")[2]
     match last:
+        case _ if made.name == CMDLINE:
+            return _joined(made.args, context, depth)
         case "TextSubstitution":
             return of(0, "text")
         case "LaunchConfiguration":
             return _configuration(made, context, depth)
         case "PathJoinSubstitution":
             return _path(made.argument(0, "substitutions"), context, depth, made.at)
-        case "PathSubstitution" | "ParameterValue" | "ParameterFile" | "AnyLaunchDescriptionSource":
-            return of(0, "path", "value", "param_file", "location")
-        case "PythonLaunchDescriptionSource" | "XMLLaunchDescriptionSource" | "YAMLLaunchDescriptionSource":
-            return of(0, "location")
-        case "FrontendLaunchDescriptionSource":
-            return of(0, "location")
+        case "PathSubstitution" | "ParameterValue" | "ParameterFile":
+            return of(0, "path", "value", "param_file")
+        case _ if last.endswith("LaunchDescriptionSource"):
+            return of(0, "launch_file_path", "location")
         case "truediv":
             return _path(made.args, context, depth, made.at)
         case (
@@ -91,43 +107,56 @@ def _made(made: Made, context: Context, depth: int) -> "str | Contents | Unknown
             package = of(0, "package", "package_name")
             return PREFIX if isinstance(package, str) else package
         case "join" if made.name == "os.path.join":
-            return _wrongly_joined(made, context, depth)
-        case "ThisLaunchFileDir" | "ThisLaunchFile":
+            _needs_texts(made.args, "os.path.join takes texts, not substitutions: use PathJoinSubstitution([...])",
+                         made, context)  # fmt: skip
+            return _path(made.args, context, depth, made.at)
+        case "ThisLaunchFileDir":
             return context.folder
         case "FindExecutable":
             return of(0, "name")
         case "Command":
             return _command(made, context, depth)
-        case "process_file":
+        case "process_file" | "process" if made.name.startswith("xacro."):
+            _needs_texts(made.args[:1], f"xacro.{last} takes a path, not a substitution: use Command(['xacro ', ...])",
+                         made, context)  # fmt: skip
             path = of(0, "input_file_name")
             return Contents(path, "xacro") if isinstance(path, str) else path
         case "parse":  # xacro.parse(open(path)), or of what is in it
             return _reread(of(0), "xacro")
         case "open" if made.name in ("builtins.open", "io.open", "codecs.open"):
+            _needs_texts(made.args[:1], "open takes a path, not a substitution: use Command(['cat ', ...])",
+                         made, context)  # fmt: skip
             path = of(0, "file")
             return Contents(path, "open") if isinstance(path, str) else path
+        case "FileContent":
+            path = of(0, "path")
+            return Contents(path, "open") if isinstance(path, str) else path
         case "EnvironmentVariable" | "getenv" | "environ[]" | "get" if "nviron" in made.name or last == "getenv":
-            return HOME if made.args and made.args[0] == "HOME" else Unknown("it depends on the environment", made.at)
+            return HOME if of(0, "name") == "HOME" else Unknown("it depends on the environment", made.at)
         case "expanduser":
             text = of(0)
             return text.replace("~", HOME, 1) if isinstance(text, str) and text.startswith("~") else text
         case "home" if made.name.startswith("pathlib."):
             return HOME
-        case "perform" | "read" | "toxml" | "toprettyxml" | "documentElement" | "decode" | "strip" | "replace":
+        case "perform" | "read" | "toxml" | "toprettyxml" | "documentElement" | "decode" | "strip":
             return resolve(made.owner, context, depth + 1)
+        case "PythonExpression":
+            return _expression(of(0, "expression"), made.at)
+        case _ if last in _LOGIC:
+            return _logical(last, [resolve(each, context, depth + 1) for each in _operands(made)], made.at)
         case _:
             return Unknown(f"what {last} gives is told only by a run", made.at)
 
 
-def _wrongly_joined(made: Made, context: Context, depth: int) -> "str | Contents | Unknown":
-    """os.path.join of something that is no text before the launch runs."""
-    objects = [each for each in made.args if isinstance(each, Made)]
-    if all(each.name.endswith((".perform", ".find")) for each in objects):
-        return _path(made.args, context, depth, made.at)
-    if any(each.name.startswith(("launch.", "launch_ros.")) for each in objects):
-        context.wrong.append(("os.path.join takes texts, not substitutions: use PathJoinSubstitution([...])", made.at))
-        return _path(made.args, context, depth, made.at)
-    return Unknown("a part of this path is told only by a run", made.at)
+def _needs_texts(values: Iterable[Value], message: str, made: Made, context: Context) -> None:
+    """Note that a function of Python's gets a substitution, which is no text before the launch runs."""
+    if any(
+        isinstance(each, Made)
+        and each.name.startswith(("launch.", "launch_ros."))
+        and not each.name.endswith(_PERFORMED)
+        for each in values
+    ):
+        context.wrong.append((message, made.at))
 
 
 def _reread(value: "str | Contents | Unknown", by: str) -> "str | Contents | Unknown":
@@ -144,10 +173,7 @@ def _configuration(made: Made, context: Context, depth: int) -> "str | Contents 
     if not isinstance(name, str):
         return name
     if name in context.arguments:
-        value = context.arguments[name]
-        if value is None:
-            return Unknown(f"the launch argument {name!r} has no default", made.at)
-        return resolve(value, context, depth + 1)
+        return resolve(context.arguments[name], context, depth + 1)
     default = made.argument(1, "default")
     if default is not None:
         return resolve(default, context, depth + 1)
@@ -164,6 +190,8 @@ def _path(parts: Value, context: Context, depth: int, spot: Spot) -> "str | Cont
         if not isinstance(text, str):
             return text if isinstance(text, Unknown) else Unknown("the content of a file is part of a path", spot)
         texts.append(text)
+    if sum(map(len, texts)) > _MOST_TEXT:
+        return Unknown("it grows too long", spot)
     return posixpath.join(*texts) if texts else Unknown("an empty path", spot)
 
 
@@ -173,20 +201,88 @@ def _command(made: Made, context: Context, depth: int) -> "str | Contents | Unkn
     pieces = parts if isinstance(parts, list | tuple) else [parts]
     texts = [resolve(piece, context, depth + 1) for piece in pieces]
     unknown = next((text for text in texts if isinstance(text, Unknown)), None)
-    command = "".join(text if isinstance(text, str) else UNTOLD for text in texts).strip()
+    command = "".join(text if isinstance(text, str) else UNTOLD for text in texts).strip()[:_MOST_TEXT]
     if _GLUED.match(command):
         program = command.split("/")[0]
         context.wrong.append((f"a space is missing between {program} and the path: write '{program} '", made.at))
         command = command.replace(program, program + " ", 1)
-    for pattern, by in ((_XACRO, "xacro"), (_CAT, "cat")):
-        found = pattern.match(command)
-        if found is None:
-            continue
-        path = found["path"].strip("'\"")
-        if UNTOLD in path:
-            return unknown or Unknown("which file is read is told only by a run", made.at)
-        return Contents(path, by)
-    return unknown or Unknown("what this command prints is told only by a run", made.at)
+    try:
+        words = shlex.split(command)
+    except ValueError:
+        context.wrong.append(("the quotes in this command are not closed", made.at))
+        return Unknown("the quotes in this command are not closed", made.at)
+    by, path = _file_read(words)
+    if path is None or UNTOLD in path:
+        return unknown or Unknown("what this command prints is told only by a run", made.at)
+    return Contents(path, by)
+
+
+def _file_read(words: list[str]) -> tuple[str, str | None]:
+    """Which program reads a file, and which file: of a call of xacro or cat."""
+    if words[:3] == ["ros2", "run", "xacro"]:
+        words = words[3:]
+    program = words[0].rpartition("/")[2].removesuffix(".py") if words else ""
+    if program not in ("xacro", "cat", "type") or "-o" in words:
+        return "", None
+    files = [word for word in words[1:] if not word.startswith("-") and ":=" not in word]
+    return ("xacro" if program == "xacro" else "cat"), (files[0] if len(files) == 1 else None)
+
+
+def _expression(text: "str | Contents | Unknown", spot: Spot) -> "str | Contents | Unknown":
+    """What a Python expression comes to that has only plain values in it."""
+    unknown = Unknown("what this expression comes to is told only by a run", spot)
+    if not isinstance(text, str) or len(text) > _MOST_EXPRESSION:
+        return text if isinstance(text, Unknown) else unknown
+    code = parse(f"value = ({text}\n)".encode("utf-8", "replace"), "")
+    if isinstance(code, SyntaxFault):
+        return unknown
+    machine = Machine(code, {}, special={})
+    value = machine.run().names.get("value")
+    plain = as_text(value) if value is not None and not machine.faults and not machine.stopped else None
+    return plain if plain is not None else unknown
+
+
+_LOGIC = frozenset(
+    {"EqualsSubstitution", "NotEqualsSubstitution", "NotSubstitution", "AndSubstitution", "OrSubstitution",
+     "IfElseSubstitution", "AllSubstitution", "AnySubstitution"}
+)  # fmt: skip
+_OPERANDS = ("left", "right", "value", "condition", "if_value", "else_value")
+
+
+def _operands(made: Made) -> list[Value]:
+    return [*made.args, *(made.kwargs[name] for name in _OPERANDS if name in made.kwargs)]
+
+
+def _logical(kind: str, operands: "list[str | Contents | Unknown]", spot: Spot) -> "str | Contents | Unknown":
+    """What launch's substitutions for true and false come to."""
+    unknown = next((each for each in operands if isinstance(each, Unknown)), None)
+    texts = [each for each in operands if isinstance(each, str)]
+    if len(texts) != len(operands):
+        return unknown or Unknown("the content of a file is compared", spot)
+    truths = [_truth(each) for each in texts]
+    match kind, texts:
+        case (("EqualsSubstitution" | "NotEqualsSubstitution"), [left, right]):
+            return str(_are_equal(left, right) == (kind == "EqualsSubstitution")).lower()
+        case "NotSubstitution", [_] if truths[0] is not None:
+            return str(not truths[0]).lower()
+        case "IfElseSubstitution", [_, yes, *no] if truths[0] is not None:
+            return yes if truths[0] else "".join(no[:1])
+        case (("AndSubstitution" | "AllSubstitution"), _) if None not in truths:
+            return str(all(truths)).lower()
+        case (("OrSubstitution" | "AnySubstitution"), _) if None not in truths:
+            return str(any(truths)).lower()
+    return Unknown("this condition is not followed", spot)
+
+
+def _are_equal(left: str, right: str) -> bool:
+    """Whether two texts say the same to launch, which takes true and True, 1 and 1.0 for equal."""
+    truths = (_truth(left), _truth(right))
+    if None not in truths:
+        return truths[0] == truths[1]
+    try:
+        return float(left) == float(right)
+    except ValueError:
+        return left == right
 
 
 def holds(condition: Value, context: Context) -> bool | None:
@@ -197,7 +293,10 @@ def holds(condition: Value, context: Context) -> bool | None:
         return None
     last = condition.name.rpartition(".")[2]
     if last in ("IfCondition", "UnlessCondition"):
-        known = _truth(resolve(condition.argument(0, "predicate_expression"), context))
+        text = resolve(condition.argument(0, "predicate_expression"), context)
+        known = _truth(text)
+        if known is None and isinstance(text, str):
+            context.wrong.append((f"a condition is {text[:40]!r}, which is neither true nor false", condition.at))
         return known if known is None or last == "IfCondition" else not known
     if last in ("LaunchConfigurationEquals", "LaunchConfigurationNotEquals"):
         name = condition.argument(0, "launch_configuration_name")
@@ -215,14 +314,16 @@ def _truth(value: "str | Contents | Unknown") -> bool | None:
     return {"true": True, "1": True, "false": False, "0": False}.get(value.strip().lower())
 
 
-def arguments_of(given: Value) -> Mapping[str, Value] | None:
-    """The launch arguments that an include passes on; None where they cannot be told."""
+def arguments_of(given: Value, context: Context, spot: Spot) -> dict[str, Value] | None:
+    """The launch arguments that an include passes on, with what they come to; None where they cannot be told."""
     if given is None:
         return {}
     if isinstance(given, dict):
-        return {str(name): value for name, value in given.items()}
+        context.wrong.append(("launch_arguments is given a dict: write .items() behind it", spot))
+        given = list(given.items())
     if not isinstance(given, list | tuple) or not all(
         isinstance(each, list | tuple) and len(each) == 2 for each in given
     ):
         return None
-    return {str(name): value for name, value in given}
+    named = [(resolve(name, context), resolve(value, context)) for name, value in given]
+    return {name: value for name, value in named if isinstance(name, str)}

@@ -106,6 +106,7 @@ def _evaluate(machine: "Machine", node: ast.expr, scope: Scope) -> Value:
 
 def operate(machine: "Machine", op: ast.operator, left: Value, right: Value, spot: Spot) -> Value:
     """The value of a sum, of a path with / or of a text with %; a list keeps what is known of it."""
+    machine.step(sum(len(value) for value in (left, right) if isinstance(value, str)) // 32)
     match op, left, right:
         case ast.Add(), str(), str():
             return left + right if len(left) + len(right) <= MOST_TEXT else Unknown("it grows too long", spot)
@@ -180,22 +181,32 @@ def truth(value: Value) -> bool | None:
     return True if isinstance(value, PurePosixPath | Function) else None
 
 
-def store(container: Value, key: Value, value: Value, spot: Spot) -> None:
+def is_known(machine: "Machine", items: "list[Value] | tuple[Value, ...]") -> bool:
+    """Whether it can be told at which place of a list its items stand."""
+    machine.step(len(items) // 64)
+    return not any(isinstance(each, Unknown) for each in items)
+
+
+def store(machine: "Machine", container: Value, key: Value, value: Value, spot: Spot) -> None:
     """Put a value into a dict or list; where it cannot be told which place is meant, nothing of it is known any more."""
     if isinstance(container, dict) and isinstance(key, str | int) and len(container) < MOST_ITEMS:
         container[key] = value
-    elif isinstance(container, list) and isinstance(key, int) and unknown_in(container) is None:
+    elif isinstance(container, list) and isinstance(key, int) and is_known(machine, container):
         if -len(container) <= key < len(container):
             container[key] = value
     else:
         lose(container, Unknown("what is put here is not followed", spot))
 
 
-def remove(container: Value, key: Value, unknown: Unknown) -> None:
+def remove(machine: "Machine", container: Value, key: Value, unknown: Unknown) -> None:
     """Take something out of a dict or list; `unknown` says why, where it cannot be told what."""
     is_place = isinstance(container, list) and isinstance(key, int) and -len(container) <= key < len(container)
-    is_key = isinstance(container, dict) and isinstance(key, str | int) and key in container
-    if (is_place or is_key) and unknown_in(container) is None and unknown_in(key) is None:
+    is_key = isinstance(container, dict) and isinstance(key, str | int) and key in container and "**" not in container
+    if (
+        machine.unsure is None
+        and not isinstance(container, Steering)
+        and (is_key or (is_place and is_known(machine, container)))
+    ):
         del container[key]
     else:
         lose(container, unknown)
@@ -333,20 +344,16 @@ def _item(machine: "Machine", owner: Value, key: ast.expr, scope: Scope, spot: S
         return owner
     if isinstance(key, ast.Slice):
         bounds = [evaluate(machine, each, scope) if each else None for each in (key.lower, key.upper, key.step)]
-        whole = isinstance(owner, str) or unknown_in(owner) is None
-        if (
-            whole
-            and isinstance(owner, str | list | tuple)
-            and all(each is None or type(each) is int for each in bounds)
-        ):
-            machine.step(len(owner) // 64)
+        whole = isinstance(owner, str) or (isinstance(owner, list | tuple) and is_known(machine, owner))
+        if whole and all(each is None or type(each) is int for each in bounds):
+            machine.step(len(owner) // 32)
             return owner[slice(*bounds)] if bounds[2] != 0 else Unknown("a slice with step 0", spot)
         return Unknown("a slice of this is not followed", spot)
     index = evaluate(machine, key, scope)
     machine.may_fail()
     if isinstance(owner, Named):
         return Made(f"{owner.name}[]", [index], {}, spot)
-    if isinstance(owner, list | tuple) and any(isinstance(each, Unknown) for each in owner):
+    if isinstance(owner, list | tuple) and not is_known(machine, owner):
         return Unknown("what stands at this place is told only by a run", spot)
     try:
         if isinstance(owner, str | list | tuple | dict) and isinstance(index, str | int):
@@ -441,7 +448,7 @@ def _call(machine: "Machine", node: ast.Call, scope: Scope) -> Value:
     kwargs, spot = dict(given.known), at(node)
     if not given.complete:
         kwargs["**"] = Unknown("arguments are unpacked that are not followed", spot)
-    machine.step(size([args, list(kwargs.values())]) // 64)
+    machine.step(size([args, list(kwargs.values())]) // 32)
     match function:
         case Unknown():
             machine.may_fail()

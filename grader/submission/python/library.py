@@ -147,6 +147,7 @@ def _reversed(machine: "Machine", args: list[Value], kwargs: dict[str, Value], s
 
 def in_order(machine: "Machine", items: list[Value], kwargs: dict[str, Value], spot: Spot) -> Value:
     """A list as it is sorted by what is given to sorted or to a list's sort."""
+    machine.step(len(items) // 16)
     key, is_reversed = kwargs.get("key"), kwargs.get("reverse", False)
     keys = [each if key is None else _applied(machine, key, each, spot) for each in items]
     comparable = any(all(isinstance(each, kind) for each in keys) for kind in (str, PurePosixPath, int))
@@ -211,13 +212,14 @@ def _applied(machine: "Machine", function: Value, item: Value, spot: Spot) -> Va
     return known(machine, [item], {}, spot) if known is not None else Unknown("this function is not followed", spot)
 
 
-def _range(_: "Machine", args: list[Value], __: dict[str, Value], spot: Spot) -> Value:
+def _range(machine: "Machine", args: list[Value], __: dict[str, Value], spot: Spot) -> Value:
     numbers = [each for each in args if type(each) is int]
     if len(numbers) != len(args) or not 1 <= len(args) <= 3 or (len(args) == 3 and args[2] == 0):
         return Unknown("this range is not followed", spot)
     if any(abs(each) > _MOST_NUMBER for each in numbers):
         return Unknown("this range is not followed", spot)
     made = range(*numbers)
+    machine.step(min(len(made), expressions.MOST_ITEMS) // 16)
     return list(made) if len(made) <= expressions.MOST_ITEMS else Unknown("this range is too long to follow", spot)
 
 

@@ -31,6 +31,7 @@ Library = Mapping[str, Callable[["Machine", list[Value], dict[str, Value], Spot]
 
 _MOST_STEPS = 100_000
 _MOST_DEPTH = 30
+_MOST_FAULTS = 200
 
 
 class _Return(Exception):
@@ -79,6 +80,7 @@ class Machine:
         self._handlers = 0  # how many blocks around this place catch errors
         self._may_have_failed = False  # whether an error may have come up in the innermost of them
         self._generators: dict[ast.AST, bool] = {}
+        self._messages: set[str] = set()
         self._steps = 0
         self._depth = 0
 
@@ -160,7 +162,8 @@ class Machine:
             return
         if self._handlers:
             raise _Raised(Fault(message, spot), kind)
-        if not any(fault.message == message for fault in self.faults):
+        if message not in self._messages and len(self.faults) < _MOST_FAULTS:
+            self._messages.add(message)
             self.faults.append(Fault(message, spot))
 
     def may_fail(self) -> None:
@@ -216,8 +219,10 @@ class Machine:
                 self._if(node, scope)
             case ast.For() | ast.AsyncFor():
                 self._for(node, scope)
-            case ast.While() | ast.Match():
-                self._maybe(node, scope)
+            case ast.While():
+                self._while(node, scope)
+            case ast.Match():
+                self._match(node, scope)
             case ast.With() | ast.AsyncWith():
                 for item in node.items:
                     value = expressions.evaluate(self, item.context_expr, scope)
@@ -246,7 +251,7 @@ class Machine:
             container = expressions.evaluate(self, target.value, scope)
             index = expressions.evaluate(self, target.slice, scope)
             expressions.remove(
-                container, index, self.unsure or Unknown("what is deleted here is not followed", at(target))
+                self, container, index, self.unsure or Unknown("what is deleted here is not followed", at(target))
             )
         elif isinstance(target, ast.Name) and self.unsure is None:
             scope.declared.get(target.id, scope).names.pop(target.id, None)
@@ -272,7 +277,7 @@ class Machine:
             case ast.Name(id=name):
                 scope.bind(name, value)
             case ast.Tuple(elts=parts) | ast.List(elts=parts):
-                values = list(value) if isinstance(value, list | tuple) else []
+                values = list(value[: len(parts) + 1]) if isinstance(value, list | tuple) else []
                 if len(values) != len(parts) or any(isinstance(each, ast.Starred) for each in parts):
                     values = [Unknown("it is unpacked in a way that is not followed", at(target))] * len(parts)
                 for part, each in zip(parts, values, strict=True):
@@ -280,7 +285,7 @@ class Machine:
             case ast.Subscript(value=owner, slice=key):
                 container = expressions.evaluate(self, owner, scope)
                 index = expressions.evaluate(self, key, scope)
-                expressions.store(container, index, value, at(target))
+                expressions.store(self, container, index, value, at(target))
             case ast.Attribute(value=owner):
                 expressions.evaluate(self, owner, scope)
 
@@ -326,7 +331,7 @@ class Machine:
     def _if(self, node: ast.If, scope: Scope) -> None:
         condition = expressions.truth(expressions.evaluate(self, node.test, scope))
         if condition is None:
-            self._maybe(node, scope)
+            self._maybe([node.body, node.orelse], scope, at(node))
         else:
             self.block(node.body if condition else node.orelse, scope)
 
@@ -353,21 +358,28 @@ class Machine:
             self.block(node.orelse, scope)
         self.unsure = before
 
-    def _maybe(self, node: ast.If | ast.While | ast.Match, scope: Scope) -> None:
-        """Follow every branch of what only a run would decide."""
-        bodies = [case.body for case in node.cases] if isinstance(node, ast.Match) else [node.body, node.orelse]
-        if isinstance(node, ast.While):
-            bodies.insert(0, node.body)  # twice: the first round may change what the second does
-        for each in ast.walk(node) if isinstance(node, ast.Match) else ():
+    def _while(self, node: ast.While, scope: Scope) -> None:
+        before = self.unsure
+        if expressions.truth(expressions.evaluate(self, node.test, scope)) is False:
+            self.block(node.orelse, scope)
+            return
+        # Twice: the first round may change what the second does.
+        self._maybe([node.body, node.body, node.orelse], scope, at(node))
+        self.unsure = before
+
+    def _match(self, node: ast.Match, scope: Scope) -> None:
+        expressions.evaluate(self, node.subject, scope)
+        for each in ast.walk(node):
             name = each.name if isinstance(each, ast.MatchAs | ast.MatchStar) else None
             if name is not None:
                 scope.bind(name, Unknown("a pattern is not followed", at(node)))
-        before = self.unsure
+        self._maybe([case.body for case in node.cases], scope, at(node))
+
+    def _maybe(self, bodies: list[list[ast.stmt]], scope: Scope, spot: Spot) -> None:
+        """Follow every branch of what only a run would decide."""
         for body in bodies:
-            with self.doubt("it depends on something that only a run would tell", at(node)):
+            with self.doubt("it depends on something that only a run would tell", spot):
                 self.block(body, scope)
-        if isinstance(node, ast.While):
-            self.unsure = before
 
     def _try(self, node: "ast.Try | ast.TryStar", scope: Scope) -> None:
         if not node.handlers:

@@ -64,6 +64,7 @@ def call(machine: "Machine", owner: Value, name: str, args: list[Value], kwargs:
     result: Value = None
     match owner:
         case str():
+            machine.step(len(owner) // 32)
             result = _text(owner, name, args, kwargs, spot)
         case list():
             machine.step(len(owner) // 64 if name not in ("append", "extend") else 0)

@@ -4,11 +4,13 @@ import ast
 import sys
 import tokenize
 import warnings
+from codecs import lookup
 from dataclasses import dataclass
 from io import BytesIO
 
 from grader.robot.source import Location, Source
 
+_SLOW = ("idna", "punycode")  # encodings of names, whose time grows with the square of the length
 _JAZZY = (3, 12)  # the Python that ROS 2 Jazzy runs
 
 
@@ -34,8 +36,11 @@ def parse(data: bytes, path: str) -> Code | SyntaxFault:
     """Parse the bytes of a Python file. Never raises: what Python refuses, also for its depth, is a SyntaxFault."""
     try:
         encoding, _ = tokenize.detect_encoding(BytesIO(data).readline)
+        if lookup(encoding).name in _SLOW:
+            place = Location(path, 1, 1)
+            return SyntaxFault(Source(path, ""), f"the encoding {encoding} is not followed", place, sure=False)
         text = data.decode(encoding)
-    except (SyntaxError, UnicodeDecodeError, LookupError) as error:
+    except (SyntaxError, ValueError, LookupError) as error:
         source = Source(path, data.decode("utf-8", "replace"))
         return SyntaxFault(source, f"not readable as text: {error}", Location(path, 1, 1))
     text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")

@@ -1,0 +1,176 @@
+"""For every check of what was handed in, a hand-in that passes and one that fails, and what the check says of each."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from grader.checks.handed_in import answered, evidence_shown
+from grader.checks.launch import launch_finds_files, launch_found, launch_starts
+from grader.checks.package import build_installs, installs_files, package_found, package_type, setup_imports
+from grader.checks.rviz import rviz_display_on, rviz_fixed_frame, rviz_found, rviz_shows_robot
+from tests.checks.asking import AnyCheck
+from tests.checks.hand_ins import ANSWERS, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, HandIn
+
+_NAME = "my_robot_rviz.launch.py"
+_RVIZ = {"name": "my_robot.rviz", "launch": _NAME}
+
+
+@dataclass(frozen=True)
+class HandInCase:
+    """A check with arguments, a hand-in that it fails, what it says of both, and where the failure stands, if anywhere."""
+
+    check: AnyCheck
+    arguments: Mapping[str, Any]
+    says: str
+    failing: HandIn
+    complains: str
+    at: tuple[str, str] | None = None
+    passing: HandIn = field(default=REFERENCE, repr=False)
+
+    @property
+    def name(self) -> str:
+        """The name of the check."""
+        return self.check.__name__
+
+
+@dataclass(frozen=True)
+class PendingCase:
+    """A check that a person decides, whatever was handed in: what it says where something is found, and where nothing is."""
+
+    check: AnyCheck
+    arguments: Mapping[str, Any]
+    found: str
+    at: tuple[str, str] | None
+    without: HandIn
+    not_found: str
+
+    @property
+    def name(self) -> str:
+        """The name of the check."""
+        return self.check.__name__
+
+
+HAND_IN_CASES = (
+    HandInCase(
+        package_found,
+        {"name": "my_robot"},
+        says="the package is named 'my_robot'",
+        failing=REFERENCE.replacing(MANIFEST, ">my_robot<", ">robot<"),
+        complains="the package is named 'robot', expected 'my_robot'",
+        at=(MANIFEST, "<name>"),
+    ),
+    HandInCase(
+        package_type,
+        {"build_type": "ament_python"},
+        says="the build type is 'ament_python'",
+        failing=REFERENCE.replacing(MANIFEST, "ament_python", "ament_cmake"),
+        complains="the build type is 'ament_cmake'; expected 'ament_python'",
+        at=(MANIFEST, "<build_type>"),
+    ),
+    HandInCase(
+        build_installs,
+        {"kind": "urdf", "name": "my_robot.urdf"},
+        says="a build installs urdf/my_robot.urdf as share/my_robot/my_robot.urdf",
+        failing=REFERENCE.replacing(SETUP, "glob('urdf/*')", "['urdf/robot.urdf']"),
+        complains="the build stops here: data_files lists 'urdf/robot.urdf', but there is no such file",
+        at=(SETUP, "setup(\n"),
+    ),
+    HandInCase(
+        installs_files,
+        {"files": ["launch/*.launch.py"]},
+        says="a build installs launch/my_robot_rviz.launch.py as share/my_robot/launch/my_robot_rviz.launch.py",
+        failing=REFERENCE.replacing(SETUP, "os.path.join('share', package_name, 'launch')", "'lib/launch'"),
+        complains="a build installs launch/my_robot_rviz.launch.py as lib/launch/my_robot_rviz.launch.py, "
+        "but ROS 2 looks for a package's files below share/my_robot/",
+        at=(SETUP, "setup(\n"),
+    ),
+    HandInCase(
+        setup_imports,
+        {},
+        says="every name that setup.py uses is defined",
+        failing=REFERENCE.replacing(SETUP, "from glob import glob\n", ""),
+        complains="the name 'glob' is used, but not defined or imported",
+        at=(SETUP, "glob('urdf/*')"),
+    ),
+    HandInCase(
+        launch_found,
+        {"name": _NAME},
+        says="the launch file is launch/my_robot_rviz.launch.py",
+        failing=REFERENCE.renaming(LAUNCH, "my_robot/launch/my_robot_rvix.launch.py"),
+        complains="there is no launch file 'my_robot_rviz.launch.py'; the package has launch/my_robot_rvix.launch.py",
+    ),
+    HandInCase(
+        launch_starts,
+        {"name": _NAME, "nodes": ["robot_state_publisher", "rviz2 or rviz"]},
+        says="it starts joint_state_publisher_gui, robot_state_publisher, rviz2",
+        failing=REFERENCE.replacing(LAUNCH, "package='rviz2'", "package='rviz'"),
+        complains="it does not start rviz2 or rviz; it starts joint_state_publisher_gui, robot_state_publisher, rviz/rviz2",
+        at=(LAUNCH, "Node(\n            package='rviz'"),
+    ),
+    HandInCase(
+        launch_finds_files,
+        {"name": _NAME},
+        says="the build puts share/my_robot/my_robot.urdf and share/my_robot/my_robot.rviz where it is looked for",
+        failing=REFERENCE.replacing(LAUNCH, "os.path.join(share, 'my_robot.urdf')", "'urdf/my_robot.urdf'"),
+        complains="it looks for the URDF at urdf/my_robot.urdf, in whatever folder ros2 launch is started from",
+        at=(LAUNCH, "open("),
+    ),
+    HandInCase(
+        rviz_found,
+        _RVIZ,
+        says="the RViz file is rviz/my_robot.rviz",
+        failing=REFERENCE.renaming(RVIZ, "my_robot/rviz/view.rviz"),
+        complains="there is no RViz file 'my_robot.rviz'; the package has rviz/view.rviz",
+    ),
+    HandInCase(
+        rviz_fixed_frame,
+        {**_RVIZ, "frame": "base_footprint"},
+        says="the Fixed Frame is 'base_footprint'",
+        failing=REFERENCE.replacing(RVIZ, "Fixed Frame: base_footprint", "Fixed Frame: map"),
+        complains="the Fixed Frame is 'map', expected 'base_footprint'; the robot has no link 'map'",
+        at=(RVIZ, "map\n"),
+    ),
+    HandInCase(
+        rviz_shows_robot,
+        {**_RVIZ, "topic": "/robot_description"},
+        says="the display 'RobotModel' shows the robot",
+        failing=REFERENCE.replacing(RVIZ, "rviz_default_plugins/RobotModel", "rviz/RobotModel"),
+        complains="rviz/RobotModel is a class of ROS 1; in ROS 2 it is rviz_default_plugins/RobotModel",
+        at=(RVIZ, "rviz/RobotModel"),
+    ),
+    HandInCase(
+        rviz_display_on,
+        {**_RVIZ, "kind": "TF"},
+        says="a TF display is on",
+        failing=REFERENCE.replacing(RVIZ, "plugins/TF\n      Enabled: true", "plugins/TF\n      Enabled: false"),
+        complains="the TF display is off",
+        at=(RVIZ, "rviz_default_plugins/TF"),
+    ),
+)
+
+PENDING_CASES = (
+    PendingCase(
+        answered,
+        {
+            "question": "What happens?",
+            "answer": "It vanishes.",
+            "places": ["task 1 step 15"],
+            "files": ("*.md", "*.txt"),
+        },
+        found="What happens? The answer in answers.md, from line 3, is for a person to mark",
+        at=(ANSWERS, "## Task 1"),
+        without=REFERENCE.without(ANSWERS),
+        not_found="What happens? No answer was found under 'task 1 step 15'; a person decides",
+    ),
+    PendingCase(
+        evidence_shown,
+        {"names": ["task 1 step 8"]},
+        found="a person looks at Task1_Step8.png (640 x 480 pixels, 118 bytes)",
+        at=None,
+        without=HandIn({path: content for path, content in REFERENCE.files.items() if not path.endswith(".png")}),
+        not_found="no picture or PDF named as 'task 1 step 8' was found; there are no pictures at all; a person decides",
+    ),
+)
+
+HAND_IN_CASE = {case.name: case for case in HAND_IN_CASES}
+PENDING_CASE = {case.name: case for case in PENDING_CASES}

@@ -1,0 +1,325 @@
+"""What a person marks: the answer that is shown, the pictures that are found. Both checks are always pending."""
+
+import io
+import sys
+from collections.abc import Sequence
+
+import pytest
+
+from grader.checks.handed_in import answered, evidence_shown
+from grader.checks.outcome import Outcome
+from grader.robot.source import Location
+from tests.checks.asking import ask
+from tests.checks.hand_ins import ANSWERS, REFERENCE, URDF, HandIn, gif, jpeg, png
+
+PLACES = ["task 1 step 15", "step 15"]
+ANSWER = "It vanishes."
+QUESTION = "What happens?"
+STEP_8 = ["task 1 step 8"]
+WEBCAM = ["task 3 step 3", "task 3", "webcam", "camera"]
+ALONE = HandIn({URDF: REFERENCE.files[URDF]})
+NOT_FOUND = "What happens? No answer was found under 'task 1 step 15' or 'step 15'"
+
+
+def answer_in(hand_in: HandIn, places: Sequence[str] = PLACES) -> Outcome:
+    """What is found of the question about step 15; always pending, with the model answer beside it."""
+    outcome = ask(answered, hand_in, question=QUESTION, answer=ANSWER, places=list(places))
+    assert (outcome.status, outcome.expected) == ("pending", ANSWER)
+    return outcome
+
+
+def passage(files: dict[str, str | bytes], places: Sequence[str] = PLACES) -> tuple[object, Location | None]:
+    """The passage that is shown of some documents, and its place."""
+    outcome = answer_in(ALONE.with_files(files), places)
+    if outcome.location is not None:
+        at = outcome.location
+        assert outcome.message == f"What happens? The answer in {at.path}, from line {at.line}, is for a person to mark"
+    return outcome.measured, outcome.location
+
+
+def pictures(hand_in: HandIn, names: Sequence[str] = STEP_8) -> tuple[str, object]:
+    """What is found of a piece of evidence; always pending."""
+    outcome = ask(evidence_shown, hand_in, names=list(names))
+    assert (outcome.status, outcome.expected, outcome.location) == ("pending", None, None)
+    return outcome.message, outcome.measured
+
+
+# --- Answers ----------------------------------------------------------------------------------------------------------
+
+
+def test_the_passage_is_shown() -> None:
+    """The heading and what stands below it are shown, up to the next heading, with the first line's place."""
+    outcome = answer_in(REFERENCE)
+    assert outcome.message == "What happens? The answer in answers.md, from line 3, is for a person to mark"
+    assert outcome.measured == (
+        "## Task 1, step 15\n\nThe robot vanishes: two links have no parent, and a robot has one root."
+    )
+    assert outcome.location == REFERENCE.place(ANSWERS, "## Task 1")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "# Task 1 Step 15\nIt vanishes.",
+        "Task 1, step 15: It vanishes.",
+        "**Task 1, Step 15:** It vanishes.",
+        "T1S15 It vanishes.",
+        "- task1_step15 - It vanishes.",
+        "| Task 1 Step 15 | It vanishes. |",
+        "Lab 6 - Task 1 - Step 15\nIt vanishes.",
+        "TASK 1 STEP 15\n\nIt vanishes.\nAll of it.",
+    ],
+)
+def test_headings_are_found_however_they_are_spelt(text: str) -> None:
+    """A question is found by its task and step, in every spelling and kind of list."""
+    more = f"Something else\n\n{text}\n\nTask 2, step 2: rviz2."
+    assert passage({"answers.txt": more}) == (text, Location("answers.txt", 3, 1))
+
+
+def test_a_task_that_was_named_before_counts() -> None:
+    """A step below the heading of its task is that task's."""
+    text = "# Task 1\n## Step 15\nIt vanishes.\n## Step 18\nno\n# Task 2\n## Step 2\nrviz2\n## Step 15\nno\n"
+    assert passage({"answers.md": text}) == ("## Step 15\nIt vanishes.", Location("answers.md", 2, 1))
+    assert passage({"answers.md": text}, ["task 2 step 2"])[0] == "## Step 2\nrviz2"
+
+
+def test_the_first_place_wins() -> None:
+    """The same step of another task is shown only if there is nothing better."""
+    other, right = "Task 2\nStep 15: no", "Task 1\nStep 15: It vanishes."
+    assert passage({"answers.txt": f"{other}\n{right}"})[0] == "Step 15: It vanishes."
+    assert passage({"a.txt": other, "b.txt": right})[0] == "Step 15: It vanishes."
+    assert passage({"a.txt": other})[0] == "Step 15: no"
+
+
+def test_a_table_of_contents_is_no_answer() -> None:
+    """A heading with nothing below it gives way to one with an answer."""
+    text = "Contents\nTask 1 Step 15 ..... 2\nTask 2 Step 2 ..... 3\n\nTask 1 Step 15\nIt vanishes, for it has two roots.\n"
+    assert passage({"answers.txt": text})[0] == "Task 1 Step 15\nIt vanishes, for it has two roots."
+    assert passage({"answers.txt": "Task 1 Step 15: yes"})[0] == "Task 1 Step 15: yes"
+
+
+def test_a_step_that_is_mentioned_ends_no_answer() -> None:
+    """A sentence about another step belongs to the answer; only a heading ends it."""
+    marked = "## Task 1 step 15\nIt vanishes.\nStep 18 mends it.\n## Task 1 step 18\nno\n"
+    assert passage({"answers.md": marked})[0] == "## Task 1 step 15\nIt vanishes.\nStep 18 mends it."
+    plain = "Task 1 step 15\nIt vanishes.\nOnly with step 18 of the lab is there one root again.\nTask 1 step 18\nno\n"
+    assert passage({"answers.txt": plain})[0] == "\n".join(plain.splitlines()[:3])
+
+
+def test_a_step_that_is_mentioned_late_is_no_heading() -> None:
+    """A line that comes to speak of the step only later is not its heading."""
+    text = "As I have said before, in all of task 1 step 15 is the hardest.\n"
+    assert passage({"answers.txt": text}) == (None, None)
+
+
+@pytest.mark.parametrize("name", ["step15.txt", "Step 15.md", "Task1_Step15.txt", "lab6_task1_q15.md", "T1S15.txt"])
+def test_a_file_that_is_named_for_the_step_is_the_answer(name: str) -> None:
+    """A file of its own is shown as a whole, from its first line with a text."""
+    assert passage({name: "\n\nIt vanishes.\n\nStep 18 is another.\n"}) == (
+        "It vanishes.\n\nStep 18 is another.",
+        Location(name, 3, 1),
+    )
+
+
+def test_places_by_number() -> None:
+    """A lab may number its questions."""
+    assert passage({"a.txt": "Q14: no\nQ15: It vanishes.\nQ16: no"}, ["question 15"])[0] == "Q15: It vanishes."
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "cp1252"])
+def test_texts_of_windows_are_read(encoding: str) -> None:
+    """Whatever an editor saves as, what is shown is what was written."""
+    text = "Task 1 step 15: It doesn’t show, says the café.\r\n\r\nTask 2 step 2: no\r\n"
+    expected = "Task 1 step 15: It doesn’t show, says the café."
+    assert passage({"answers.txt": text.encode(encoding)}) == (expected, Location("answers.txt", 1, 1))
+
+
+def test_a_long_answer_is_cut() -> None:
+    """More than a person reads at a glance is cut, and it is shown that it is."""
+    lines, _ = passage({"answers.md": "# Task 1 step 15\n" + "x\n" * 100})
+    assert isinstance(lines, str)
+    assert lines.endswith("x [...]")
+    assert lines.count("\n") < 70
+    text, _ = passage({"answers.md": "# Task 1 step 15\n" + "x" * 9000})
+    assert isinstance(text, str)
+    assert text.endswith("x [...]")
+    assert len(text) < 4100
+
+
+def test_no_answer_at_all() -> None:
+    """Where nothing was handed in, a person decides, who is told where it was looked for."""
+    assert answer_in(ALONE).message == f"{NOT_FOUND}; a person decides"
+    other = answer_in(ALONE.with_files({"notes.txt": "15. It vanishes.\n", "answers.md": "\n"}))
+    assert other.message == f"{NOT_FOUND}; looked through answers.md, notes.txt; a person decides"
+    assert (other.measured, other.location) == (None, None)
+
+
+def test_other_texts_are_not_looked_through() -> None:
+    """A robot, a build file or a licence holds no answers."""
+    texts = {
+        "robot.txt": "<robot name='r'/> Task 1 step 15: no",
+        "my_robot/CMakeLists.txt": "Task 1 step 15: no",
+        "requirements.txt": "Task 1 step 15: no",
+    }
+    assert answer_in(ALONE.with_files({**texts})).message == f"{NOT_FOUND}; a person decides"
+
+
+def test_documents_by_other_names() -> None:
+    """A rubric may say which documents hold the answers."""
+    hand_in = ALONE.with_files({"answers.txt": "Step 15: no", "report.tex": "Step 15: yes"})
+    outcome = ask(answered, hand_in, question=QUESTION, answer=ANSWER, places=PLACES, files=("*.tex",))
+    assert outcome.measured == "Step 15: yes"
+
+
+def docx(*paragraphs: str, row: Sequence[str] = ()) -> bytes:
+    """A Word file of paragraphs, and a table of one row behind them."""
+    module = pytest.importorskip("docx")
+    document = module.Document()
+    for paragraph in paragraphs:
+        document.add_paragraph(paragraph)
+    if row:
+        table = document.add_table(rows=1, cols=len(row))
+        for cell, text in zip(table.rows[0].cells, row, strict=True):
+            cell.text = text
+    data = io.BytesIO()
+    document.save(data)
+    return data.getvalue()
+
+
+def test_a_word_file_is_read() -> None:
+    """Paragraphs and tables of a Word file are read as lines."""
+    data = docx("Task 1 step 15", "It vanishes.", "Task 1 step 18", "no", row=("Task 2 step 2", "rviz2 shows it"))
+    assert passage({"answers.docx": data}) == ("Task 1 step 15\nIt vanishes.", Location("answers.docx", 1, 1))
+    assert passage({"answers.docx": data}, ["task 2 step 2"])[0] == "Task 2 step 2\trviz2 shows it"
+
+
+@pytest.mark.parametrize("name", ["answers.docx", "answers.pdf"])
+def test_a_damaged_document_is_named(name: str) -> None:
+    """A document that cannot be read is named for the person who marks; it hides no other."""
+    message = answer_in(ALONE.with_files({name: b"no document"})).message
+    assert message.startswith(f"{NOT_FOUND}; a person decides (not read: {name} ")
+    assert message.endswith(": open it yourself)")
+    beside = answer_in(ALONE.with_files({name: b"no document", "b.txt": "Task 1 step 15: It vanishes."}))
+    assert beside.measured == "Task 1 step 15: It vanishes."
+    assert f" (not read: {name} " in beside.message
+
+
+@pytest.mark.parametrize("name", ["answers.docx", "answers.pdf"])
+def test_without_the_readers_the_document_is_named(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the packages for Word and PDF are not installed, it is said how to get them."""
+    monkeypatch.setattr(sys, "executable", "python-that-is-not-there")
+    message = f"{name} could not be read on this machine: open it yourself"
+    assert message in answer_in(ALONE.with_files({name: b""})).message
+    monkeypatch.undo()
+    monkeypatch.setattr("grader.submission.answers._PATIENCE", 0)
+    assert f"{name} takes too long to read: open it yourself" in answer_in(ALONE.with_files({name: b""})).message
+    monkeypatch.undo()
+    monkeypatch.setattr("grader.submission.document_text.MISSING", 1)  # as a damaged document ends
+    message = f"{name} is read only with `pip install 'grader[documents]'`: open it yourself"
+    assert message in answer_in(ALONE.with_files({name: b"no document"})).message
+
+
+@pytest.mark.parametrize("name", ["answers.doc", "answers.odt", "answers.rtf", "answers.pages"])
+def test_a_document_of_another_kind_is_named(name: str) -> None:
+    """A kind that is not read is named, so that a person opens it."""
+    message = f"{NOT_FOUND}; a person decides (not read: {name} is of a kind that is not read: open it yourself)"
+    assert answer_in(ALONE.with_files({name: b"text"})).message == message
+
+
+def test_a_text_that_is_too_large_is_named() -> None:
+    """A text beyond all measure is not read."""
+    message = answer_in(ALONE.with_files({"answers.txt": "Step 15: x\n" * 200_000})).message
+    assert message == f"{NOT_FOUND}; a person decides (not read: answers.txt is larger than 1048576 bytes)"
+
+
+# --- Evidence ---------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "Task1_Step8.png",
+        "task 1 step 8.png",
+        "TASK1-STEP8.PNG",
+        "task1step8.png",
+        "t1s8.png",
+        "lab6_task1_q8.png",
+        "Lab6_Task1_Step08.png",
+        "Task1_Step8_second try.png",
+        "Task1_Steps8-9.png",
+        "Task 1/Step 8.png",
+        "Task 1/Task 1 Step 8/picture.png",
+        "pictures/task1.8.png",
+    ],
+)
+def test_pictures_are_found_however_they_are_named(path: str) -> None:
+    """Task and step are found in the name or in the folders, in every spelling; size and dimensions are told."""
+    size = len(png())
+    expected = (f"a person looks at {path} (640 x 480 pixels, {size} bytes)", (path,))
+    assert pictures(ALONE.with_files({path: png()})) == expected
+
+
+@pytest.mark.parametrize(
+    "path", ["Task1_Step18.png", "Task2_Step8.png", "Task 2/Step 8.png", "Task1/Task2_Step8.png", "step8.png", "8.png"]
+)
+def test_pictures_of_other_steps_are_not_meant(path: str) -> None:
+    """Step 18 is not step 8, and that of another task is not meant; what there is is listed."""
+    message = f"no picture or PDF named as 'task 1 step 8' was found; there are {path}; a person decides"
+    assert pictures(ALONE.with_files({path: png()})) == (message, None)
+
+
+def test_no_pictures_at_all() -> None:
+    """That there is nothing to look at is said, and a person decides."""
+    message = "no picture or PDF named as 'task 1 step 8' was found; there are no pictures at all; a person decides"
+    assert pictures(ALONE) == (message, None)
+    assert pictures(ALONE.with_files({"Task1_Step8.txt": "a text is no picture"})) == (message, None)
+
+
+@pytest.mark.parametrize(
+    "path", ["Task 3/Step 3.png", "Task3_Step3.png", "Task 3/anything.png", "webcam.png", "my_WebCam_image.png", "Cameras.png"]
+)  # fmt: skip
+def test_pictures_by_plain_words(path: str) -> None:
+    """Evidence may be named by words, too, whole or as a beginning."""
+    assert pictures(ALONE.with_files({path: png()}), WEBCAM)[1] == (path,)
+
+
+def test_several_names_are_listed() -> None:
+    """At most three names are told, and at most six files in words, but all of them in the report's data."""
+    message, _ = pictures(ALONE, WEBCAM)
+    assert "named as 'task 3 step 3' or 'task 3' or 'webcam' was found" in message
+    paths = [f"Task1_Step8_{number}.png" for number in range(9)]
+    message, found = pictures(ALONE.with_files({path: png() for path in paths}))
+    assert message.count(" pixels") == 6
+    assert found == tuple(paths)
+
+
+@pytest.mark.parametrize(
+    ("path", "data", "words"),
+    [
+        ("Task1_Step8.jpg", jpeg(800, 600), "800 x 600 pixels, 23 bytes"),
+        ("Task1_Step8.gif", gif(320, 240), "320 x 240 pixels, 14 bytes"),
+        ("Task1_Step8.png", png() + bytes(5000), "640 x 480 pixels, 5 kB"),
+        ("Task1_Step8.png", png() + bytes(2_500_000), "640 x 480 pixels, 2.5 MB"),
+        ("Task1_Step8.pdf", b"%PDF-1.7\n", "9 bytes"),
+        ("Task1_Step8.mp4", b"film", "4 bytes"),
+        ("Task1_Step8.heic", b"no such thing", "13 bytes"),
+        ("Task1_Step8.png", b"\x89PNG\r\n\x1a\n", "8 bytes"),
+        ("Task1_Step8.png", png()[:20], "20 bytes"),
+        ("Task1_Step8.png", b"no picture", "10 bytes"),
+        ("Task1_Step8.png", b"", "0 bytes"),
+    ],
+    ids=["jpeg", "gif", "kB", "MB", "pdf", "film", "heic", "damaged", "cut", "no-picture", "empty"],
+)
+def test_what_is_told_of_a_file(path: str, data: bytes, words: str) -> None:
+    """A picture is told with its dimensions, where they can be read; a damaged one and other files with their size."""
+    assert pictures(ALONE.with_files({path: data})) == (f"a person looks at {path} ({words})", (path,))
+
+
+def test_the_reference_shows_what_is_asked_for() -> None:
+    """The pictures of the reference are found."""
+    for names, path in (
+        (STEP_8, "Task1_Step8.png"),
+        (["task 1 step 18"], "Task1_Step18.png"),
+        (WEBCAM, "Task3_Step3.png"),
+    ):
+        assert pictures(REFERENCE, names)[1] == (path,)

@@ -1,0 +1,809 @@
+"""The launch file: its name, what it starts, and whether what it names is where a build puts it."""
+
+import pytest
+
+from grader.checks.launch import launch_finds_files, launch_found, launch_starts
+from tests.checks.asking import finds, lacks
+from tests.checks.hand_ins import FOLDER, LAUNCH, REFERENCE, RVIZ, SETUP, URDF, HandIn, start_of
+
+NAME = "my_robot_rviz.launch.py"
+STATES = "joint_state_publisher or joint_state_publisher_gui"
+NODES = ["robot_state_publisher", STATES, "rviz2"]
+STARTED = "it starts joint_state_publisher_gui, robot_state_publisher, rviz2"
+FOUND = "the build puts share/my_robot/my_robot.urdf and share/my_robot/my_robot.rviz where it is looked for"
+URDF_PATH, RVIZ_PATH = "os.path.join(share, 'my_robot.urdf')", "os.path.join(share, 'my_robot.rviz')"
+READ = """    with open(os.path.join(share, 'my_robot.urdf')) as file:
+        robot_description = file.read()
+"""
+GUI = "        DeclareLaunchArgument('gui', default_value='true', description='Show sliders for the joints'),\n"
+RVIZ_NODE = """        Node(
+            package='rviz2',
+            executable='rviz2',
+            arguments=['-d', os.path.join(share, 'my_robot.rviz')],
+        ),
+"""
+XML = "my_robot/launch/my_robot_rviz.launch.xml"
+YAML = "my_robot/launch/my_robot_rviz.launch.yaml"
+INNER = "my_robot/launch/robot.launch.py"
+
+
+def launch(old: str, new: str, of: HandIn = REFERENCE) -> HandIn:
+    """A hand-in with another text in its launch file."""
+    return of.replacing(LAUNCH, old, new)
+
+
+WITH_IMPORTS = launch(
+    "from launch.substitutions import LaunchConfiguration\n",
+    "from launch.substitutions import Command, LaunchConfiguration, PathJoinSubstitution\n"
+    "from launch_ros.parameter_descriptions import ParameterValue\n"
+    "from launch_ros.substitutions import FindPackageShare\n"
+    "import xacro\n",
+)
+
+
+def described(code: str) -> HandIn:
+    """The reference with another way to get at the robot's description."""
+    return launch(READ, f"    robot_description = {code}\n", WITH_IMPORTS)
+
+
+def declaring(argument: str, of: HandIn) -> HandIn:
+    """A hand-in that declares another launch argument before the others."""
+    return launch(GUI, f"        {argument},\n{GUI}", of)
+
+
+def starts(hand_in: HandIn) -> tuple[str, str, object]:
+    """What is found of the nodes that the lab asks for."""
+    return finds(launch_starts, hand_in, name=NAME, nodes=NODES)
+
+
+def finds_files(hand_in: HandIn) -> tuple[str, str, object]:
+    """What is found of the files that the launch file names."""
+    return finds(launch_finds_files, hand_in, name=NAME)
+
+
+DISPLAY = REFERENCE.with_files(
+    {
+        LAUNCH: """\
+from launch import LaunchDescription
+from launch.actions import IncludeLaunchDescription
+from launch.launch_description_sources import PythonLaunchDescriptionSource
+from launch.substitutions import PathJoinSubstitution
+from launch_ros.substitutions import FindPackageShare
+
+
+def generate_launch_description():
+    display = PathJoinSubstitution([FindPackageShare('urdf_launch'), 'launch', 'display.launch.py'])
+    return LaunchDescription([
+        IncludeLaunchDescription(
+            display,
+            launch_arguments={
+                'urdf_package': 'my_robot',
+                'urdf_package_path': 'my_robot.urdf',
+                'rviz_config': PathJoinSubstitution([FindPackageShare('my_robot'), 'my_robot.rviz']),
+            }.items(),
+        ),
+    ])
+"""
+    }
+)
+INCLUDES = REFERENCE.with_files(
+    {
+        INNER: REFERENCE.files[LAUNCH],
+        LAUNCH: """\
+import os
+
+from ament_index_python.packages import get_package_share_directory
+from launch import LaunchDescription
+from launch.actions import IncludeLaunchDescription
+from launch.launch_description_sources import PythonLaunchDescriptionSource
+
+
+def generate_launch_description():
+    share = get_package_share_directory('my_robot')
+    inner = os.path.join(share, 'launch', 'robot.launch.py')
+    return LaunchDescription([IncludeLaunchDescription(PythonLaunchDescriptionSource(inner))])
+""",
+    }
+)
+IN_XML = REFERENCE.without(LAUNCH).with_files(
+    {
+        XML: """\
+<launch>
+  <arg name="gui" default="true"/>
+  <node pkg="joint_state_publisher_gui" exec="joint_state_publisher_gui" if="$(var gui)"/>
+  <node pkg="joint_state_publisher" exec="joint_state_publisher" unless="$(var gui)"/>
+  <node pkg="robot_state_publisher" exec="robot_state_publisher">
+    <param name="robot_description" value="$(command 'xacro $(find-pkg-share my_robot)/my_robot.urdf')" type="str"/>
+  </node>
+  <node pkg="rviz2" exec="rviz2" args="-d $(find-pkg-share my_robot)/my_robot.rviz"/>
+</launch>
+"""
+    }
+)
+IN_YAML = REFERENCE.without(LAUNCH).with_files(
+    {
+        YAML: """\
+launch:
+  - arg: {name: gui, default: 'true'}
+  - node: {pkg: joint_state_publisher_gui, exec: joint_state_publisher_gui, if: $(var gui)}
+  - node:
+      pkg: robot_state_publisher
+      exec: robot_state_publisher
+      param:
+        - name: robot_description
+          value: $(command 'xacro $(find-pkg-share my_robot)/my_robot.urdf')
+          type: str
+  - node:
+      pkg: rviz2
+      exec: rviz2
+      args: -d $(find-pkg-share my_robot)/my_robot.rviz
+"""
+    }
+)
+
+
+# --- Its name ---------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("hand_in", [REFERENCE, IN_XML, IN_YAML, INCLUDES], ids=["py", "xml", "yaml", "two"])
+def test_the_launch_file_is_found_in_any_language(hand_in: HandIn) -> None:
+    """Its name counts, and not the language that it is written in."""
+    path = next(each for each in (LAUNCH, XML, YAML) if each in hand_in.files).removeprefix("my_robot/")
+    assert finds(launch_found, hand_in, name=NAME) == ("passed", f"the launch file is {path}", None)
+
+
+def test_the_launch_file_is_found_in_any_folder() -> None:
+    """Where it stands is for setup.py to know."""
+    hand_in = REFERENCE.renaming(LAUNCH, "my_robot/my_robot_rviz.launch.py")
+    assert finds(launch_found, hand_in, name=NAME) == ("passed", "the launch file is my_robot_rviz.launch.py", None)
+
+
+@pytest.mark.parametrize(
+    "name", ["my_robot_rvix.launch.py", "my_robot_rviz_launch.py", "display.launch.py", "my_robot_rviz.py"]
+)
+def test_another_name_costs_the_name_only(name: str) -> None:
+    """A launch file of another name fails for its name, and is looked at all the same."""
+    hand_in = REFERENCE.renaming(LAUNCH, f"my_robot/launch/{name}")
+    message = f"there is no launch file 'my_robot_rviz.launch.py'; the package has launch/{name}"
+    assert finds(launch_found, hand_in, name=NAME) == ("failed", message, None)
+    assert starts(hand_in) == ("passed", STARTED, None)
+
+
+@pytest.mark.parametrize("name", ["my_robot_rviz", "my_robot_rviz.launch", "my_robot_rviz.launch.py.txt"])
+def test_without_a_proper_ending_it_cannot_be_started(name: str) -> None:
+    """A launch file without an extension, or with one more, is named, and looked at all the same."""
+    hand_in = REFERENCE.renaming(LAUNCH, f"my_robot/launch/{name}")
+    message = (
+        f"there is no launch file 'my_robot_rviz.launch.py'; the package has launch/{name}, "
+        "which ros2 launch cannot start without an ending such as .launch.py"
+    )
+    assert finds(launch_found, hand_in, name=NAME) == ("failed", message, None)
+    assert starts(hand_in) == ("passed", STARTED, None)
+
+
+def test_the_file_of_the_name_is_meant() -> None:
+    """Of several launch files the named one is looked at; else the one that is named most like it."""
+    broken = "import nothing\n"
+    several = REFERENCE.with_files({"my_robot/launch/a.launch.py": broken})
+    assert finds(launch_found, several, name=NAME)[0] == "passed"
+    assert starts(several)[0] == "passed"
+    misspelt = several.renaming(LAUNCH, "my_robot/launch/my_robot_rvix.launch.py")
+    assert finds(launch_found, misspelt, name=NAME)[1].endswith("launch/my_robot_rvix.launch.py")
+
+
+def test_without_launch_file_the_same_is_missed() -> None:
+    """No launch file is one thing that is missed, whatever is asked of it."""
+    gone, empty = REFERENCE.without("my_robot/launch"), REFERENCE.renaming(LAUNCH, "my_robot/launch/README.md")
+    message = "the package has no launch file: none ends in .launch.py, .launch.xml or .launch.yaml"
+    for hand_in, words in ((gone, f"{message}, and there is no folder launch"), (empty, message)):
+        expected = ("launch file in the package", "", words, None)
+        assert lacks(launch_found, hand_in, name=NAME) == expected
+        assert lacks(launch_starts, hand_in, name=NAME, nodes=NODES) == expected
+        assert lacks(launch_finds_files, hand_in, name=NAME) == expected
+
+
+# --- What it starts ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "hand_in",
+    [REFERENCE, WITH_IMPORTS, DISPLAY, INCLUDES, IN_XML, IN_YAML],
+    ids=["py", "imports", "urdf_launch", "include", "xml", "yaml"],
+)
+def test_equivalent_launch_files_pass(hand_in: HandIn) -> None:
+    """The nodes are found in every language, and in launch files that are included."""
+    assert starts(hand_in) == ("passed", STARTED, None)
+    assert finds_files(hand_in)[0] == "passed"
+
+
+def test_the_defaults_of_arguments_count() -> None:
+    """Which of two nodes is started is told by the default of an argument."""
+    off = launch("default_value='true'", "default_value='false'")
+    assert starts(off) == ("passed", "it starts joint_state_publisher, robot_state_publisher, rviz2", None)
+
+
+def test_other_nodes_do_not_matter() -> None:
+    """More may be started than is asked for; a node of another package is named with it."""
+    more = launch(RVIZ_NODE, RVIZ_NODE + "        Node(package='turtlesim', executable='turtlesim_node'),\n")
+    assert starts(more) == ("passed", STARTED + ", turtlesim/turtlesim_node", None)
+
+
+@pytest.mark.parametrize(
+    ("hand_in", "missing", "running", "at"),
+    [
+        (launch(RVIZ_NODE, ""), "rviz2", "joint_state_publisher_gui, robot_state_publisher", None),
+        (
+            launch("package='rviz2'", "package='rviz'"),
+            "rviz2",
+            "joint_state_publisher_gui, robot_state_publisher, rviz/rviz2",
+            "Node(\n            package='rviz'",
+        ),
+        (
+            launch("executable='rviz2'", "executable='rviz'"),
+            "rviz2",
+            "joint_state_publisher_gui, robot_state_publisher, rviz2/rviz",
+            "Node(\n            package='rviz2'",
+        ),
+        (
+            launch("executable='robot_state_publisher'", "executable='robot_state_publsher'"),
+            "robot_state_publisher",
+            "joint_state_publisher_gui, robot_state_publisher/robot_state_publsher, rviz2",
+            "Node(\n            package='robot_state_publisher'",
+        ),
+        (DISPLAY.replacing(LAUNCH, "display.l", "description.l"), f"{STATES}, rviz2", "robot_state_publisher", None),
+        (
+            REFERENCE.with_files(
+                {LAUNCH: "from launch import LaunchDescription\ndef generate_launch_description():\n  return LaunchDescription([])\n"}
+            ),
+            f"robot_state_publisher, {STATES}, rviz2",
+            "nothing",
+            None,
+        ),
+    ],
+    ids=["left-out", "package", "executable", "misspelt", "description", "empty"],
+)  # fmt: skip
+def test_a_node_that_is_not_started_is_named(hand_in: HandIn, missing: str, running: str, at: str | None) -> None:
+    """What is missing is named beside what is started, with the place of a node that comes near."""
+    place = hand_in.place(LAUNCH, at) if at is not None else None
+    assert starts(hand_in) == ("failed", f"it does not start {missing}; it starts {running}", place)
+
+
+def test_a_node_that_is_made_and_forgotten() -> None:
+    """A node counts only if it is part of the LaunchDescription."""
+    made = "    rviz = Node(package='rviz2', executable='rviz2')\n\n    return LaunchDescription(["
+    hand_in = launch("    return LaunchDescription([", made, launch(RVIZ_NODE, ""))
+    message = (
+        "it does not start rviz2; it starts joint_state_publisher_gui, robot_state_publisher. "
+        "The node rviz2 is made, but not part of the LaunchDescription"
+    )
+    assert starts(hand_in) == ("failed", message, hand_in.place(LAUNCH, "Node(package='rviz2'"))
+
+
+def test_a_condition_that_is_off() -> None:
+    """A node behind a condition that is off by default is not started by the lab's command."""
+    hand_in = launch(
+        "            arguments=['-d'", "            condition=UnlessCondition(gui),\n            arguments=['-d'"
+    )
+    message = (
+        "it does not start rviz2; it starts joint_state_publisher_gui, robot_state_publisher. "
+        "A condition keeps rviz2 from being started, unless an argument is given"
+    )
+    assert starts(hand_in) == ("failed", message, hand_in.place(LAUNCH, "Node(\n            package='rviz2'"))
+
+
+def test_an_argument_without_default_is_for_a_person() -> None:
+    """Which node is started then depends on who starts it."""
+    hand_in = launch("default_value='true', ", "")
+    assert starts(hand_in) == ("pending", f"whether {STATES} is started is told only by a run", None)
+    worse = launch(RVIZ_NODE, "", hand_in)
+    assert starts(worse)[:2] == (
+        "failed",
+        f"it does not start {STATES}, rviz2; it starts robot_state_publisher",
+    )
+
+
+def test_what_only_a_run_tells_is_for_a_person() -> None:
+    """Nodes that depend on the machine, or on launch files that nobody has, are left open."""
+    hand_in = launch("executable='rviz2'", "executable=os.environ['VIEWER']")
+    status, message, place = starts(hand_in)
+    assert (status, place) == ("pending", None)
+    assert message.startswith("whether rviz2 is started is told only by a run: ")
+    foreign = DISPLAY.replacing(LAUNCH, "'urdf_launch'", "'urdf_tutorial'")
+    reason = "it includes share/urdf_tutorial/launch/display.launch.py, which the submission does not install"
+    all_nodes = f"robot_state_publisher, {STATES}, rviz2"
+    assert starts(foreign) == ("pending", f"whether {all_nodes} is started is told only by a run: {reason}", None)
+    assert finds_files(foreign) == ("pending", f"which files it names is told only by a run: {reason}", None)
+
+
+@pytest.mark.parametrize(
+    ("hand_in", "message", "at"),
+    [
+        (
+            launch("from launch_ros.actions import Node\n", ""),
+            "the name 'Node' is used, but not defined or imported",
+            "Node(\n            package='joint_state_publisher',",
+        ),
+        (
+            launch("import os\n", ""),
+            "the name 'os' is used, but not defined or imported",
+            URDF_PATH,
+        ),
+        (
+            launch(GUI, ""),
+            "the launch argument 'gui' is used, but DeclareLaunchArgument does not declare it before",
+            "LaunchConfiguration('gui')",
+        ),
+        (
+            described("Command(['xacro ', LaunchConfiguration('model')])"),
+            "the launch argument 'model' is used, but DeclareLaunchArgument does not declare it before",
+            "LaunchConfiguration('model')",
+        ),
+        (
+            described("Command(['xacro', os.path.join(share, 'my_robot.urdf')])"),
+            "a space is missing between xacro and the path: write 'xacro '",
+            "Command(['xacro'",
+        ),
+        (
+            DISPLAY.replacing(LAUNCH, "}.items(),", "},"),
+            "launch_arguments is given a dict: write .items() behind it",
+            "IncludeLaunchDescription(\n",
+        ),
+    ],
+    ids=["node", "os", "argument", "in-command", "space", "items"],
+)
+def test_what_stops_the_launch_fails(hand_in: HandIn, message: str, at: str) -> None:
+    """Whatever makes ros2 launch stop is told once, at its place, and the files count as found or as open."""
+    assert starts(hand_in) == ("failed", message, hand_in.place(LAUNCH, at))
+    assert finds_files(hand_in)[0] in ("passed", "pending")
+
+
+def test_several_faults_are_counted() -> None:
+    """The first fault is told, and how many others there are."""
+    hand_in = launch("from launch_ros.actions import Node\n", "", launch("import os\n", ""))
+    assert starts(hand_in)[1] == "the name 'os' is used, but not defined or imported (and 1 more)"
+
+
+@pytest.mark.parametrize(
+    ("hand_in", "message", "at"),
+    [
+        (
+            launch("            executable='rviz2',", "            executable='rviz2'"),
+            "Python cannot read the file: invalid syntax. Perhaps you forgot a comma?",
+            "'rviz2'\n",
+        ),
+        (
+            launch("    ])\n", "    )\n"),
+            "Python cannot read the file: closing parenthesis ')' does not match opening parenthesis '[' on line 20",
+            ")\n",
+        ),
+        (
+            launch("def generate_launch_description", "def generate_launch_descripton"),
+            "the file defines no function generate_launch_description, which ros2 launch calls",
+            None,
+        ),
+        (
+            REFERENCE.with_files({LAUNCH: ""}),
+            "the file defines no function generate_launch_description, which ros2 launch calls",
+            None,
+        ),
+        (
+            launch("    return LaunchDescription", "    LaunchDescription"),
+            "generate_launch_description does not return its LaunchDescription",
+            "def generate",
+        ),
+    ],
+    ids=["comma", "bracket", "entry", "empty", "return"],
+)
+def test_a_launch_file_of_which_nothing_is_known(hand_in: HandIn, message: str, at: str | None) -> None:
+    """A fault that hides everything is missed once, under one key, by both checks."""
+    for check, arguments in ((launch_starts, {"nodes": NODES}), (launch_finds_files, {})):
+        *key, place = lacks(check, hand_in, name=NAME, **arguments)
+        assert key == ["launch file", "launch/my_robot_rviz.launch.py", message]
+        if at is None:
+            assert place == start_of(LAUNCH)
+        elif at != ")\n":
+            assert place == hand_in.place(LAUNCH, at)
+    assert finds(launch_found, hand_in, name=NAME)[0] == "passed"
+
+
+@pytest.mark.parametrize(
+    ("hand_in", "path", "message", "at"),
+    [
+        (
+            IN_XML.replacing(XML, "</node>", ""),
+            XML,
+            "not readable as XML: Opening and ending tag mismatch",
+            "</launch>",
+        ),
+        (IN_YAML.replacing(YAML, "      exec: rviz2", "\texec: rviz2"), YAML, "not readable as YAML: ", "\texec"),
+        (
+            IN_YAML.replacing(YAML, "launch:\n", "lunch:\n"),
+            YAML,
+            "the file is not one list under launch:; ros2 launch reads nothing of it",
+            "lunch:",
+        ),
+        (
+            IN_XML.replacing(XML, "<launch>", "<robot>").replacing(XML, "</launch>", "</robot>"),
+            XML,
+            "the root of the file is not <launch>; ros2 launch reads nothing of it",
+            "<robot>",
+        ),
+    ],
+    ids=["xml", "yaml", "key", "root"],
+)
+def test_xml_and_yaml_that_cannot_be_read(hand_in: HandIn, path: str, message: str, at: str) -> None:
+    """A launch file in another language is missed in the same way."""
+    kind, name, words, place = lacks(launch_starts, hand_in, name=NAME, nodes=NODES)
+    assert (kind, name) == ("launch file", path.removeprefix("my_robot/"))
+    assert words.startswith(message)
+    assert place is not None
+    assert (place.path, place.line) == (path, hand_in.place(path, at).line)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("find-pkg-share", "find", "$(find ...) is of ROS 1; in ROS 2 it is $(find-pkg-share ...)"),
+        (
+            'pkg="rviz2" exec=',
+            'pkg="rviz2" type=',
+            "<node> has no 'type' in ROS 2's launch files; the attribute is called 'exec'",
+        ),
+        (
+            '  <arg name="gui" default="true"/>\n',
+            "",
+            "the launch argument 'gui' is used, but DeclareLaunchArgument does not declare it before",
+        ),
+    ],
+    ids=["find", "type", "argument"],
+)
+def test_what_ros1_wrote_stops_the_launch(old: str, new: str, message: str) -> None:
+    """Words of ROS 1 in a launch file in XML are told, with those of ROS 2."""
+    hand_in = IN_XML.replacing(XML, old, new)
+    status, words, _ = starts(hand_in)
+    assert (status, words) == ("failed", message)
+
+
+# --- What it names ----------------------------------------------------------------------------------------------------
+
+
+def test_what_is_found_is_named() -> None:
+    """It is said which files are where they are looked for."""
+    assert finds_files(REFERENCE) == ("passed", FOUND, None)
+    inner = FOUND.replace("puts ", "puts share/my_robot/launch/robot.launch.py, ")
+    assert finds_files(INCLUDES) == ("passed", inner, None)
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "open(os.path.join(share, 'my_robot.urdf')).read()",
+        "open(f'{share}/my_robot.urdf').read()",
+        "open(share + '/my_robot.urdf', 'r', encoding='utf-8').read()",
+        "Command(['xacro ', os.path.join(share, 'my_robot.urdf')])",
+        "ParameterValue(Command(['xacro ', os.path.join(share, 'my_robot.urdf')]), value_type=str)",
+        "Command(['xacro ', PathJoinSubstitution([FindPackageShare('my_robot'), 'my_robot.urdf'])])",
+        "Command(['xacro ', FindPackageShare('my_robot'), '/my_robot.urdf'])",
+        "Command(['cat ', os.path.join(share, 'my_robot.urdf')])",
+        "xacro.process_file(os.path.join(share, 'my_robot.urdf')).toxml()",
+        "xacro.process_file(os.path.join(share, 'my_robot.urdf')).toprettyxml(indent='  ')",
+    ],
+    ids=["open", "f", "plus", "command", "value", "substitution", "pieces", "cat", "process_file", "pretty"],
+)
+def test_ways_to_read_the_urdf(code: str) -> None:
+    """However the file is read, where it is looked for is what counts."""
+    assert finds_files(described(code)) == ("passed", FOUND, None)
+    assert starts(described(code)) == ("passed", STARTED, None)
+    wrong = described(code.replace("my_robot.urdf", "urdf/my_robot.urdf"))
+    message = "it looks for the URDF at share/my_robot/urdf/my_robot.urdf, but the build puts it at share/my_robot/my_robot.urdf"
+    assert finds_files(wrong)[:2] == ("failed", message)
+
+
+def test_the_default_of_an_argument_is_looked_for() -> None:
+    """A path may be the default of a launch argument; without a default a person has to look."""
+    model = described("Command(['xacro ', LaunchConfiguration('model')])")
+    right = declaring("DeclareLaunchArgument('model', default_value=os.path.join(share, 'my_robot.urdf'))", model)
+    assert finds_files(right) == ("passed", FOUND, None)
+    wrong = declaring("DeclareLaunchArgument('model', default_value='/home/me/my_robot.urdf')", model)
+    assert finds_files(wrong)[0] == "failed"
+    none = declaring("DeclareLaunchArgument('model')", model)
+    message = "the launch argument 'model' has no default: a person has to look"
+    assert finds_files(none) == ("pending", message, None)
+
+
+@pytest.mark.parametrize("spelling", ["['-d' + {}]", "['--display-config', {}]", "['-d', {}, '--fullscreen']"])
+def test_ways_to_open_the_rviz_file(spelling: str) -> None:
+    """Every spelling of RViz's option is known."""
+    assert finds_files(launch(f"['-d', {RVIZ_PATH}]", spelling.format(RVIZ_PATH))) == ("passed", FOUND, None)
+
+
+NESTED = REFERENCE.replacing(
+    SETUP,
+    "(os.path.join('share', package_name), glob('urdf/*'))",
+    "(os.path.join('share', package_name, 'urdf'), glob('urdf/*'))",
+)
+
+
+def test_flat_and_nested_paths_have_to_agree() -> None:
+    """The launch file and setup.py have to mean the same place, whichever it is."""
+    wanted = launch(URDF_PATH, "os.path.join(share, 'urdf', 'my_robot.urdf')")
+    flat, nested = "share/my_robot/my_robot.urdf", "share/my_robot/urdf/my_robot.urdf"
+    agreeing = HandIn({**NESTED.files, LAUNCH: wanted.files[LAUNCH]})
+    assert finds_files(agreeing) == ("passed", FOUND.replace(flat, nested), None)
+    for hand_in, asked, put in ((NESTED, flat, nested), (wanted, nested, flat)):
+        message = f"it looks for the URDF at {asked}, but the build puts it at {put}"
+        assert finds_files(hand_in) == ("failed", message, hand_in.place(LAUNCH, "open("))
+
+
+@pytest.mark.parametrize(
+    ("hand_in", "message", "at"),
+    [
+        (
+            launch(URDF_PATH, "'/home/student/ros2_ws/src/my_robot/urdf/my_robot.urdf'"),
+            ("it looks for the URDF at /home/student/ros2_ws/src/my_robot/urdf/my_robot.urdf, which exists on one machine "
+            "only: get_package_share_directory('my_robot') tells where it is installed"),
+            "open(",
+        ),
+        (
+            launch(URDF_PATH, "os.path.expanduser('~/ros2_ws/my_robot.urdf')"),
+            ("it looks for the URDF at ~/ros2_ws/my_robot.urdf, which exists on one machine only: "
+            "get_package_share_directory('my_robot') tells where it is installed"),
+            "open(",
+        ),
+        (
+            launch(URDF_PATH, "'~/ros2_ws/my_robot.urdf'"),
+            "it looks for the URDF at ~/ros2_ws/my_robot.urdf, but nothing puts the home folder in place of ~",
+            "open(",
+        ),
+        (
+            launch(URDF_PATH, "'urdf/my_robot.urdf'"),
+            "it looks for the URDF at urdf/my_robot.urdf, in whatever folder ros2 launch is started from",
+            "open(",
+        ),
+        (
+            launch(RVIZ_PATH, "'rviz/my_robot.rviz'"),
+            "it looks for the RViz file at rviz/my_robot.rviz, in whatever folder ros2 launch is started from",
+            "Node(\n            package='rviz2'",
+        ),
+        (
+            launch(RVIZ_PATH, "'/Users/me/my_robot.rviz'"),
+            ("it looks for the RViz file at /Users/me/my_robot.rviz, which exists on one machine only: "
+            "get_package_share_directory('my_robot') tells where it is installed"),
+            "Node(\n            package='rviz2'",
+        ),
+        (
+            launch("get_package_share_directory('my_robot')", "get_package_share_directory('my_robt')"),
+            "it looks in a package 'my_robt', but this one is named 'my_robot'",
+            "open(",
+        ),
+        (
+            launch("'my_robot.urdf'", "'my_robt.urdf'"),
+            ("it looks for the URDF at share/my_robot/my_robt.urdf, but the package has no file 'my_robt.urdf'; "
+            "there is 'my_robot.urdf'"),
+            "open(",
+        ),
+        (
+            launch("'my_robot.rviz'", "'config.rviz'"),
+            ("it looks for the RViz file at share/my_robot/config.rviz, but the package has no file 'config.rviz'; "
+            "there is 'my_robot.rviz'"),
+            "Node(\n            package='rviz2'",
+        ),
+        (
+            launch(f"            arguments=['-d', {RVIZ_PATH}],\n", ""),
+            "rviz2 is started without -d and a file, so it opens its own default instead of the lab's configuration",
+            "Node(\n            package='rviz2'",
+        ),
+        (
+            launch(f"['-d', {RVIZ_PATH}]", "['-d']"),
+            "rviz2 is given -d without the path of a file",
+            "Node(\n            package='rviz2'",
+        ),
+        (
+            launch("            parameters=[{'robot_description': robot_description}],\n", ""),
+            "robot_state_publisher is started without robot_description: it has no robot to publish",
+            "Node(\n            package='robot_state_publisher'",
+        ),
+        (
+            described(URDF_PATH),
+            "robot_description is given the path of the URDF, not what is in it: read the file first",
+            "Node(\n            package='robot_state_publisher'",
+        ),
+        (
+            DISPLAY.replacing(LAUNCH, "'my_robot.urdf'", "'urdf/my_robot.urdf'"),
+            ("it looks for the URDF at share/my_robot/urdf/my_robot.urdf, "
+            "but the build puts it at share/my_robot/my_robot.urdf"),
+            "IncludeLaunchDescription(\n",
+        ),
+        (
+            DISPLAY.replacing(LAUNCH, "                'urdf_package': 'my_robot',\n", ""),
+            "urdf_launch needs the arguments urdf_package and urdf_package_path",
+            "IncludeLaunchDescription(\n",
+        ),
+        (
+            DISPLAY.replacing(LAUNCH, "'rviz_config'", "'rvizconfig'"),
+            "urdf_launch is included without rviz_config, so it opens its own configuration, not the lab's",
+            "IncludeLaunchDescription(\n",
+        ),
+    ],
+    ids=[
+        "home", "expanduser", "tilde", "relative", "relative-rviz", "mac", "package", "file", "rviz-file", "no-d",
+        "bare-d", "no-description", "path-given", "urdf_launch-path", "urdf_launch-package", "urdf_launch-rviz",
+    ],
+)  # fmt: skip
+def test_a_file_that_is_not_where_it_is_looked_for(hand_in: HandIn, message: str, at: str) -> None:
+    """Each way to miss a file is told in its own words, where it is named; the nodes are started all the same."""
+    assert finds_files(hand_in) == ("failed", message, hand_in.place(LAUNCH, at))
+    assert starts(hand_in)[0] == "passed"
+
+
+def test_the_same_in_xml_and_yaml() -> None:
+    """The other languages are held to the same paths."""
+    wrong = IN_XML.replacing(XML, "/my_robot.urdf", "/urdf/my_robot.urdf")
+    message = "it looks for the URDF at share/my_robot/urdf/my_robot.urdf, but the build puts it at share/my_robot/my_robot.urdf"
+    at = wrong.place(XML, "<param")
+    assert finds_files(wrong) == ("failed", message, at)
+    other = IN_YAML.replacing(YAML, "/my_robot.rviz", "/rviz/my_robot.rviz")
+    words = "it looks for the RViz file at share/my_robot/rviz/my_robot.rviz, but the build puts it at share/my_robot/my_robot.rviz"
+    assert finds_files(other)[:2] == ("failed", words)
+
+
+def test_two_wrong_paths_are_both_told() -> None:
+    """One fault does not hide the other."""
+    hand_in = launch(RVIZ_PATH, "'my_robot.rviz'", launch(URDF_PATH, "'/home/me/my_robot.urdf'"))
+    status, message, place = finds_files(hand_in)
+    assert (status, place) == ("failed", hand_in.place(LAUNCH, "open("))
+    assert "/home/me/my_robot.urdf" in message
+    assert "; it looks for the RViz file at my_robot.rviz, in whatever folder" in message
+
+
+def test_a_node_that_is_not_started_needs_no_file() -> None:
+    """Whether RViz is started is another criterion's business."""
+    assert finds_files(launch(RVIZ_NODE, ""))[:2] == (
+        "passed",
+        "the build puts share/my_robot/my_robot.urdf where it is looked for",
+    )
+
+
+def test_a_launch_file_that_names_nothing_is_missed() -> None:
+    """Without any file that is named there is nothing to judge."""
+    text = "from launch import LaunchDescription\n\n\ndef generate_launch_description():\n    return LaunchDescription([])\n"
+    expected = ("named file", "", "the launch file names neither a URDF nor an RViz file", None)
+    assert lacks(launch_finds_files, REFERENCE.with_files({LAUNCH: text}), name=NAME) == expected
+
+
+@pytest.mark.parametrize(
+    ("hand_in", "key"),
+    [
+        (REFERENCE.replacing(SETUP, "        (os.path.join('share', package_name), glob('urdf/*')),\n", ""), "installed urdf"),
+        (REFERENCE.replacing(SETUP, "        (os.path.join('share', package_name), glob('rviz/*')),\n", ""), "installed rviz"),
+        (REFERENCE.without(SETUP), "setup.py"),
+        (REFERENCE.replacing(SETUP, "zip_safe=True,", "zip_safe=True"), "setup.py"),
+        (REFERENCE.with_files({SETUP: ""}), "call of setup"),
+    ],
+    ids=["urdf", "rviz", "no-setup", "syntax", "no-call"],
+)  # fmt: skip
+def test_what_is_not_installed_is_missed_as_such(hand_in: HandIn, key: str) -> None:
+    """Where a file is not installed at all, the same is missed as by the check of what is installed."""
+    assert lacks(launch_finds_files, hand_in, name=NAME)[:2] == (key, FOLDER)
+
+
+@pytest.mark.parametrize(("path", "kind"), [(URDF, "URDF"), (RVIZ, "RViz file")])
+def test_a_file_that_does_not_exist_is_missed_as_such(path: str, kind: str) -> None:
+    """Where the package has no such file, the same is missed as by the checks of that file."""
+    assert lacks(launch_finds_files, REFERENCE.without(path), name=NAME)[:2] == (f"{kind} in the package", "")
+
+
+def test_what_is_installed_cannot_be_told() -> None:
+    """What a person has to find out about setup.py, a person has to find out here."""
+    unknown = REFERENCE.replacing(SETUP, "glob('urdf/*')", "os.environ['FILES'].split()")
+    message = "whether the build installs share/my_robot/my_robot.urdf cannot be told: a person has to look"
+    assert finds_files(unknown) == ("pending", message, None)
+    large = REFERENCE.with_files({SETUP: str(REFERENCE.files[SETUP]) + "#" * 200_000})
+    assert finds_files(large)[0] == "pending"
+    cmake = REFERENCE.without(SETUP).with_files({"my_robot/CMakeLists.txt": "install()\n"})
+    assert finds_files(cmake)[0] == "pending"
+
+
+def test_a_file_of_another_package_is_for_a_person() -> None:
+    """Where other packages have their files, only a machine with ROS 2 knows."""
+    other = launch("get_package_share_directory('my_robot')", "get_package_share_directory('urdf_tutorial')")
+    message = "the URDF is in 'urdf_tutorial', which was not handed in: a person has to look"
+    assert finds_files(other) == ("pending", message, None)
+
+
+def test_a_second_package_of_the_hand_in_counts() -> None:
+    """The URDF may be in a description package that was handed in, too."""
+    description = {
+        path.replace(FOLDER, "my_description", 1): str(content).replace("my_robot'", "my_description'")
+        for path, content in REFERENCE.without(LAUNCH, RVIZ).files.items()
+        if path.startswith(FOLDER)
+    }
+    description["my_description/package.xml"] = str(REFERENCE.files["my_robot/package.xml"]).replace(
+        ">my_robot<", ">my_description<"
+    )
+    description["my_description/resource/my_description"] = ""
+    hand_in = REFERENCE.without(URDF).with_files(description)
+    hand_in = launch(URDF_PATH, "os.path.join(get_package_share_directory('my_description'), 'my_robot.urdf')", hand_in)
+    assert finds_files(hand_in) == (
+        "passed",
+        FOUND.replace("my_robot/my_robot.urdf", "my_description/my_robot.urdf"),
+        None,
+    )
+
+
+def test_another_name_in_package_xml_is_no_fault_here() -> None:
+    """The package is found by its entry in the resource index."""
+    hand_in = REFERENCE.replacing("my_robot/package.xml", ">my_robot<", ">robot_lab<")
+    assert finds_files(hand_in) == ("passed", FOUND, None)
+
+
+# --- What it includes -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("hand_in", "message"),
+    [
+        (
+            INCLUDES.replacing(LAUNCH, "share, 'launch', ", "share, "),
+            (
+                "it looks for the launch file at share/my_robot/robot.launch.py, "
+                "but the build puts it at share/my_robot/launch/robot.launch.py"
+            ),
+        ),
+        (
+            INCLUDES.without(INNER),
+            (
+                "it looks for the launch file at share/my_robot/launch/robot.launch.py, "
+                "but the package has no file 'robot.launch.py'"
+            ),
+        ),
+    ],
+    ids=["elsewhere", "no-such-file"],
+)
+def test_an_included_file_that_is_not_there(hand_in: HandIn, message: str) -> None:
+    """An included launch file has to be where it is looked for; what would have been started is left open."""
+    place = hand_in.place(LAUNCH, "IncludeLaunchDescription(P")
+    assert finds_files(hand_in) == ("failed", message, place)
+    assert starts(hand_in)[0] == "pending"
+
+
+def test_an_included_file_that_is_not_installed() -> None:
+    """An included launch file has to be installed, too."""
+    entry = "glob(os.path.join('launch', '*launch.[pxy][yma]*'))"
+    hand_in = INCLUDES.replacing(SETUP, entry, "['launch/my_robot_rviz.launch.py']")
+    message = "it looks for the launch file at share/my_robot/launch/robot.launch.py, but the build does not install robot.launch.py"
+    place = hand_in.place(LAUNCH, "IncludeLaunchDescription(P")
+    assert lacks(launch_finds_files, hand_in, name=NAME) == ("installed include", FOLDER, message, place)
+
+
+def test_a_fault_in_an_included_file() -> None:
+    """What is wrong in an included file is told with its place there."""
+    fault = INCLUDES.replacing(INNER, "from launch_ros.actions import Node\n", "")
+    message = "the name 'Node' is used, but not defined or imported"
+    assert starts(fault) == (
+        "failed",
+        message,
+        fault.place(INNER, "Node(\n            package='joint_state_publisher',"),
+    )
+    broken = INCLUDES.replacing(INNER, "    ])\n", "")
+    place = broken.place(INNER, "[\n        DeclareLaunchArgument")
+    expected = (
+        "launch file",
+        "launch/my_robot_rviz.launch.py",
+        "Python cannot read the file: '[' was never closed",
+        place,
+    )
+    assert lacks(launch_starts, broken, name=NAME, nodes=NODES) == expected
+    assert lacks(launch_finds_files, broken, name=NAME) == expected
+
+
+def test_a_function_that_ros_calls_is_followed() -> None:
+    """OpaqueFunction calls its function with a context: what it returns is started, too."""
+    hand_in = launch(
+        RVIZ_NODE,
+        "        OpaqueFunction(function=lambda context: [\n"
+        f"            Node(package='rviz2', executable='rviz2', arguments=['-d', {RVIZ_PATH}])]),\n",
+        launch("from launch.actions import D", "from launch.actions import OpaqueFunction, D"),
+    )
+    assert starts(hand_in) == ("passed", STARTED, None)
+    assert finds_files(hand_in) == ("passed", FOUND, None)

@@ -1,0 +1,610 @@
+"""The package, and what a build by its setup.py would install."""
+
+import pytest
+
+from grader.checks.package import build_installs, installs_files, package_found, package_type, setup_imports
+from grader.robot.source import Location
+from tests.checks.asking import finds, lacks
+from tests.checks.hand_ins import (
+    FOLDER,
+    LAUNCH,
+    MANIFEST,
+    REFERENCE,
+    RVIZ,
+    SETUP,
+    URDF,
+    HandIn,
+    png,
+    start_of,
+)
+
+KINDS = {"urdf": "my_robot.urdf", "launch": "my_robot_rviz.launch.py", "rviz": "my_robot.rviz"}
+SOURCES = {"urdf": "urdf/my_robot.urdf", "launch": "launch/my_robot_rviz.launch.py", "rviz": "rviz/my_robot.rviz"}
+INSTALLED = {
+    "urdf": "share/my_robot/my_robot.urdf",
+    "launch": "share/my_robot/launch/my_robot_rviz.launch.py",
+    "rviz": "share/my_robot/my_robot.rviz",
+}
+ENTRY = "(os.path.join('share', package_name), glob('{}/*')),"
+URDF_ENTRY, RVIZ_ENTRY = ENTRY.format("urdf"), ENTRY.format("rviz")
+LAUNCH_ENTRY = "(os.path.join('share', package_name, 'launch'), glob(os.path.join('launch', '*launch.[pxy][yma]*'))),"
+STOPS = "the build stops here: "
+
+every_kind = pytest.mark.parametrize("kind", KINDS)
+
+
+def setup(old: str, new: str, of: HandIn = REFERENCE) -> HandIn:
+    """A hand-in with another text in its setup.py."""
+    return of.replacing(SETUP, old, new)
+
+
+def manifest(old: str, new: str) -> HandIn:
+    """The reference with another text in its package.xml."""
+    return REFERENCE.replacing(MANIFEST, old, new)
+
+
+def said(hand_in: HandIn) -> dict[str, str]:
+    """What is said of each kind of file: its status, or what is missed."""
+    found: dict[str, str] = {}
+    for kind, name in KINDS.items():
+        try:
+            found[kind] = finds(build_installs, hand_in, kind=kind, name=name)[0]
+        except LookupError as error:
+            found[kind] = str(getattr(error, "kind", error))
+    return found
+
+
+# --- The package ------------------------------------------------------------------------------------------------------
+
+
+def test_the_package_of_the_lab_is_found() -> None:
+    """A package of the right name passes, wherever it is in what was handed in."""
+    message = "the package is named 'my_robot'"
+    assert finds(package_found, REFERENCE, name="my_robot") == ("passed", message, None)
+    deeper = REFERENCE.renaming(FOLDER, "ros2_ws/src/my_robot")
+    assert finds(package_found, deeper, name="my_robot") == ("passed", message, None)
+    other_folder = REFERENCE.renaming(FOLDER, "lab6_final")
+    assert finds(package_found, other_folder, name="my_robot") == ("passed", message, None)
+    top = HandIn({path.removeprefix("my_robot/"): content for path, content in REFERENCE.files.items()})
+    assert finds(package_found, top, name="my_robot") == ("passed", message, None)
+
+
+def test_another_fileis_told() -> None:
+    """A package that names itself otherwise fails at its name."""
+    other = manifest("<name>my_robot</name>", "<name>my_robt</name>")
+    message = "the package is named 'my_robt', expected 'my_robot'"
+    assert finds(package_found, other, name="my_robot") == ("failed", message, other.place(MANIFEST, "<name>"))
+
+
+def test_the_filecounts_to_the_letter() -> None:
+    """ROS 2 tells capitals from small letters."""
+    other = manifest("<name>my_robot</name>", "<name>My_Robot</name>")
+    assert finds(package_found, other, name="my_robot")[0] == "failed"
+
+
+def test_blanks_around_the_filedo_not_count() -> None:
+    """ROS 2 strips the name of a package."""
+    assert finds(package_found, manifest(">my_robot<", ">\n  my_robot\n  <"), name="my_robot")[0] == "passed"
+
+
+def test_of_several_packages_the_named_one_is_meant() -> None:
+    """Another package in the hand-in does not get in the way."""
+    other = manifest(">my_robot<", ">helpers<").files[MANIFEST]
+    both = REFERENCE.with_files({"a_helpers/package.xml": other, "a_helpers/setup.py": ""})
+    assert finds(package_found, both, name="my_robot")[0] == "passed"
+
+
+@pytest.mark.parametrize("hand_in", [HandIn({"x.png": png()}), HandIn({"my_robot.urdf": REFERENCE.files[URDF]})])
+def test_no_package_is_missed(hand_in: HandIn) -> None:
+    """Pictures or a URDF are no package."""
+    message = "no ROS 2 package was handed in: there is no package.xml"
+    assert lacks(package_found, hand_in, name="my_robot") == ("package", "", message, None)
+
+
+def test_a_package_without_package_xml_is_missed() -> None:
+    """A setup.py alone makes no package, and both checks of package.xml miss the same."""
+    message = "the folder 'my_robot' has a setup.py, but no package.xml: to ROS 2 it is no package"
+    expected = ("package.xml", "my_robot", message, None)
+    assert lacks(package_found, REFERENCE.without(MANIFEST), name="my_robot") == expected
+    assert lacks(package_type, REFERENCE.without(MANIFEST), build_type="ament_python") == expected
+
+
+def test_a_missing_package_xml_costs_no_installed_file() -> None:
+    """That setup.py lists the missing package.xml is not counted a second time."""
+    assert said(REFERENCE.without(MANIFEST)) == dict.fromkeys(KINDS, "passed")
+
+
+@pytest.mark.parametrize(
+    ("hand_in", "message", "line", "column"),
+    [
+        (
+            manifest("</name>", "</nam>"),
+            "package.xml is not readable as XML: Opening and ending tag mismatch: name line 4 and nam",
+            4,
+            23,
+        ),
+        (
+            manifest('<package format="3">', "<robot>").replacing(MANIFEST, "</package>", "</robot>"),
+            "the root of package.xml is <robot>, not <package>",
+            1,
+            1,
+        ),
+    ],
+    ids=["broken", "robot"],
+)
+def test_a_package_xml_that_cannot_be_read(hand_in: HandIn, message: str, line: int, column: int) -> None:
+    """A broken package.xml is missed once, under one key, with its place."""
+    expected = ("package.xml", "my_robot", message, Location(MANIFEST, line, column))
+    assert lacks(package_found, hand_in, name="my_robot") == expected
+    assert lacks(package_type, hand_in, build_type="ament_python") == expected
+
+
+def test_a_package_without_name() -> None:
+    """A name that is missing or empty fails the name, and leaves the build type alone."""
+    none, empty = manifest("  <name>my_robot</name>\n", ""), manifest(">my_robot<", "> <")
+    assert finds(package_found, none, name="my_robot") == (
+        "failed",
+        "package.xml has no <name>",
+        none.place(MANIFEST, "<package"),
+    )
+    message = "<name> of package.xml is empty"
+    assert finds(package_found, empty, name="my_robot") == ("failed", message, empty.place(MANIFEST, "<name>"))
+    for each in (none, empty):
+        assert finds(package_type, each, build_type="ament_python")[0] == "passed"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message", "at"),
+    [
+        ("ament_python", "ament_cmake", "the build type is 'ament_cmake'; expected 'ament_python'", "<build_type>"),
+        ("ament_python", "ament_pyton", "the build type is 'ament_pyton'; expected 'ament_python'", "<build_type>"),
+        ("ament_python", "", "<build_type> of package.xml is empty; expected 'ament_python'", "<build_type>"),
+        (
+            "<build_type>ament_python</build_type>",
+            "",
+            "the build type is 'catkin' of ROS 1, for which a package.xml without build_type stands, too; expected 'ament_python'",
+            "<package format",
+        ),
+        (
+            "ament_python",
+            "catkin",
+            "the build type is 'catkin' of ROS 1, for which a package.xml without build_type stands, too; expected 'ament_python'",
+            "<build_type>",
+        ),
+    ],
+    ids=["cmake", "misspelt", "empty", "none", "catkin"],
+)
+def test_another_build_type_fails(old: str, new: str, message: str, at: str) -> None:
+    """Another build type, or none, fails where it is or should be said."""
+    hand_in = manifest(old, new)
+    assert finds(package_type, hand_in, build_type="ament_python") == ("failed", message, hand_in.place(MANIFEST, at))
+
+
+def test_the_build_type_passes() -> None:
+    """The build type that is asked for passes, blanks around it or not."""
+    for hand_in in (REFERENCE, manifest("ament_python", "\n ament_python ")):
+        expected = ("passed", "the build type is 'ament_python'", None)
+        assert finds(package_type, hand_in, build_type="ament_python") == expected
+
+
+# --- What is installed ------------------------------------------------------------------------------------------------
+
+
+@every_kind
+def test_the_reference_is_installed(kind: str) -> None:
+    """It is said which file is installed where."""
+    message = f"a build installs {SOURCES[kind]} as {INSTALLED[kind]}"
+    assert finds(build_installs, REFERENCE, kind=kind, name=KINDS[kind]) == ("passed", message, None)
+
+
+@pytest.mark.parametrize(
+    "hand_in",
+    [
+        setup("glob('urdf/*')", "['urdf/my_robot.urdf']"),
+        setup("glob('urdf/*')", "glob('urdf/*.urdf')"),
+        setup("glob('urdf/*')", "glob('urdf/my_robot.*')"),
+        setup("glob('urdf/*')", "glob(os.path.join('urdf', '*'))"),
+        setup("glob('urdf/*')", "['urdf/' + name for name in os.listdir('urdf')]"),
+        setup("os.path.join('share', package_name), glob('urdf/*')", "f'share/{package_name}', glob('urdf/*')"),
+        setup("os.path.join('share', package_name), glob('urdf/*')", "'share/' + package_name, glob('urdf/*')"),
+        setup("os.path.join('share', package_name), glob('urdf/*')", "'share/my_robot', glob('urdf/*')"),
+        setup("os.path.join('share', package_name), glob('urdf/*')", "'share/my_robot/', glob('urdf/*')"),
+        setup("glob('urdf/*')", "glob.glob('urdf/*')").with_files({}),
+        setup(URDF_ENTRY, "(os.path.join('share', package_name, 'urdf'), glob('urdf/*')),"),
+        setup("from glob import glob", "import glob as g").replacing(SETUP, " glob(", " g.glob("),
+    ],
+    ids=[
+        "list", "ending", "name", "join", "listdir", "f-string", "plus", "plain", "slash", "module", "nested", "alias",
+    ],
+)  # fmt: skip
+def test_ways_to_say_the_same_pass(hand_in: HandIn) -> None:
+    """However data_files is written, what it installs is what counts."""
+    if "glob.glob" in str(hand_in.files[SETUP]):
+        hand_in = setup("from glob import glob", "import glob", hand_in).replacing(
+            SETUP, " glob('rviz", " glob.glob('rviz"
+        )
+        hand_in = hand_in.replacing(SETUP, " glob(os", " glob.glob(os")
+    assert said(hand_in) == dict.fromkeys(KINDS, "passed")
+    assert finds(setup_imports, hand_in)[0] == "passed"
+
+
+def test_a_loop_over_folders_passes() -> None:
+    """Entries may be made by a function of setup.py."""
+    text = """\
+from glob import glob
+
+from setuptools import setup
+
+package_name = 'my_robot'
+
+
+def entries():
+    found = [('share/ament_index/resource_index/packages', ['resource/' + package_name])]
+    found.append(('share/' + package_name, ['package.xml']))
+    for folder in ('urdf', 'launch', 'rviz'):
+        found += [(f'share/{package_name}/{folder}', glob(f'{folder}/*'))]
+    return found
+
+
+setup(name=package_name, packages=[package_name], data_files=entries())
+"""
+    assert said(REFERENCE.with_files({SETUP: text})) == dict.fromkeys(KINDS, "passed")
+
+
+def test_another_fileof_the_file_passes() -> None:
+    """A URDF or RViz file of another name is the one that is meant if there is no other."""
+    other = REFERENCE.renaming(URDF, "my_robot/urdf/robot.urdf.xacro").renaming(RVIZ, "my_robot/rviz/view.rviz")
+    assert said(other) == dict.fromkeys(KINDS, "passed")
+
+
+@pytest.mark.parametrize(
+    ("kind", "entry"), [("urdf", URDF_ENTRY), ("launch", LAUNCH_ENTRY), ("rviz", RVIZ_ENTRY)], ids=list(KINDS)
+)
+def test_a_missing_entry_is_told(kind: str, entry: str) -> None:
+    """A file that no entry names is missed by its kind, and the others are installed."""
+    hand_in = setup(f"        {entry}\n", "")
+    message = f"a build does not install {SOURCES[kind]}: no entry of data_files in setup.py names it"
+    assert lacks(build_installs, hand_in, kind=kind, name=KINDS[kind]) == (f"installed {kind}", FOLDER, message, None)
+    assert said(hand_in) == {**dict.fromkeys(KINDS, "passed"), kind: f"installed {kind}"}
+
+
+@pytest.mark.parametrize(
+    ("hand_in", "kind", "reason", "at"),
+    [
+        (
+            setup("glob('urdf/*')", "glob('udrf/*')"),
+            "urdf",
+            "the pattern 'udrf/*' in setup.py finds nothing, because there is no folder 'udrf'",
+            "glob('udrf/*')",
+        ),
+        (
+            setup("glob('rviz/*')", "glob('rvis/*.rviz')"),
+            "rviz",
+            "the pattern 'rvis/*.rviz' in setup.py finds nothing, because there is no folder 'rvis'",
+            "glob('rvis/*.rviz')",
+        ),
+        (
+            setup("glob('urdf/*')", "glob('urdf/*.udrf')"),
+            "urdf",
+            "the pattern 'urdf/*.udrf' in setup.py finds nothing",
+            "glob('urdf/*.udrf')",
+        ),
+        (
+            setup("glob(os.path.join('launch', '*launch.[pxy][yma]*'))", "glob('launch/*.launch.xml')"),
+            "launch",
+            "the pattern 'launch/*.launch.xml' in setup.py finds nothing",
+            "glob('launch/*.launch.xml')",
+        ),
+        (
+            setup("glob('urdf/*')", "glob('description/*.urdf')"),
+            "urdf",
+            "the pattern 'description/*.urdf' in setup.py finds nothing, because there is no folder 'description'",
+            "glob('description/*.urdf')",
+        ),
+    ],
+    ids=["folder", "folder-and-ending", "ending", "language", "other-folder"],
+)
+def test_a_pattern_that_finds_nothing_is_told(hand_in: HandIn, kind: str, reason: str, at: str) -> None:
+    """A glob without a match installs nothing, in silence: it is named, with its place."""
+    message = f"a build does not install {SOURCES[kind]}: {reason}"
+    expected = (f"installed {kind}", FOLDER, message, hand_in.place(SETUP, at))
+    assert lacks(build_installs, hand_in, kind=kind, name=KINDS[kind]) == expected
+
+
+def test_a_pattern_for_something_else_is_not_blamed() -> None:
+    """A pattern that finds nothing, but was never meant for the file, is no reason."""
+    hand_in = setup(URDF_ENTRY, "(os.path.join('share', package_name, 'config'), glob('config/*.yaml')),")
+    message = "a build does not install urdf/my_robot.urdf: no entry of data_files in setup.py names it"
+    assert lacks(build_installs, hand_in, kind="urdf", name="my_robot.urdf")[2] == message
+
+
+@pytest.mark.parametrize(
+    ("kind", "folder", "message"),
+    [
+        ("urdf", "my_robot/urdf", "the package has no URDF: no file ends in .urdf or .xacro"),
+        ("rviz", "my_robot/rviz", "the package has no RViz file: none ends in .rviz"),
+        (
+            "launch",
+            "my_robot/launch",
+            (
+                "the package has no launch file: none ends in .launch.py, .launch.xml or .launch.yaml, "
+                "and there is no folder launch"
+            ),
+        ),
+    ],
+    ids=list(KINDS),
+)
+def test_no_such_file_at_all(kind: str, folder: str, message: str) -> None:
+    """Where a package has no file of the kind, that is what is missed."""
+    what = {"urdf": "URDF", "rviz": "RViz file", "launch": "launch file"}[kind]
+    expected = (f"{what} in the package", "", message, None)
+    assert lacks(build_installs, REFERENCE.without(folder), kind=kind, name=KINDS[kind]) == expected
+
+
+def test_a_launch_file_of_another_fileis_installed() -> None:
+    """That it is named otherwise is another criterion's business."""
+    for name in ("my_robot_rvix.launch.py", "display.launch.py", "my_robot_rviz_launch.py", "my_robot_rviz.launch.xml"):
+        hand_in = REFERENCE.renaming(LAUNCH, f"my_robot/launch/{name}")
+        assert finds(build_installs, hand_in, kind="launch", name=KINDS["launch"])[0] == "passed"
+
+
+def test_a_launch_file_without_extension_is_not_found_by_the_pattern() -> None:
+    """The usual pattern does not find it; glob('launch/*') does."""
+    bare = REFERENCE.renaming(LAUNCH, "my_robot/launch/my_robot_rviz")
+    message = "a build does not install launch/my_robot_rviz: the pattern 'launch/*launch.[pxy][yma]*' in setup.py finds nothing"
+    expected = ("installed launch", FOLDER, message, bare.place(SETUP, "glob(os.path"))
+    assert lacks(build_installs, bare, kind="launch", name=KINDS["launch"]) == expected
+    all_files = setup("'*launch.[pxy][yma]*'", "'*'", bare)
+    assert finds(build_installs, all_files, kind="launch", name=KINDS["launch"])[0] == "passed"
+
+
+@pytest.mark.parametrize(
+    ("folder", "target"),
+    [("'share'", "share/my_robot.urdf"), ("os.path.join('lib', package_name)", "lib/my_robot/my_robot.urdf")],
+    ids=["share", "lib"],
+)
+def test_a_file_that_goes_elsewhere_fails(folder: str, target: str) -> None:
+    """ROS 2 looks below share/<package> only."""
+    hand_in = setup(URDF_ENTRY, f"({folder}, glob('urdf/*')),")
+    message = (
+        f"a build installs urdf/my_robot.urdf as {target}, but ROS 2 looks for a package's files below share/my_robot/"
+    )
+    expected = ("failed", message, hand_in.place(SETUP, "setup(\n"))
+    assert finds(build_installs, hand_in, kind="urdf", name="my_robot.urdf") == expected
+
+
+def test_the_filein_the_resource_index_counts() -> None:
+    """ROS 2 finds a package by its entry in the resource index, so another name in package.xml is one fault, not four."""
+    other = manifest(">my_robot<", ">robot_lab<")
+    assert said(other) == dict.fromkeys(KINDS, "passed")
+    marker = "        ('share/ament_index/resource_index/packages', ['resource/' + package_name]),\n"
+    assert said(setup(marker, "", other)) == dict.fromkeys(KINDS, "failed")
+
+
+@pytest.mark.parametrize(
+    ("hand_in", "kind", "reason"),
+    [
+        (
+            setup("glob('urdf/*')", "['urdf/robot.urdf']"),
+            "urdf",
+            "data_files lists 'urdf/robot.urdf', but there is no such file",
+        ),
+        (
+            REFERENCE.with_files({"my_robot/urdf/meshes/a.stl": "solid"}),
+            "urdf",
+            "data_files lists 'urdf/meshes', but it is a folder, and only files can be installed",
+        ),
+        (
+            setup("glob('rviz/*')", "['rviz/my_robot.rvis']"),
+            "rviz",
+            "data_files lists 'rviz/my_robot.rvis', but there is no such file",
+        ),
+        (
+            setup("glob('rviz/*')", "'rviz/my_robot.rviz'"),
+            "rviz",
+            "data_files lists 'rviz/my_robot.rviz', but the files of an entry are a text, not a list: write [...] around it",
+        ),
+        (
+            setup("glob(os.path.join('launch', '*launch.[pxy][yma]*'))", "['launch/robot.launch.py']"),
+            "launch",
+            "data_files lists 'launch/robot.launch.py', but there is no such file",
+        ),
+    ],
+    ids=["no-file", "folder", "misspelt", "no-list", "launch"],
+)
+def test_an_entry_that_stops_the_build_costs_its_own_kind(hand_in: HandIn, kind: str, reason: str) -> None:
+    """An entry that cannot be installed fails the kind that it is about, and no other."""
+    expected = ("failed", f"the build stops here: {reason}", hand_in.place(SETUP, "setup(\n"))
+    assert finds(build_installs, hand_in, kind=kind, name=KINDS[kind]) == expected
+    assert said(hand_in) == {**dict.fromkeys(KINDS, "passed"), kind: "failed"}
+
+
+@pytest.mark.parametrize(
+    ("hand_in", "reason"),
+    [
+        (
+            REFERENCE.without("my_robot/resource"),
+            "data_files lists 'resource/my_robot', but there is no such file",
+        ),
+        (
+            setup("['package.xml']", "'package.xml'"),
+            "data_files lists 'package.xml', but the files of an entry are a text, not a list: write [...] around it",
+        ),
+        (
+            setup("    packages=find_packages(exclude=['test']),\n", ""),
+            (
+                "packages=[...] is missing, and setuptools cannot choose among the folders "
+                "launch, my_robot, resource, rviz, urdf"
+            ),
+        ),
+    ],
+    ids=["resource", "package.xml", "packages"],
+)
+def test_what_stops_the_whole_build_costs_one_criterion(hand_in: HandIn, reason: str) -> None:
+    """An entry that is about no kind of file counts as one about the URDF: one mistake costs one criterion."""
+    for kind, file in KINDS.items():
+        status, message, _ = finds(build_installs, hand_in, kind=kind, name=file)
+        assert status == ("failed" if kind == "urdf" else "passed")
+        assert kind != "urdf" or message == STOPS + reason
+
+
+@every_kind
+def test_without_setup_py_it_is_missed(kind: str) -> None:
+    """A package without setup.py installs nothing."""
+    message = "the package has no setup.py, so a build of an ament_python package installs nothing"
+    expected = ("setup.py", FOLDER, message, None)
+    assert lacks(build_installs, REFERENCE.without(SETUP), kind=kind, name=KINDS[kind]) == expected
+    assert lacks(setup_imports, REFERENCE.without(SETUP)) == expected
+    assert lacks(installs_files, REFERENCE.without(SETUP), files=["urdf/*"]) == expected
+
+
+def test_a_setup_py_with_a_syntax_error_is_missed() -> None:
+    """Python's own message is given at Python's own place, under one key for all that need setup.py."""
+    comma = setup("zip_safe=True,", "zip_safe=True")
+    message = "Python cannot read setup.py: invalid syntax. Perhaps you forgot a comma?"
+    expected = ("setup.py", FOLDER, message, comma.place(SETUP, "True\n"))
+    bracket = setup("    ],\n    install", "    install")
+    for kind, file in KINDS.items():
+        assert lacks(build_installs, comma, kind=kind, name=file) == expected
+        assert lacks(build_installs, bracket, kind=kind, name=file)[:2] == expected[:2]
+    assert lacks(setup_imports, comma) == expected
+
+
+def test_a_setup_py_in_another_encoding_is_missed() -> None:
+    """Python reads UTF-8 unless it is told otherwise."""
+    umlaut = REFERENCE.with_files({SETUP: b"# caf\xe9\n" + REFERENCE.data(SETUP)})
+    assert lacks(setup_imports, umlaut)[0::3] == ("setup.py", start_of(SETUP))
+    told = REFERENCE.with_files({SETUP: b"# -*- coding: latin-1 -*-\n# caf\xe9\n" + REFERENCE.data(SETUP)})
+    assert finds(setup_imports, told)[0] == "passed"
+    assert said(told) == dict.fromkeys(KINDS, "passed")
+
+
+@pytest.mark.parametrize("text", ["", "from setuptools import setup\n", "import os\n\nprint(os.getcwd())\n"])
+def test_a_setup_py_without_setup_is_one_fault(text: str) -> None:
+    """A setup.py that never calls setup() installs nothing: one thing is missed, the same for each kind."""
+    hand_in = REFERENCE.with_files({SETUP: text})
+    expected = ("call of setup", FOLDER, "a build installs nothing: setup.py does not call setup()", None)
+    for kind, file in KINDS.items():
+        assert lacks(build_installs, hand_in, kind=kind, name=file) == expected
+    assert finds(setup_imports, hand_in)[0] == "passed"
+
+
+def test_setup_below_the_main_guard_is_called() -> None:
+    """A build runs setup.py as the main program."""
+    body = str(REFERENCE.files[SETUP]).replace("\nsetup(", "\nif __name__ == '__main__':\n  setup(")
+    assert said(REFERENCE.with_files({SETUP: body})) == dict.fromkeys(KINDS, "passed")
+
+
+@every_kind
+def test_what_cmake_installs_is_for_a_person(kind: str) -> None:
+    """What CMakeLists.txt installs is not followed, and there is no setup.py to judge."""
+    cmake = (
+        manifest("ament_python", "ament_cmake").without(SETUP).with_files({"my_robot/CMakeLists.txt": "install()\n"})
+    )
+    message = "what CMakeLists.txt installs is not followed: a person has to look"
+    assert finds(build_installs, cmake, kind=kind, name=KINDS[kind]) == ("pending", message, None)
+    assert finds(setup_imports, cmake) == ("pending", message, None)
+    assert finds(installs_files, cmake, files=["urdf/*"]) == ("pending", message, None)
+    left_over = cmake.with_files({SETUP: REFERENCE.files[SETUP]})
+    assert finds(build_installs, left_over, kind=kind, name=KINDS[kind]) == ("pending", message, None)
+    not_used = REFERENCE.with_files({"my_robot/CMakeLists.txt": "install()\n"})
+    assert finds(build_installs, not_used, kind=kind, name=KINDS[kind])[0] == "passed"
+
+
+@every_kind
+def test_what_cannot_be_followed_is_for_a_person(kind: str) -> None:
+    """Entries that only a run would tell leave every file open that is not seen to be installed."""
+    hand_in = setup("glob('urdf/*')", "os.environ['FILES'].split()")
+    status, message, place = finds(build_installs, hand_in, kind=kind, name=KINDS[kind])
+    if kind != "urdf":
+        assert status == "passed"
+        return
+    assert (status, place) == ("pending", None)
+    assert message.startswith("whether urdf/my_robot.urdf is installed is told only by a build: ")
+    assert message.endswith(" of setup.py)")
+
+
+def test_a_setup_py_that_is_too_large_is_for_a_person() -> None:
+    """What was not read is neither right nor wrong."""
+    large = REFERENCE.with_files({SETUP: str(REFERENCE.files[SETUP]) + "#" * 200_000})
+    message = "setup.py could not be read (my_robot/setup.py is larger than 131072 bytes): a person has to look"
+    for kind, file in KINDS.items():
+        assert finds(build_installs, large, kind=kind, name=file) == ("pending", message, None)
+    assert finds(setup_imports, large) == ("pending", message, None)
+
+
+def test_files_by_patterns() -> None:
+    """A lab may ask for files of any kind by their names."""
+    with_config = REFERENCE.with_files({"my_robot/config/nav.yaml": "{}\n"})
+    assert lacks(installs_files, REFERENCE, files=["config/*.yaml", "*.yml"]) == (
+        "file",
+        "config/*.yaml",
+        "the package holds no file that matches 'config/*.yaml' and '*.yml'",
+        None,
+    )
+    assert lacks(installs_files, with_config, files=["config/*.yaml"]) == (
+        "installed config/nav.yaml",
+        FOLDER,
+        "a build does not install config/nav.yaml: no entry of data_files in setup.py names it",
+        None,
+    )
+    installed = setup(URDF_ENTRY, f"{URDF_ENTRY}\n        ('share/my_robot/config', glob('config/*')),", with_config)
+    message = "a build installs config/nav.yaml as share/my_robot/config/nav.yaml"
+    assert finds(installs_files, installed, files=["config/*.yaml"]) == ("passed", message, None)
+
+
+# --- Names in setup.py ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("hand_in", "message", "at"),
+    [
+        (
+            setup("import os\n", ""),
+            "the name 'os' is used, but not defined or imported",
+            "os.path.join('share', package_name), ['package.xml']",
+        ),
+        (
+            setup("from glob import glob\n", ""),
+            "the name 'glob' is used, but not defined or imported",
+            "glob('urdf/*')",
+        ),
+        (
+            setup("from glob import glob", "import glob"),
+            "glob is a module here, which cannot be called: write glob.glob(...)",
+            "glob('urdf/*')",
+        ),
+        (
+            setup("package_name = 'my_robot'\n", ""),
+            "the name 'package_name' is used, but not defined or imported",
+            "package_name,\n",
+        ),
+    ],
+    ids=["os", "glob", "module", "variable"],
+)
+def test_a_filethat_is_not_defined(hand_in: HandIn, message: str, at: str) -> None:
+    """A name that nothing defines is told once, at its first use."""
+    assert finds(setup_imports, hand_in) == ("failed", message, hand_in.place(SETUP, at))
+
+
+@pytest.mark.parametrize("line", ["import os\n", "from glob import glob\n"])
+def test_a_missing_import_costs_no_installed_file(line: str) -> None:
+    """What is meant is clear: the import is missed once, and the files count as installed."""
+    assert said(setup(line, "")) == dict.fromkeys(KINDS, "passed")
+
+
+def test_several_names_are_listed() -> None:
+    """All names are told at once, however often they are used; of many only the first."""
+    both = setup("import os\n", "").replacing(SETUP, "from glob import glob\n", "")
+    status, message, _ = finds(setup_imports, both)
+    assert status == "failed"
+    assert message.count("'os'") == message.count("'glob'") == 1
+    many = REFERENCE.with_files({SETUP: "a()\nb()\nc()\nd()\ne()\n"})
+    assert finds(setup_imports, many)[1].endswith(" (and 2 more)")
+
+
+def test_the_reference_defines_its_names() -> None:
+    """Names that are imported, assigned or built in are fine."""
+    expected = ("passed", "every name that setup.py uses is defined", None)
+    assert finds(setup_imports, REFERENCE) == expected
+    assert finds(setup_imports, setup("import os\n", "import os\n\nassert len(str(__file__)) > 0\n")) == expected

@@ -1,0 +1,356 @@
+"""The RViz file: which one is meant, its fixed frame, and whether it shows the robot."""
+
+import pytest
+
+from grader.checks.rviz import rviz_display_on, rviz_fixed_frame, rviz_found, rviz_shows_robot
+from grader.robot.source import Location
+from tests.checks.asking import Finding, finds, lacks
+from tests.checks.hand_ins import LAUNCH, REFERENCE, RVIZ, SETUP, URDF, HandIn, png, start_of
+
+NAME = "my_robot.rviz"
+BY_LAUNCH = "my_robot_rviz.launch.py"
+FRAME = "base_footprint"
+TEXT = str(REFERENCE.files[RVIZ])
+MODEL = TEXT[TEXT.index("    - Alpha: 1\n") : TEXT.index("    - Class: rviz_default_plugins/TF")]
+TF = TEXT[TEXT.index("    - Class: rviz_default_plugins/TF") : TEXT.index("  Enabled: true\n  Global")]
+SHOWN = "the display 'RobotModel' shows the robot"
+
+
+def rviz(old: str, new: str, of: HandIn = REFERENCE) -> HandIn:
+    """A hand-in with another text in its RViz file."""
+    return of.replacing(RVIZ, old, new)
+
+
+def frame_of(hand_in: HandIn) -> Finding:
+    """What is found of the fixed frame."""
+    return finds(rviz_fixed_frame, hand_in, name=NAME, frame=FRAME, launch=BY_LAUNCH)
+
+
+def robot_in(hand_in: HandIn) -> Finding:
+    """What is found of the display of the robot."""
+    return finds(rviz_shows_robot, hand_in, name=NAME, launch=BY_LAUNCH)
+
+
+def grouped(model: str = MODEL, enabled: str = "true") -> HandIn:
+    """The reference with its RobotModel in a group."""
+    inner = "".join(f"    {line}\n" for line in model.splitlines())
+    group = f"    - Class: rviz_common/Group\n      Displays:\n{inner}      Enabled: {enabled}\n      Name: Mine\n"
+    return rviz(MODEL, group)
+
+
+# --- Which file is meant ----------------------------------------------------------------------------------------------
+
+
+def test_the_file_of_the_name_is_found() -> None:
+    """The RViz file of the lab's name passes, wherever it stands in the package."""
+    assert finds(rviz_found, REFERENCE, name=NAME) == ("passed", "the RViz file is rviz/my_robot.rviz", None)
+    beside = REFERENCE.renaming(RVIZ, "my_robot/urdf/my_robot.rviz")
+    expected = ("passed", "the RViz file is urdf/my_robot.rviz", None)
+    assert finds(rviz_found, beside, name=NAME, launch=BY_LAUNCH) == expected
+
+
+OTHER = REFERENCE.renaming(RVIZ, "my_robot/rviz/view.rviz")
+OPENED = OTHER.replacing(LAUNCH, "'my_robot.rviz'", "'view.rviz'")
+
+
+@pytest.mark.parametrize(
+    "hand_in",
+    [
+        OPENED,
+        OPENED.replacing(LAUNCH, "os.path.join(share, 'view.rviz')", "'/home/me/ws/src/my_robot/rviz/view.rviz'"),
+        OPENED.replacing(LAUNCH, "os.path.join(share, 'view.rviz')", "os.path.join(share, 'rviz', 'view.rviz')"),
+        OPENED.replacing(SETUP, "        (os.path.join('share', package_name), glob('rviz/*')),\n", ""),
+    ],
+    ids=["installed", "home", "nested", "not-installed"],
+)
+def test_the_file_that_the_launch_file_opens_is_found(hand_in: HandIn) -> None:
+    """Under another name, the file that the launch file opens is meant; a wrong folder is a fault of the launch file's."""
+    expected = ("passed", "the RViz file is rviz/view.rviz", None)
+    assert finds(rviz_found, hand_in, name=NAME, launch=BY_LAUNCH) == expected
+    assert frame_of(hand_in)[0] == "passed"
+
+
+@pytest.mark.parametrize("hand_in", [OTHER, OTHER.replacing(LAUNCH, "'-d', os.path.join(share, 'my_robot.rviz')", "")])
+def test_another_file_that_nothing_opens_fails(hand_in: HandIn) -> None:
+    """A file of another name that the launch file does not open is not the lab's, but it is looked at."""
+    message = "there is no RViz file 'my_robot.rviz'; the package has rviz/view.rviz"
+    assert finds(rviz_found, hand_in, name=NAME, launch=BY_LAUNCH) == ("failed", message, None)
+    assert finds(rviz_found, hand_in, name=NAME) == ("failed", message, None)
+    assert frame_of(hand_in)[0] == robot_in(hand_in)[0] == "passed"
+
+
+@pytest.mark.parametrize(
+    "hand_in",
+    [
+        OPENED.replacing(LAUNCH, "    ])\n", ""),
+        OPENED.replacing(LAUNCH, "os.path.join(share, 'view.rviz')", "os.environ['VIEW']"),
+    ],
+    ids=["syntax", "environment"],
+)
+def test_whether_the_launch_file_opens_it_cannot_be_told(hand_in: HandIn) -> None:
+    """A launch file that cannot be followed does not cost the RViz file its name."""
+    message = "whether rviz/view.rviz is the file that the launch file opens is told only by a run"
+    assert finds(rviz_found, hand_in, name=NAME, launch=BY_LAUNCH) == ("pending", message, None)
+
+
+def test_of_two_files_the_opened_one_is_meant() -> None:
+    """The file that the launch file opens is graded, else that of the lab's name."""
+    map_ = TEXT.replace("base_footprint", "map")
+    two = REFERENCE.with_files({"my_robot/rviz/a.rviz": map_})
+    assert frame_of(two)[0] == "passed"
+    opened = two.replacing(LAUNCH, "'my_robot.rviz'", "'a.rviz'")
+    assert finds(rviz_found, opened, name=NAME, launch=BY_LAUNCH)[1] == "the RViz file is rviz/a.rviz"
+    place = opened.place("my_robot/rviz/a.rviz", "map\n    Frame Rate")
+    assert frame_of(opened)[0::2] == ("failed", place)
+
+
+def test_no_rviz_file_is_missed() -> None:
+    """Without an RViz file, all of the checks miss the same."""
+    expected = ("RViz file in the package", "", "the package has no RViz file: none ends in .rviz", None)
+    for hand_in in (REFERENCE.without(RVIZ), REFERENCE.renaming(RVIZ, NAME)):
+        assert lacks(rviz_found, hand_in, name=NAME, launch=BY_LAUNCH) == expected
+        assert lacks(rviz_fixed_frame, hand_in, name=NAME, frame=FRAME) == expected
+        assert lacks(rviz_shows_robot, hand_in, name=NAME) == expected
+        assert lacks(rviz_display_on, hand_in, name=NAME, kind="TF") == expected
+
+
+def test_no_package_is_missed() -> None:
+    """The check of the fixed frame is asked of the submission, and misses the package as others do."""
+    expected = ("package", "", "no ROS 2 package was handed in: there is no package.xml", None)
+    assert lacks(rviz_fixed_frame, HandIn({"x.png": png()}), name=NAME, frame=FRAME) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "message", "line"),
+    [
+        (
+            TEXT.replace("    - Alpha: 0.5", "\t- Alpha: 0.5"),
+            "not readable as YAML: while scanning for the next token",
+            9,
+        ),
+        ("hello: [world\n", "not readable as YAML: while parsing a flow sequence", 2),
+        ("hello\n", "there is no 'Visualization Manager' in it: this is no RViz file", 1),
+        ("", "there is no 'Visualization Manager' in it: this is no RViz file", 1),
+        (str(REFERENCE.files[LAUNCH]), "there is no 'Visualization Manager' in it: this is no RViz file", 1),
+    ],
+    ids=["tab", "bracket", "text", "empty", "python"],
+)
+def test_a_file_that_is_none_is_missed(text: str, message: str, line: int) -> None:
+    """A file that RViz cannot read is missed once, with the place; that it is there is found all the same."""
+    hand_in = REFERENCE.with_files({RVIZ: text})
+    kind, name, words, place = lacks(rviz_fixed_frame, hand_in, name=NAME, frame=FRAME)
+    assert (kind, name) == ("RViz file", "rviz/my_robot.rviz")
+    assert words.startswith(message)
+    assert place is not None
+    assert (place.path, place.line) == (RVIZ, line)
+    assert lacks(rviz_shows_robot, hand_in, name=NAME) == (kind, name, words, place)
+    assert lacks(rviz_display_on, hand_in, name=NAME, kind="TF") == (kind, name, words, place)
+    assert finds(rviz_found, hand_in, name=NAME)[0] == "passed"
+
+
+# --- The fixed frame --------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "spelling", ["base_footprint", '"base_footprint"', "'base_footprint'", "  base_footprint   # ground"]
+)
+def test_the_fixed_frame_passes(spelling: str) -> None:
+    """However YAML spells it."""
+    hand_in = rviz("Fixed Frame: base_footprint", f"Fixed Frame: {spelling}")
+    assert frame_of(hand_in) == ("passed", "the Fixed Frame is 'base_footprint'", None)
+
+
+@pytest.mark.parametrize(
+    ("frame", "hint"),
+    [
+        ("base_link", ""),
+        ("map", "; the robot has no link 'map'"),
+        ("base_fotprint", "; the robot has no link 'base_fotprint'; did you mean 'base_footprint'?"),
+        ("/base_footprint", "; the robot has no link '/base_footprint'; did you mean 'base_footprint'?"),
+    ],
+)
+def test_another_fixed_frame_fails(frame: str, hint: str) -> None:
+    """Another frame fails at its value; one that the robot does not have is told as such."""
+    hand_in = rviz("Fixed Frame: base_footprint", f"Fixed Frame: {frame}")
+    message = f"the Fixed Frame is {frame!r}, expected 'base_footprint'{hint}"
+    assert frame_of(hand_in) == ("failed", message, hand_in.place(RVIZ, f"{frame}\n    Frame Rate"))
+
+
+@pytest.mark.parametrize("line", ["", "    Fixed Frame:\n", '    Fixed Frame: ""\n'], ids=["none", "nothing", "empty"])
+def test_no_fixed_frame_fails(line: str) -> None:
+    """A frame that is absent or empty is not set."""
+    status, message, place = frame_of(rviz("    Fixed Frame: base_footprint\n", line))
+    assert (status, message) == ("failed", "the RViz file sets no Fixed Frame, expected 'base_footprint'")
+    assert place is not None
+    assert (place.path, place.line) == (RVIZ, 40 if line else 7)
+
+
+def test_a_frame_that_the_robot_lacks_is_not_this_files_fault() -> None:
+    """The right frame passes; what the URDF is without is told, and graded where it belongs."""
+    hand_in = REFERENCE.replacing(URDF, "base_footprint", "base_ground")
+    message = "the Fixed Frame is 'base_footprint', which the robot does not have"
+    assert frame_of(hand_in) == ("passed", message, None)
+
+
+@pytest.mark.parametrize("hand_in", [REFERENCE.without(URDF), REFERENCE.replacing(URDF, "</robot>", "")])
+def test_the_frame_needs_no_urdf(hand_in: HandIn) -> None:
+    """Without a robot the frame is judged by its name."""
+    assert frame_of(hand_in) == ("passed", "the Fixed Frame is 'base_footprint'", None)
+    other = rviz("Fixed Frame: base_footprint", "Fixed Frame: map", hand_in)
+    assert frame_of(other)[:2] == ("failed", "the Fixed Frame is 'map', expected 'base_footprint'")
+
+
+# --- The robot --------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "hand_in",
+    [
+        REFERENCE,
+        rviz("Value: /robot_description", "Value: robot_description"),
+        rviz("Value: /robot_description", 'Value: "/robot_description"'),
+        rviz("Durability Policy: Volatile", "Durability Policy: Transient Local"),
+        rviz("Enabled: true\n      Name: RobotModel", "Enabled: True\n      Name: RobotModel"),
+        rviz("      Enabled: true\n      Name: RobotModel\n", "      Name: RobotModel\n"),
+        rviz("      Description Source: Topic\n", ""),
+        rviz("      Visual Enabled: true\n", ""),
+        grouped(),
+        rviz(MODEL, MODEL.replace("Enabled: true\n      Name", "Enabled: false\n      Name") + MODEL),
+        rviz(MODEL, MODEL.replace("rviz_default_plugins/", "rviz/") + MODEL),
+    ],
+    ids=[
+        "reference", "no-slash", "quoted", "transient", "capital", "value-only", "no-source", "no-visual", "group",
+        "one-of-two", "ros1-beside",
+    ],
+)  # fmt: skip
+def test_a_robot_model_that_is_on_passes(hand_in: HandIn) -> None:
+    """One display that shows the robot is enough, whatever group it is in and whatever its topic's quality of service is."""
+    assert robot_in(hand_in) == ("passed", SHOWN, None)
+
+
+@pytest.mark.parametrize(
+    ("hand_in", "message"),
+    [
+        (
+            rviz("Enabled: true\n      Name: RobotModel", "Enabled: false\n      Name: RobotModel"),
+            "the RobotModel display is off",
+        ),
+        (
+            rviz("      Enabled: true\n      Name: RobotModel\n      Value: true\n", "      Name: RobotModel\n"),
+            "the RobotModel display is off",
+        ),
+        (grouped(enabled="false"), "the RobotModel display is off, for it is in a group that is off"),
+        (
+            rviz("rviz_default_plugins/RobotModel", "rviz/RobotModel"),
+            "rviz/RobotModel is a class of ROS 1; in ROS 2 it is rviz_default_plugins/RobotModel",
+        ),
+        (
+            rviz("rviz_default_plugins/RobotModel", "RobotModel"),
+            "the class 'RobotModel' names no package; in ROS 2 it is rviz_default_plugins/RobotModel",
+        ),
+        (
+            rviz("Value: /robot_description", "Value: /robot"),
+            "the RobotModel display reads the topic '/robot', expected '/robot_description'",
+        ),
+        (
+            rviz("Value: /robot_description", 'Value: ""'),
+            "the RobotModel display has no Description Topic; expected '/robot_description'",
+        ),
+        (
+            rviz("        Value: /robot_description\n", ""),
+            "the RobotModel display has no Description Topic; expected '/robot_description'",
+        ),
+        (
+            rviz("Visual Enabled: true", "Visual Enabled: false"),
+            "the RobotModel display is on, but Visual Enabled is off in it, so nothing is drawn",
+        ),
+    ],
+    ids=["off", "not-on", "group", "ros1", "bare", "topic", "empty", "no-topic", "visual"],
+)
+def test_a_robot_model_that_shows_nothing_fails(hand_in: HandIn, message: str) -> None:
+    """What keeps the robot from being shown is told, at the class of the display."""
+    lines = enumerate(str(hand_in.files[RVIZ]).splitlines(), start=1)
+    number, line = next((number, line) for number, line in lines if "RobotModel" in line)
+    place = Location(RVIZ, number, line.index("Class: ") + len("Class: ") + 1)
+    assert robot_in(hand_in) == ("failed", message, place)
+
+
+def test_no_robot_model_fails() -> None:
+    """The displays that there are are listed, each once."""
+    message = "there is no RobotModel display; the displays are: "
+    assert robot_in(rviz(MODEL, TF)) == ("failed", f"{message}Grid, TF", None)
+    none = rviz(TEXT[TEXT.index("    - Alpha: 0.5") : TEXT.index("  Enabled: true\n  Global")], "    []\n")
+    assert robot_in(none) == ("failed", f"{message}none", None)
+
+
+@pytest.mark.parametrize(
+    ("hand_in", "message"),
+    [
+        (
+            rviz("Description Source: Topic", "Description Source: File"),
+            "the RobotModel display reads a file of one machine instead of a topic: a person has to look",
+        ),
+        (
+            rviz("rviz_default_plugins/RobotModel", "my_plugins/RobotModel"),
+            "my_plugins/RobotModel is a class that RViz does not come with: a person has to look",
+        ),
+    ],
+    ids=["file", "plugin"],
+)
+def test_a_robot_model_that_may_show_something_is_for_a_person(hand_in: HandIn, message: str) -> None:
+    """What only a machine with the same file or plugin shows is left open, another display that is off or not."""
+    place = hand_in.place(RVIZ, str(hand_in.files[RVIZ]).splitlines()[16].strip().removeprefix("Class: "))
+    assert robot_in(hand_in) == ("pending", message, place)
+    off = MODEL.replace("Enabled: true\n      Name", "Enabled: false\n      Name")
+    assert robot_in(rviz("    - Alpha: 1\n", off + "    - Alpha: 1\n", hand_in))[:2] == ("pending", message)
+
+
+# --- Other displays ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("kind", ["TF", "rviz_default_plugins/TF", "Grid"])
+def test_a_display_that_is_on_passes(kind: str) -> None:
+    """A display is asked for by its class, with its package or without."""
+    assert finds(rviz_display_on, REFERENCE, name=NAME, kind=kind) == ("passed", f"a {kind} display is on", None)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (
+            "rviz_default_plugins/TF\n      Enabled: true",
+            "rviz_default_plugins/TF\n      Enabled: false",
+            "the TF display is off",
+        ),
+        (
+            "rviz_default_plugins/TF",
+            "rviz/TF",
+            "rviz/TF is a class of ROS 1; in ROS 2 it is rviz_default_plugins/TF",
+        ),
+    ],
+    ids=["off", "ros1"],
+)
+def test_a_display_that_is_not_on_fails(old: str, new: str, message: str) -> None:
+    """A display that is off, or of ROS 1, fails at its class."""
+    hand_in = rviz(old, new)
+    place = hand_in.place(RVIZ, new.split("\n", maxsplit=1)[0] + "\n")
+    assert finds(rviz_display_on, hand_in, name=NAME, kind="TF") == ("failed", message, place)
+
+
+def test_a_display_that_is_not_there_fails() -> None:
+    """The displays that there are are listed."""
+    message = "there is no LaserScan display; the displays are: Grid, RobotModel, TF"
+    assert finds(rviz_display_on, REFERENCE, name=NAME, kind="LaserScan") == ("failed", message, None)
+
+
+def test_another_topic_may_be_asked_for() -> None:
+    """The topic of the robot is an argument."""
+    other = rviz("Value: /robot_description", "Value: /other/robot_description")
+    assert finds(rviz_shows_robot, other, name=NAME, topic="other/robot_description")[0] == "passed"
+    assert finds(rviz_shows_robot, REFERENCE, name=NAME, topic="other/robot_description")[0] == "failed"
+
+
+def test_the_beginning_of_a_file_is_the_place_of_what_it_is_without() -> None:
+    """A file that is no RViz file is pointed to at its first character."""
+    hand_in = REFERENCE.with_files({RVIZ: "Panels: []\n"})
+    assert lacks(rviz_shows_robot, hand_in, name=NAME)[3] == start_of(RVIZ)

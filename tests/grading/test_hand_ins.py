@@ -1,0 +1,306 @@
+"""Whole hand-ins, graded by the rubric of lab 6: what one defect costs, why the rest is skipped, which problems are listed."""
+
+from collections.abc import Mapping, Sequence
+from decimal import Decimal
+
+import pytest
+
+from grader.errors import InputError
+from grader.grading.grade import grade
+from grader.grading.report import Report
+from grader.grading.rubric import load_rubric
+from grader.submission.submission import read_submission
+from tests.checks.hand_ins import ANSWERS, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, URDF, WEBCAM, HandIn, png
+
+LAB = load_rubric("lab6")
+PENDING = ("evidence-webcam", "answer-floating-link", "answer-launch-nodes")
+PICTURES = HandIn({"Task1_Step8.png": png(), WEBCAM: png()})
+INSTALLS = ("setup-installs-urdf", "setup-installs-launch", "setup-installs-rviz")
+OF_PACKAGE = tuple(criterion.id for criterion in LAB.criteria if criterion.part == "task2")
+OF_URDF = tuple(criterion.id for criterion in LAB.criteria if criterion.part == "task1")
+RVIZ_ENTRY = "        (os.path.join('share', package_name), glob('rviz/*')),\n"
+CMAKE = (
+    REFERENCE.replacing(MANIFEST, "ament_python", "ament_cmake")
+    .without(SETUP)
+    .with_files({"my_robot/CMakeLists.txt": "install(DIRECTORY urdf DESTINATION share/my_robot)\n"})
+)
+
+# What is done to the reference: the hand-in, what it loses with the failed criterion first, what is pending besides.
+DEFECTS: Mapping[str, tuple[HandIn, Sequence[str], Sequence[str]]] = {
+    "nothing": (REFERENCE, (), ()),
+    "no answers and no pictures": (REFERENCE.without(ANSWERS, WEBCAM, "Task1_Step8.png"), (), ()),
+    "another folder": (REFERENCE.renaming("my_robot", "ws/src/lab6"), (), ()),
+    "another RViz file that is opened": (
+        REFERENCE.renaming(RVIZ, "my_robot/rviz/view.rviz").replacing(LAUNCH, "'my_robot.rviz'", "'view.rviz'"),
+        (),
+        (),
+    ),
+    "no launch folder": (
+        REFERENCE.without("my_robot/launch"),
+        ("launch-found", "setup-installs-launch", "launch-nodes", "launch-finds-files"),
+        (),
+    ),
+    "launch file misspelt": (
+        REFERENCE.renaming(LAUNCH, "my_robot/launch/my_robot_rvix.launch.py"),
+        ("launch-found",),
+        (),
+    ),
+    "import os missing in setup.py": (REFERENCE.replacing(SETUP, "import os\n", ""), ("setup-imports",), ()),
+    "import glob missing in setup.py": (
+        REFERENCE.replacing(SETUP, "from glob import glob\n", ""),
+        ("setup-imports",),
+        (),
+    ),
+    "import missing in the launch file": (
+        REFERENCE.replacing(LAUNCH, "from launch_ros.actions import Node\n", ""),
+        ("launch-nodes",),
+        (),
+    ),
+    "syntax error in the launch file": (
+        REFERENCE.replacing(LAUNCH, "    ])\n", ""),
+        ("launch-nodes", "launch-finds-files"),
+        (),
+    ),
+    "nothing is returned": (
+        REFERENCE.replacing(LAUNCH, "    return ", "    "),
+        ("launch-nodes", "launch-finds-files"),
+        (),
+    ),
+    "package.xml named otherwise": (REFERENCE.replacing(MANIFEST, ">my_robot<", ">robot<"), ("package-found",), ()),
+    "package.xml without build type": (
+        REFERENCE.replacing(MANIFEST, "<build_type>ament_python</build_type>", ""),
+        ("package-type",),
+        (),
+    ),
+    "package.xml missing": (REFERENCE.without(MANIFEST), ("package-found", "package-type"), ()),
+    "package.xml broken": (
+        REFERENCE.replacing(MANIFEST, "</name>", "</nam>"),
+        ("package-found", "package-type"),
+        (),
+    ),
+    "setup.py missing": (REFERENCE.without(SETUP), (*INSTALLS, "setup-imports", "launch-finds-files"), ()),
+    "syntax error in setup.py": (
+        REFERENCE.replacing(SETUP, "zip_safe=True,", "zip_safe=True"),
+        (*INSTALLS, "setup-imports", "launch-finds-files"),
+        (),
+    ),
+    "setup() is not called": (REFERENCE.with_files({SETUP: ""}), (*INSTALLS, "launch-finds-files"), ()),
+    "the marker is missing": (REFERENCE.without("my_robot/resource"), ("setup-installs-urdf",), ()),
+    "no entry for RViz": (
+        REFERENCE.replacing(SETUP, RVIZ_ENTRY, ""),
+        ("setup-installs-rviz", "launch-finds-files"),
+        (),
+    ),
+    "glob finds a folder": (
+        REFERENCE.with_files({"my_robot/urdf/meshes/wheel.stl": "solid"}),
+        ("setup-installs-urdf",),
+        (),
+    ),
+    "path of one machine": (
+        REFERENCE.replacing(LAUNCH, "os.path.join(share, 'my_robot.urdf')", "'/home/me/my_robot.urdf'"),
+        ("launch-finds-files",),
+        (),
+    ),
+    "other folder in the launch file": (
+        REFERENCE.replacing(LAUNCH, "share, 'my_robot.urdf'", "share, 'urdf', 'my_robot.urdf'"),
+        ("launch-finds-files",),
+        (),
+    ),
+    "no RViz file": (
+        REFERENCE.without(RVIZ),
+        ("rviz-found", "setup-installs-rviz", "launch-finds-files", "rviz-fixed-frame", "rviz-shows-robot"),
+        (),
+    ),
+    "RViz file broken": (REFERENCE.with_files({RVIZ: "a: [b\n"}), ("rviz-fixed-frame", "rviz-shows-robot"), ()),
+    "another fixed frame": (
+        REFERENCE.replacing(RVIZ, "Fixed Frame: base_footprint", "Fixed Frame: map"),
+        ("rviz-fixed-frame",),
+        (),
+    ),
+    "URDF outside of the package": (
+        REFERENCE.renaming(URDF, "my_robot.urdf"),
+        ("setup-installs-urdf", "launch-finds-files"),
+        (),
+    ),
+    "a package of CMake": (CMAKE, ("package-type",), (*INSTALLS, "setup-imports", "launch-finds-files")),
+    "nothing but pictures": (PICTURES, ("urdf-loads", "package-found", *OF_URDF, *OF_PACKAGE), ()),
+    "nothing but the URDF and pictures": (
+        PICTURES.with_files({"my_robot.urdf": REFERENCE.files[URDF]}),
+        ("package-found", *OF_PACKAGE),
+        (),
+    ),
+}
+
+every_defect = pytest.mark.parametrize(("hand_in", "lost", "pending"), DEFECTS.values(), ids=DEFECTS)
+
+
+def graded(hand_in: HandIn, parts: Sequence[str] = ()) -> Report:
+    """The report on a hand-in."""
+    return grade(LAB, hand_in.submission, parts)
+
+
+def with_status(report: Report, *statuses: str) -> set[str]:
+    """The criteria that have one of these statuses."""
+    return {result.criterion.id for result in report.results if result.outcome.status in statuses}
+
+
+def points(*criteria: str) -> Decimal:
+    """What some criteria are worth."""
+    return sum((criterion.points for criterion in LAB.criteria if criterion.id in criteria), Decimal(0))
+
+
+@every_defect
+def test_a_defect_costs_what_it_should(hand_in: HandIn, lost: Sequence[str], pending: Sequence[str]) -> None:
+    """Exactly the criteria are lost that the defect is about, exactly those are pending that nobody but a person can tell."""
+    report = graded(hand_in)
+    assert with_status(report, "failed", "skipped") == set(lost)
+    assert with_status(report, "pending") == {*PENDING, *pending}
+    assert with_status(report, "errored") == set()
+    assert (report.max_score, report.pending) == (Decimal(100), points(*PENDING, *pending))
+    assert report.score == 100 - points(*lost, *PENDING, *pending)
+
+
+@every_defect
+def test_a_defect_is_told_once(hand_in: HandIn, lost: Sequence[str], pending: Sequence[str]) -> None:
+    """What is only a consequence is skipped, and names the criterion that has failed."""
+    report = graded(hand_in)
+    failed = with_status(report, "failed")
+    most = 2 if {"urdf-loads", "package-found"} <= set(lost) else 1
+    assert len(failed) == min(most, len(set(lost)))
+    assert failed <= set(lost[:most])
+    for result in report.results:
+        if result.outcome.status == "skipped":
+            assert result.because in failed
+            assert result.outcome.message == f"not decided, because {result.because} failed"
+
+
+def test_two_defects_are_both_told() -> None:
+    """One defect never hides another one."""
+    two = REFERENCE.replacing(SETUP, "import os\n", "").replacing(
+        RVIZ, "Fixed Frame: base_footprint", "Fixed Frame: map"
+    )
+    three = two.replacing(LAUNCH, "os.path.join(share, 'my_robot.urdf')", "'/home/me/my_robot.urdf'")
+    assert with_status(graded(three), "failed") == {"setup-imports", "rviz-fixed-frame", "launch-finds-files"}
+
+
+@pytest.mark.parametrize(
+    ("hand_in", "code", "path", "message"),
+    [
+        (
+            REFERENCE.replacing(MANIFEST, "</name>", "</nam>"),
+            "PKG001",
+            MANIFEST,
+            "package.xml is not readable as XML: Opening and ending tag mismatch: name line 4 and nam",
+        ),
+        (
+            REFERENCE.replacing(MANIFEST, "Apache-2.0", "TODO"),
+            "PKG003",
+            MANIFEST,
+            "<license> of package.xml is still to do",
+        ),
+        (
+            REFERENCE.replacing(MANIFEST, ">my_robot<", ">robot<"),
+            "PKG005",
+            SETUP,
+            "package.xml names the package 'robot', setup.py names it 'my_robot'",
+        ),
+        (
+            REFERENCE.replacing(SETUP, "zip_safe=True,", "zip_safe=True"),
+            "PKG010",
+            SETUP,
+            "Python cannot read setup.py: invalid syntax. Perhaps you forgot a comma?",
+        ),
+        (
+            REFERENCE.replacing(SETUP, "import os\n", ""),
+            "PKG011",
+            SETUP,
+            "the name 'os' is used, but not defined or imported",
+        ),
+        (
+            REFERENCE.without("my_robot/resource"),
+            "PKG012",
+            SETUP,
+            "data_files lists 'resource/my_robot', but there is no such file",
+        ),
+        (
+            REFERENCE.without("my_robot/launch"),
+            "PKG013",
+            SETUP,
+            "the pattern 'launch/*launch.[pxy][yma]*' in setup.py finds nothing",
+        ),
+        (
+            REFERENCE.replacing(LAUNCH, "    return ", "    "),
+            "LCH002",
+            LAUNCH,
+            "generate_launch_description does not return its LaunchDescription",
+        ),
+        (
+            REFERENCE.replacing(LAUNCH, "os.path.join(share, 'my_robot.urdf')", "'/home/me/my_robot.urdf'"),
+            "LCH003",
+            LAUNCH,
+            "/home/me/my_robot.urdf, which exists on one machine only",
+        ),
+        (
+            REFERENCE.with_files({RVIZ: "hello\n"}),
+            "RVZ001",
+            RVIZ,
+            "there is no 'Visualization Manager' in it: this is no RViz file",
+        ),
+        (
+            REFERENCE.replacing(RVIZ, "rviz_default_plugins/RobotModel", "rviz/RobotModel"),
+            "RVZ002",
+            RVIZ,
+            "rviz/RobotModel is a class of ROS 1; in ROS 2 it is rviz_default_plugins/RobotModel",
+        ),
+    ],
+    ids=lambda value: value if isinstance(value, str) and value[:3] in ("PKG", "LCH", "RVZ") else "",
+)
+def test_problems_of_the_packages_files_are_listed(hand_in: HandIn, code: str, path: str, message: str) -> None:
+    """What is wrong with a file of the package is listed with its code and place, one defect once."""
+    (problem,) = graded(hand_in).problems
+    assert (problem.code, problem.location.path, problem.message) == (code, path, message)
+    assert graded(hand_in, ["task1"]).problems == ()
+
+
+def test_evidence_is_shown_beside_the_mark() -> None:
+    """The pictures that the lab asks for are listed with what asks for them, the others on their own."""
+    report = graded(REFERENCE.with_files({"holiday.png": png()}))
+    found = {each.evidence.id: [exhibit.path for exhibit in each.files] for each in report.exhibits}
+    assert found == {
+        "task1-step8": ["Task1_Step8.png"],
+        "task1-step18": ["Task1_Step18.png"],
+        "task1-step36": ["Task1_Step36.png"],
+        "task2-step6": ["Task2_Step6.png"],
+        "task3-step3": ["Task3_Step3.png"],
+    }
+    assert [exhibit.path for exhibit in report.others] == ["holiday.png"]
+
+
+def test_a_single_urdf_is_graded_on_its_own_part() -> None:
+    """A URDF on its own is graded on what needs no more, and it is told what is left out."""
+    single = read_submission(REFERENCE.data(URDF), identity="one", path="my_robot.urdf")
+    report = grade(LAB, single)
+    assert report.parts == ("task1",)
+    assert (report.score, report.max_score, report.pending) == (Decimal(70), Decimal(70), Decimal(0))
+    assert report.notes == (
+        "a single URDF is graded on task1 only: task2, task3 and questions need the folder or archive it is in",
+    )
+    assert grade(LAB, single, ["task1"]).notes == ()
+
+
+@pytest.mark.parametrize("part", ["task2", "task3", "questions"])
+def test_a_single_urdf_has_no_package(part: str) -> None:
+    """To ask for a part that needs more than a URDF is wrong usage."""
+    single = read_submission(REFERENCE.data(URDF), identity="one", path="my_robot.urdf")
+    message = f"{part} needs more than a URDF: name the folder or archive that was handed in"
+    with pytest.raises(InputError, match=message):
+        grade(LAB, single, [part])
+    with pytest.raises(InputError, match=message):
+        grade(LAB, single, ["task1", part])
+
+
+def test_parts_of_a_hand_in_may_be_chosen() -> None:
+    """A hand-in is graded on the parts that are named, and on nothing else."""
+    report = graded(PICTURES, ["task3"])
+    assert (report.parts, report.max_score, report.pending) == (("task3",), Decimal(2), Decimal(2))
+    assert (report.problems, report.notes) == ((), ())
