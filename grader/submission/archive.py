@@ -21,7 +21,7 @@ from functools import partial
 from typing import IO, NamedTuple
 
 from grader.errors import InputError
-from grader.submission.files import advice, capped
+from grader.submission.files import advice_for, capped
 from grader.submission.tree import MOST_FILES, File, Tree, clean, is_generated, is_ignored, make_tree, parents, too_many
 
 ARCHIVE_LIMIT = 512 * 1024 * 1024  # bytes of an archive, and of what is in it
@@ -262,7 +262,7 @@ def _read(member: _Member, path: str, limit: int, *, first: bool = False) -> byt
             data = file.read(limit if first else limit + 1)
     except _DAMAGED as error:
         raise InputError(f"cannot read {path}: {_words(error)}") from None
-    return capped(data, limit, path, advice(path))
+    return capped(data, limit, path, advice_for(path))
 
 
 def _zip_members(file: IO[bytes]) -> Iterator[_Member]:

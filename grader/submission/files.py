@@ -59,7 +59,7 @@ def printable_path(path: Path | str) -> str:
     return "".join(c if c.isprintable() else f"\\x{ord(c):02x}" for c in text)
 
 
-def advice(path: str) -> str:
+def advice_for(path: str) -> str:
     """What to say behind the limit of a file that is too large: that of a URDF can be raised."""
     return _ADVICE if path.lower().endswith((".urdf", ".xacro")) else ""
 

@@ -8,7 +8,7 @@ from itertools import islice
 from pathlib import Path
 
 from grader.errors import InputError
-from grader.submission.files import advice, printable_path, read_capped, read_start
+from grader.submission.files import advice_for, printable_path, read_capped, read_start
 from grader.submission.tree import (
     BUILT,
     IGNORED,
@@ -96,7 +96,7 @@ class _Walk:
             return True
         elif is_file:
             self.files.append(File(shown, _size(entry), partial(_read, Path(entry.path))))
-        elif entry.is_symlink() and not os.path.exists(entry.path):
+        elif entry.is_symlink() and not Path(entry.path).exists():
             self.left_out.append(f"{shown} is a link that leads nowhere, and was not followed")
         else:
             self.left_out.append(f"{shown} is not a regular file, and was not read")
@@ -135,7 +135,7 @@ def single_file(path: Path) -> File:
 
 
 def _read(path: Path, limit: int, *, first: bool = False) -> bytes:
-    return read_start(path, limit) if first else read_capped(path, limit, advice=advice(path.name))
+    return read_start(path, limit) if first else read_capped(path, limit, advice=advice_for(path.name))
 
 
 def _size(entry: "os.DirEntry[str]") -> int:

@@ -1,6 +1,6 @@
 """The files of a submission, wherever they come from: a folder or an archive looks the same from here on."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import PurePosixPath
 from typing import NamedTuple, Protocol
@@ -84,15 +84,24 @@ def make_tree(
     generated: Iterable[str] = (),
     kept: "tuple[Tree, ...]" = (),
 ) -> Tree:
-    """A tree of these files, its folders completed by those that the files stand in."""
+    """A tree of these files, its folders completed by those that the files stand in; raises InputError for too many."""
     by_path = {file.path: file for file in sorted(files, key=lambda each: each.path)}
-    above = set(folders).union(*(parents(path) for path in [*by_path, *folders]))
-    return Tree(name, by_path, frozenset(above), tuple(left_out), tuple(generated), kept)
+    given = set(folders)
+    above: set[str] = set()
+    for path in [*by_path, *given]:
+        for parent in parents(path):
+            if parent in above:  # and with it those above it
+                break
+            above.add(parent)
+        if len(above) > MOST_FILES:
+            raise too_many(name)
+    return Tree(name, by_path, frozenset(above | given), tuple(left_out), tuple(generated), kept)
 
 
-def parents(path: str) -> list[str]:
+def parents(path: str) -> Iterator[str]:
     """The folders that a path stands in, the nearest first."""
-    return [parent.as_posix() for parent in PurePosixPath(path).parents if parent.as_posix() != "."]
+    while path := path.rpartition("/")[0]:
+        yield path
 
 
 def is_ignored(path: str) -> str | None:

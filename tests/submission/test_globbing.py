@@ -78,7 +78,7 @@ def pythons_glob(pattern: str, root: str, *, recursive: bool = True, hidden: boo
     return sorted(path for path in found if os.path.lexists(os.path.join(root, path)))
 
 
-@settings(max_examples=600)
+@settings(max_examples=400)
 @given(tree=trees(), pattern=_PATTERNS, recursive=st.booleans(), hidden=st.booleans())
 @example(tree=make_tree("", [], ["a/.h", "a/b/c"]), pattern="**", recursive=True, hidden=False)
 @example(tree=make_tree("", [], ["a/.h", "a/b/c"]), pattern="a/**/", recursive=True, hidden=True)

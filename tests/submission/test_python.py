@@ -128,14 +128,14 @@ _PROGRAMS = st.lists(st.recursive(_SIMPLE, _compound, max_leaves=5), min_size=1,
 _START = "import os\nfrom glob import glob\nfrom pathlib import Path\nfrom setuptools import setup\na = ['urdf']\nb = {'a': a}\n"
 
 
-@settings(max_examples=400)
+@settings(max_examples=250)
 @given(program=_PROGRAMS)
 def test_any_program_is_followed(program: str) -> None:
     """No program raises an error in the one who follows it."""
     followed(_START + program)
 
 
-@settings(max_examples=300)
+@settings(max_examples=200)
 @given(text=st.sampled_from(_TEXTS), seed=st.integers(0, 10**6), count=st.integers(1, 4), of_lines=st.booleans())
 def test_a_damaged_sample_is_followed(text: str, seed: int, count: int, of_lines: bool) -> None:
     """Neither does a file whose lines or characters were lost, doubled or swapped."""
