@@ -5,39 +5,13 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any
 
 from grader.submission.python import methods
-from grader.submission.python.names import attribute_fault
-from grader.submission.python.values import (
-    Bound,
-    Choice,
-    Function,
-    Made,
-    Named,
-    Scope,
-    Spot,
-    Steering,
-    TooHard,
-    Unknown,
-    Value,
-    at,
-    size,
-    unknown_in,
-)
+from grader.submission.python.calls import attribute, call
+from grader.submission.python.containers import MOST_ITEMS, MOST_TEXT, distinct, extend, is_known, items_of, truth
+from grader.submission.python.operators import compare, operate
+from grader.submission.python.values import Choice, Made, Named, Scope, Spot, Unknown, Value, at, size
 
 if TYPE_CHECKING:
     from grader.submission.python.machine import Machine
-
-_KINDS = {
-    str: "a text",
-    list: "a list",
-    tuple: "a tuple",
-    dict: "a dict",
-    type(None): "None",
-    PurePosixPath: "a path",
-}
-_LEAVES = ("sys.exit", "os._exit", "builtins.exit", "builtins.quit")
-_NAMING = ("builtins.exec", "builtins.globals", "builtins.locals", "builtins.vars")
-MOST_ITEMS = 20_000
-MOST_TEXT = 100_000
 
 
 def evaluate(machine: "Machine", node: ast.expr, scope: Scope) -> Value:
@@ -56,7 +30,7 @@ def _evaluate(machine: "Machine", node: ast.expr, scope: Scope) -> Value:
         case ast.Name():
             return machine.find(node, scope)
         case ast.Attribute(value=owner, attr=name):
-            return _attribute(machine, evaluate(machine, owner, scope), name, at(node))
+            return attribute(machine, evaluate(machine, owner, scope), name, at(node))
         case ast.Call():
             return _call(machine, node, scope)
         case ast.List(elts=parts):
@@ -80,7 +54,10 @@ def _evaluate(machine: "Machine", node: ast.expr, scope: Scope) -> Value:
             number = evaluate(machine, operand, scope)
             return -number if isinstance(number, int | float) else Unknown("this is no number", at(node))
         case ast.Compare():
-            return _compare(machine, node, scope)
+            values = [evaluate(machine, each, scope) for each in (node.left, *node.comparators)]
+            if len(values) != 2:
+                return Unknown("it is told only by a run", at(node))
+            return compare(machine, node.ops[0], values[0], values[1], at(node))
         case ast.IfExp(test=test, body=body, orelse=other):
             known = truth(evaluate(machine, test, scope))
             if known is None:
@@ -102,132 +79,6 @@ def _evaluate(machine: "Machine", node: ast.expr, scope: Scope) -> Value:
             return evaluate(machine, value, scope)
         case _:
             return Unknown("an expression of this kind is not followed", at(node))
-
-
-def operate(machine: "Machine", op: ast.operator, left: Value, right: Value, spot: Spot) -> Value:
-    """The value of a sum, of a path with / or of a text with %; a list keeps what is known of it."""
-    machine.step(sum(len(value) for value in (left, right) if isinstance(value, str)) // 32)
-    match op, left, right:
-        case ast.Add(), str(), str():
-            return left + right if len(left) + len(right) <= MOST_TEXT else Unknown("it grows too long", spot)
-        case ast.Add(), int() | float(), int() | float():
-            try:
-                return left + right
-            except OverflowError:
-                return Unknown("the number is too large", spot)
-        case ast.Add(), tuple(), tuple():
-            return (*left, *right) if len(left) + len(right) <= MOST_ITEMS else Unknown("it grows too long", spot)
-        case ast.Add(), list(), list() | Unknown() | Made():
-            joined = list(left)
-            extend(machine, joined, right, spot)
-            return joined
-        case ast.Add(), _, list() if isinstance(left, Unknown | Made):
-            return [left if isinstance(left, Unknown) else Unknown("what is added here is not followed", spot), *right]
-        case (
-            ast.Add(),
-            str() | list() | tuple() | dict() | None | PurePosixPath(),
-            str() | list() | tuple() | dict() | None | PurePosixPath(),
-        ):
-            machine.fault(f"Python cannot add {_KINDS[type(right)]} to {_KINDS[type(left)]}", spot)
-        case ast.Div(), (str() | PurePosixPath()), (str() | PurePosixPath()) if not (
-            isinstance(left, str) and isinstance(right, str)
-        ):
-            return methods.path_of([left, right], spot)
-        case ast.Div(), Made(), _:
-            return Made("truediv", [left, right], {}, spot)
-        case ast.Mod(), str(), _ if not isinstance(right, Unknown):
-            return methods.percent(left, right, spot)
-        case ast.BitOr(), dict(), dict():
-            return left | right
-    for value in (left, right):
-        if isinstance(value, Unknown):
-            return value
-    return Unknown("an operation of this kind is not followed", spot)
-
-
-def extend(machine: "Machine", target: list[Value], value: Value, spot: Spot) -> None:
-    """Add what a list is extended by; an unknown part of it stays in its place."""
-    items = items_of(value)
-    machine.step(len(items or ()) // 64)
-    if items is None:
-        target.append(value if isinstance(value, Unknown) else Unknown("what is added here is not followed", spot))
-    elif machine.unsure is not None:
-        target += [machine.unsure] * bool(items)
-    elif isinstance(target, Steering):
-        lose(target, Unknown("it is steered", spot))
-    elif len(target) + len(items) > MOST_ITEMS:
-        target.append(Unknown("it grows too long", spot))
-    else:
-        target += items
-
-
-def items_of(value: Value) -> list[Value] | None:
-    """What a loop over a value goes through; None where that cannot be told."""
-    if isinstance(value, list | tuple | dict):
-        return list(value)
-    if isinstance(value, str):
-        return list(value) if len(value) < MOST_ITEMS else None
-    return None
-
-
-def truth(value: Value) -> bool | None:
-    """Whether a condition holds; None where only a run would tell."""
-    if value is None or isinstance(value, str | int | float | list | tuple | dict):
-        if isinstance(value, list | tuple) and value and all(isinstance(each, Unknown) for each in value):
-            return None
-        if isinstance(value, dict) and "**" in value:
-            return None
-        return bool(value)
-    return True if isinstance(value, PurePosixPath | Function) else None
-
-
-def is_known(machine: "Machine", items: "list[Value] | tuple[Value, ...]") -> bool:
-    """Whether it can be told at which place of a list its items stand."""
-    machine.step(len(items) // 64)
-    return not any(isinstance(each, Unknown) for each in items)
-
-
-def store(machine: "Machine", container: Value, key: Value, value: Value, spot: Spot) -> None:
-    """Put a value into a dict or list; where it cannot be told which place is meant, nothing of it is known any more."""
-    if isinstance(container, dict) and isinstance(key, str | int) and len(container) < MOST_ITEMS:
-        container[key] = value
-    elif isinstance(container, list) and isinstance(key, int) and is_known(machine, container):
-        if -len(container) <= key < len(container):
-            container[key] = value
-    else:
-        lose(container, Unknown("what is put here is not followed", spot))
-
-
-def remove(machine: "Machine", container: Value, key: Value, unknown: Unknown) -> None:
-    """Take something out of a dict or list; `unknown` says why, where it cannot be told what."""
-    is_place = isinstance(container, list) and isinstance(key, int) and -len(container) <= key < len(container)
-    is_key = isinstance(container, dict) and isinstance(key, str | int) and key in container and "**" not in container
-    if (
-        machine.unsure is None
-        and not isinstance(container, Steering)
-        and (is_key or (is_place and is_known(machine, container)))
-    ):
-        del container[key]
-    else:
-        lose(container, unknown)
-
-
-def lose(container: Value, unknown: Unknown) -> None:
-    """Forget what is in a list or dict, which is changed in a way that is not followed."""
-    if isinstance(container, Steering):
-        raise TooHard("a walk through folders that is steered on its way is not followed")
-    if isinstance(container, list):
-        container[:] = [unknown]
-    elif isinstance(container, dict):
-        for key in container:
-            container[key] = unknown
-        container["**"] = unknown
-
-
-def distinct(values: list[Value]) -> list[Value]:
-    """The values of a set: each once."""
-    plain = all(isinstance(each, str | int | float | PurePosixPath | None) for each in values)
-    return list(dict.fromkeys(values)) if plain else values
 
 
 def _parts(machine: "Machine", parts: list[ast.expr], scope: Scope) -> list[Value]:
@@ -288,55 +139,6 @@ def _bool(machine: "Machine", node: ast.BoolOp, scope: Scope) -> Value:
         if known != isinstance(node.op, ast.And):
             return value
     return value
-
-
-def _compare(machine: "Machine", node: ast.Compare, scope: Scope) -> Value:
-    left = evaluate(machine, node.left, scope)
-    rights = [evaluate(machine, each, scope) for each in node.comparators]
-    unknown = Unknown("it is told only by a run", at(node))
-    cost = size([left, *rights])
-    machine.step(cost // 64)
-    if len(rights) != 1 or cost >= MOST_ITEMS or not _is_plain(left) or not _is_plain(rights[0]):
-        return unknown
-    right = rights[0]
-    if isinstance(right, dict) and not isinstance(left, str | int | float | PurePosixPath | None):
-        return unknown
-    match node.ops[0]:
-        case ast.Eq():
-            return left == right
-        case ast.NotEq():
-            return left != right
-        case ast.Is():
-            return left is right if right is None or left is None else unknown
-        case ast.IsNot():
-            return left is not right if right is None or left is None else unknown
-        case ast.In() if isinstance(right, list | tuple | dict) or (isinstance(left, str) and isinstance(right, str)):
-            return left in right
-        case ast.NotIn() if isinstance(right, list | tuple | dict) or (
-            isinstance(left, str) and isinstance(right, str)
-        ):
-            return left not in right
-        case ast.Lt() | ast.LtE() | ast.Gt() | ast.GtE() if isinstance(left, int) and isinstance(right, int):
-            less, equal = left < right, left == right
-            match node.ops[0]:
-                case ast.Lt():
-                    return less
-                case ast.LtE():
-                    return less or equal
-                case ast.Gt():
-                    return not less and not equal
-                case _:
-                    return not less
-        case _:
-            return unknown
-
-
-def _is_plain(value: Value) -> bool:
-    if isinstance(value, list | tuple | dict):
-        return all(map(_is_plain, value.values() if isinstance(value, dict) else value))
-    if isinstance(value, str | PurePosixPath) and methods.names_the_folder(str(value)):
-        return False
-    return value is None or isinstance(value, str | int | float | PurePosixPath)
 
 
 def _item(machine: "Machine", owner: Value, key: ast.expr, scope: Scope, spot: Spot) -> Value:
@@ -407,40 +209,6 @@ def _comprehension(
     return table if isinstance(node, ast.DictComp) else values
 
 
-def _attribute(machine: "Machine", owner: Value, name: str, spot: Spot) -> Value:
-    match owner:
-        case Unknown():
-            return owner
-        case Named(name="?glob"):
-            return Named(f"glob.{name}")
-        case Named(name="glob.glob") if name in ("glob", "iglob"):
-            machine.fault(
-                f"glob is a function here, so glob.{name} is not defined: write glob(...)", spot, AttributeError
-            )
-            return Named("glob.glob")
-        case Named(name=full):
-            known = machine.library.get(f"{full}.{name}")
-            fault = attribute_fault(full, name) if known is None else None
-            if fault is not None:
-                machine.fault(fault, spot, AttributeError)
-            constant = _CONSTANTS.get(f"{full}.{name}")
-            return constant if known is None and constant is not None else Named(f"{full}.{name}")
-        case PurePosixPath():
-            return methods.path_attribute(owner, name)
-        case _:
-            return Bound(owner, name)
-
-
-_CONSTANTS = {
-    "os.sep": "/",
-    "os.path.sep": "/",
-    "os.linesep": "\n",
-    "os.curdir": ".",
-    "os.pardir": "..",
-    "os.name": "posix",
-}
-
-
 def _call(machine: "Machine", node: ast.Call, scope: Scope) -> Value:
     function = evaluate(machine, node.func, scope)
     args = _parts(machine, node.args, scope)
@@ -449,54 +217,8 @@ def _call(machine: "Machine", node: ast.Call, scope: Scope) -> Value:
     if not given.complete:
         kwargs["**"] = Unknown("arguments are unpacked that are not followed", spot)
     machine.step(size([args, list(kwargs.values())]) // 32)
-    match function:
-        case Unknown():
-            machine.may_fail()
-            return function
-        case Function() if any(isinstance(each, ast.Starred) for each in node.args) and unknown_in(args) is not None:
-            return Unknown("arguments are unpacked that are not followed", spot)
-        case str() | int() | float() | list() | tuple() | dict() | None | PurePosixPath():
-            machine.fault(
-                f"{_KINDS.get(type(function), 'a number')} cannot be called: is there a comma missing before it?", spot
-            )
-            return Unknown("what is called here is not followed", spot)
-        case Function():
-            return machine.call_function(function, args, kwargs, spot)
-        case Named(name="glob" | "?glob" as name):
-            if name == "glob":
-                machine.fault("glob is a module here, which cannot be called: write glob.glob(...)", spot)
-            return _named(machine, "glob.glob", args, kwargs, spot)
-        case Named(name=name):
-            return _named(machine, name, args, kwargs, spot)
-        case Bound(owner=Made() as owner, name=name) if f"{owner.name}.{name}" in machine.library:
-            return machine.library[f"{owner.name}.{name}"](machine, args, kwargs, spot)
-        case Bound(owner=Made() as owner, name=name):
-            made = Made(f"{owner.name}.{name}", args, kwargs, spot, owner)
-            owner.calls.append(made)
-            return _make(machine, made)
-        case Bound(owner=owner, name=name):
-            return methods.call(machine, owner, name, args, kwargs, spot)
-        case _:
-            return Unknown("what is called here is not followed", spot)
-
-
-def _named(machine: "Machine", name: str, args: list[Value], kwargs: dict[str, Value], spot: Spot) -> Value:
-    known = machine.library.get(name)
-    return known(machine, args, kwargs, spot) if known is not None else _make(machine, Made(name, args, kwargs, spot))
-
-
-def _make(machine: "Machine", made: Made) -> Value:
-    if made.name in _LEAVES:
-        machine.leave(made)
-    if made.name in _NAMING:
-        machine.module.names["*"] = Unknown("names may be set here", made.at)
-    if not made.name.startswith("builtins.open"):
-        machine.may_fail()
-    if len(machine.made) < MOST_ITEMS:
-        machine.made.append(made)
-    if machine.unsure is not None:
-        made.kwargs.setdefault("?", machine.unsure)
-    return made
+    is_unpacked = any(isinstance(each, ast.Starred) for each in node.args)
+    return call(machine, function, args, kwargs, spot, is_unpacked=is_unpacked)
 
 
 def _keywords(machine: "Machine", node: ast.Call, scope: Scope) -> Choice:

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
-from grader.submission.python import expressions, methods
+from grader.submission.python import containers, methods
 from grader.submission.python.values import Function, Made, Spot, Unknown, Value, unknown_in
 
 if TYPE_CHECKING:
@@ -122,7 +122,7 @@ def _text(_: "Machine", args: list[Value], __: dict[str, Value], spot: Spot) -> 
 
 
 def _items(args: list[Value]) -> list[Value] | None:
-    return expressions.items_of(args[0]) if args else []
+    return containers.items_of(args[0]) if args else []
 
 
 def _listed(_: "Machine", args: list[Value], __: dict[str, Value], spot: Spot) -> Value:
@@ -132,7 +132,7 @@ def _listed(_: "Machine", args: list[Value], __: dict[str, Value], spot: Spot) -
 
 def _set(machine: "Machine", args: list[Value], kwargs: dict[str, Value], spot: Spot) -> Value:
     items = _listed(machine, args, kwargs, spot)
-    return expressions.distinct(items) if isinstance(items, list) else items
+    return containers.distinct(items) if isinstance(items, list) else items
 
 
 def _sorted(machine: "Machine", args: list[Value], kwargs: dict[str, Value], spot: Spot) -> Value:
@@ -162,7 +162,7 @@ def _paired(pairs: list[Value], args: list[Value], spot: Spot) -> Value:
 
 
 def _zip(_: "Machine", args: list[Value], __: dict[str, Value], spot: Spot) -> Value:
-    lists = [expressions.items_of(each) for each in args]
+    lists = [containers.items_of(each) for each in args]
     known = [each for each in lists if each is not None]
     return list(zip(*known, strict=False)) if len(known) == len(lists) else Unknown("this list is not followed", spot)
 
@@ -181,23 +181,23 @@ def _length(_: "Machine", args: list[Value], __: dict[str, Value], spot: Spot) -
 
 
 def _boolean(args: list[Value], spot: Spot) -> Value:
-    known = expressions.truth(args[0]) if len(args) == 1 else None
+    known = containers.truth(args[0]) if len(args) == 1 else None
     return known if known is not None else Unknown("it is told only by a run", spot)
 
 
 def _map(machine: "Machine", args: list[Value], _: dict[str, Value], spot: Spot) -> Value:
-    items = expressions.items_of(args[1]) if len(args) == 2 else None
+    items = containers.items_of(args[1]) if len(args) == 2 else None
     if items is None:
         return Unknown("this map is not followed", spot)
     return [_applied(machine, args[0], item, spot) for item in items]
 
 
 def _filter(machine: "Machine", args: list[Value], _: dict[str, Value], spot: Spot) -> Value:
-    items = expressions.items_of(args[1]) if len(args) == 2 else None
+    items = containers.items_of(args[1]) if len(args) == 2 else None
     if items is None:
         return Unknown("this filter is not followed", spot)
     kept = [
-        (item, expressions.truth(item if args[0] is None else _applied(machine, args[0], item, spot))) for item in items
+        (item, containers.truth(item if args[0] is None else _applied(machine, args[0], item, spot))) for item in items
     ]
     if any(known is None for _, known in kept):
         return Unknown("this filter is told only by a run", spot)
@@ -219,8 +219,8 @@ def _range(machine: "Machine", args: list[Value], __: dict[str, Value], spot: Sp
     if any(abs(each) > _MOST_NUMBER for each in numbers):
         return Unknown("this range is not followed", spot)
     made = range(*numbers)
-    machine.step(min(len(made), expressions.MOST_ITEMS) // 16)
-    return list(made) if len(made) <= expressions.MOST_ITEMS else Unknown("this range is too long to follow", spot)
+    machine.step(min(len(made), containers.MOST_ITEMS) // 16)
+    return list(made) if len(made) <= containers.MOST_ITEMS else Unknown("this range is too long to follow", spot)
 
 
 def _sum(machine: "Machine", args: list[Value], _: dict[str, Value], spot: Spot) -> Value:
@@ -235,5 +235,5 @@ def _sum(machine: "Machine", args: list[Value], _: dict[str, Value], spot: Spot)
 def _chain(machine: "Machine", args: list[Value], _: dict[str, Value], spot: Spot) -> Value:
     joined: list[Value] = []
     for each in args:
-        expressions.extend(machine, joined, each, spot)
+        containers.extend(machine, joined, each, spot)
     return joined

@@ -146,7 +146,7 @@ def _format(text: str, args: list[Value], kwargs: dict[str, Value], unknown: Unk
 def _list(
     machine: "Machine", items: list[Value], name: str, args: list[Value], kwargs: dict[str, Value], spot: Spot
 ) -> Value:
-    from grader.submission.python.expressions import MOST_ITEMS, extend, lose
+    from grader.submission.python.containers import MOST_ITEMS, extend, lose
     from grader.submission.python.library import in_order
 
     machine.may_fail()
@@ -193,7 +193,7 @@ def _list(
 def _dict(
     machine: "Machine", table: dict[Any, Value], name: str, args: list[Value], kwargs: dict[str, Value], spot: Spot
 ) -> Value:
-    from grader.submission.python.expressions import lose
+    from grader.submission.python.containers import lose
 
     known = machine.unsure is None and "**" not in table
     unknown = Unknown(f"the dict method {name} is not followed here", spot)
