@@ -12,9 +12,10 @@ from grader.submission.package import MANIFEST, NO_PACKAGE, Package
 from grader.submission.submission import Submission
 
 if TYPE_CHECKING:
+    from grader.submission.data_files import Copy
     from grader.submission.manifest import Manifest
     from grader.submission.python.lookup import EmptyGlob
-    from grader.submission.setup_py import Copy, Setup
+    from grader.submission.setup_py import Setup
 
 Kind = Literal["urdf", "launch", "rviz"]
 

@@ -369,7 +369,7 @@ def test_a_file_that_goes_elsewhere_fails(folder: str, target: str) -> None:
     message = (
         f"a build installs urdf/my_robot.urdf as {target}, but ROS 2 looks for a package's files below share/my_robot/"
     )
-    expected = ("failed", message, hand_in.place(SETUP, "setup(\n"))
+    expected = ("failed", message, hand_in.place(SETUP, "glob('urdf/*')"))
     assert finds(build_installs, hand_in, kind="urdf", name="my_robot.urdf") == expected
 
 
@@ -382,39 +382,46 @@ def test_the_filein_the_resource_index_counts() -> None:
 
 
 @pytest.mark.parametrize(
-    ("hand_in", "kind", "reason"),
+    ("hand_in", "kind", "at", "reason"),
     [
         (
             setup("glob('urdf/*')", "['urdf/robot.urdf']"),
             "urdf",
-            "data_files lists 'urdf/robot.urdf', but there is no such file",
+            "'urdf/robot.urdf'",
+            "data_files lists 'urdf/robot.urdf', but there is no such file; did you mean 'urdf/my_robot.urdf'?",
         ),
         (
             REFERENCE.with_files({"my_robot/urdf/meshes/a.stl": "solid"}),
             "urdf",
-            "data_files lists 'urdf/meshes', but it is a folder, and only files can be installed",
+            "glob('urdf/*')",
+            "data_files lists 'urdf/meshes', but it is a folder, and only files can be installed: "
+            "a pattern such as '*.urdf' leaves it out",
         ),
         (
             setup("glob('rviz/*')", "['rviz/my_robot.rvis']"),
             "rviz",
-            "data_files lists 'rviz/my_robot.rvis', but there is no such file",
+            "'rviz/my_robot.rvis'",
+            "data_files lists 'rviz/my_robot.rvis', but there is no such file; did you mean 'rviz/my_robot.rviz'?",
         ),
         (
             setup("glob('rviz/*')", "'rviz/my_robot.rviz'"),
             "rviz",
+            "'rviz/my_robot.rviz'",
             "data_files lists 'rviz/my_robot.rviz', but the files of an entry are a text, not a list: write [...] around it",
         ),
         (
             setup("glob(os.path.join('launch', '*launch.[pxy][yma]*'))", "['launch/robot.launch.py']"),
             "launch",
-            "data_files lists 'launch/robot.launch.py', but there is no such file",
+            "'launch/robot.launch.py'",
+            "data_files lists 'launch/robot.launch.py', but there is no such file; "
+            "did you mean 'launch/my_robot_rviz.launch.py'?",
         ),
     ],
     ids=["no-file", "folder", "misspelt", "no-list", "launch"],
 )
-def test_an_entry_that_stops_the_build_costs_its_own_kind(hand_in: HandIn, kind: str, reason: str) -> None:
+def test_an_entry_that_stops_the_build_costs_its_own_kind(hand_in: HandIn, kind: str, at: str, reason: str) -> None:
     """An entry that cannot be installed fails the kind that it is about, and no other."""
-    expected = ("failed", f"the build stops here: {reason}", hand_in.place(SETUP, "setup(\n"))
+    expected = ("failed", f"the build stops here: {reason}", hand_in.place(SETUP, at))
     assert finds(build_installs, hand_in, kind=kind, name=KINDS[kind]) == expected
     assert said(hand_in) == {**dict.fromkeys(KINDS, "passed"), kind: "failed"}
 

@@ -24,6 +24,16 @@ class EmptyGlob(NamedTuple):
     at: Spot
 
 
+class Found(NamedTuple):
+    """What a search for files has found, as it is spelt there."""
+
+    paths: tuple[str | PurePosixPath, ...]
+    at: Spot
+
+
+_MOST_NOTED = 200  # paths of one search whose place is kept
+
+
 def file_functions(listing: Listing, root: str) -> "Library":
     """The functions by full name; `root` is the absolute path that the package's folder goes by."""
     package = _Package(listing, root)
@@ -104,6 +114,7 @@ class _Package:
         found = self.listing.glob(pattern, recursive=recursive, hidden=hidden, start=folder, above=above)
         if not found:
             machine.notes.append(EmptyGlob(posixpath.join(folder, pattern), spot))
+        machine.notes.append(Found(tuple(found[:_MOST_NOTED]), spot))
         return found
 
     def escape(self, _: "Machine", args: list[Value], __: dict[str, Value], spot: Spot) -> Value:
@@ -120,6 +131,7 @@ class _Package:
         found = self.listing.path_glob(self.inside(args[0]), start + pattern)
         if not found:
             machine.notes.append(EmptyGlob(str(PurePosixPath(self.inside(args[0])) / pattern), spot))
+        machine.notes.append(Found(tuple(args[0] / path for path in found[:_MOST_NOTED]), spot))
         return [args[0] / path for path in found]
 
     def path_rglob(self, machine: "Machine", args: list[Value], kwargs: dict[str, Value], spot: Spot) -> Value:

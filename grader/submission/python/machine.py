@@ -71,7 +71,7 @@ class Machine:
         except (TooHard, RecursionError) as error:
             self.stopped = str(error) if isinstance(error, TooHard) else "it is too deeply nested to follow"
             return Unknown(self.stopped, spot)
-        except Left:
+        except (Left, Leave):  # or a break outside of a loop, which ast lets pass
             return Unknown("the file ends Python here", spot)
 
     def step(self, count: int = 1) -> None:
