@@ -72,8 +72,8 @@ HAND_IN_CASES = (
         {"kind": "urdf", "name": "my_robot.urdf"},
         says="a build installs urdf/my_robot.urdf as share/my_robot/my_robot.urdf",
         failing=REFERENCE.replacing(SETUP, "glob('urdf/*')", "['urdf/robot.urdf']"),
-        complains="the build stops here: data_files lists 'urdf/robot.urdf', but there is no such file",
-        at=(SETUP, "setup(\n"),
+        complains="the build stops here: data_files lists 'urdf/robot.urdf', but there is no such file; did you mean 'urdf/my_robot.urdf'?",
+        at=(SETUP, "'urdf/robot.urdf'"),
     ),
     HandInCase(
         installs_files,
@@ -82,7 +82,7 @@ HAND_IN_CASES = (
         failing=REFERENCE.replacing(SETUP, "os.path.join('share', package_name, 'launch')", "'lib/launch'"),
         complains="a build installs launch/my_robot_rviz.launch.py as lib/launch/my_robot_rviz.launch.py, "
         "but ROS 2 looks for a package's files below share/my_robot/",
-        at=(SETUP, "setup(\n"),
+        at=(SETUP, "glob(os.path"),
     ),
     HandInCase(
         setup_imports,

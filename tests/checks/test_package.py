@@ -394,8 +394,10 @@ def test_the_filein_the_resource_index_counts() -> None:
             REFERENCE.with_files({"my_robot/urdf/meshes/a.stl": "solid"}),
             "urdf",
             "glob('urdf/*')",
-            "data_files lists 'urdf/meshes', but it is a folder, and only files can be installed: "
-            "a pattern such as '*.urdf' leaves it out",
+            (
+                "data_files lists 'urdf/meshes', but it is a folder, and only files can be installed: "
+                "a pattern such as '*.urdf' leaves it out"
+            ),
         ),
         (
             setup("glob('rviz/*')", "['rviz/my_robot.rvis']"),
@@ -413,8 +415,10 @@ def test_the_filein_the_resource_index_counts() -> None:
             setup("glob(os.path.join('launch', '*launch.[pxy][yma]*'))", "['launch/robot.launch.py']"),
             "launch",
             "'launch/robot.launch.py'",
-            "data_files lists 'launch/robot.launch.py', but there is no such file; "
-            "did you mean 'launch/my_robot_rviz.launch.py'?",
+            (
+                "data_files lists 'launch/robot.launch.py', but there is no such file; "
+                "did you mean 'launch/my_robot_rviz.launch.py'?"
+            ),
         ),
     ],
     ids=["no-file", "folder", "misspelt", "no-list", "launch"],
