@@ -14,15 +14,25 @@ import tempfile
 import weakref
 import zipfile
 import zlib
-from bisect import bisect_left
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import AbstractContextManager
+from collections.abc import Iterable, Iterator
 from functools import partial
-from typing import IO, NamedTuple
+from typing import IO
 
 from grader.errors import InputError
 from grader.submission.files import advice_for, capped
-from grader.submission.tree import MOST_FILES, File, Tree, clean, is_generated, is_ignored, make_tree, parents, too_many
+from grader.submission.members import LONGEST_NAME, Links, Member
+from grader.submission.tree import (
+    MOST_FILES,
+    File,
+    Tree,
+    clean,
+    folders_above,
+    is_generated,
+    is_ignored,
+    make_tree,
+    parents,
+    too_many,
+)
 
 ARCHIVE_LIMIT = 512 * 1024 * 1024  # bytes of an archive, and of what is in it
 _DIRECTORY_LIMIT = 16 * 1024 * 1024  # bytes of a zip's table of contents
@@ -47,30 +57,11 @@ _DAMAGED = (
 )
 _MOST_ARCHIVES = 20  # in an archive or folder
 _ENCRYPTED = 0x1  # a zip's flag
-_LONGEST_NAME = 4096  # characters of a name, and of what a link points to
-_DEEPEST = 200
-_MOST_LINKS = 40  # in a chain
-_MOST_STEPS = 500_000  # for all links of an archive
 _READ = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)  # the others unpack without a bound, or are not known at all
 _NO_FILE = "is not a regular file, and was not read"
 
 
 _COMPRESSED = ("gz", "bz2", "xz")
-
-
-class _Member(NamedTuple):
-    """One entry. `reason` says why one of kind other is not read; `open` gives what is in a file.
-
-    `target` is where a link points to: from its own folder, or, if it is hard, from the top.
-    """
-
-    path: str
-    kind: str  # file, folder, link or other
-    size: int
-    open: Callable[[], AbstractContextManager[IO[bytes]]]
-    target: str = ""
-    is_hard: bool = False
-    reason: str = ""
 
 
 class Allowance:
@@ -124,9 +115,9 @@ def _close(files: list[IO[bytes]]) -> None:
         file.close()
 
 
-def _members(members: Iterable[_Member], name: str, limit: int) -> list[_Member]:
+def _members(members: Iterable[Member], name: str, limit: int) -> list[Member]:
     """The members of an archive: no more of them, and not more in them, than there may be."""
-    listed: list[_Member] = []
+    listed: list[Member] = []
     total = 0
     for member in members:
         listed.append(member)
@@ -142,13 +133,13 @@ def _too_much(name: str) -> InputError:
     return InputError(f"{name} would unpack to far more than anyone hands in, and was not read")
 
 
-def _tree(members: list[_Member], name: str) -> Tree:
-    found: dict[str, _Member] = {}
+def _tree(members: list[Member], name: str) -> Tree:
+    found: dict[str, Member] = {}
     left_out: list[str] = []
     generated: set[str] = set()
     for member in members:
-        path = _inside(member.path) if len(member.path) <= _LONGEST_NAME else None
-        if len(member.path) > _LONGEST_NAME:
+        path = _inside(member.path) if len(member.path) <= LONGEST_NAME else None
+        if len(member.path) > LONGEST_NAME:
             left_out.append(f"{clean(member.path[:40])}... has a name that is far too long, and was not read")
         elif path is None:
             left_out.append(f"{clean(member.path)} has a name that leads out of the archive, and was not read")
@@ -159,93 +150,18 @@ def _tree(members: list[_Member], name: str) -> Tree:
     environments = {path.rpartition("/")[0] for path in found if path.endswith("/pyvenv.cfg")}
     if environments:
         found = {path: member for path, member in found.items() if environments.isdisjoint(parents(path))}
-    files: dict[str, File] = {}
+    folders = {path for path, member in found.items() if member.kind == "folder"} | folders_above(found, name)
+    linked = Links(found, folders, name)
     for path, member in found.items():
-        if member.kind == "file":
-            files[path] = _file(path, member)
-        elif member.reason:
+        if member.reason:
             left_out.append(f"{path} {member.reason}")
-    folders = {path for path, member in found.items() if member.kind == "folder"}
-    folders.update(parent for path in found for parent in parents(path))
-    linked = _Links(found, folders, name)
-    left_out += [
-        f"{path} is a link that leads nowhere in the archive, and was not followed"
-        for path, member in found.items()
-        if member.kind == "link" and not linked.follow(path)
+        elif member.kind == "link" and not linked.follow(path):
+            left_out.append(f"{path} is a link that leads nowhere in the archive, and was not followed")
+    real = {path: path for path, member in found.items() if member.kind == "file"}
+    files = [
+        File(path, found[at].size, partial(_read, found[at], path)) for path, at in {**linked.files, **real}.items()
     ]
-    return make_tree(
-        name, {**linked.files, **files}.values(), folders | linked.folders, sorted(left_out), sorted(generated)
-    )
-
-
-def _file(path: str, member: _Member) -> File:
-    return File(path, member.size, partial(_read, member, path))
-
-
-class _Links:
-    """What the links in an archive lead to: a file, or the files of a folder, which stand below the link, too."""
-
-    def __init__(self, found: dict[str, _Member], folders: set[str], name: str) -> None:
-        self._found = found
-        self._real = folders
-        self._name = name
-        self._paths = sorted(path for path, member in found.items() if member.kind == "file")
-        self._left = _MOST_STEPS
-        self.files: dict[str, File] = {}
-        self.folders: set[str] = set()
-
-    def follow(self, path: str) -> bool:
-        """Take in what a link leads to; False where that is not in the archive."""
-        real = self._end(path)
-        if real is None:
-            return False
-        if real in self._real:
-            self._copy(real, path)
-        else:
-            self.files[path] = _file(path, self._found[real])
-        return True
-
-    def _copy(self, folder: str, link: str) -> None:
-        """The files of a folder once more below a link to it, if the link is not itself in the folder."""
-        start = folder + "/"
-        if link.startswith(start):
-            return
-        self.folders.add(link)
-        for path in self._paths[bisect_left(self._paths, start) :]:
-            if not path.startswith(start):
-                break
-            copied = f"{link}/{path.removeprefix(start)}"
-            self.files[copied] = _file(copied, self._found[path])
-            if len(self.files) > MOST_FILES:
-                raise too_many(self._name)
-
-    def _end(self, path: str) -> str | None:
-        """The file or folder at the end of a chain of links; None outside of the archive and in a circle."""
-        steps: list[str] = []
-        waiting = path.split("/")[::-1]
-        links = 0
-        while waiting:
-            step = clean(waiting.pop())
-            self._left -= 1
-            if (step == ".." and not steps) or len(steps) > _DEEPEST or self._left < 0:
-                return None
-            if step in ("", ".", ".."):
-                steps = steps[:-1] if step == ".." else steps
-                continue
-            steps.append(step)
-            member = self._found.get("/".join(steps))
-            if member is not None and member.kind == "link":
-                links += 1
-                if links > _MOST_LINKS or member.target.startswith("/") or len(member.target) > _LONGEST_NAME:
-                    return None
-                steps = steps[:-1] if not member.is_hard else []
-                waiting += member.target.split("/")[::-1]
-        real = "/".join(steps)
-        return real if real in self._real or self._kind(real) == "file" else None
-
-    def _kind(self, path: str) -> str:
-        member = self._found.get(path)
-        return member.kind if member is not None else ""
+    return make_tree(name, files, folders | linked.folders, sorted(left_out), sorted(generated))
 
 
 def _inside(path: str) -> str | None:
@@ -256,7 +172,7 @@ def _inside(path: str) -> str | None:
     return clean("/".join(part for part in plain.split("/") if part not in ("", ".")))
 
 
-def _read(member: _Member, path: str, limit: int, *, first: bool = False) -> bytes:
+def _read(member: Member, path: str, limit: int, *, first: bool = False) -> bytes:
     try:
         with member.open() as file:
             data = file.read(limit if first else limit + 1)
@@ -265,14 +181,14 @@ def _read(member: _Member, path: str, limit: int, *, first: bool = False) -> byt
     return capped(data, limit, path, advice_for(path))
 
 
-def _zip_members(file: IO[bytes]) -> Iterator[_Member]:
+def _zip_members(file: IO[bytes]) -> Iterator[Member]:
     bounded = _Bounded(file)
     archive = zipfile.ZipFile(bounded)
     bounded.most = None
     for info in archive.infolist():
         mode = info.external_attr >> 16
         name = _zip_name(info)
-        member = _Member(name, "file", info.file_size, partial(archive.open, info))
+        member = Member(name, "file", info.file_size, partial(archive.open, info))
         if name.endswith(("/", "\\")):
             member = member._replace(kind="folder", size=0)
         elif info.flag_bits & _ENCRYPTED:
@@ -290,7 +206,7 @@ def _zip_link(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> str:
     """What a link points to, which is what is in it; of one that cannot be read nowhere."""
     try:
         with archive.open(info) as file:
-            return file.read(_LONGEST_NAME).decode("utf-8", "replace")
+            return file.read(LONGEST_NAME).decode("utf-8", "replace")
     except _DAMAGED:
         return "/"
 
@@ -305,14 +221,14 @@ def _zip_name(info: zipfile.ZipInfo) -> str:
         return info.filename
 
 
-def _tar_members(file: IO[bytes]) -> Iterator[_Member]:
+def _tar_members(file: IO[bytes]) -> Iterator[Member]:
     archive = tarfile.open(fileobj=file, mode="r:")  # noqa: SIM115  it is read from as long as its tree lives
     offset = -1
     while (info := archive.next()) is not None:
         if archive.offset <= offset or info.size < 0:
             raise tarfile.TarError("it leads back to its own beginning")
         offset = archive.offset
-        member = _Member(info.name, "file", info.size, partial(_open_tar, archive, info))
+        member = Member(info.name, "file", info.size, partial(_open_tar, archive, info))
         if info.isdir():
             member = member._replace(kind="folder", size=0)
         elif info.issym() or info.islnk():

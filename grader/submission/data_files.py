@@ -141,7 +141,13 @@ class Entries:
             target = posixpath.normpath(posixpath.join(folder, posixpath.basename(path)))
             self.copies.append(Copy(path, target, at))
         elif path in self.listing.folders:
-            self.stops.append(Stop(text, "it is a folder, and only files can be installed: a pattern such as '*.urdf' leaves it out", at))
+            self.stops.append(
+                Stop(
+                    text,
+                    "it is a folder, and only files can be installed: a pattern such as '*.urdf' leaves it out",
+                    at,
+                )
+            )
         elif str(PurePosixPath(text)) in self.tree.files:
             self.unknown.append(Unknown(f"whether {text} is taken for a file depends on the version of setuptools", at))
         elif is_ignored(posixpath.normpath(text)):

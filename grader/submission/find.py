@@ -23,6 +23,7 @@ class Found(NamedTuple):
 class _Candidate(NamedTuple):
     """How good a file is, best first: the tuple sorts."""
 
+    of_another: bool  # in a package of the same name that is not graded: that of another member of a team
     tier: int
     outside: bool
     depth: int
@@ -44,7 +45,8 @@ def find_urdf(tree: Tree, wanted: str, package: str | None = None) -> Found:
 
     `wanted` is the path that the rubric gives, such as urdf/my_robot.urdf. A file at the end of whose path it stands comes first,
     then one with its name, then one whose name begins alike, then any .urdf, then any text with <robot in it. Among equals
-    come those in `package` (a folder), then the nearest to the top, then the first in the alphabet.
+    come those in `package` (a folder), then the nearest to the top, then the first in the alphabet. What stands in another
+    package of that name comes last.
     """
     ranked = sorted(_candidates(tree, wanted, package))
     if not ranked:
@@ -70,6 +72,7 @@ def _candidates(tree: Tree, wanted: str, package: str | None) -> list[_Candidate
     stem = parts[-1].split(".")[0].lower()
     found: list[_Candidate] = []
     sniffed = 0
+    others = _others(tree, package)
     for path, file in tree.files.items():
         outside = package is not None and not path.startswith(package + "/" if package else "")
         steps = path.split("/")
@@ -90,10 +93,18 @@ def _candidates(tree: Tree, wanted: str, package: str | None) -> list[_Candidate
             tier = 2
         else:
             tier = 3 if is_named else 4
-        found.append(_Candidate(tier, outside, len(steps), path))
+        found.append(_Candidate(path.startswith(others), tier, outside, len(steps), path))
     return found
 
 
+def _others(tree: Tree, package: str | None) -> tuple[str, ...]:
+    """Where the packages begin that are named as the one that is graded."""
+    name = (package or "").rpartition("/")[2]
+    folders = [path.rpartition("/")[0] for path in tree.files if path.rpartition("/")[2] == "package.xml"]
+    return tuple(f"{each}/" for each in folders if name and each != package and each.rpartition("/")[2] == name)
+
+
+_OUTSIDE = "it stands outside of the package that is graded"
 _NO_ROBOTS = frozenset({"package.xml", "CMakeLists.txt", "requirements.txt", "COLCON_IGNORE", "LICENSE"})
 
 
@@ -105,10 +116,12 @@ def _is_robot(file: File) -> bool:
 
 
 def _reason(best: _Candidate, other: _Candidate, wanted: str) -> str:
+    if other.of_another and not best.of_another:
+        return _OUTSIDE
     if other.tier != best.tier:
         return _TIERS[other.tier].format(wanted=wanted)
     if other.outside != best.outside:
-        return "it stands outside of the package that is graded"
+        return _OUTSIDE
     if other.depth != best.depth:
         return "it is equally good, but stands deeper in the folders"
     return "it is equally good, but comes later in the alphabet"

@@ -87,15 +87,21 @@ def make_tree(
     """A tree of these files, its folders completed by those that the files stand in; raises InputError for too many."""
     by_path = {file.path: file for file in sorted(files, key=lambda each: each.path)}
     given = set(folders)
+    above = folders_above([*by_path, *given], name)
+    return Tree(name, by_path, frozenset(above | given), tuple(left_out), tuple(generated), kept)
+
+
+def folders_above(paths: Iterable[str], name: str) -> set[str]:
+    """Every folder that one of these paths stands in; raises InputError for too many."""
     above: set[str] = set()
-    for path in [*by_path, *given]:
+    for path in paths:
         for parent in parents(path):
             if parent in above:  # and with it those above it
                 break
             above.add(parent)
         if len(above) > MOST_FILES:
             raise too_many(name)
-    return Tree(name, by_path, frozenset(above | given), tuple(left_out), tuple(generated), kept)
+    return above
 
 
 def parents(path: str) -> Iterator[str]:

@@ -6,6 +6,7 @@ import tarfile
 import warnings
 import zipfile
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from typing import NamedTuple
 
 ROBOT = b'<robot name="my_robot"/>\n'
@@ -98,7 +99,7 @@ def twice(name: str, first: bytes, second: bytes) -> bytes:
 MAKERS: dict[str, Callable[..., bytes]] = {
     ".zip": make_zip,
     ".tar": make_tar,
-    ".tar.gz": lambda *args: make_tar(*args, kind="gz"),
-    ".tar.bz2": lambda *args: make_tar(*args, kind="bz2"),
-    ".tar.xz": lambda *args: make_tar(*args, kind="xz"),
+    ".tar.gz": partial(make_tar, kind="gz"),
+    ".tar.bz2": partial(make_tar, kind="bz2"),
+    ".tar.xz": partial(make_tar, kind="xz"),
 }

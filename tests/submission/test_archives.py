@@ -797,7 +797,7 @@ def test_folders_that_cannot_be_opened(home: Path, monkeypatch: pytest.MonkeyPat
             raise PermissionError(errno.EACCES, "Permission denied", str(path))
         return scandir(path)
 
-    monkeypatch.setattr(folders.os, "scandir", refuse)
+    monkeypatch.setattr(os, "scandir", refuse)
     closed = ["meshes"]
     tree = read_folder(home)
     assert list(tree.files) == [URDF]
@@ -829,11 +829,13 @@ def test_deep_folders(name: str, tmp_path: Path) -> None:
             handle = deeper
     finally:
         os.close(handle)
-    with processor_time(4):
-        tree = read_folder(tmp_path)
+    try:
+        with processor_time(4):
+            tree = read_folder(tmp_path)
+    finally:
+        remove_deep(tmp_path, name)
     assert tree.files == {}
     assert len(tree.left_out) == (1 if name == "a" else 0)
-    remove_deep(tmp_path, name)
 
 
 def remove_deep(folder: Path, name: str) -> None:

@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 
 import yaml
 
-from grader.robot.names import closest
 from grader.robot.source import Location, Source
 from grader.robot.xml import Element, XMLSyntaxError, parse_xml
+from grader.submission.launch.line import Faults, read_line
 from grader.submission.launch.model import Fault
 from grader.submission.launch.substitutions import CMDLINE
 from grader.submission.python.values import Made, Spot, Unknown, Value
@@ -16,29 +16,6 @@ from grader.submission.yaml_nodes import Node, YamlFault, read_yaml
 
 _MOST_DEPTH = 40
 _MOST_ENTITIES = 5_000
-# What a frontend's substitution is called in Python.
-_SUBSTITUTIONS = {
-    "find-pkg-share": "launch_ros.substitutions.FindPackageShare",
-    "find-pkg-prefix": "launch_ros.substitutions.FindPackagePrefix",
-    "var": "launch.substitutions.LaunchConfiguration",
-    "command": "launch.substitutions.Command",
-    "find-exec": "launch.substitutions.FindExecutable",
-    "dirname": "launch.substitutions.ThisLaunchFileDir",
-    "env": "launch.substitutions.EnvironmentVariable",
-    "eval": "launch.substitutions.PythonExpression",
-    "file-content": "launch.substitutions.FileContent",
-    "equals": "launch.substitutions.EqualsSubstitution",
-    "not-equals": "launch.substitutions.NotEqualsSubstitution",
-    "not": "launch.substitutions.NotSubstitution",
-    "and": "launch.substitutions.AndSubstitution",
-    "or": "launch.substitutions.OrSubstitution",
-    "all": "launch.substitutions.AllSubstitution",
-    "any": "launch.substitutions.AnySubstitution",
-    "if": "launch.substitutions.IfElseSubstitution",
-}
-# Substitutions of ROS 1, and what they are called now.
-_ROS1 = {"find": "find-pkg-share", "arg": "var", "optenv": "env"}
-_ON_STDERR = ("fail", "ignore", "warn", "capture")
 # Elements and attributes that only ROS 1 has, and what stands for them.
 _ROS1_TAGS = {"param": "a <param> stands inside its <node>", "rosparam": "write <param from=.../> inside the <node>",
               "remap": "a <remap> stands inside its <node>", "machine": "", "test": "", "env": "write <set_env>"}  # fmt: skip
@@ -71,8 +48,8 @@ class Frontend:
     source: Source
     description: Made | None = None
     syntax: Fault | None = None
-    faults: list[tuple[str, Spot]] = field(default_factory=list)
-    unknown: list[tuple[str, Spot]] = field(default_factory=list)
+    faults: Faults = field(default_factory=list)
+    unknown: Faults = field(default_factory=list)
 
 
 def read_frontend(data: bytes, path: str, *, is_yaml: bool) -> Frontend:
@@ -212,7 +189,7 @@ def _actions(parent: Entity, frontend: Frontend) -> list[Value]:
 
 def _action(entity: Entity, frontend: Frontend) -> Made | None:
     _note_ros1(entity, frontend)
-    given = {key: _text(value, entity.at, frontend) for key, value in entity.attributes.items()}
+    given = {key: read_line(value, entity.at, frontend.faults) for key, value in entity.attributes.items()}
     kwargs: dict[str, Value] = {}
     if "if" in given:
         kwargs["condition"] = Made("launch.conditions.IfCondition", [given["if"]], {}, entity.at)
@@ -230,7 +207,7 @@ def _action(entity: Entity, frontend: Frontend) -> Made | None:
             return Made("launch.actions.SetLaunchConfiguration", [], kwargs, entity.at)
         case "include":
             passed = [
-                (each.attributes.get("name", ""), _text(each.attributes.get("value", ""), each.at, frontend))
+                (each.attributes.get("name", ""), read_line(each.attributes.get("value", ""), each.at, frontend.faults))
                 for each in entity.children
                 if each.kind in ("arg", "let")
             ]
@@ -277,83 +254,13 @@ def _node(entity: Entity, given: dict[str, Value], kwargs: dict[str, Value], fro
         if child.kind == "param" and name is not None:
             value = next((child.attributes[key] for key in ("value", "command") if key in child.attributes), None)
             table[name] = (
-                _text(value, child.at, frontend)
+                read_line(value, child.at, frontend.faults)
                 if value is not None
                 else Unknown("this parameter has no value", child.at)
             )
         elif child.kind == "param":
-            parameters.append(_text(child.attributes.get("from", ""), child.at, frontend))
+            parameters.append(read_line(child.attributes.get("from", ""), child.at, frontend.faults))
     named = {"package": given.get("pkg"), "executable": given.get("exec")}
     kwargs |= {"parameters": parameters, **{key: value for key, value in named.items() if value is not None}}
     kwargs["arguments"] = [Made(CMDLINE, given["args"], {}, entity.at)] if "args" in given else []
     return Made(f"launch_ros.actions.{_NODES[entity.kind]}", [], kwargs, entity.at)
-
-
-def _text(text: str, at: Spot, frontend: Frontend) -> list[Value]:
-    """A value with its substitutions, as a list of texts and what Python would call them."""
-    return _Line(text, at, frontend).pieces("", 0)
-
-
-class _Line:
-    """A value that is read from its beginning to its end, after the grammar of ros2/launch (grammar.lark)."""
-
-    def __init__(self, text: str, at: Spot, frontend: Frontend) -> None:
-        self.text = text
-        self.at = at
-        self.frontend = frontend
-        self.position = 0
-
-    def pieces(self, ends: str, depth: int) -> list[Value]:
-        """Texts and substitutions, up to one of the characters that end them."""
-        found: list[Value] = []
-        plain: list[str] = []
-        while self.position < len(self.text) and self.text[self.position] not in ends:
-            if self.text.startswith("$(", self.position) and depth < _MOST_DEPTH:
-                found += ["".join(plain)] if plain else []
-                plain.clear()
-                self.position += 2
-                found.append(self.substitution(depth + 1))
-                continue
-            if self.text[self.position] == "\\" and self.position + 1 < len(self.text):
-                self.position += 1
-            plain.append(self.text[self.position])
-            self.position += 1
-        return [*found, "".join(plain)] if plain or not found else found
-
-    def substitution(self, depth: int) -> Made:
-        """What is in the brackets: a name, and values with a space between them, in quotes or not."""
-        start = self.position
-        while self.position < len(self.text) and self.text[self.position] not in " \t\n)":
-            self.position += 1
-        name = self.text[start : self.position]
-        values: list[Value] = []
-        while self.position < len(self.text) and self.text[self.position] != ")":
-            first = self.text[self.position]
-            if first in " \t\n":
-                self.position += 1
-            elif first in "'\"":
-                self.position += 1
-                values.append(self.pieces(first, depth))
-                self.position += 1
-            else:
-                values.append(self.pieces(" \t\n)", depth))
-        if self.position >= len(self.text):
-            self.frontend.faults.append((f"the bracket of $({name[:40]} is not closed", self.at))
-        self.position += 1
-        return self.named(name, values)
-
-    def named(self, name: str, values: list[Value]) -> Made:
-        """What a substitution is in Python."""
-        if name in _ROS1:
-            self.frontend.faults.append((f"$({name} ...) is of ROS 1; in ROS 2 it is $({_ROS1[name]} ...)", self.at))
-            name = _ROS1[name]
-        if name == "command" and len(values) > 1 and values[1] not in [[each] for each in _ON_STDERR]:
-            message = "$(command ...) takes its command in quotes: $(command 'xacro ...')"
-            self.frontend.faults.append((message, self.at))
-            values = [[part for value in values for part in (*value, " ")]]
-        similar = closest(name, _SUBSTITUTIONS) if name not in _SUBSTITUTIONS else None
-        if similar:
-            self.frontend.faults.append(
-                (f"there is no substitution $({name} ...); did you mean $({similar} ...)?", self.at)
-            )
-        return Made(_SUBSTITUTIONS.get(name, f"launch.substitutions.{name}"), values, {}, self.at)

@@ -5,6 +5,7 @@ import re
 import shlex
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from math import isclose
 from pathlib import PurePosixPath
 
 from grader.submission.launch.places import HOME, PREFIX, SHARE
@@ -280,7 +281,7 @@ def _are_equal(left: str, right: str) -> bool:
     if None not in truths:
         return truths[0] == truths[1]
     try:
-        return float(left) == float(right)
+        return isclose(float(left), float(right))
     except ValueError:
         return left == right
 

@@ -1,0 +1,298 @@
+"""Which URDF and which package of a submission are graded, and why the others are not."""
+
+from functools import partial
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grader.errors import InputError
+from grader.submission.find import Found, find_packages, find_urdf
+from grader.submission.package import Package, read_packages
+from grader.submission.submission import submission_of
+from grader.submission.tree import File, PassedOver, Tree, make_tree
+from tests.patience import processor_time
+
+WANTED = "urdf/my_robot.urdf"
+ROBOT = b'<?xml version="1.0"?>\n<robot name="my_robot"/>\n'
+OUTSIDE = "it stands outside of the package that is graded"
+DEEPER = "it is equally good, but stands deeper in the folders"
+LATER = "it is equally good, but comes later in the alphabet"
+NOT_THERE = "it has the right name, but does not stand at urdf/my_robot.urdf"
+BEGINS = "its name only begins as that of urdf/my_robot.urdf does"
+OTHER_NAME = "it has another name than urdf/my_robot.urdf"
+NOT_NAMED = "it is not named as a URDF"
+EMPTY = "it is empty"
+
+
+def tree_of(*paths: str, **contents: bytes) -> Tree:
+    """A tree of files that hold a robot; `contents` gives those of files whose names begin so."""
+    files = [
+        _file(path, next((data for name, data in contents.items() if path.split("/")[-1].startswith(name)), ROBOT))
+        for path in paths
+    ]
+    return make_tree("lab6", files, ())
+
+
+def _file(path: str, data: bytes) -> File:
+    return File(path, len(data), partial(_read, data))
+
+
+def _read(data: bytes, limit: int, *, first: bool = False) -> bytes:
+    if len(data) > limit and not first:
+        raise InputError("it is too large")
+    return data[:limit]
+
+
+def manifest(name: str) -> bytes:
+    """A package.xml of this name."""
+    return f'<package format="3"><name>{name}</name></package>'.encode()
+
+
+def why(found: Found) -> dict[str, str]:
+    """What was passed over, and why."""
+    return {each.path: each.because for each in found.passed_over}
+
+
+def test_every_tier() -> None:
+    """The rubric's path comes first, then its name, a name that begins alike, another .urdf, the content, and an empty file."""
+    paths = [
+        "a/my_robot.urdf",
+        "urdf/my_robot.urdf",
+        "my_robot.urdf.xacro.txt",
+        "robot.urdf",
+        "lab6.xml",
+        "e/empty.urdf",
+    ]
+    found = find_urdf(tree_of(*paths, empty=b""), WANTED)
+    assert found.path == "urdf/my_robot.urdf"
+    assert why(found) == {
+        "a/my_robot.urdf": NOT_THERE,
+        "my_robot.urdf.xacro.txt": BEGINS,
+        "robot.urdf": OTHER_NAME,
+        "lab6.xml": NOT_NAMED,
+        "e/empty.urdf": EMPTY,
+    }
+    ranked = [
+        "urdf/my_robot.urdf",
+        "a/my_robot.urdf",
+        "my_robot.urdf.xacro.txt",
+        "robot.urdf",
+        "lab6.xml",
+        "e/empty.urdf",
+    ]
+    for index, best in enumerate(ranked):
+        assert find_urdf(tree_of(*ranked[index:], empty=b""), WANTED).path == best
+
+
+@pytest.mark.parametrize(
+    ("better", "worse", "reason"),
+    [
+        ("x/y/urdf/my_robot.urdf", "my_robot.urdf", NOT_THERE),
+        ("urdf/my_robot.urdf", "x/urdf/my_robot.urdf", DEEPER),
+        ("a/urdf/my_robot.urdf", "b/urdf/my_robot.urdf", LATER),
+        ("urdf/my_robot.urdf", "urdf/My_Robot.urdf", BEGINS),
+        ("deep/down/my_robot.urdf", "my_robot.urdf.bak.txt", BEGINS),
+        ("x/my_robot.urdf.xacro", "robot.urdf", OTHER_NAME),
+        ("MY_ROBOT_final(2).urdf", "robot.urdf", OTHER_NAME),
+        ("x/robot.urdf", "robot.xml", NOT_NAMED),
+        ("robot.URDF", "robot", NOT_NAMED),
+        ("robot", "x/robot.xacro", DEEPER),
+    ],
+)
+def test_pairs(better: str, worse: str, reason: str) -> None:
+    """Of two files the better one is graded, whatever their order, and the other is named with the reason."""
+    for paths in ((better, worse), (worse, better)):
+        found = find_urdf(tree_of(*paths), WANTED)
+        assert found == Found(better, (PassedOver(worse, reason),))
+
+
+def test_what_is_no_robot() -> None:
+    """A file without <robot at its beginning, of another kind, or known for something else is none."""
+    tree = tree_of(
+        "package.xml", "CMakeLists.txt", "notes.md", "robot.png", "late.xml", "other.xml", "empty.xml",
+        late=b" " * 5000 + ROBOT, other=b"<robots/>", empty=b"",
+    )  # fmt: skip
+    assert find_urdf(tree, WANTED) == Found(None, ())
+    assert find_urdf(tree_of("a.xml", a=b"< robot>"), WANTED).path == "a.xml"
+
+
+def test_a_file_of_the_right_name_needs_no_content() -> None:
+    """A file at the right path is graded whatever is in it, if anything is."""
+    tree = tree_of("urdf/my_robot.urdf", "other.urdf", my_robot=b"nonsense")
+    assert find_urdf(tree, WANTED).path == "urdf/my_robot.urdf"
+    assert find_urdf(tree_of("urdf/my_robot.urdf", "other.urdf", my_robot=b""), WANTED).path == "other.urdf"
+
+
+def test_a_file_that_cannot_be_read() -> None:
+    """A file that cannot be looked into is no robot by its content."""
+
+    def refuse(limit: int, *, first: bool = False) -> bytes:
+        raise InputError("cannot read it")
+
+    assert find_urdf(make_tree("", [File("a.xml", 10, refuse)], ()), WANTED).path is None
+
+
+def test_other_endings() -> None:
+    """A rubric may want a file that is no .urdf."""
+    tree = tree_of("urdf/my_robot.urdf.xacro", "urdf/my_robot.urdf")
+    assert find_urdf(tree, "urdf/my_robot.urdf.xacro").path == "urdf/my_robot.urdf.xacro"
+    assert find_urdf(tree, "my_robot.urdf").path == "urdf/my_robot.urdf"
+    assert find_urdf(tree, "./urdf//my_robot.urdf").path == "urdf/my_robot.urdf"
+
+
+def test_the_package_is_preferred() -> None:
+    """Among equals that of the package is graded, however deep; a better one outside of it is graded all the same."""
+    tree = tree_of("urdf/my_robot.urdf", "ws/src/my_robot/urdf/my_robot.urdf")
+    assert find_urdf(tree, WANTED, "ws/src/my_robot") == Found(
+        "ws/src/my_robot/urdf/my_robot.urdf", (PassedOver("urdf/my_robot.urdf", OUTSIDE),)
+    )
+    assert find_urdf(tree, WANTED, "").path == "urdf/my_robot.urdf"
+    assert find_urdf(tree, WANTED, "ws/src/my_rob").path == "urdf/my_robot.urdf"
+    assert (
+        find_urdf(tree_of("other/urdf/my_robot.urdf", "my_robot/a.urdf"), WANTED, "my_robot").path
+        == "other/urdf/my_robot.urdf"
+    )
+
+
+def test_products_of_a_build() -> None:
+    """What a build has made is named, twenty of them, and never graded."""
+    generated = [f"install/{n}.urdf" for n in range(30)]
+    found = find_urdf(make_tree("", [_file("a.urdf", ROBOT)], (), generated=generated), WANTED)
+    assert found.path == "a.urdf"
+    assert set(why(found).values()) == {"a build made it: only the source is graded"}
+    assert len(found.passed_over) == 20
+    assert find_urdf(make_tree("", (), (), generated=generated[:1]), WANTED).path is None
+
+
+def test_many_texts() -> None:
+    """Only so many texts are looked into; a file of the right name is found all the same."""
+    tree = tree_of(*(f"{n:04}.txt" for n in range(3000)), "z/robot.urdf")
+    with processor_time(1):
+        found = find_urdf(tree, WANTED)
+    assert found.path == "z/robot.urdf"
+    assert len(found.passed_over) == 400
+
+
+@given(
+    st.lists(st.sampled_from(["my_robot", "urdf", "a", "b", "lab6"]), max_size=3).map("/".join),
+    st.permutations(["my_robot.urdf", "x.urdf", "my_robot.txt", "y.xml"]),
+)
+def test_the_order_of_files_does_not_matter(folder: str, names: list[str]) -> None:
+    """The same files are ranked the same."""
+    paths = [f"{folder}/{name}" if folder else name for name in names]
+    assert find_urdf(tree_of(*paths), WANTED) == find_urdf(tree_of(*sorted(paths)), WANTED)
+
+
+@pytest.mark.parametrize(
+    ("paths", "folders"),
+    [
+        (["package.xml", "setup.py"], [""]),
+        (["b/package.xml", "a/package.xml", "package.xml", "x/y/package.xml"], ["", "a", "b", "x/y"]),
+        (["my_robot/setup.py"], ["my_robot"]),
+        (["other/setup.py"], ["other"]),
+        (["other/package.xml", "my_robot/setup.py"], ["my_robot", "other"]),
+        (["other/package.xml", "third/setup.py"], ["other"]),
+        (["other/setup.py", "my_robot/setup.py"], ["my_robot"]),
+        (["a/Package.xml", "a/package.xml.txt", "a/setup.cfg"], []),
+        ([], []),
+    ],
+)
+def test_packages_are_found(paths: list[str], folders: list[str]) -> None:
+    """A package has a package.xml, or at least a setup.py in a folder of the right name; the nearest to the top is first."""
+    assert find_packages(tree_of(*paths), "my_robot") == folders
+
+
+def test_many_packages() -> None:
+    """Only so many packages are read."""
+    assert len(find_packages(tree_of(*(f"p{n}/package.xml" for n in range(100))), "my_robot")) == 40
+
+
+def packages(wanted: str, names: dict[str, str | None]) -> tuple[Package, ...]:
+    """The packages of a tree: folders and the names in their package.xml, None for only a setup.py."""
+    files = [
+        _file(
+            f"{folder}/{'setup.py' if name is None else 'package.xml'}".lstrip("/"),
+            b"" if name is None else manifest(name),
+        )
+        for folder, name in names.items()
+    ]
+    return read_packages(make_tree("upload", files, ()), wanted)
+
+
+@pytest.mark.parametrize(
+    ("names", "folder", "name"),
+    [
+        ({"a": "other", "b/c": "my_robot"}, "b/c", "my_robot"),
+        ({"a": "other", "b/my_robot": "another"}, "b/my_robot", "another"),
+        ({"a": "other", "x/y": "my_robott"}, "x/y", "my_robott"),
+        ({"a": "other", "b": "another"}, "a", "other"),
+        ({"x/my_robot": "my_robot", "my_robot": "my_robot"}, "my_robot", "my_robot"),
+        ({"a": "other", "my_robot": None}, "my_robot", "my_robot"),
+        ({"": "other"}, "", "other"),
+        ({"": None}, "", "upload"),
+        ({"src": None}, "src", "src"),
+        ({"a": ""}, "a", "a"),
+    ],
+)
+def test_the_package_that_is_graded(names: dict[str, str | None], folder: str, name: str) -> None:
+    """By its name, then by that of its folder, then by a similar name, then the nearest to the top."""
+    first, *_ = packages("my_robot", names)
+    assert (first.folder, first.name) == (folder, name)
+
+
+def test_packages_know_each_other() -> None:
+    """Every package is known by its name, the graded one first among equals."""
+    found = packages("my_robot", {"b/my_robot": "my_robot", "a/my_robot": "my_robot", "c": "other"})
+    assert [each.folder for each in found] == ["a/my_robot", "b/my_robot", "c"]
+    assert {name: each.folder for name, each in found[1].known.items()} == {"my_robot": "a/my_robot", "other": "c"}
+
+
+def test_no_package() -> None:
+    """Without a package there is none."""
+    assert packages("my_robot", {}) == ()
+
+
+def team(first: list[str], second: list[str]) -> Tree:
+    """What a team of two has in one repository: a package my_robot for each."""
+    paths = [
+        "README.md",
+        *(f"Lab6/Adams/my_robot/{each}" for each in first),
+        *(f"Lab6/Brown/my_robot/{each}" for each in second),
+    ]
+    return tree_of(*paths, package=manifest("my_robot"))
+
+
+def test_a_team_of_two() -> None:
+    """The first member's package and URDF are graded; the other's are named."""
+    tree = team(["package.xml", "urdf/my_robot.urdf"], ["package.xml", "urdf/my_robot.urdf"])
+    found = submission_of(tree, "team", wanted=WANTED, package="my_robot")
+    assert found.path == "Lab6/Adams/my_robot/urdf/my_robot.urdf"
+    assert found.package is not None
+    assert found.package.folder == "Lab6/Adams/my_robot"
+    assert {each.path: each.because for each in found.passed_over} == {
+        "Lab6/Brown/my_robot/urdf/my_robot.urdf": OUTSIDE,
+        "Lab6/Brown/my_robot/package.xml": LATER,
+    }
+
+
+def test_a_team_is_not_mixed_up() -> None:
+    """One member's package is not graded with the other's URDF, better named as it may be."""
+    found = submission_of(
+        team(["package.xml", "robot.urdf"], ["package.xml", "urdf/my_robot.urdf"]),
+        "team",
+        wanted=WANTED,
+        package="my_robot",
+    )
+    assert found.path == "Lab6/Adams/my_robot/robot.urdf"
+    assert {each.path: each.because for each in found.passed_over} == {
+        "Lab6/Brown/my_robot/urdf/my_robot.urdf": OUTSIDE,
+        "Lab6/Brown/my_robot/package.xml": LATER,
+    }
+
+
+def test_a_description_package() -> None:
+    """A URDF in a package of another name, beside the one that is graded, is found by its path."""
+    tree = tree_of("my_robot/package.xml", "my_robot/test.urdf", "my_robot_description/package.xml", "my_robot_description/urdf/my_robot.urdf",
+                   package=manifest("my_robot"))  # fmt: skip
+    assert submission_of(tree, "a", wanted=WANTED, package="my_robot").path == "my_robot_description/urdf/my_robot.urdf"
