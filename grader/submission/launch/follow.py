@@ -1,20 +1,17 @@
 """Goes through a launch description: which nodes it starts, which files they are given, what it includes."""
 
 import re
-import shlex
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from grader.robot.names import did_you_mean
 from grader.robot.source import Location
-from grader.submission.launch.model import Fault, Purpose, Reference, StartedNode
-from grader.submission.launch.places import SHARE
-from grader.submission.launch.substitutions import CMDLINE, UNTOLD, Contents, Context, arguments_of, holds, resolve
+from grader.submission.launch.model import Fault, StartedNode
+from grader.submission.launch.named_files import DESCRIBED, SHOWS, NamedFiles
+from grader.submission.launch.substitutions import UNTOLD, Context, arguments_of, holds, resolve
 from grader.submission.python.values import Function, Made, Named, Spot, Unknown, Value
 
 _NODES = ("Node", "LifecycleNode")
-_DESCRIBED = "robot_state_publisher"
-_SHOWS = "rviz2"
 _MOST_ACTIONS = 5_000
 _MOST_DEPTH = 40
 CIRCLE = "it includes itself, without end"
@@ -44,12 +41,14 @@ class Follower:
     include: Include
     call: Callable[[Function, Spot, tuple[Value, ...]], Value]
     nodes: list[StartedNode] = field(default_factory=list)
-    references: list[Reference] = field(default_factory=list)
     faults: list[Fault] = field(default_factory=list)
     unknown: list[Fault] = field(default_factory=list)
     seen: set[int] = field(default_factory=set)
     steps: int = 0
-    sets_parameters: bool = False
+    files: NamedFiles = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.files = NamedFiles(self.place)
 
     def description(self, value: Value, context: Context) -> None:
         """Follow what generate_launch_description returns."""
@@ -127,7 +126,7 @@ class Follower:
             case _ if last in _IN_CONTAINERS:
                 self._untold("what a container of nodes starts is not followed", made.at)
             case _ if _IDLE.fullmatch(last) and made.name.startswith(("launch.", "launch_ros.")):
-                self.sets_parameters |= last in ("SetParameter", "SetParametersFromFile")
+                self.files.sets_parameters |= last in ("SetParameter", "SetParametersFromFile")
             case _ if not made.name.startswith("?."):
                 self._untold(f"what {last} starts is told only by a run", made.at)
 
@@ -210,15 +209,15 @@ class Follower:
         for name in ("parameters", "arguments", "remappings"):
             if isinstance(made.kwargs.get(name), str | dict):
                 context.wrong.append((f"{name} has to be a list: put [ ] around it", made.at))
-        if executable == _DESCRIBED:
-            self._described(made, context)
-        elif executable == _SHOWS:
-            self._shown(made.kwargs.get("arguments", made.kwargs.get("**")), made, context)
+        if executable == DESCRIBED:
+            self.files.described(made, context)
+        elif executable == SHOWS:
+            self.files.shown(made.kwargs.get("arguments", made.kwargs.get("**")), made, context)
 
     def _process(self, made: Made, context: Context, when: bool | None) -> None:
         """A command that starts a node: ros2 run, or rviz2 by itself."""
         command = made.argument(0, "cmd")
-        words = self._words(command, context)
+        words = self.files.words(command, context)
         if made.kwargs.get("shell") is True:
             words = " ".join(words).split()
         match words:
@@ -228,100 +227,6 @@ class Follower:
                 self._started(executable, executable, _as_node(made, rest), context, when)
             case ["ros2", "launch", *_] if when is not False:
                 self._untold("it starts ros2 launch once more", made.at)
-
-    def _words(self, value: Value, context: Context) -> list[str]:
-        """The words of a command: an entry of a list is one of them, a line of XML or YAML is split."""
-        pieces = value if isinstance(value, list | tuple) else [value] if value is not None else []
-        words: list[str] = []
-        for piece in pieces:
-            if isinstance(piece, Made) and piece.name == CMDLINE:
-                words += _line_words(piece, context)
-            else:
-                words.append(_told(piece, context))
-        return words
-
-    def _described(self, made: Made, context: Context) -> None:
-        """Where robot_state_publisher gets the robot from."""
-        given = made.kwargs.get("parameters")
-        parameters = given if isinstance(given, list | tuple) else [given] if given is not None else []
-        found = [
-            each["robot_description"] for each in parameters if isinstance(each, dict) and "robot_description" in each
-        ]
-        if found:
-            self._description_from(found[-1], made, context)
-            return
-        unclear = next((each for each in parameters if not isinstance(each, dict) or "**" in each), None)
-        words = self._words(made.kwargs.get("arguments"), context)
-        files = [each for each in words[: _index(words, "--ros-args")] if not each.startswith("-")]
-        if isinstance(unclear, Unknown):
-            self._refer("urdf", unclear, made)
-        elif files and files[0] != UNTOLD:
-            self._refer("urdf", files[0], made)
-        elif (
-            words
-            or unclear is not None
-            or "**" in made.kwargs
-            or "ros_arguments" in made.kwargs
-            or self.sets_parameters
-        ):
-            self._refer("urdf", Unknown("what it is given is told only by a run", made.at), made)
-        else:
-            message = "robot_state_publisher is started without robot_description: it has no robot to publish"
-            self.references.append(Reference("urdf", None, self.place(made.at), message))
-
-    def _description_from(self, value: Value, made: Made, context: Context) -> None:
-        known = resolve(value, context)
-        match known:
-            case Contents(path=path, by=by):
-                if by != "xacro" and path.endswith(".xacro"):
-                    name = path.rpartition("/")[2]
-                    message = f"{name} is read as it is; if anything of xacro is in it, use Command(['xacro ', ...])"
-                    self.references.append(Reference("urdf", None, self.place(made.at), message, sure=False))
-                    return
-                self._refer("urdf", path, made, value)
-            case str() if "<robot" in known:
-                return
-            case str():
-                message = "robot_description is given the path of the URDF, not what is in it: read the file first"
-                self.references.append(Reference("urdf", None, self.place(_spot(value, made)), message))
-            case Unknown():
-                self._refer("urdf", known, made, value)
-
-    def _shown(self, arguments: Value, made: Made, context: Context) -> None:
-        """Which configuration RViz opens."""
-        if isinstance(arguments, Unknown):
-            self._refer("rviz", arguments, made)
-            return
-        words = self._words(arguments, context)
-        path = _display_config(words)
-        if path is None and UNTOLD not in words:
-            message = (
-                "rviz2 is started without -d and a file, so it opens its own default instead of the lab's configuration"
-            )
-            self.references.append(Reference("rviz", None, self.place(made.at), message))
-        elif path is None or UNTOLD in path:
-            self._refer("rviz", self._why(arguments, made, context), made)
-        elif path != path.lstrip():
-            message = "'-d' and the path have to be two entries of arguments: ['-d', path]"
-            self.references.append(Reference("rviz", None, self.place(made.at), message))
-        elif path:
-            self._refer("rviz", path, made)
-        else:
-            message = "rviz2 is given -d without the path of a file"
-            self.references.append(Reference("rviz", None, self.place(made.at), message))
-
-    def _why(self, arguments: Value, made: Made, context: Context) -> Unknown:
-        pieces = arguments if isinstance(arguments, list | tuple) else [arguments]
-        unknown = (resolve(piece, context) for piece in pieces)
-        found = next((each for each in unknown if isinstance(each, Unknown)), None)
-        return found or Unknown("which file it opens is told only by a run", made.at)
-
-    def _refer(self, purpose: Purpose, path: "str | Unknown", made: Made, value: Value = None) -> None:
-        where = self.place(_spot(value, made))
-        if isinstance(path, Unknown):
-            self.references.append(Reference(purpose, None, where, path.reason, sure=False))
-        else:
-            self.references.append(Reference(purpose, path, where))
 
     def _include(self, made: Made, context: Context, when: bool | None) -> None:
         if when is False:
@@ -336,7 +241,8 @@ class Follower:
         inner = Context(path.rpartition("/")[0], {**context.arguments, **given}, when=when, left=context.left)
         known = _URDF_LAUNCH.fullmatch(path)
         if known is not None:
-            self._urdf_launch(known["name"], made, inner, when)
+            started = self.files.urdf_launch(known["name"], made, inner)
+            self.nodes += [StartedNode(each, each, when, self.place(made.at)) for each in started]
         else:
             self._included(path, made, inner, when)
         context.arguments.update(inner.arguments)  # an include shares its arguments with what follows
@@ -347,34 +253,7 @@ class Follower:
             self.faults.append(Fault(reason, self.place(made.at)))
         elif reason:
             self._untold(reason, made.at)
-        self._refer("include", path, made)
-
-    def _urdf_launch(self, name: str, made: Made, context: Context, when: bool | None) -> None:
-        """What urdf_launch's own files do with their arguments."""
-        started = [_DESCRIBED]
-        package, path = (
-            resolve(context.arguments.get(each), context) for each in ("urdf_package", "urdf_package_path")
-        )
-        if isinstance(package, str) and isinstance(path, str):
-            self._refer("urdf", f"{SHARE}/{package}/{path}", made)
-        else:
-            message = "urdf_launch needs the arguments urdf_package and urdf_package_path"
-            unknown = next(each for each in (package, path) if not isinstance(each, str))
-            told = context.arguments.get("urdf_package") is None or context.arguments.get("urdf_package_path") is None
-            reason = message if told or not isinstance(unknown, Unknown) else unknown.reason
-            self.references.append(Reference("urdf", None, self.place(made.at), reason, sure=told))
-        if name == "display":
-            started += ["joint_state_publisher_gui", _SHOWS]
-            config = context.arguments.get("rviz_config")
-            shown = resolve(config, context) if config is not None else None
-            if isinstance(shown, str | Unknown):
-                self._refer("rviz", shown, made)
-            else:
-                message = (
-                    "urdf_launch is included without rviz_config, so it opens its own configuration, not the lab's"
-                )
-                self.references.append(Reference("rviz", None, self.place(made.at), message))
-        self.nodes += [StartedNode(each, each, when, self.place(made.at)) for each in started]
+        self.files.refer("include", path, made)
 
 
 def _both(one: bool | None, other: bool | None) -> bool | None:
@@ -384,58 +263,8 @@ def _both(one: bool | None, other: bool | None) -> bool | None:
     return None if one is None or other is None else True
 
 
-def _spot(value: Value, made: Made) -> Spot:
-    if isinstance(value, list | tuple):
-        value = next((each for each in value if isinstance(each, Made)), None)
-    while isinstance(value, Made) and isinstance(value.owner, Made):  # of open(path).read() the path is what counts
-        value = value.owner
-    return value.at if isinstance(value, Made) else made.at
-
-
-def _index(words: list[str], word: str) -> int:
-    return words.index(word) if word in words else len(words)
-
-
 def _as_node(made: Made, words: list[str]) -> Made:
     """A command as the node that it starts."""
     arguments: list[Value] = [Unknown("a part of the command is told only by a run", made.at) if word == UNTOLD else word
                               for word in words]  # fmt: skip
     return Made(made.name, [], {"arguments": arguments}, made.at)
-
-
-def _told(value: Value, context: Context) -> str:
-    text = resolve(value, context)
-    return text if isinstance(text, str) else UNTOLD
-
-
-def _line_words(line: Made, context: Context) -> list[str]:
-    """The words of a line as launch splits it: its plain texts are split, what a substitution gives is not."""
-    words = [""]
-    for piece in line.args:
-        if not isinstance(piece, str):
-            words[-1] += _told(piece, context)
-            continue
-        try:
-            found = shlex.split(piece)
-        except ValueError:
-            context.wrong.append(
-                ("quotes cannot go around a substitution in a line of arguments: leave them out", line.at)
-            )
-            found = piece.replace("'", " ").replace('"', " ").split()
-        if piece[:1].isspace() or not found:
-            words.append("")
-        words[-1] += "".join(found[:1])
-        words += [*found[1:], *([""] if piece[-1:].isspace() else [])]
-    return [word for word in words if word]
-
-
-def _display_config(words: list[str]) -> str | None:
-    """The file that rviz2 is told to open; None where it is told nothing."""
-    for index, word in enumerate(words):
-        if word in ("-d", "--display-config"):
-            return "".join(words[index + 1 : index + 2])
-        if word.startswith("--display-config="):
-            return word.partition("=")[2]
-        if word.startswith("-d"):
-            return word[2:].removeprefix("=")
-    return None

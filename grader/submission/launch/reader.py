@@ -149,7 +149,7 @@ def _launch(path: str, source: Source, follower: Follower, forgotten: tuple[Star
         source,
         None,
         tuple(follower.nodes),
-        tuple(follower.references),
+        tuple(follower.files.references),
         tuple(sorted(set(follower.faults), key=lambda each: (each.location.line, each.location.column, each.message))),
         tuple(dict.fromkeys(follower.unknown)),
         forgotten,
