@@ -17,6 +17,10 @@ class RubricError(GraderError):
         self.complaints = complaints
 
 
+class NotDecided(LookupError):
+    """What a question asks cannot be told by the grader: a person has to look. The message says why."""
+
+
 class MissingElement(LookupError):
     """Something that a question needs is not there: a link, a shape, a chain of joints, a defined pose.
 

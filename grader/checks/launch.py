@@ -4,7 +4,7 @@ import posixpath
 from typing import TYPE_CHECKING
 
 from grader.checks.outcome import Outcome, judged_as, passed
-from grader.errors import MissingElement
+from grader.errors import MissingElement, NotDecided
 from grader.robot.names import closest
 from grader.submission.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.submission.package import Package, is_launch_named
@@ -106,6 +106,8 @@ def _launch(package: Package, name: str) -> "Launch":
     if path is None:
         raise _no_file(package, "launch")
     launch = package.launch(path)
+    if launch.unread:
+        raise NotDecided(launch.unread)
     if launch.syntax is not None:
         raise MissingElement("launch file", path, message=launch.syntax.message, location=launch.syntax.location)
     return launch
@@ -161,12 +163,25 @@ def _verdict(package: Package, named: "Reference") -> tuple[str, str]:
         if shown.startswith("~"):
             return "failed", f"it looks for the {what} at {shown}, but nothing puts the home folder in place of ~"
         return "failed", f"it looks for the {what} at {shown}, in whatever folder ros2 launch is started from"
+    if not path.startswith(PREFIX) and posixpath.basename(path) in map(posixpath.basename, package.tree.files):
+        return "failed", f"it looks for the {what} at {path}: a path that begins with / forgets the folders before it"
     return "pending", f"the {what} {path.removeprefix(PREFIX)} is not part of the package"
+
+
+def _is_glued(package: Package, owner: str, rest: str) -> bool:
+    """Whether a path goes on right behind the package's name, as in get_package_share_directory(...) + 'my_robot.urdf'."""
+    tail = posixpath.basename(rest or owner.removeprefix(package.name))
+    return owner.startswith(package.name) and tail in map(posixpath.basename, package.tree.files)
 
 
 def _below_share(package: Package, owner: str, rest: str, named: "Reference") -> tuple[str, str]:
     what = _WORDS[named.purpose]
     other = package.find(owner)
+    if other is None and _is_glued(package, owner, rest):
+        return (
+            "failed",
+            f"it looks for the {what} at {posixpath.join('share', owner, rest)}: a slash is missing behind {package.name!r}",
+        )
     if other is None:
         if closest(owner, [package.name]):
             return "failed", f"it looks in a package {owner!r}, but this one is named {package.name!r}"

@@ -6,7 +6,7 @@ from fnmatch import fnmatch
 from typing import TYPE_CHECKING, Literal
 
 from grader.checks.outcome import Outcome, judged_as, listing, passed
-from grader.errors import MissingElement
+from grader.errors import MissingElement, NotDecided
 from grader.robot.names import closest
 from grader.submission.package import MANIFEST, NO_PACKAGE, Package
 from grader.submission.submission import Submission
@@ -28,9 +28,7 @@ def package_found(submission: Submission, *, name: str) -> Outcome:
     package = submission.package
     if package is None:
         raise MissingElement("package", "", message=NO_PACKAGE)
-    manifest = package.manifest
-    if manifest is None or not _is_readable(manifest):
-        raise _no_manifest(package)
+    manifest = _readable_manifest(package)
     if manifest.name is None:
         problem = manifest.problems[0]
         return judged_as("failed", problem.message, at=problem.location)
@@ -42,9 +40,7 @@ def package_found(submission: Submission, *, name: str) -> Outcome:
 
 def package_type(package: Package, *, build_type: str) -> Outcome:
     """The package is of a build type, such as ament_python."""
-    manifest = package.manifest
-    if manifest is None or not _is_readable(manifest):
-        raise _no_manifest(package)
+    manifest = _readable_manifest(package)
     actual = manifest.build_type
     if actual == build_type:
         return Outcome("passed", f"the build type is {actual!r}", actual, build_type)
@@ -119,6 +115,15 @@ def readable_setup(package: Package) -> "Setup | Outcome":
     return setup
 
 
+def _readable_manifest(package: Package) -> "Manifest":
+    manifest = package.manifest
+    if manifest is not None and manifest.unread:
+        raise NotDecided(manifest.unread)
+    if manifest is None or not _is_readable(manifest):
+        raise _no_manifest(package)
+    return manifest
+
+
 def _is_readable(manifest: "Manifest") -> bool:
     from grader.submission.catalogue import BAD_MANIFEST
 
@@ -149,6 +154,10 @@ def _installed(package: Package, files: Sequence[str], kind: Kind | None) -> Out
     copies = [copy for copy in setup.copies if copy.source in files]
     shares = tuple(f"share/{name}/" for name in package.names)
     inside = [copy for copy in copies if copy.target.startswith(shares)]
+    twice = sorted({copy.target for copy in inside if posixpath.basename(copy.target) == posixpath.basename(files[0])})
+    if kind == "launch" and len(twice) > 1:
+        message = f"a build installs {files[0]} as {' and as '.join(twice)}: ros2 launch finds both and starts neither"
+        return judged_as("failed", message, at=setup.location(inside[-1].at))
     if inside:
         return passed(f"a build installs {inside[0].source} as {inside[0].target}")
     if setup.unknown:
@@ -167,30 +176,28 @@ def _elsewhere(copy: "Copy", share: str, setup: "Setup") -> Outcome:
 
 def _not_installed(package: Package, setup: "Setup", files: Sequence[str], kind: Kind | None) -> MissingElement:
     message = f"a build does not install {files[0]}"
-    empty = _meant(setup.empty, files)
+    empty = _meant(setup.empty, files, kind)
     at = None
     if not setup.is_called:
         message = "a build installs nothing: setup.py does not call setup()"
         return MissingElement("call of setup", package.folder, message=message)
     if empty is not None:
-        folder = posixpath.dirname(empty.pattern)
-        reason = "" if not folder or folder in package.tree.folders else f", because there is no folder {folder!r}"
-        message += f": the pattern {empty.pattern!r} in setup.py finds nothing{reason}"
+        message += f": the pattern {empty.pattern!r} in setup.py finds nothing{package.instead(empty.pattern)}"
         at = setup.location(empty.at)
     else:
         message += ": no entry of data_files in setup.py names it"
     return MissingElement(f"installed {kind or files[0]}", package.folder, message=message, location=at)
 
 
-def _meant(empty: "Sequence[EmptyGlob]", files: Sequence[str]) -> "EmptyGlob | None":
-    """The pattern without a match that was meant to find one of these files: by its folder, or by its ending."""
+def _meant(empty: "Sequence[EmptyGlob]", files: Sequence[str], kind: Kind | None) -> "EmptyGlob | None":
+    """The pattern without a match that was meant to find one of these files: by its folder, its ending or its kind."""
     folders = {posixpath.dirname(path) for path in files}
     endings = tuple({posixpath.splitext(path)[1] for path in files} - {""})
     for glob in empty:
         folder = posixpath.dirname(glob.pattern)
         if folder in folders or (folder and closest(folder, folders)) or (endings and glob.pattern.endswith(endings)):
             return glob
-    return None
+    return next((glob for glob in empty if kind is not None and kind in glob.pattern.lower()), None)
 
 
 def _owner(path: str, package: Package) -> Kind | None:

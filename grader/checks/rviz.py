@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from grader.checks.outcome import Outcome, Status, judged_as, passed
-from grader.errors import MissingElement
+from grader.errors import MissingElement, NotDecided
 from grader.robot.names import did_you_mean
 from grader.submission.package import NO_PACKAGE, Package
 from grader.submission.submission import Submission
@@ -130,6 +130,8 @@ def _read(package: Package, name: str, launch: str) -> "RvizFile":
     if path is None:
         raise _no_rviz_file(package)
     rviz = package.rviz(path)
+    if rviz.unread:
+        raise NotDecided(rviz.unread)
     if rviz.fault is not None:
         raise MissingElement("RViz file", path, message=rviz.fault.message, location=rviz.fault.location)
     return rviz

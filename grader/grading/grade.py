@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from grader.checks.outcome import Outcome
 from grader.checks.registry import Subject
-from grader.errors import MissingElement
+from grader.errors import MissingElement, NotDecided
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Criterion, Rubric
 from grader.grading.scope import chosen_parts, exhibits_of
@@ -86,6 +86,8 @@ class _Run:
             return self._miss(criterion, missing)
         except UnknownShape as unknown:
             return Result(criterion, Outcome("pending", f"{unknown}; a person has to look at it"))
+        except NotDecided as reason:
+            return Result(criterion, Outcome("pending", f"{reason}: a person has to look"))
         except Exception as error:  # noqa: BLE001  a fault of ours must cost the student nothing else
             from traceback import format_exc  # only ever needed here
 
@@ -98,9 +100,13 @@ class _Run:
             case "submission":
                 return self.submission
             case "package":
+                if self.submission.package is None and self.submission.unopened:
+                    raise NotDecided(_unopened(self.submission))
                 if self.submission.package is None:
                     raise MissingElement("package", "", message=NO_PACKAGE)
                 return self.submission.package
+            case _ if self.urdf is None and self.submission.unopened:
+                raise NotDecided(_unopened(self.submission))
             case _ if self.urdf is None:
                 raise MissingElement("URDF", "", message=_no_urdf(self.submission))
             case "urdf":
@@ -139,6 +145,10 @@ class _Run:
 
 def _skipped(cause: str) -> Outcome:
     return Outcome("skipped", f"not decided, because {cause} failed")
+
+
+def _unopened(submission: Submission) -> str:
+    return f"no URDF or package was found, but {', '.join(submission.unopened[:3])} could not be opened"
 
 
 def _no_urdf(submission: Submission) -> str:

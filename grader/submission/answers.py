@@ -23,7 +23,7 @@ _MARKUP = re.compile(r"^[\s#>*\-_+|`]+")
 _NO_ANSWERS = frozenset(
     {"CMakeLists.txt", "requirements.txt", "LICENSE.txt", "LICENSE.md", "top_level.txt", "SOURCES.txt"}
 )
-_ROBOT = re.compile(r"<\s*(?:robot|launch|package)[\s>/]")
+_XML = re.compile(r"\s*<(?:\?xml|!--|robot|launch|package)")  # how a file of another kind begins
 
 
 class Passage(NamedTuple):
@@ -75,7 +75,7 @@ def _documents(tree: Tree, files: Sequence[str], unread: list[str]) -> Iterator[
         except InputError as error:
             unread.append(str(error))
             continue
-        if not _ROBOT.search(text[:4096]):
+        if not _XML.match(text):
             yield file, text.splitlines()
 
 

@@ -27,6 +27,7 @@ from grader.submission.tree import (
     Tree,
     clean,
     folders_above,
+    ignored_folder,
     is_generated,
     is_ignored,
     make_tree,
@@ -137,6 +138,7 @@ def _tree(members: list[Member], name: str) -> Tree:
     found: dict[str, Member] = {}
     left_out: list[str] = []
     generated: set[str] = set()
+    unseen: set[str] = set()
     for member in members:
         path = _inside(member.path) if len(member.path) <= LONGEST_NAME else None
         if len(member.path) > LONGEST_NAME:
@@ -145,6 +147,7 @@ def _tree(members: list[Member], name: str) -> Tree:
             left_out.append(f"{clean(member.path)} has a name that leads out of the archive, and was not read")
         elif path and is_ignored(path):
             generated |= {path} if is_generated(path) and member.kind == "file" else set()
+            unseen |= {folder} if (folder := ignored_folder(path)) is not None else set()
         elif path:
             found[path] = member
     environments = {path.rpartition("/")[0] for path in found if path.endswith("/pyvenv.cfg")}
@@ -161,7 +164,7 @@ def _tree(members: list[Member], name: str) -> Tree:
     files = [
         File(path, found[at].size, partial(_read, found[at], path)) for path, at in {**linked.files, **real}.items()
     ]
-    return make_tree(name, files, folders | linked.folders, sorted(left_out), sorted(generated))
+    return make_tree(name, files, folders | linked.folders, sorted(left_out), sorted(generated), unseen)
 
 
 def _inside(path: str) -> str | None:

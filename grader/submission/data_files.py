@@ -120,6 +120,11 @@ class Entries:
     def _copy(self, file: Value, folder: str, at: Spot) -> None:
         if len(self.copies) + len(self.stops) + len(self.unknown) > _MOST_COPIES:
             raise TooHard("it installs too many files to follow")
+        if isinstance(file, list | tuple | dict | int | float | None) and unknown_in(file) is None:
+            self.stops.append(
+                Stop("", "an entry of data_files holds something that is no file: is a bracket misplaced?", at)
+            )
+            return
         if not isinstance(file, str | PurePosixPath):
             self.unknown.append(unknown_in(file) or Unknown("a file in data_files is not followed", at))
             return
@@ -140,11 +145,11 @@ class Entries:
         elif path is not None and path in self.tree.files:
             target = posixpath.normpath(posixpath.join(folder, posixpath.basename(path)))
             self.copies.append(Copy(path, target, at))
-        elif path in self.listing.folders:
+        elif path is not None and path in self.listing.folders:
             self.stops.append(
                 Stop(
                     text,
-                    "it is a folder, and only files can be installed: a pattern such as '*.urdf' leaves it out",
+                    f"it is a folder, and only files can be installed{self._narrower(path)}",
                     at,
                 )
             )
@@ -155,6 +160,17 @@ class Entries:
         else:
             guess = did_you_mean(text, self.tree.files) if len(self.stops) < _MOST_GUESSES else ""
             self.stops.append(Stop(text, f"there is no such file{guess}", at))
+
+    def _narrower(self, folder: str) -> str:
+        """A pattern that finds the files beside a folder, but not the folder."""
+        above = posixpath.dirname(folder)
+        beside = [
+            posixpath.splitext(name)[1]
+            for name in self.listing.names(above)
+            if posixpath.join(above, name) in self.tree.files
+        ]
+        endings = [ending for ending in beside if ending]
+        return f": a pattern such as '*{max(sorted(set(endings)), key=endings.count)}' leaves it out" if endings else ""
 
     def _find_packages(self, call: Made) -> None:
         """Note where setuptools has to look for packages and stops, because it finds several."""

@@ -43,9 +43,12 @@ def _docx(data: bytes) -> str:
         if sum(info.file_size for info in archive.infolist()) > _ZIP_LIMIT:
             raise ValueError("it unpacks to far more than a text")
     document = docx.Document(io.BytesIO(data))
-    lines = [paragraph.text for paragraph in document.paragraphs]
-    for table in document.tables:
-        lines += ["\t".join(cell.text for cell in row.cells) for row in table.rows]
+    lines: list[str] = []
+    for block in document.iter_inner_content():  # paragraphs and tables as they stand
+        if hasattr(block, "rows"):
+            lines += ["\t".join(cell.text for cell in row.cells) for row in block.rows]
+        else:
+            lines.append(block.text)
     return "\n".join(lines)
 
 

@@ -19,9 +19,12 @@ def read_capped(path: Path, limit: int = URDF_LIMIT, *, advice: str = _ADVICE) -
     return capped(read_start(path, limit + 1), limit, printable_path(path), advice)
 
 
-def read_start(path: Path, count: int) -> bytes:
-    """The first bytes of a regular file; raises InputError, in one plain sentence, for anything else."""
-    shown = printable_path(path)
+def read_start(path: Path, count: int, shown: str = "") -> bytes:
+    """The first bytes of a regular file; raises InputError, in one plain sentence, for anything else.
+
+    `shown` is what messages call it, the path unless told.
+    """
+    shown = shown or printable_path(path)
     try:
         # A FIFO would block at open and a device could be endless: both are recognised without reading.
         handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))

@@ -23,8 +23,8 @@ class Found(NamedTuple):
 class _Candidate(NamedTuple):
     """How good a file is, best first: the tuple sorts."""
 
-    of_another: bool  # in a package of the same name that is not graded: that of another member of a team
     tier: int
+    of_another: bool  # in a package of the same name that is not graded: that of another member of a team
     outside: bool
     depth: int
     path: str
@@ -45,8 +45,8 @@ def find_urdf(tree: Tree, wanted: str, package: str | None = None) -> Found:
 
     `wanted` is the path that the rubric gives, such as urdf/my_robot.urdf. A file at the end of whose path it stands comes first,
     then one with its name, then one whose name begins alike, then any .urdf, then any text with <robot in it. Among equals
-    come those in `package` (a folder), then the nearest to the top, then the first in the alphabet. What stands in another
-    package of that name comes last.
+    come those in `package` (a folder), then the nearest to the top, then the first in the alphabet; those in another package
+    of that name come last.
     """
     ranked = sorted(_candidates(tree, wanted, package))
     if not ranked:
@@ -93,7 +93,7 @@ def _candidates(tree: Tree, wanted: str, package: str | None) -> list[_Candidate
             tier = 2
         else:
             tier = 3 if is_named else 4
-        found.append(_Candidate(path.startswith(others), tier, outside, len(steps), path))
+        found.append(_Candidate(tier, path.startswith(others), outside, len(steps), path))
     return found
 
 
@@ -116,11 +116,9 @@ def _is_robot(file: File) -> bool:
 
 
 def _reason(best: _Candidate, other: _Candidate, wanted: str) -> str:
-    if other.of_another and not best.of_another:
-        return _OUTSIDE
     if other.tier != best.tier:
         return _TIERS[other.tier].format(wanted=wanted)
-    if other.outside != best.outside:
+    if (other.of_another, other.outside) != (best.of_another, best.outside):
         return _OUTSIDE
     if other.depth != best.depth:
         return "it is equally good, but stands deeper in the folders"

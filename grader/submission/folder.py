@@ -8,7 +8,7 @@ from itertools import islice
 from pathlib import Path
 
 from grader.errors import InputError
-from grader.submission.files import advice_for, printable_path, read_capped, read_start
+from grader.submission.files import advice_for, capped, printable_path, read_start
 from grader.submission.tree import (
     BUILT,
     IGNORED,
@@ -34,7 +34,7 @@ def read_folder(folder: Path) -> Tree:
     walk = _Walk(folder)
     walk.enter("", linked=False)
     name = printable_path(folder.resolve().name or "submission")
-    return make_tree(name, walk.files, walk.folders, sorted(walk.left_out), sorted(walk.generated))
+    return make_tree(name, walk.files, walk.folders, sorted(walk.left_out), sorted(walk.generated), walk.unseen)
 
 
 class _Walk:
@@ -49,6 +49,7 @@ class _Walk:
         self.folders: list[str] = []
         self.left_out: list[str] = []
         self.generated: list[str] = []
+        self.unseen: list[str] = []
 
     def enter(self, start: str, *, linked: bool) -> None:
         """Take in what is below a folder."""
@@ -73,6 +74,8 @@ class _Walk:
     def _is_ignored(self, entry: "os.DirEntry[str]", path: str) -> bool:
         if entry.name not in IGNORED and not is_ignored(clean(path)):
             return False
+        if entry.is_dir(follow_symlinks=False):
+            self.unseen.append(clean(path))
         if entry.name in BUILT and not entry.is_symlink():
             self.generated += _generated(self._folder, path)
         return True
@@ -95,7 +98,7 @@ class _Walk:
                 self.folders.append(shown)
             return True
         elif is_file:
-            self.files.append(File(shown, _size(entry), partial(_read, Path(entry.path))))
+            self.files.append(File(shown, _size(entry), partial(_read, Path(entry.path), shown)))
         elif entry.is_symlink() and not Path(entry.path).exists():
             self.left_out.append(f"{shown} is a link that leads nowhere, and was not followed")
         else:
@@ -131,11 +134,13 @@ def _generated(folder: Path, path: str) -> list[str]:
 
 def single_file(path: Path) -> File:
     """One file outside of any tree; its path is its name."""
-    return File(printable_path(path.name), 0, partial(_read, path))
+    return File(printable_path(path.name), 0, partial(_read, path, printable_path(path.name)))
 
 
-def _read(path: Path, limit: int, *, first: bool = False) -> bytes:
-    return read_start(path, limit) if first else read_capped(path, limit, advice=advice_for(path.name))
+def _read(path: Path, shown: str, limit: int, *, first: bool = False) -> bytes:
+    """The bytes of a file; messages name it as the submission does, so that they are the same on every machine."""
+    start = read_start(path, limit if first else limit + 1, shown)
+    return start if first else capped(start, limit, shown, advice_for(path.name))
 
 
 def _size(entry: "os.DirEntry[str]") -> int:

@@ -13,6 +13,7 @@ from grader.submission.tree import Tree
 ORDERS = ("sorted", "reversed", "rotated")
 _MAGIC = re.compile(r"[*?\[]")
 _OUTSIDE = "it looks for files outside of the package"
+_COMPILED = "__pycache__"  # what is in it was never written by anyone
 _MOST_FOUND = 20_000
 _MOST_PATTERN = 1_024
 _MOST_PARTS = 50
@@ -30,17 +31,20 @@ class Listing:
 
     def __init__(self, tree: Tree, order: str = ORDERS[0]) -> None:
         self.files = tree.files
-        self.folders = tree.folders | {""}
+        self.folders = tree.folders | tree.unseen | {""}
+        self._unseen = {path for path in tree.unseen if path.rpartition("/")[2] != _COMPILED}
         self.looked_at = 0
         self._children: dict[str, list[str]] = {}
-        for path in sorted([*tree.files, *tree.folders], reverse=order == "reversed"):
+        for path in sorted([*tree.files, *tree.folders, *tree.unseen], reverse=order == "reversed"):
             folder, _, name = path.rpartition("/")
             self._children.setdefault(folder, []).append(name)
         if order == "rotated":
             self._children = {folder: [*names[1:], names[0]] for folder, names in self._children.items()}
 
     def names(self, folder: str) -> list[str]:
-        """The names of what is in a folder."""
+        """The names of what is in a folder. Raises BeyondError for one that was not looked into."""
+        if folder in self._unseen:
+            raise BeyondError("it looks into a folder that is not looked at here")
         found = self._children.get(folder, [])
         self.looked_at += 1 + len(found)
         return found

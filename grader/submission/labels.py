@@ -5,8 +5,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 _WORDS = re.compile(r"[^\W\d_]+|\d+")
-_TASKS = frozenset({"task", "tasks", "t", "tsk", "tast"})
-_STEPS = frozenset({"step", "steps", "s", "st", "stp", "question", "questions", "q", "que", "no", "nr"})
+_TASKS = frozenset({"task", "tasks", "t", "tsk", "aufgabe", "teil"})
+_STEPS = frozenset(
+    {"step", "steps", "s", "st", "stp", "question", "questions", "q", "que", "no", "nr", "schritt", "frage"}
+)
 _LONGEST = 300
 
 

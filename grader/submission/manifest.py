@@ -21,6 +21,7 @@ class Manifest:
     problems: tuple[Problem, ...]
     name_location: Location
     type_location: Location
+    unread: str = ""  # why the file could not be read at all: too large, damaged
 
 
 def read_manifest(data: bytes, path: str) -> Manifest:

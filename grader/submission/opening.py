@@ -12,7 +12,7 @@ from grader.submission.tree import MOST_FILES, File, Tree, make_tree, too_many
 if TYPE_CHECKING:
     from grader.submission.archive import Allowance
 
-_ENDINGS = (".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar")
+ARCHIVES = (".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar")
 _INNER_LIMIT = 64 * 1024 * 1024  # bytes of an archive inside of what was handed in
 _MOST_NESTED = 3
 _WORTH_FINDING = ("package.xml", "setup.py")
@@ -46,7 +46,7 @@ def open_tree(path: Path) -> Tree | None:
     shown = printable_path(path)
     kind = archive_kind(read_start(path, 512))
     if kind is None:
-        if path.name.lower().endswith(_ENDINGS):
+        if path.name.lower().endswith(ARCHIVES):
             raise InputError(f"{shown} is no archive that can be read, for all its name: it is damaged or empty")
         return None
     from grader.submission.archive import read_archive
@@ -69,14 +69,14 @@ def tree_name(path: Path) -> str:
 
 def _with_inner(tree: Tree, allowance: "Allowance | None" = None, depth: int = 0) -> Tree:
     """The tree with what is in its archives, if nothing to grade stands beside them."""
-    archives = [file for file in tree.files.values() if file.suffix in _ENDINGS]
+    archives = [file for file in tree.files.values() if file.suffix in ARCHIVES]
     if not archives or any(file.name in _WORTH_FINDING or file.suffix == ".urdf" for file in tree.files.values()):
         return tree
     from grader.submission.archive import Allowance
 
     allowance = allowance or Allowance()
     files, folders, left_out = list(tree.files.values()), set(tree.folders), list(tree.left_out)
-    generated = list(tree.generated)
+    generated, unseen = list(tree.generated), set(tree.unseen)
     kept = [tree]
     for archive in archives:
         try:
@@ -90,9 +90,10 @@ def _with_inner(tree: Tree, allowance: "Allowance | None" = None, depth: int = 0
         folders |= {start + folder for folder in inner.folders}
         left_out += [f"{start}{each}" for each in inner.left_out]
         generated += [start + each for each in inner.generated]
+        unseen |= {start + folder for folder in inner.unseen}
         if len(files) > MOST_FILES:
             raise too_many(tree.name)
-    return make_tree(tree.name, files, folders, left_out, generated, tuple(kept))
+    return make_tree(tree.name, files, folders, left_out, generated, unseen, tuple(kept))
 
 
 def _inner(archive: File, allowance: "Allowance", depth: int) -> Tree:

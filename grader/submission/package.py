@@ -6,8 +6,7 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from grader.errors import InputError
-from grader.robot.catalogue import Problem
-from grader.robot.names import closest
+from grader.robot.names import closest, did_you_mean
 from grader.robot.source import Location, Source
 from grader.submission.launch.places import ENDINGS, PREFIX, SHARE
 from grader.submission.tree import Tree
@@ -106,6 +105,19 @@ class Package:
         is_there = any(folder.rpartition("/")[2] == "launch" for folder in self.tree.folders)
         return message if is_there else f"{message}, and there is no folder launch"
 
+    def instead(self, pattern: str) -> str:
+        """What to say behind a pattern that finds no file: that its folder is missing, or what is in it instead."""
+        if "\\" in pattern:
+            return ": a path is written with / in setup.py, not with \\"
+        folder = pattern.rpartition("/")[0]
+        if folder and folder not in self.tree.folders:
+            return f", because there is no folder {folder!r}{did_you_mean(folder, self.tree.folders)}"
+        there = [path for path in self.tree.files if path.rpartition("/")[0] == folder]
+        if not there:
+            return f", because the folder {folder!r} is empty"
+        more = ", ..." if len(there) > 3 else ""
+        return f"; there {'are' if len(there) > 1 else 'is'} {', '.join(there[:3])}{more}"
+
     def launch_file(self, name: str) -> str | None:
         """The launch file of this name, in any of the three languages; else the one that is named most like it; else any."""
         files = sorted(self.launch_files, key=lambda path: (path.count("/"), path))
@@ -128,14 +140,13 @@ class Package:
         return {}
 
     def _read_launch(self, path: str) -> "Launch":
-        from grader.submission.launch.model import Fault, Launch
+        from grader.submission.launch.model import Launch
         from grader.submission.launch.reader import read_launch
 
         try:
             data = self.tree.files[path].read(PYTHON_LIMIT)
         except InputError as error:
-            source = Source(self.path(path), "")
-            return Launch(self.path(path), source, Fault(str(error), Location(self.path(path), 1, 1)))
+            return Launch(self.path(path), Source(self.path(path), ""), unread=str(error))
         return read_launch(
             data, self.path(path), self.target(path) or f"share/{self.name}/{path}", self._open_installed
         )
@@ -156,15 +167,13 @@ class Package:
 
     def rviz(self, path: str) -> "RvizFile":
         """An RViz file, read."""
-        from grader.submission import catalogue
         from grader.submission.rviz import RvizFile, read_rviz
 
         try:
             data = self.tree.files[path].read(_RVIZ_LIMIT)
         except InputError as error:
             start = Location(self.path(path), 1, 1)
-            problem = Problem(catalogue.BAD_RVIZ, str(error), start)
-            return RvizFile(self.path(path), Source(self.path(path), ""), problem, None, start, ())
+            return RvizFile(self.path(path), Source(self.path(path), ""), None, None, start, (), unread=str(error))
         return read_rviz(data, self.path(path))
 
     def target(self, path: str) -> str | None:
@@ -211,8 +220,12 @@ def launch_stem(name: str) -> str:
     return base.split(".launch")[0] if ".launch" in base else base.rpartition("_launch.")[0] or base
 
 
-def read_packages(tree: Tree, wanted: str) -> tuple[Package, ...]:
-    """The packages of a submission, the one that was meant first: that of the wanted name, or else the nearest to the top."""
+def read_packages(tree: Tree, wanted: str, urdf: str = "") -> tuple[Package, ...]:
+    """The packages of a submission, the one that was meant first: that of the wanted name.
+
+    Among packages of one name it is the one that holds most of what a lab asks for, the URDF at its path before all; then the
+    nearest to the top, then the first in the alphabet.
+    """
     from grader.submission.find import find_packages
 
     known: dict[str, Package] = {}
@@ -220,6 +233,7 @@ def read_packages(tree: Tree, wanted: str) -> tuple[Package, ...]:
     found.sort(
         key=lambda package: (
             _distance(package, wanted),
+            _lacks(package, urdf),
             package.folder.count("/") + bool(package.folder),
             package.folder,
         )
@@ -227,6 +241,12 @@ def read_packages(tree: Tree, wanted: str) -> tuple[Package, ...]:
     for package in found:
         known.setdefault(package.name, package)
     return tuple(found)
+
+
+def _lacks(package: Package, urdf: str) -> tuple[bool, int]:
+    """Whether a package lacks the wanted URDF, and how many of its other usual files."""
+    usual = (MANIFEST in package.tree.files, SETUP in package.tree.files, package.launch_files, package.rviz_files)
+    return urdf not in package.tree.files, sum(not each for each in usual)
 
 
 def _distance(package: Package, wanted: str) -> int:
@@ -238,7 +258,6 @@ def _distance(package: Package, wanted: str) -> int:
 
 
 def _read_package(tree: Tree, folder: str, known: dict[str, Package]) -> Package:
-    from grader.submission import catalogue
     from grader.submission.manifest import Manifest, read_manifest
 
     own = tree.below(folder)
@@ -250,6 +269,5 @@ def _read_package(tree: Tree, folder: str, known: dict[str, Package]) -> Package
         manifest = read_manifest(file.read(_MANIFEST_LIMIT), path)
     except InputError as error:
         start = Location(path, 1, 1)
-        problem = Problem(catalogue.BAD_MANIFEST, str(error), start)
-        manifest = Manifest(Source(path, ""), None, "", (problem,), start, start)
+        manifest = Manifest(Source(path, ""), None, "", (), start, start, unread=str(error))
     return Package(folder, own, manifest, known)

@@ -41,9 +41,8 @@ def _of_setup(package: Package, setup: Setup) -> Iterator[Problem]:
     for stop in setup.stops:
         yield Problem(catalogue.SETUP_STOPS, stop.words, setup.location(stop.at))
     for empty in setup.empty:
-        yield Problem(
-            catalogue.EMPTY_GLOB, f"the pattern {empty.pattern!r} in setup.py finds nothing", setup.location(empty.at)
-        )
+        message = f"the pattern {empty.pattern!r} in setup.py finds nothing{package.instead(empty.pattern)}"
+        yield Problem(catalogue.EMPTY_GLOB, message, setup.location(empty.at))
     for unknown in setup.unknown:
         yield Problem(catalogue.SETUP_UNKNOWN, f"this is not followed: {unknown.reason}", setup.location(unknown.at))
     yield from _of_entries(package, setup)

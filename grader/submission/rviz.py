@@ -48,12 +48,15 @@ class RvizFile:
     fixed_frame: str | None
     frame_location: Location
     displays: tuple[Display, ...]
+    unread: str = ""  # why the file could not be read at all: too large, damaged
 
     @property
     def problems(self) -> tuple[Problem, ...]:
         """What is worth saying of the file, whatever it is graded on."""
         if self.fault is not None:
             return (self.fault,)
+        if self.unread:
+            return ()
         found = [
             Problem(
                 catalogue.ROS1_CLASS,

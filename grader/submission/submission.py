@@ -7,7 +7,7 @@ from grader.errors import InputError
 from grader.robot.reader import Reading, read_urdf
 from grader.robot.source import Source
 from grader.submission.files import URDF_LIMIT, printable_path, read_capped, read_standard_input, sha256_of
-from grader.submission.opening import open_tree, tree_name
+from grader.submission.opening import ARCHIVES, open_tree, tree_name
 from grader.submission.package import Package, read_packages
 from grader.submission.tree import PassedOver, Tree, make_tree
 
@@ -40,6 +40,14 @@ class Submission:
     def package(self) -> Package | None:
         """The package that is graded."""
         return self.packages[0] if self.packages else None
+
+    @property
+    def unopened(self) -> tuple[str, ...]:
+        """The archives in it that were not opened, though something to grade may be in them."""
+        opened = tuple(path for path in self.tree.folders if path.lower().endswith(ARCHIVES))
+        return tuple(
+            file.path for file in self.tree.files.values() if file.suffix in ARCHIVES and file.path not in opened
+        )
 
     def source(self, path: str) -> Source | None:
         """The text of one of its files, for quoting; None where it cannot be read."""
@@ -81,7 +89,7 @@ def submission_of(tree: Tree, identity: str, *, wanted: str, package: str = "", 
     """The submission that a tree of files makes; raises InputError for a URDF that is too large."""
     from grader.submission.find import find_urdf
 
-    packages = read_packages(tree, package)
+    packages = read_packages(tree, package, wanted)
     found = find_urdf(tree, wanted, packages[0].folder if packages else None)
     others = [PassedOver(each.path("package.xml"), _why_not(packages[0], each)) for each in packages[1:]]
     data = tree.files[found.path].read(limit) if found.path is not None else None
@@ -94,6 +102,8 @@ def submission_of(tree: Tree, identity: str, *, wanted: str, package: str = "", 
 def _why_not(graded: Package, other: Package) -> str:
     if other.name != graded.name:
         return f"the package {graded.name!r} is graded, not {other.name!r}"
+    if len(other.tree.files) != len(graded.tree.files):
+        return "the package that is graded holds more of what the lab asks for"
     if other.folder.count("/") != graded.folder.count("/"):
         return "it is equally good, but stands deeper in the folders"
     return "it is equally good, but comes later in the alphabet"

@@ -10,7 +10,7 @@ from grader.submission.files import printable_path
 
 # Products of a build, tools' folders and other people's code: what a student wrote is not in them.
 BUILT = frozenset({"build", "install", "log"})
-IGNORED = BUILT | {"node_modules", "site-packages", "venv", "env", "__pycache__", "__MACOSX"}
+IGNORED = BUILT | {"node_modules", "site-packages", "__pycache__", "__MACOSX"}  # and what holds a pyvenv.cfg
 _LITTER = frozenset({"Thumbs.db", "desktop.ini", "Icon\r", "AMENT_IGNORE", "COLCON_IGNORE"})
 MOST_FILES = 50_000
 
@@ -52,7 +52,8 @@ class File:
 class Tree:
     """The files of a submission by path, in the order of the alphabet, and its folders, empty ones included.
 
-    `left_out` says in one line each what was not taken in, and why; `generated` names URDFs that a build has left.
+    `left_out` says in one line each what was not taken in, and why; `generated` names URDFs that a build has left. `unseen` are
+    folders that are there, but were not looked into.
     """
 
     name: str
@@ -60,6 +61,7 @@ class Tree:
     folders: frozenset[str]
     left_out: tuple[str, ...] = ()
     generated: tuple[str, ...] = ()
+    unseen: frozenset[str] = frozenset()
     kept: "tuple[Tree, ...]" = field(default=(), repr=False, compare=False)  # trees whose archives have to stay open
 
     def below(self, folder: str) -> "Tree":
@@ -72,8 +74,11 @@ class Tree:
             for path, file in self.files.items()
             if path.startswith(start)
         }
-        folders = frozenset(each.removeprefix(start) for each in self.folders if each.startswith(start))
-        return Tree(folder.rpartition("/")[2], files, folders, kept=(self,))
+        folders, unseen = (
+            frozenset(each.removeprefix(start) for each in paths if each.startswith(start))
+            for paths in (self.folders, self.unseen)
+        )
+        return Tree(folder.rpartition("/")[2], files, folders, unseen=unseen, kept=(self,))
 
 
 def make_tree(
@@ -82,13 +87,15 @@ def make_tree(
     folders: Iterable[str],
     left_out: Iterable[str] = (),
     generated: Iterable[str] = (),
+    unseen: Iterable[str] = (),
     kept: "tuple[Tree, ...]" = (),
 ) -> Tree:
     """A tree of these files, its folders completed by those that the files stand in; raises InputError for too many."""
     by_path = {file.path: file for file in sorted(files, key=lambda each: each.path)}
     given = set(folders)
     above = folders_above([*by_path, *given], name)
-    return Tree(name, by_path, frozenset(above | given), tuple(left_out), tuple(generated), kept)
+    everything = frozenset(above | given)
+    return Tree(name, by_path, everything, tuple(left_out), tuple(generated), frozenset(unseen) - everything, kept)
 
 
 def folders_above(paths: Iterable[str], name: str) -> set[str]:
@@ -117,6 +124,15 @@ def is_ignored(path: str) -> str | None:
         if folder in IGNORED or folder.startswith("."):
             return folder
     return name if name.startswith(".") or name in _LITTER else None
+
+
+def ignored_folder(path: str) -> str | None:
+    """The folder on the way to a path that is not looked into, if there is one."""
+    steps = path.split("/")
+    for index, step in enumerate(steps[:-1]):
+        if step in IGNORED or step.startswith("."):
+            return "/".join(steps[: index + 1])
+    return None
 
 
 def is_generated(path: str) -> bool:

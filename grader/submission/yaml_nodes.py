@@ -52,7 +52,8 @@ class Node:
 
 def read_yaml(data: bytes, path: str) -> Node:
     """The first document of a YAML text; raises YamlFault. An empty text is an empty mapping."""
-    text = data.decode("utf-8", "replace")
+    is_wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
+    text = data.decode("utf-16" if is_wide else "utf-8", "replace")
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     try:
         return _compose(yaml.parse(text, Loader=loader), path)

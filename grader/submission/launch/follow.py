@@ -116,6 +116,7 @@ class Follower:
             case "GroupAction":
                 self._group(made, context, when, depth)
             case "TimerAction" | "RosTimer":
+                _needs_list(made, made.argument(1, "actions"), context)
                 self._actions(made.argument(1, "actions"), context, when=when, depth=depth + 1)
             case "RegisterEventHandler":
                 self._actions(made.argument(0, "event_handler"), context, when=when, depth=depth + 1)
@@ -136,6 +137,11 @@ class Follower:
         if when is False or not isinstance(name, str) or (declares and name in context.arguments):
             return
         value = made.argument(1, "default_value", "value")
+        if declares and len(made.args) > 1:
+            context.wrong.append(("DeclareLaunchArgument takes its default by name: default_value=...", made.at))
+        if isinstance(value, int | float):
+            told = str(value).lower() if isinstance(value, bool) else str(value)
+            context.wrong.append((f"the value of a launch argument is a text: write {told!r}", made.at))
         if when is None:
             known: Value = Unknown(f"the launch argument {name!r} is set under a condition", made.at)
         elif value is None:
@@ -166,6 +172,7 @@ class Follower:
         own = made.kwargs.get("launch_configurations")
         for name, value in own.items() if isinstance(own, dict) else ():
             context.arguments[str(name)] = resolve(value, context)
+        _needs_list(made, made.argument(0, "actions"), context)
         self._actions(made.argument(0, "actions"), context, when=when, depth=depth + 1)
         if made.kwargs.get("scoped", True) is not False:
             context.arguments.clear()
@@ -254,6 +261,12 @@ class Follower:
         elif reason:
             self._untold(reason, made.at)
         self.files.refer("include", path, made)
+
+
+def _needs_list(made: Made, actions: Value, context: Context) -> None:
+    if isinstance(actions, Made):
+        last = made.name.rpartition(".")[2]
+        context.wrong.append((f"{last} takes a list of actions: put [ ] around them", made.at))
 
 
 def _both(one: bool | None, other: bool | None) -> bool | None:

@@ -55,6 +55,7 @@ class Launch:
     faults: tuple[Fault, ...] = ()
     unknown: tuple[Fault, ...] = ()
     forgotten: tuple[StartedNode, ...] = ()  # made in the file, but not part of what it launches
+    unread: str = ""  # why the file could not be read at all: too large, damaged
 
     def named(self, *purposes: Purpose) -> tuple[Reference, ...]:
         """The files that are named for a purpose."""

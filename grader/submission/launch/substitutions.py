@@ -92,6 +92,9 @@ def _made(made: Made, context: Context, depth: int) -> "str | Contents | Unknown
             return of(0, "text")
         case "LaunchConfiguration":
             return _configuration(made, context, depth)
+        case "PathJoinSubstitution" if len(made.args) > 1:
+            context.wrong.append(("PathJoinSubstitution takes one list: put [ ] around the parts of the path", made.at))
+            return _path(made.args, context, depth, made.at)
         case "PathJoinSubstitution":
             return _path(made.argument(0, "substitutions"), context, depth, made.at)
         case "PathSubstitution" | "ParameterValue" | "ParameterFile":
@@ -294,7 +297,12 @@ def holds(condition: Value, context: Context) -> bool | None:
         return None
     last = condition.name.rpartition(".")[2]
     if last in ("IfCondition", "UnlessCondition"):
-        text = resolve(condition.argument(0, "predicate_expression"), context)
+        predicate = condition.argument(0, "predicate_expression")
+        if isinstance(predicate, int | float):
+            context.wrong.append(
+                (f"{last} takes a text or a substitution, not {predicate}: write 'true'", condition.at)
+            )
+        text = resolve(predicate, context)
         known = _truth(text)
         if known is None and isinstance(text, str):
             context.wrong.append((f"a condition is {text[:40]!r}, which is neither true nor false", condition.at))

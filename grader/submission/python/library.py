@@ -98,7 +98,9 @@ def _relative(working_folder: str) -> Callable[..., Value]:
     return follow
 
 
-def _joined(_: "Machine", args: list[Value], kwargs: dict[str, Value], spot: Spot) -> Value:
+def _joined(machine: "Machine", args: list[Value], kwargs: dict[str, Value], spot: Spot) -> Value:
+    if any(isinstance(each, list | tuple | dict | int | float | None) for each in args):
+        machine.fault("os.path.join takes texts, and this is something else: is a bracket misplaced?", spot)
     texts = [_path_text(each) for each in args]
     known = [each for each in texts if each is not None]
     if not known or len(known) != len(texts) or sum(map(len, known)) > _MOST_PATH:

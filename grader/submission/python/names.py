@@ -45,11 +45,53 @@ _LOOKED_UP = frozenset({"os", "os.path", "glob", "pathlib", "sys", "shutil", "it
 _OTHERS = frozenset({"distutils", "pkg_resources", "wheel", "launch", "launch_ros", "xacro", "ament_index_python"})
 
 
+# Where the names of ROS 2's launch are imported from (ros2/launch and ros2/launch_ros, Jazzy).
+_HOMES: dict[str, tuple[str, ...]] = {
+    "launch": ("LaunchDescription", "LaunchContext", "LaunchService"),
+    "launch.actions": (
+        "DeclareLaunchArgument", "ExecuteProcess", "GroupAction", "IncludeLaunchDescription", "LogInfo", "OpaqueFunction",
+        "RegisterEventHandler", "SetEnvironmentVariable", "SetLaunchConfiguration", "TimerAction", "EmitEvent",
+    ),
+    "launch.conditions": ("IfCondition", "UnlessCondition", "LaunchConfigurationEquals", "LaunchConfigurationNotEquals"),
+    "launch.event_handlers": ("OnProcessExit", "OnProcessStart", "OnProcessIO", "OnShutdown", "OnExecutionComplete"),
+    "launch.launch_description_sources": (
+        "PythonLaunchDescriptionSource", "AnyLaunchDescriptionSource", "FrontendLaunchDescriptionSource",
+    ),
+    "launch.substitutions": (
+        "Command", "EnvironmentVariable", "FindExecutable", "LaunchConfiguration", "PathJoinSubstitution",
+        "PythonExpression", "TextSubstitution", "ThisLaunchFileDir",
+    ),
+    "launch_ros": (),
+    "launch_ros.actions": ("Node", "LifecycleNode", "ComposableNodeContainer", "PushRosNamespace", "SetParameter", "SetRemap"),
+    "launch_ros.descriptions": ("ComposableNode", "ParameterValue", "ParameterFile"),
+    "launch_ros.parameter_descriptions": ("ParameterValue", "ParameterFile"),
+    "launch_ros.substitutions": ("FindPackageShare", "FindPackagePrefix", "FindPackage", "ExecutableInPackage"),
+    "ament_index_python": ("get_package_share_directory", "get_package_share_path", "get_package_prefix"),
+    "ament_index_python.packages": ("get_package_share_directory", "get_package_share_path", "get_package_prefix"),
+}  # fmt: skip
+
+
+def _misplaced(module: str, name: str) -> str | None:
+    """What is wrong with taking a name of launch's from one of its modules, if it is in another one."""
+    if module not in _HOMES or name in _HOMES[module]:
+        return None
+    homes = [home for home, names in _HOMES.items() if name in names]
+    return f"{module} has no {name!r}: it is in {homes[-1]}" if homes else None
+
+
+def some_names(module: str) -> tuple[str, ...]:
+    """Some of what `from module import *` brings, of modules of launch's."""
+    return _HOMES.get(module, ())
+
+
 def import_fault(module: str, name: str) -> str | None:
     """What is wrong with `import name`, or with `from module import name`, if that can be told; else None."""
     top = (module or name).split(".")[0]
     if module.startswith(".") or not top:
         return None
+    misplaced = _misplaced(module, name)
+    if misplaced is not None:
+        return misplaced
     if top == "setuptools":
         if module == "setuptools" and name not in _SETUPTOOLS and name != "*":
             return (

@@ -51,7 +51,9 @@ def parse(data: bytes, path: str) -> Code | SyntaxFault:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # such as an invalid escape, which Python accepts
-            return Code(source, ast.parse(text))
+            tree = ast.parse(text)
+            compile(tree, path, "exec", dont_inherit=True)  # only made, never run: it finds what the grammar allows
+            return Code(source, tree)
     except SyntaxError as error:
         place = Location(path, max(error.lineno or 1, 1), max(error.offset or 1, 1))
         newer = sys.version_info < _JAZZY and error.msg.startswith("f-string")

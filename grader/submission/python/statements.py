@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from grader.submission.python.containers import extend, items_of, remove, store, truth
 from grader.submission.python.expressions import evaluate
 from grader.submission.python.leaving import Leave, Left, Raised, Return
-from grader.submission.python.names import import_fault, is_at_hand, public_names
+from grader.submission.python.names import import_fault, is_at_hand, public_names, some_names
 from grader.submission.python.operators import operate
 from grader.submission.python.values import Bound, Function, Named, Scope, Spot, Unknown, Value, at
 
@@ -125,6 +125,10 @@ def _import(machine: "Machine", node: ast.Import | ast.ImportFrom, scope: Scope)
         full = f"{module}.{alias.name}" if module else alias.name
         if alias.name == "*" and public_names(module) is not None:
             for name in public_names(module) or ():
+                scope.bind(name, Named(f"{module}.{name}"))
+        elif alias.name == "*":
+            scope.bind("*", Named(full))
+            for name in some_names(module):
                 scope.bind(name, Named(f"{module}.{name}"))
         elif alias.asname:
             scope.bind(alias.asname, Named(full))
