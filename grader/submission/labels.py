@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 _WORDS = re.compile(r"[^\W\d_]+|\d+")
-_TASKS = frozenset({"task", "tasks", "t", "tsk", "aufgabe", "teil"})
+_TASKS = frozenset({"task", "tasks", "t", "tsk", "tast", "aufgabe", "teil"})
 _STEPS = frozenset(
     {"step", "steps", "s", "st", "stp", "question", "questions", "q", "que", "no", "nr", "schritt", "frage"}
 )

@@ -274,25 +274,25 @@ def test_a_missing_entry_is_told(kind: str, entry: str) -> None:
         (
             setup("glob('urdf/*')", "glob('udrf/*')"),
             "urdf",
-            "the pattern 'udrf/*' in setup.py finds nothing, because there is no folder 'udrf'",
+            "the pattern 'udrf/*' in setup.py finds nothing, because there is no folder 'udrf'; did you mean 'urdf'?",
             "glob('udrf/*')",
         ),
         (
             setup("glob('rviz/*')", "glob('rvis/*.rviz')"),
             "rviz",
-            "the pattern 'rvis/*.rviz' in setup.py finds nothing, because there is no folder 'rvis'",
+            "the pattern 'rvis/*.rviz' in setup.py finds nothing, because there is no folder 'rvis'; did you mean 'rviz'?",
             "glob('rvis/*.rviz')",
         ),
         (
             setup("glob('urdf/*')", "glob('urdf/*.udrf')"),
             "urdf",
-            "the pattern 'urdf/*.udrf' in setup.py finds nothing",
+            "the pattern 'urdf/*.udrf' in setup.py finds nothing; there is urdf/my_robot.urdf",
             "glob('urdf/*.udrf')",
         ),
         (
             setup("glob(os.path.join('launch', '*launch.[pxy][yma]*'))", "glob('launch/*.launch.xml')"),
             "launch",
-            "the pattern 'launch/*.launch.xml' in setup.py finds nothing",
+            "the pattern 'launch/*.launch.xml' in setup.py finds nothing; there is launch/my_robot_rviz.launch.py",
             "glob('launch/*.launch.xml')",
         ),
         (
@@ -351,7 +351,10 @@ def test_a_launch_file_of_another_fileis_installed() -> None:
 def test_a_launch_file_without_extension_is_not_found_by_the_pattern() -> None:
     """The usual pattern does not find it; glob('launch/*') does."""
     bare = REFERENCE.renaming(LAUNCH, "my_robot/launch/my_robot_rviz")
-    message = "a build does not install launch/my_robot_rviz: the pattern 'launch/*launch.[pxy][yma]*' in setup.py finds nothing"
+    message = (
+        "a build does not install launch/my_robot_rviz: the pattern 'launch/*launch.[pxy][yma]*' in setup.py finds nothing; "
+        "there is launch/my_robot_rviz"
+    )
     expected = ("installed launch", FOLDER, message, bare.place(SETUP, "glob(os.path"))
     assert lacks(build_installs, bare, kind="launch", name=KINDS["launch"]) == expected
     all_files = setup("'*launch.[pxy][yma]*'", "'*'", bare)

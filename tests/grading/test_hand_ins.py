@@ -226,7 +226,7 @@ def test_two_defects_are_both_told() -> None:
             REFERENCE.without("my_robot/launch"),
             "PKG013",
             SETUP,
-            "the pattern 'launch/*launch.[pxy][yma]*' in setup.py finds nothing",
+            "the pattern 'launch/*launch.[pxy][yma]*' in setup.py finds nothing, because there is no folder 'launch'",
         ),
         (
             REFERENCE.replacing(LAUNCH, "    return ", "    "),

@@ -164,7 +164,7 @@ def test_litter(ending: str) -> None:
         "__MACOSX/my_robot/._package.xml": b"", "my_robot/.DS_Store": b"", "Thumbs.db": b"", ".git/config": b"",
         "my_robot/.vscode/settings.json": b"", "my_robot/a.urdf": b"", "node_modules/b/b.urdf": b"",
         "build/my_robot/a.urdf": b"", "install/my_robot/share/my_robot/urdf/A.URDF": b"", "log/x.txt": b"",
-        "venv/a.py": b"", "my_env/pyvenv.cfg": b"", "my_env/lib/b.urdf": b"", "my_robot/__pycache__/a.pyc": b"",
+        "venv/pyvenv.cfg": b"", "venv/a.py": b"", "my_env/pyvenv.cfg": b"", "my_env/lib/b.urdf": b"", "my_robot/__pycache__/a.pyc": b"",
     }))  # fmt: skip
     assert list(tree.files) == ["my_robot/a.urdf"]
     assert tree.generated == ("build/my_robot/a.urdf", "install/my_robot/share/my_robot/urdf/A.URDF")
@@ -771,7 +771,7 @@ def test_litter_in_folders(home: Path) -> None:
     """Builds, tools, virtual environments and hidden files are passed over; URDFs that a build has made are named."""
     for path in (".git/config", "build/my_robot/b.urdf", "install/my_robot/share/my_robot/urdf/my_robot.urdf", "install/x.txt",
                  "log/latest/c.urdf", "my_robot/.hidden.urdf", "my_robot/__pycache__/a.pyc", "mine/pyvenv.cfg", "mine/lib/d.urdf",
-                 "venv/e.urdf", "node_modules/f/f.urdf", ".DS_Store", "Thumbs.db", "my_robot/build/deep/g.urdf"):  # fmt: skip
+                 "venv/pyvenv.cfg", "venv/e.urdf", "node_modules/f/f.urdf", ".DS_Store", "Thumbs.db", "my_robot/build/deep/g.urdf"):  # fmt: skip
         (home / path).parent.mkdir(parents=True, exist_ok=True)
         (home / path).write_bytes(b"")
     tree = read_folder(home)

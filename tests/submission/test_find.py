@@ -284,11 +284,26 @@ def test_a_team_is_not_mixed_up() -> None:
         wanted=WANTED,
         package="my_robot",
     )
-    assert found.path == "Lab6/Adams/my_robot/robot.urdf"
-    assert {each.path: each.because for each in found.passed_over} == {
-        "Lab6/Brown/my_robot/urdf/my_robot.urdf": OUTSIDE,
-        "Lab6/Brown/my_robot/package.xml": LATER,
-    }
+    assert found.path == "Lab6/Brown/my_robot/urdf/my_robot.urdf"
+    assert found.package is not None
+    assert found.package.folder == "Lab6/Brown/my_robot"
+
+
+def test_a_package_that_holds_what_is_asked_for_comes_first() -> None:
+    """Of packages of one name the one with the URDF at its path is graded, then the one with more of the usual files."""
+    tree = tree_of(
+        *("Lab5/my_robot/package.xml", "Lab5/my_robot/setup.py", "Lab5/my_robot/urdf/box.urdf"),
+        *("Lab6/my_robot/package.xml", "Lab6/my_robot/setup.py", "Lab6/my_robot/urdf/my_robot.urdf"),
+        package=manifest("my_robot"),
+    )
+    found = submission_of(tree, "a", wanted=WANTED, package="my_robot")
+    assert found.path == "Lab6/my_robot/urdf/my_robot.urdf"
+    assert found.package is not None
+    assert found.package.folder == "Lab6/my_robot"
+    stub = team(["package.xml"], ["package.xml", "setup.py", "rviz/a.rviz"])
+    package = submission_of(stub, "a", wanted=WANTED, package="my_robot").package
+    assert package is not None
+    assert package.folder == "Lab6/Brown/my_robot"
 
 
 def test_a_description_package() -> None:

@@ -37,7 +37,9 @@ from tests.patience import processor_time
         ("ｔask１", None, set()),
         ("Taskforce 1 stepwise 8", None, set()),
         ("no8", None, {8}),
-        ("Aufgabe 1", None, set()),
+        ("Aufgabe 1", 1, set()),
+        ("Aufgabe 2, Schritt 6", 2, {6}),
+        ("Übung 1", None, set()),
     ],
 )
 def test_labels(text: str, task: int | None, steps: set[int]) -> None:

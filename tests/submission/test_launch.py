@@ -357,7 +357,10 @@ TOLD = {
         faults=("11: a space is missing between xacro and the path: write 'xacro '",),
     ),
     "star_import.launch.py": Told(
-        unknown=("6: where the name 'LaunchDescription' comes from is told only by a run",),
+        nodes="rviz2",
+        rviz=(
+            "6: rviz2 is started without -d and a file, so it opens its own default instead of the lab's configuration",
+        ),
     ),
     "substitution_lists.launch.py": Told(
         nodes="robot_state_publisher rviz2",
