@@ -3,7 +3,7 @@
 from grader.checks.outcome import Outcome
 from grader.submission.submission import Submission
 
-_DOCUMENTS = ("*.md", "*.txt", "*.docx", "*.pdf", "*.doc", "*.odt", "*.rtf", "*.pages")
+_DOCUMENTS = ("*.md", "*.txt", "*.docx", "*.pdf", "*.rst", "*.doc", "*.odt", "*.rtf", "*.pages", "*.ipynb")
 
 
 def answered(

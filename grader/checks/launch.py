@@ -180,7 +180,7 @@ def _below_share(package: Package, owner: str, rest: str, named: "Reference") ->
     if other is None and _is_glued(package, owner, rest):
         return (
             "failed",
-            f"it looks for the {what} at {posixpath.join('share', owner, rest)}: a slash is missing behind {package.name!r}",
+            f"it looks for the {what} at {posixpath.join('share', owner, rest).rstrip('/')}: a slash is missing behind {package.name!r}",
         )
     if other is None:
         if closest(owner, [package.name]):

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 from grader.checks.outcome import Outcome, judged_as, listing, passed
 from grader.errors import MissingElement, NotDecided
 from grader.robot.names import closest
-from grader.submission.package import MANIFEST, NO_PACKAGE, Package
+from grader.submission.package import MANIFEST, Package
 from grader.submission.submission import Submission
 
 if TYPE_CHECKING:
@@ -25,9 +25,7 @@ _ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",)}
 
 def package_found(submission: Submission, *, name: str) -> Outcome:
     """A ROS 2 package of this name was handed in."""
-    package = submission.package
-    if package is None:
-        raise MissingElement("package", "", message=NO_PACKAGE)
+    package = submission.needed_package()
     manifest = _readable_manifest(package)
     if manifest.name is None:
         problem = manifest.problems[0]

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from grader.checks.outcome import Outcome, Status, judged_as, passed
 from grader.errors import MissingElement, NotDecided
 from grader.robot.names import did_you_mean
-from grader.submission.package import NO_PACKAGE, Package
+from grader.submission.package import Package
 from grader.submission.submission import Submission
 
 if TYPE_CHECKING:
@@ -30,9 +30,7 @@ def rviz_found(package: Package, *, name: str, launch: str = "") -> Outcome:
 
 def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: str = "") -> Outcome:
     """The RViz file's Fixed Frame is this link."""
-    package = submission.package
-    if package is None:
-        raise MissingElement("package", "", message=NO_PACKAGE)
+    package = submission.needed_package()
     rviz = _read(package, name, launch)
     actual = rviz.fixed_frame
     if not actual:

@@ -22,7 +22,6 @@ from grader.robot.kinematics import Configuration
 from grader.robot.names import quoted
 from grader.robot.shapes import UnknownShape
 from grader.robot.source import Location, Spot
-from grader.submission.package import NO_PACKAGE
 from grader.submission.submission import Submission
 
 # Problems that say why a measurement came out as it did.
@@ -100,17 +99,10 @@ class _Run:
             case "submission":
                 return self.submission
             case "package":
-                if self.submission.package is None and self.submission.unopened:
-                    raise NotDecided(_unopened(self.submission))
-                if self.submission.package is None:
-                    raise MissingElement("package", "", message=NO_PACKAGE)
-                return self.submission.package
-            case _ if self.urdf is None and self.submission.unopened:
-                raise NotDecided(_unopened(self.submission))
-            case _ if self.urdf is None:
-                raise MissingElement("URDF", "", message=_no_urdf(self.submission))
+                return self.submission.needed_package()
             case "urdf":
-                return self.urdf
+                return self.submission.needed_urdf()
+        self.submission.needed_urdf()
         if self.robot is None:
             raise MissingElement("robot", "", message="ROS 2 cannot read the file, so there is no robot to look at")
         return self.robot
@@ -145,13 +137,3 @@ class _Run:
 
 def _skipped(cause: str) -> Outcome:
     return Outcome("skipped", f"not decided, because {cause} failed")
-
-
-def _unopened(submission: Submission) -> str:
-    return f"no URDF or package was found, but {', '.join(submission.unopened[:3])} could not be opened"
-
-
-def _no_urdf(submission: Submission) -> str:
-    count = len(submission.tree.files)
-    files = f"none of the {count} files holds a <robot>" if count > 1 else "the only file holds no <robot>"
-    return f"no URDF was submitted: {files}" if count else "no URDF was submitted"

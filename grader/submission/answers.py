@@ -20,6 +20,9 @@ _MOST_FILES, _MOST_DOCUMENTS = 40, 8
 _MOST_LINES, _MOST_TEXT = 60, 4000
 _HEADING_WORDS = 6  # a label that begins a passage stands among the first words of its line
 _MARKUP = re.compile(r"^[\s#>*\-_+|`]+")
+# Numbers that stand for a step: 1.15, or 15) and 15. where they are no count of a short list.
+_DOTTED = re.compile(r"^\(?([1-9])\.(\d{1,2})\b[.):]?\s*")
+_NUMBERED = re.compile(r"^\(?([1-9]\d)[.):]\s+")
 _NO_ANSWERS = frozenset(
     {"CMakeLists.txt", "requirements.txt", "LICENSE.txt", "LICENSE.md", "top_level.txt", "SOURCES.txt"}
 )
@@ -83,7 +86,7 @@ def _text(file: File) -> str:
     match file.suffix:
         case ".docx" | ".pdf":
             return _converted(file, file.suffix[1:])
-        case ".doc" | ".odt" | ".rtf" | ".pages":
+        case ".doc" | ".odt" | ".rtf" | ".pages" | ".ipynb":
             raise InputError(f"{file.path} is of a kind that is not read: open it yourself")
         case _:
             data = file.read(_TEXT_LIMIT)
@@ -155,7 +158,10 @@ def _heading(line: str) -> Label | None:
 
 
 def _words(line: str) -> list[str]:
-    return [word for word in _MARKUP.sub("", line).split() if any(map(str.isalnum, word))]
+    plain = _MARKUP.sub("", line)
+    plain = _DOTTED.sub(r"task \1 step \2 ", plain)
+    plain = _NUMBERED.sub(r"step \1 ", plain)
+    return [word for word in plain.split() if any(map(str.isalnum, word))]
 
 
 def _cut(file: File, lines: list[str], start: int, end: int) -> Iterator[Passage]:

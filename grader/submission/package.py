@@ -1,6 +1,7 @@
 """A ROS 2 package as it was handed in: its files, read one by one when they are asked for, and never run."""
 
 from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
 from functools import cached_property
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
@@ -112,7 +113,9 @@ class Package:
         folder = pattern.rpartition("/")[0]
         if folder and folder not in self.tree.folders:
             return f", because there is no folder {folder!r}{did_you_mean(folder, self.tree.folders)}"
-        there = [path for path in self.tree.files if path.rpartition("/")[0] == folder]
+        named = pattern.rpartition("/")[2]
+        there = [path for path in self.tree.files if named.strip("*") and fnmatchcase(path.rpartition("/")[2], named)]
+        there = there or [path for path in self.tree.files if path.rpartition("/")[0] == folder]
         if not there:
             return f", because the folder {folder!r} is empty"
         more = ", ..." if len(there) > 3 else ""

@@ -3,12 +3,12 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from grader.errors import InputError
+from grader.errors import InputError, MissingElement, NotDecided
 from grader.robot.reader import Reading, read_urdf
 from grader.robot.source import Source
 from grader.submission.files import URDF_LIMIT, printable_path, read_capped, read_standard_input, sha256_of
 from grader.submission.opening import ARCHIVES, open_tree, tree_name
-from grader.submission.package import Package, read_packages
+from grader.submission.package import NO_PACKAGE, Package, read_packages
 from grader.submission.tree import PassedOver, Tree, make_tree
 
 STANDARD_INPUT = "-"
@@ -40,6 +40,25 @@ class Submission:
     def package(self) -> Package | None:
         """The package that is graded."""
         return self.packages[0] if self.packages else None
+
+    def needed_package(self) -> Package:
+        """The package that is graded; raises MissingElement where there is none, NotDecided where that cannot be told."""
+        if self.package is not None:
+            return self.package
+        if self.unopened:
+            raise NotDecided(f"no package was found, but {', '.join(self.unopened[:3])} could not be opened")
+        raise MissingElement("package", "", message=NO_PACKAGE)
+
+    def needed_urdf(self) -> Reading:
+        """The URDF that is graded; raises MissingElement where there is none, NotDecided where that cannot be told."""
+        if self.urdf is not None:
+            return self.urdf
+        if self.unopened:
+            raise NotDecided(f"no URDF was found, but {', '.join(self.unopened[:3])} could not be opened")
+        count = len(self.tree.files)
+        files = f"none of the {count} files holds a <robot>" if count > 1 else "the only file holds no <robot>"
+        message = f"no URDF was submitted: {files}" if count else "no URDF was submitted"
+        raise MissingElement("URDF", "", message=message)
 
     @property
     def unopened(self) -> tuple[str, ...]:

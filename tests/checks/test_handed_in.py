@@ -149,9 +149,27 @@ def test_a_long_answer_is_cut() -> None:
 def test_no_answer_at_all() -> None:
     """Where nothing was handed in, a person decides, who is told where it was looked for."""
     assert answer_in(ALONE).message == f"{NOT_FOUND}; a person decides"
-    other = answer_in(ALONE.with_files({"notes.txt": "15. It vanishes.\n", "answers.md": "\n"}))
+    other = answer_in(ALONE.with_files({"notes.txt": "It vanishes.\n", "answers.md": "\n"}))
     assert other.message == f"{NOT_FOUND}; looked through answers.md, notes.txt; a person decides"
     assert (other.measured, other.location) == (None, None)
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["15. It vanishes.", "15) It vanishes.", "(15) It vanishes.", "1.15) It vanishes.", "Schritt 15: It vanishes."],
+)
+def test_numbers_for_steps(line: str) -> None:
+    """A step may be a plain number, if it is none of a short list."""
+    found = answer_in(ALONE.with_files({"a.txt": f"Lab 6\n{line}\n16. 0.15\n"}))
+    assert str(found.measured).startswith(line)
+    short = answer_in(ALONE.with_files({"a.txt": "Lab 6\n1. It vanishes.\n5. No.\n"}))
+    assert short.measured is None
+
+
+def test_a_snippet_of_xml_does_not_make_a_robot_of_an_answer() -> None:
+    """An answer may quote the file that it is about."""
+    text = "## Step 15\n\nIt vanishes:\n\n```xml\n<robot name='r'>\n```\n"
+    assert "It vanishes" in str(answer_in(ALONE.with_files({"a.md": text})).measured)
 
 
 def test_other_texts_are_not_looked_through() -> None:
