@@ -27,8 +27,12 @@ def test_a_sample_loses_exactly_what_it_should(name: str) -> None:
 
 
 def test_there_are_samples_enough() -> None:
-    """Five equivalents and fifteen mistakes at the least; only the reference and the equivalents get full marks."""
-    full = {name for name, sample in SAMPLES.items() if not sample.expected["lost"]}
+    """Five equivalents and fifteen mistakes at the least; only the reference and the equivalents lose nothing."""
+    full = {
+        name
+        for name, sample in SAMPLES.items()
+        if not sample.expected["lost"] and len(sample.expected.get("pending", [])) < 4
+    }
     assert full == {name for name in SAMPLES if name.startswith(("reference", "equivalent-"))}
     assert len(full) >= 6
     assert len(SAMPLES) - len(full) >= 15

@@ -15,6 +15,7 @@ from grader.robot.catalogue import (
     COLOUR_COUNT,
     DEFAULT_AXIS,
     DEGREES,
+    RAW_XACRO,
     UNDEFINED_MATERIAL,
     Problem,
 )
@@ -36,6 +37,8 @@ def grade(rubric: Rubric, submission: Submission, parts: Sequence[str] = ()) -> 
         if criterion.part in chosen:
             run.decide(criterion)
     problems = submission.urdf.problems if submission.urdf is not None else ()
+    if submission.xacro == "left":
+        problems = tuple(problem for problem in problems if problem.kind is RAW_XACRO)
     if submission.package is not None and any(rubric.part(each).needs == "package" for each in chosen):
         from grader.submission.remarks import remarks  # a URDF on its own needs none of what reads a package
 

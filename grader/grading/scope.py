@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from grader.submission.evidence import Exhibit
 
 _MOST_PICTURES = 50
+_XACRO = "the URDF is xacro: its properties and numbers were worked out, as xacro does before ROS 2 reads it"
 
 
 def chosen_parts(
@@ -25,11 +26,11 @@ def chosen_parts(
     graded = {part.id for part in parts if part.needs == "urdf" or not submission.is_single}
     chosen = tuple(part.id for part in rubric.parts if part.id in graded)
     left = [part.id for part in parts if part.id not in graded]
+    notes = (_XACRO,) if submission.xacro == "expanded" else ()
     if not left:
-        return chosen, ()
-    return chosen, (
-        f"a single URDF is graded on {_and(chosen)} only: {_and(left)} need the folder or archive it is in",
-    )
+        return chosen, notes
+    alone = f"a single URDF is graded on {_and(chosen)} only: {_and(left)} need the folder or archive it is in"
+    return chosen, (*notes, alone)
 
 
 def _and(names: Sequence[str]) -> str:

@@ -74,7 +74,10 @@ def _show_head(report: Report, console: Console) -> None:
     ]  # fmt: skip
     graded = "no URDF was submitted"
     if submission.path is not None and submission.urdf is not None:
-        graded = f"{printable(submission.path)}: {_VERDICTS[submission.urdf.verdict]}"
+        verdict = (
+            "xacro that a person has to expand" if submission.xacro == "left" else _VERDICTS[submission.urdf.verdict]
+        )
+        graded = f"{printable(submission.path)}: {verdict}"
     wrapped(console, Text(f"{graded}; {', '.join(counted)}"), 0)
     if report.pending:
         wrapped(console, Text(f"{points_words(report.pending)} points wait for a person", style="cyan"), 0)
@@ -102,27 +105,34 @@ def _show_groups(
 ) -> None:
     """Print the criteria of a part, those about one thing under one heading; a heading like the part's is left out.
 
-    Groups in a row that are skipped for the same reason are one line.
+    Groups in a row that are skipped, or wait, for the same reason are one line.
     """
     named = [(name, tuple(group)) for name, group in groupby(results, key=lambda each: each.criterion.about or title)]
-    for cause, alike in groupby(named, key=lambda group: _cause(group[1])):
+    for reason, alike in groupby(named, key=lambda group: _shared(group[1])):
         groups = list(alike)
-        skipped = tuple(result for _, group in groups for result in group)
-        if cause is None or len(skipped) == 1:
+        alike_results = tuple(result for _, group in groups for result in group)
+        if reason is None or len(alike_results) == 1:
             for name, group in groups:
                 if name != whole:
                     _show_heading(name, group, console)
                 for result in group:
                     _show_result(result, report, console, shown)
         else:
-            _show_heading(", ".join(name for name, _ in groups), skipped, console)
-            _show_skipped(skipped, cause, console)
+            _show_heading(", ".join(name for name, _ in groups), alike_results, console)
+            _show_alike(alike_results, reason, console)
 
 
-def _cause(results: tuple[Result, ...]) -> str | None:
-    """What all of several criteria are skipped for, if there is such a thing."""
-    causes = {result.because for result in results}
-    return results[0].because if len(causes) == 1 else None
+def _shared(results: tuple[Result, ...]) -> str | None:
+    """What all of several criteria are skipped for, or wait for, if there is such a thing."""
+    reasons = {_reason(each) for each in results}
+    return reasons.pop() if len(reasons) == 1 else None
+
+
+def _reason(result: Result) -> str | None:
+    if result.because is not None:
+        return f"skipped, because {result.because} failed"
+    is_open = result.outcome.status == "pending" and result.outcome.expected is None
+    return f"pending: {result.outcome.message}" if is_open else None
 
 
 def _show_heading(name: str, results: tuple[Result, ...], console: Console) -> None:
@@ -130,10 +140,12 @@ def _show_heading(name: str, results: tuple[Result, ...], console: Console) -> N
     wrapped(console, Text.assemble((printable(name), "bold"), (f"  {_earned(results)}", "dim")), 0)
 
 
-def _show_skipped(results: tuple[Result, ...], cause: str, console: Console) -> None:
+def _show_alike(results: tuple[Result, ...], reason: str, console: Console) -> None:
+    """One line for criteria that are skipped, or wait, for the same reason."""
+    status = results[0].outcome.status
     most = _earned(results).partition("/")[2]
-    head = Text.assemble("  ", (symbol(console, *_SYMBOLS["skipped"]), _STYLES["skipped"]), f" 0/{most:<3} ")
-    wrapped(console, Text(f"{len(results)} criteria are skipped, because {cause} failed", style="dim"), _INDENT, head)
+    head = Text.assemble("  ", (symbol(console, *_SYMBOLS[status]), _STYLES[status]), f" 0/{most:<3} ")
+    wrapped(console, Text(printable(f"{len(results)} criteria are {reason}"), style="dim"), _INDENT, head)
 
 
 def _show_result(result: Result, report: Report, console: Console, shown: set[str]) -> None:

@@ -25,6 +25,7 @@ NO_PACKAGE = "no ROS 2 package was handed in: there is no package.xml"
 PYTHON_LIMIT = 128 * 1024  # bytes; a syntax tree takes several hundred times as much
 _MANIFEST_LIMIT = 256 * 1024
 _RVIZ_LIMIT = 512 * 1024
+_MOST_LAUNCHES = 10
 _LANGUAGES = (".py", ".xml", ".yaml", ".yml")
 
 
@@ -137,6 +138,12 @@ class Package:
         if path not in self._launches:
             self._launches[path] = self._read_launch(path)
         return self._launches[path]
+
+    @property
+    def expands_xacro(self) -> bool:
+        """Whether one of its launch files has xacro read the robot."""
+        launches = map(self.launch, self.launch_files[:_MOST_LAUNCHES])
+        return any(each.by == "xacro" for launch in launches for each in launch.named("urdf"))
 
     @cached_property
     def _launches(self) -> "dict[str, Launch]":

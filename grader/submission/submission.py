@@ -2,14 +2,18 @@
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Literal
 
 from grader.errors import InputError, MissingElement, NotDecided
+from grader.robot.catalogue import RAW_XACRO
 from grader.robot.reader import Reading, read_urdf
 from grader.robot.source import Source
 from grader.submission.files import URDF_LIMIT, printable_path, read_capped, read_standard_input, sha256_of
 from grader.submission.opening import ARCHIVES, open_tree, tree_name
 from grader.submission.package import NO_PACKAGE, Package, read_packages
 from grader.submission.tree import PassedOver, Tree, make_tree
+
+Xacro = Literal["none", "expanded", "left"]
 
 STANDARD_INPUT = "-"
 _NO_FILES = make_tree("", (), ())
@@ -19,7 +23,9 @@ _NO_FILES = make_tree("", (), ())
 class Submission:
     """What was handed in. `path` is that of the URDF, relative to it; without a URDF `path`, `data` and `urdf` are None.
 
-    `is_single` tells a URDF on its own from a folder or archive. `packages` begins with the one that is graded.
+    `is_single` tells a URDF on its own from a folder or archive. `packages` begins with the one that is graded. `xacro` tells
+    whether the URDF is xacro that is expanded before ROS 2 reads it: `urdf` is then what it comes to, if that could be worked
+    out, and left to a person if not.
     """
 
     id: str
@@ -30,6 +36,7 @@ class Submission:
     tree: Tree = field(default=_NO_FILES, repr=False)
     packages: tuple[Package, ...] = field(default=(), repr=False)
     is_single: bool = True
+    xacro: Xacro = "none"
 
     @property
     def sha256(self) -> str | None:
@@ -51,6 +58,9 @@ class Submission:
 
     def needed_urdf(self) -> Reading:
         """The URDF that is graded; raises MissingElement where there is none, NotDecided where that cannot be told."""
+        if self.xacro == "left" and self.path is not None:
+            name = self.path.rpartition("/")[2]
+            raise NotDecided(f"{name} is xacro with more than numbers in it: expand it (ros2 run xacro xacro {name})")
         if self.urdf is not None:
             return self.urdf
         if self.unopened:
@@ -81,7 +91,22 @@ class Submission:
 
 def read_submission(data: bytes, *, identity: str, path: str) -> Submission:
     """The submission that the bytes of one URDF make."""
-    return Submission(identity, path, data, read_urdf(data, path))
+    reading, xacro = _read(data, path, None)
+    return Submission(identity, path, data, reading, xacro=xacro)
+
+
+def _read(data: bytes, path: str, package: Package | None) -> tuple[Reading, Xacro]:
+    """A URDF as ROS 2 gets to read it: expanded, if it is xacro by its name or the package's launch file has xacro read it."""
+    reading = read_urdf(data, path)
+    is_xacro = any(problem.kind is RAW_XACRO for problem in reading.problems)
+    if not is_xacro or not (".xacro" in path or (package is not None and package.expands_xacro)):
+        return reading, "none"
+    from grader.submission.xacro import expand
+
+    expanded = expand(reading.source.text)
+    if expanded is None:
+        return reading, "left"
+    return read_urdf(expanded.encode("utf-8", "surrogateescape"), path), "expanded"
 
 
 def open_submission(path: str, *, wanted: str, package: str = "", limit: int = URDF_LIMIT) -> Submission:
@@ -112,10 +137,12 @@ def submission_of(tree: Tree, identity: str, *, wanted: str, package: str = "", 
     found = find_urdf(tree, wanted, packages[0].folder if packages else None)
     others = [PassedOver(each.path("package.xml"), _why_not(packages[0], each)) for each in packages[1:]]
     data = tree.files[found.path].read(limit) if found.path is not None else None
-    reading = read_urdf(data, found.path) if data is not None and found.path is not None else None
-    return Submission(
-        identity, found.path, data, reading, (*found.passed_over, *others), tree, packages, is_single=False
-    )
+    reading: Reading | None = None
+    xacro: Xacro = "none"
+    if data is not None and found.path is not None:
+        reading, xacro = _read(data, found.path, packages[0] if packages else None)
+    passed_over = (*found.passed_over, *others)
+    return Submission(identity, found.path, data, reading, passed_over, tree, packages, is_single=False, xacro=xacro)
 
 
 def _why_not(graded: Package, other: Package) -> str:

@@ -30,6 +30,7 @@ class Reference:
     location: Location
     reason: str = ""
     sure: bool = True
+    by: str = ""  # the program that reads it, where one does: xacro, cat or open
 
 
 @dataclass(frozen=True, slots=True)

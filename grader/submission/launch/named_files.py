@@ -69,7 +69,7 @@ class NamedFiles:
                     message = f"{name} is read as it is; if anything of xacro is in it, use Command(['xacro ', ...])"
                     self.references.append(Reference("urdf", None, self.place(made.at), message, sure=False))
                     return
-                self.refer("urdf", path, made, value)
+                self.refer("urdf", path, made, value, by)
             case str() if "<robot" in known:
                 return
             case str():
@@ -101,13 +101,13 @@ class NamedFiles:
             message = "rviz2 is given -d without the path of a file"
             self.references.append(Reference("rviz", None, self.place(made.at), message))
 
-    def refer(self, purpose: Purpose, path: "str | Unknown", made: Made, value: Value = None) -> None:
+    def refer(self, purpose: Purpose, path: "str | Unknown", made: Made, value: Value = None, by: str = "") -> None:
         """Note that an action names a file, or why it cannot be told which."""
         where = self.place(_spot(value, made))
         if isinstance(path, Unknown):
             self.references.append(Reference(purpose, None, where, path.reason, sure=False))
         else:
-            self.references.append(Reference(purpose, path, where))
+            self.references.append(Reference(purpose, path, where, by=by))
 
     def urdf_launch(self, name: str, made: Made, context: Context) -> tuple[str, ...]:
         """What urdf_launch's own files do with their arguments; the nodes that they start."""
@@ -115,7 +115,7 @@ class NamedFiles:
             resolve(context.arguments.get(each), context) for each in ("urdf_package", "urdf_package_path")
         )
         if isinstance(package, str) and isinstance(path, str):
-            self.refer("urdf", f"{SHARE}/{package}/{path}", made)
+            self.refer("urdf", f"{SHARE}/{package}/{path}", made, by="xacro")
         else:
             message = "urdf_launch needs the arguments urdf_package and urdf_package_path"
             unknown = next(each for each in (package, path) if not isinstance(each, str))
