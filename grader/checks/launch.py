@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 from grader.checks.outcome import Outcome, judged_as, passed
 from grader.errors import MissingElement, NotDecided
 from grader.robot.names import closest
-from grader.submission.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
-from grader.submission.package import Package, is_launch_named
+from grader.submission.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER, is_launch_named
+from grader.submission.package import Package
 
 if TYPE_CHECKING:
     from grader.submission.launch.model import Launch, Reference, StartedNode

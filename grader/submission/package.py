@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from grader.errors import InputError
 from grader.robot.names import closest, did_you_mean
 from grader.robot.source import Location, Source
-from grader.submission.launch.places import ENDINGS, PREFIX, SHARE
+from grader.submission.launch.places import ENDINGS, PREFIX, SHARE, is_launch_named, launch_stem, may_launch
 from grader.submission.tree import Tree
 
 # The readers are loaded when they are needed: a URDF on its own needs none of them.
@@ -23,10 +23,8 @@ MANIFEST, SETUP = "package.xml", "setup.py"
 _INDEX = "share/ament_index/resource_index/packages/"
 NO_PACKAGE = "no ROS 2 package was handed in: there is no package.xml"
 PYTHON_LIMIT = 128 * 1024  # bytes; a syntax tree takes several hundred times as much
-_MANIFEST_LIMIT = 256 * 1024
 _RVIZ_LIMIT = 512 * 1024
 _MOST_LAUNCHES = 10
-_LANGUAGES = (".py", ".xml", ".yaml", ".yml")
 
 
 @dataclass(frozen=True)
@@ -90,7 +88,7 @@ class Package:
     @cached_property
     def launch_files(self) -> tuple[str, ...]:
         """The paths of its launch files: by their names, or because they stand in a folder launch."""
-        return tuple(path for path in self.tree.files if path.endswith(ENDINGS) or _may_launch(path))
+        return tuple(path for path in self.tree.files if path.endswith(ENDINGS) or may_launch(path))
 
     @cached_property
     def rviz_files(self) -> tuple[str, ...]:
@@ -208,76 +206,3 @@ class Package:
                 except InputError:
                     return None
         return None
-
-
-def _may_launch(path: str) -> bool:
-    """Whether a file is a launch file by the folder that it stands in, whatever it is named."""
-    folder, _, name = path.rpartition("/")
-    suffix = PurePosixPath(name).suffix
-    known = suffix in ("", ".launch", *_LANGUAGES) or (suffix == ".txt" and ".launch." in name)
-    return folder.rpartition("/")[2] == "launch" and name != "__init__.py" and known
-
-
-def is_launch_named(path: str, name: str) -> bool:
-    """Whether a launch file has this name, in any of the three languages that ros2 launch reads."""
-    own = path.rpartition("/")[2]
-    return own == name or (launch_stem(own) == launch_stem(name) and own.endswith(ENDINGS[:4]))
-
-
-def launch_stem(name: str) -> str:
-    """The name of a launch file without what tells its language."""
-    base = name.rpartition("/")[2]
-    return base.split(".launch")[0] if ".launch" in base else base.rpartition("_launch.")[0] or base
-
-
-def read_packages(tree: Tree, wanted: str, urdf: str = "") -> tuple[Package, ...]:
-    """The packages of a submission, the one that was meant first: that of the wanted name.
-
-    Among packages of one name it is the one that holds most of what a lab asks for, the URDF at its path before all; then the
-    nearest to the top, then the first in the alphabet.
-    """
-    from grader.submission.find import find_packages
-
-    known: dict[str, Package] = {}
-    found = [_read_package(tree, folder, known) for folder in find_packages(tree, wanted)]
-    found.sort(
-        key=lambda package: (
-            _distance(package, wanted),
-            _lacks(package, urdf),
-            package.folder.count("/") + bool(package.folder),
-            package.folder,
-        )
-    )
-    for package in found:
-        known.setdefault(package.name, package)
-    return tuple(found)
-
-
-def _lacks(package: Package, urdf: str) -> tuple[bool, int]:
-    """Whether a package lacks the wanted URDF, and how many of its other usual files."""
-    usual = (MANIFEST in package.tree.files, SETUP in package.tree.files, package.launch_files, package.rviz_files)
-    return urdf not in package.tree.files, sum(not each for each in usual)
-
-
-def _distance(package: Package, wanted: str) -> int:
-    if package.manifest is not None and package.manifest.name == wanted:
-        return 0
-    if package.folder.rpartition("/")[2] == wanted:
-        return 1
-    return 2 if package.manifest is not None and closest(package.name, [wanted]) else 3
-
-
-def _read_package(tree: Tree, folder: str, known: dict[str, Package]) -> Package:
-    from grader.submission.manifest import Manifest, read_manifest
-
-    own = tree.below(folder)
-    file = own.files.get(MANIFEST)
-    path = f"{folder}/{MANIFEST}" if folder else MANIFEST
-    if file is None:
-        return Package(folder, own, None, known)
-    try:
-        manifest = read_manifest(file.read(_MANIFEST_LIMIT), path)
-    except InputError as error:
-        start = Location(path, 1, 1)
-        manifest = Manifest(Source(path, ""), None, "", (), start, start, unread=str(error))
-    return Package(folder, own, manifest, known)

@@ -10,7 +10,7 @@ from grader.robot.reader import Reading, read_urdf
 from grader.robot.source import Source
 from grader.submission.files import URDF_LIMIT, printable_path, read_capped, read_standard_input, sha256_of
 from grader.submission.opening import ARCHIVES, open_tree, tree_name
-from grader.submission.package import NO_PACKAGE, Package, read_packages
+from grader.submission.package import NO_PACKAGE, Package
 from grader.submission.tree import PassedOver, Tree, make_tree
 
 Xacro = Literal["none", "expanded", "left"]
@@ -131,7 +131,7 @@ def open_submission(path: str, *, wanted: str, package: str = "", limit: int = U
 
 def submission_of(tree: Tree, identity: str, *, wanted: str, package: str = "", limit: int = URDF_LIMIT) -> Submission:
     """The submission that a tree of files makes; raises InputError for a URDF that is too large."""
-    from grader.submission.find import find_urdf
+    from grader.submission.find import find_urdf, read_packages
 
     packages = read_packages(tree, package, wanted)
     found = find_urdf(tree, wanted, packages[0].folder if packages else None)

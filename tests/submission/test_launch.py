@@ -359,7 +359,7 @@ TOLD = {
     "star_import.launch.py": Told(
         nodes="rviz2",
         rviz=(
-            "6: rviz2 is started without -d and a file, so it opens its own default instead of the lab's configuration",
+            "6: wrong: rviz2 is started without -d and a file, so it opens its own default instead of the lab's configuration",
         ),
     ),
     "substitution_lists.launch.py": Told(
