@@ -123,6 +123,78 @@ DEFECTS: Mapping[str, tuple[HandIn, Sequence[str], Sequence[str]]] = {
         (),
     ),
     "a package of CMake": (CMAKE, ("package-type",), (*INSTALLS, "setup-imports", "launch-finds-files")),
+    "a keyword twice": (
+        REFERENCE.replacing(SETUP, "zip_safe=True,", "zip_safe=True, zip_safe=True,"),
+        (*INSTALLS, "setup-imports", "launch-finds-files"),
+        (),
+    ),
+    "a name of launch's from another module": (
+        REFERENCE.replacing(LAUNCH, "from launch_ros.actions import Node", "from launch.actions import Node"),
+        ("launch-nodes",),
+        (),
+    ),
+    "an open file for its text": (
+        REFERENCE.replacing(LAUNCH, "file.read()", "open(os.path.join(share, 'my_robot.urdf'))"),
+        ("launch-finds-files",),
+        (),
+    ),
+    "a default that is no text": (
+        REFERENCE.replacing(LAUNCH, "default_value='true'", "default_value=True"),
+        ("launch-nodes",),
+        (),
+    ),
+    "a default by place": (
+        REFERENCE.replacing(LAUNCH, "'gui', default_value='true'", "'gui', 'true'"),
+        ("launch-nodes",),
+        (),
+    ),
+    "a condition that is no text": (
+        REFERENCE.replacing(LAUNCH, "IfCondition(gui)", "IfCondition(True)"),
+        ("launch-nodes",),
+        (),
+    ),
+    "the launch file installed twice": (
+        REFERENCE.replacing(SETUP, RVIZ_ENTRY, RVIZ_ENTRY + RVIZ_ENTRY.replace("rviz/*", "launch/*.py")),
+        ("setup-installs-launch",),
+        (),
+    ),
+    "compiled files in the way": (
+        REFERENCE.replacing(SETUP, "os.path.join('launch', '*launch.[pxy][yma]*')", "'launch/*'").with_files(
+            {"my_robot/launch/__pycache__/a.pyc": b""}
+        ),
+        ("setup-installs-launch",),
+        (),
+    ),
+    "a slash that is missing": (
+        REFERENCE.replacing(LAUNCH, "os.path.join(share, 'my_robot.urdf')", "share + 'my_robot.urdf'"),
+        ("launch-finds-files",),
+        (),
+    ),
+    "a slash that is too many": (
+        REFERENCE.replacing(LAUNCH, "share, 'my_robot.urdf'", "share, '/my_robot.urdf'"),
+        ("launch-finds-files",),
+        (),
+    ),
+    "a launch file that is too large": (
+        REFERENCE.with_files({LAUNCH: "#" * 200_000}),
+        (),
+        ("launch-nodes", "launch-finds-files"),
+    ),
+    "an RViz file that is too large": (
+        REFERENCE.with_files({RVIZ: "#" * 600_000}),
+        (),
+        ("rviz-fixed-frame", "rviz-shows-robot"),
+    ),
+    "a setup.py that is too large": (
+        REFERENCE.with_files({SETUP: "#" * 200_000}),
+        (),
+        (*INSTALLS, "setup-imports", "launch-finds-files"),
+    ),
+    "an archive that cannot be opened": (
+        HandIn({"lab6.rar": b"Rar!", "Task1_Step8.png": png()}),
+        (),
+        (*OF_URDF, *OF_PACKAGE),
+    ),
     "nothing but pictures": (PICTURES, ("urdf-loads", "package-found", *OF_URDF, *OF_PACKAGE), ()),
     "nothing but the URDF and pictures": (
         PICTURES.with_files({"my_robot.urdf": REFERENCE.files[URDF]}),
