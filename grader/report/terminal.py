@@ -79,6 +79,10 @@ def _show_head(report: Report, console: Console) -> None:
         )
         graded = f"{printable(submission.path)}: {verdict}"
     wrapped(console, Text(f"{graded}; {', '.join(counted)}"), 0)
+    package = submission.package
+    if package is not None and any(report.rubric.part(part).needs == "package" for part in report.parts):
+        where = f" in {package.folder}" if package.folder else ""
+        wrapped(console, Text(printable(f"package {package.name}{where}")), 0)
     if report.pending:
         wrapped(console, Text(f"{points_words(report.pending)} points wait for a person", style="cyan"), 0)
     for note in report.notes:
