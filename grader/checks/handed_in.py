@@ -42,7 +42,11 @@ def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
         listed = ", ".join(exhibit.words for exhibit in found[:6])
         return Outcome("pending", f"a person looks at {listed}", tuple(exhibit.path for exhibit in found))
     others = [file.path for file in submission.tree.files.values() if is_evidence(file)]
-    there = f"; there are {', '.join(others[:6])}" if others else "; there are no pictures at all"
+    there = (
+        f"; there {'are' if len(others) > 1 else 'is'} {', '.join(others[:6])}"
+        if others
+        else "; there are no pictures at all"
+    )
     return Outcome(
         "pending", f"no picture or PDF named as {' or '.join(map(repr, names[:3]))} was found{there}; a person decides"
     )

@@ -33,16 +33,17 @@ def launch_found(package: Package, *, name: str) -> Outcome:
 
 
 def launch_starts(package: Package, *, name: str, nodes: list[str]) -> Outcome:
-    """The launch file starts these nodes, with the defaults of its arguments; "a or b" leaves a choice.
+    """The launch file starts these nodes, with the defaults of its arguments.
 
-    Launch files that it includes count, if they are part of the submission or of urdf_launch.
+    A node is named `package/executable`, or by one name if both are the same; "a or b" leaves a choice. Launch files that it
+    includes count, if they are part of the submission or of urdf_launch.
     """
     launch = _launch(package, name)
     if launch.faults and not launch.nodes:
         raise _stopped(package, name, launch)
-    started = {node.executable for node in launch.nodes if node.when and node.package == _home(node.executable)}
-    running = sorted({_named(node) for node in launch.nodes if node.when})
-    perhaps = {node.executable for node in launch.nodes if node.when is None}
+    started = {_named(node) for node in launch.nodes if node.when}
+    running = sorted(started)
+    perhaps = {_named(node) for node in launch.nodes if node.when is None}
     choices = [wanted.split(" or ") for wanted in nodes]
     missing = [" or ".join(choice) for choice in choices if started.isdisjoint(choice)]
     if launch.faults:
@@ -54,8 +55,8 @@ def launch_starts(package: Package, *, name: str, nodes: list[str]) -> Outcome:
     if not missing:
         return Outcome("passed", f"it starts {_listed(running)}", tuple(running), tuple(nodes))
     message = f"it does not start {_listed(missing)}; it starts {_listed(running) or 'nothing'}"
-    forgotten = next((node for node in launch.forgotten if node.executable in " ".join(missing)), None)
-    off = next((node for node in launch.nodes if node.when is False and node.executable in " ".join(missing)), None)
+    forgotten = next((node for node in launch.forgotten if _named(node) in _words(missing)), None)
+    off = next((node for node in launch.nodes if node.when is False and _named(node) in _words(missing)), None)
     wanted = {each for choice in choices for each in choice} - started
     near = next(
         (node for node in launch.nodes if node.when and not wanted.isdisjoint((node.package, node.executable))), None
@@ -125,7 +126,7 @@ def _faults(launch: "Launch") -> str:
 
 
 def _named(node: "StartedNode") -> str:
-    return node.executable if node.package == _home(node.executable) else f"{node.package}/{node.executable}"
+    return node.executable if node.package == node.executable else f"{node.package}/{node.executable}"
 
 
 def _missing(package: Package, named: "Reference", text: str) -> MissingElement:
@@ -141,15 +142,10 @@ def _missing(package: Package, named: "Reference", text: str) -> MissingElement:
     return MissingElement(f"installed {named.purpose}", package.folder, message=text, location=named.location)
 
 
-def _home(executable: str) -> str:
-    """The package that a well-known program is in: all of these are called as it is."""
-    return executable
-
-
 def _verdict(package: Package, named: "Reference") -> tuple[str, str]:
     """What becomes of a file that a launch file names: passed, failed, pending or, if it is never installed, missing."""
     what = _WORDS[named.purpose]
-    if named.path is None:
+    if named.path is None or named.reason:
         return ("failed" if named.sure else "pending", named.reason)
     path = posixpath.normpath(named.path)
     if path.startswith(f"{SHARE}/"):
@@ -214,6 +210,10 @@ def _below_share(package: Package, owner: str, rest: str, named: "Reference") ->
         return "missing", message
     similar = closest(name, alike) or (alike[0] if len(alike) == 1 and named.purpose != "include" else None)
     return "failed", f"{message}; there is {similar!r}" if similar else message
+
+
+def _words(choices: list[str]) -> set[str]:
+    return {each for choice in choices for each in choice.split(" or ")}
 
 
 def _listed(names: list[str]) -> str:

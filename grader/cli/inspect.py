@@ -57,6 +57,8 @@ def inspect(
         raise InputError(f"{printable_path(path)} holds no URDF: no file has a <robot> in it")
     if submission.passed_over:
         complain(f"inspected {submission.path}; passed over {', '.join(each.path for each in submission.passed_over)}")
+    if submission.xacro == "expanded":
+        complain(f"{submission.path} is xacro: its properties and numbers were worked out first")
     robot = _configure(submission.urdf, joint or [])
     frame = relative_to
     if robot is not None and frame is None:

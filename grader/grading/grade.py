@@ -89,7 +89,7 @@ class _Run:
         except UnknownShape as unknown:
             return Result(criterion, Outcome("pending", f"{unknown}; a person has to look at it"))
         except NotDecided as reason:
-            return Result(criterion, Outcome("pending", f"{reason}: a person has to look"))
+            return Result(criterion, Outcome("pending", f"{reason}; a person has to look"))
         except Exception as error:  # noqa: BLE001  a fault of ours must cost the student nothing else
             from traceback import format_exc  # only ever needed here
 

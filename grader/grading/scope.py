@@ -26,7 +26,10 @@ def chosen_parts(
     graded = {part.id for part in parts if part.needs == "urdf" or not submission.is_single}
     chosen = tuple(part.id for part in rubric.parts if part.id in graded)
     left = [part.id for part in parts if part.id not in graded]
-    notes = (_XACRO,) if submission.xacro == "expanded" else ()
+    notes: tuple[str, ...] = (_XACRO,) if submission.xacro == "expanded" else ()
+    package, path = submission.package, submission.path
+    if package is not None and path is not None and not path.startswith(f"{package.folder}/" if package.folder else ""):
+        notes += ("the URDF that is graded stands outside of the package that is graded",)
     if not left:
         return chosen, notes
     alone = f"a single URDF is graded on {_and(chosen)} only: {_and(left)} need the folder or archive it is in"

@@ -177,7 +177,8 @@ def _show_result(result: Result, report: Report, console: Console, shown: set[st
         source = report.submission.source(outcome.location.path)
         if source is not None:
             show_excerpt(console, source, outcome.location, _INDENT)
-    if criterion.feedback and criterion.feedback not in shown:
+    is_there = report.submission.urdf is not None or criterion.check.subject not in ("urdf", "robot")
+    if criterion.feedback and criterion.feedback not in shown and is_there:
         shown.add(criterion.feedback)
         wrapped(console, Text(criterion.feedback, style="italic"), _INDENT)
 

@@ -110,7 +110,7 @@ def _converted(file: File, kind: str) -> str:
     except OSError:
         raise InputError(f"{file.path} could not be read on this machine: open it yourself") from None
     if done.returncode == document_text.MISSING:
-        raise InputError(f"{file.path} is read only with `pip install 'grader[documents]'`: open it yourself")
+        raise InputError(f"{file.path} is read only with the grader's extra `documents`: open it yourself")
     if done.returncode:
         raise InputError(f"{file.path} cannot be read; it may be damaged: open it yourself")
     return done.stdout.decode("utf-8", "replace")

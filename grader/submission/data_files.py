@@ -164,6 +164,8 @@ class Entries:
     def _narrower(self, folder: str) -> str:
         """A pattern that finds the files beside a folder, but not the folder."""
         above = posixpath.dirname(folder)
+        if not above:
+            return ""
         beside = [
             posixpath.splitext(name)[1]
             for name in self.listing.names(above)

@@ -28,8 +28,8 @@ class Found(NamedTuple):
 class _Candidate(NamedTuple):
     """How good a file is, best first: the tuple sorts."""
 
-    tier: int
     of_another: bool  # in a package of the same name that is not graded: that of another member of a team
+    tier: int
     outside: bool
     depth: int
     path: str
@@ -50,8 +50,8 @@ def find_urdf(tree: Tree, wanted: str, package: str | None = None) -> Found:
 
     `wanted` is the path that the rubric gives, such as urdf/my_robot.urdf. A file at the end of whose path it stands comes first,
     then one with its name, then one whose name begins alike, then any .urdf, then any text with <robot in it. Among equals
-    come those in `package` (a folder), then the nearest to the top, then the first in the alphabet; those in another package
-    of that name come last.
+    come those in `package` (a folder), then the nearest to the top, then the first in the alphabet. What stands in another
+    package of that name, such as a team mate's, comes behind all that.
     """
     ranked = sorted(_candidates(tree, wanted, package))
     if not ranked:
@@ -98,7 +98,7 @@ def _candidates(tree: Tree, wanted: str, package: str | None) -> list[_Candidate
             tier = 2
         else:
             tier = 3 if is_named else 4
-        found.append(_Candidate(tier, path.startswith(others), outside, len(steps), path))
+        found.append(_Candidate(path.startswith(others), tier, outside, len(steps), path))
     return found
 
 
@@ -121,9 +121,11 @@ def _is_robot(file: File) -> bool:
 
 
 def _reason(best: _Candidate, other: _Candidate, wanted: str) -> str:
+    if other.of_another and not best.of_another:
+        return _OUTSIDE
     if other.tier != best.tier:
         return _TIERS[other.tier].format(wanted=wanted)
-    if (other.of_another, other.outside) != (best.of_another, best.outside):
+    if other.outside != best.outside:
         return _OUTSIDE
     if other.depth != best.depth:
         return "it is equally good, but stands deeper in the folders"
@@ -155,10 +157,23 @@ def read_packages(tree: Tree, wanted: str, urdf: str = "") -> tuple[Package, ...
     return tuple(found)
 
 
-def _lacks(package: Package, urdf: str) -> tuple[bool, int]:
-    """Whether a package lacks the wanted URDF, and how many of its other usual files."""
-    usual = (MANIFEST in package.tree.files, SETUP in package.tree.files, package.launch_files, package.rviz_files)
-    return urdf not in package.tree.files, sum(not each for each in usual)
+def _lacks(package: Package, urdf: str) -> tuple[int, bool]:
+    """How many of its usual files a package lacks, and whether it lacks the wanted URDF."""
+    files = package.tree.files
+    is_there = urdf in files and files[urdf].size > 0
+    usual = (is_there, MANIFEST in files, SETUP in files, package.launch_files, package.rviz_files)
+    return sum(not each for each in usual), not is_there
+
+
+def why_not(graded: Package, other: Package, urdf: str) -> str:
+    """Why another package than this one is graded."""
+    if other.name != graded.name:
+        return f"the package {graded.name!r} is graded, not {other.name!r}"
+    if _lacks(other, urdf) != _lacks(graded, urdf):
+        return "the package that is graded holds more of what the lab asks for"
+    if other.folder.count("/") != graded.folder.count("/"):
+        return "it is equally good, but stands deeper in the folders"
+    return "it is equally good, but comes later in the alphabet"
 
 
 def _distance(package: Package, wanted: str) -> int:

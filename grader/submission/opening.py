@@ -68,21 +68,25 @@ def tree_name(path: Path) -> str:
 
 
 def _with_inner(tree: Tree, allowance: "Allowance | None" = None, depth: int = 0) -> Tree:
-    """The tree with what is in its archives, if nothing to grade stands beside them."""
+    """The tree with what is in its archives, unless a package and a URDF stand beside them."""
     archives = [file for file in tree.files.values() if file.suffix in ARCHIVES]
-    if not archives or any(file.name in _WORTH_FINDING or file.suffix == ".urdf" for file in tree.files.values()):
+    has_package = any(file.name in _WORTH_FINDING for file in tree.files.values())
+    if not archives or (has_package and any(file.suffix == ".urdf" for file in tree.files.values())):
         return tree
     from grader.submission.archive import Allowance
 
     allowance = allowance or Allowance()
     files, folders, left_out = list(tree.files.values()), set(tree.folders), list(tree.left_out)
     generated, unseen = list(tree.generated), set(tree.unseen)
-    kept = [tree]
+    kept, unopened = [tree], list(tree.unopened)
     for archive in archives:
         try:
             inner = _inner(archive, allowance, depth)
+            if len(files) + len(inner.files) > MOST_FILES:
+                raise too_many(archive.path)
         except InputError as error:
             left_out.append(str(error))
+            unopened.append(archive.path)
             continue
         kept.append(inner)
         start = archive.path + "/"
@@ -91,9 +95,8 @@ def _with_inner(tree: Tree, allowance: "Allowance | None" = None, depth: int = 0
         left_out += [f"{start}{each}" for each in inner.left_out]
         generated += [start + each for each in inner.generated]
         unseen |= {start + folder for folder in inner.unseen}
-        if len(files) > MOST_FILES:
-            raise too_many(tree.name)
-    return make_tree(tree.name, files, folders, left_out, generated, unseen, tuple(kept))
+        unopened += [start + each for each in inner.unopened]
+    return make_tree(tree.name, files, folders, left_out, generated, unseen, unopened, tuple(kept))
 
 
 def _inner(archive: File, allowance: "Allowance", depth: int) -> Tree:

@@ -137,11 +137,11 @@ class Package:
             self._launches[path] = self._read_launch(path)
         return self._launches[path]
 
-    @property
-    def expands_xacro(self) -> bool:
-        """Whether one of its launch files has xacro read the robot."""
+    def readers(self, name: str) -> set[str]:
+        """What its launch files have read the robot in a file of this name: xacro, cat or open."""
         launches = map(self.launch, self.launch_files[:_MOST_LAUNCHES])
-        return any(each.by == "xacro" for launch in launches for each in launch.named("urdf"))
+        named = (each for launch in launches for each in launch.named("urdf") if each.path is not None)
+        return {each.by for each in named if (each.path or "").rpartition("/")[2] == name}
 
     @cached_property
     def _launches(self) -> "dict[str, Launch]":

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from grader.robot.catalogue import Problem
+from grader.robot.source import Location
 from grader.submission import catalogue
 from grader.submission.launch.model import Launch
 from grader.submission.launch.places import HOME
@@ -33,8 +34,11 @@ def _ordered(problems: "Iterator[Problem] | tuple[Problem, ...]") -> list[Proble
 
 def _of_setup(package: Package, setup: Setup) -> Iterator[Problem]:
     if setup.fault is not None:
-        kind = catalogue.SETUP_SYNTAX if setup.fault.sure else catalogue.SETUP_UNKNOWN
-        yield Problem(kind, f"Python cannot read setup.py: {setup.fault.message}", setup.fault.location)
+        if setup.fault.sure:
+            message = f"Python cannot read setup.py: {setup.fault.message}"
+            yield Problem(catalogue.SETUP_SYNTAX, message, setup.fault.location)
+        else:
+            yield Problem(catalogue.SETUP_UNKNOWN, f"this is not read: {setup.fault.message}", setup.fault.location)
         return
     for fault in setup.faults:
         yield Problem(catalogue.SETUP_NAME, fault.message, setup.location(fault.at))
@@ -67,6 +71,8 @@ def _of_entries(package: Package, setup: Setup) -> Iterator[Problem]:
 
 
 def _of_launch(launch: Launch) -> Iterator[Problem]:
+    if launch.unread:
+        yield Problem(catalogue.LAUNCH_UNKNOWN, f"this is not read: {launch.unread}", Location(launch.path, 1, 1))
     if launch.syntax is not None:
         yield Problem(catalogue.LAUNCH_SYNTAX, launch.syntax.message, launch.syntax.location)
     for fault in launch.faults:

@@ -9,13 +9,17 @@ from grader.robot.catalogue import RAW_XACRO
 from grader.robot.reader import Reading, read_urdf
 from grader.robot.source import Source
 from grader.submission.files import URDF_LIMIT, printable_path, read_capped, read_standard_input, sha256_of
-from grader.submission.opening import ARCHIVES, open_tree, tree_name
+from grader.submission.opening import open_tree, tree_name
 from grader.submission.package import NO_PACKAGE, Package
 from grader.submission.tree import PassedOver, Tree, make_tree
 
 Xacro = Literal["none", "expanded", "left"]
 
 STANDARD_INPUT = "-"
+# Files that a hand-in is made of; nobody means to have them graded as a URDF.
+_NO_URDFS = frozenset(
+    {".py", ".md", ".rviz", ".yaml", ".yml", ".toml", ".cfg", ".json", ".png", ".jpg", ".jpeg", ".gif", ".pdf", ".docx"}
+)
 _NO_FILES = make_tree("", (), ())
 
 
@@ -60,7 +64,7 @@ class Submission:
         """The URDF that is graded; raises MissingElement where there is none, NotDecided where that cannot be told."""
         if self.xacro == "left" and self.path is not None:
             name = self.path.rpartition("/")[2]
-            raise NotDecided(f"{name} is xacro with more than numbers in it: expand it (ros2 run xacro xacro {name})")
+            raise NotDecided(f"{name} is xacro that is not worked out here (ros2 run xacro xacro {name} does)")
         if self.urdf is not None:
             return self.urdf
         if self.unopened:
@@ -72,16 +76,14 @@ class Submission:
 
     @property
     def unopened(self) -> tuple[str, ...]:
-        """The archives in it that were not opened, though something to grade may be in them."""
-        opened = tuple(path for path in self.tree.folders if path.lower().endswith(ARCHIVES))
-        return tuple(
-            file.path for file in self.tree.files.values() if file.suffix in ARCHIVES and file.path not in opened
-        )
+        """The archives in it that could not be opened, though something to grade may be in them."""
+        return self.tree.unopened
 
     def source(self, path: str) -> Source | None:
         """The text of one of its files, for quoting; None where it cannot be read."""
-        if self.urdf is not None and path == self.path:
-            return self.urdf.source
+        if self.urdf is not None and path == self.path and self.data is not None:
+            written = self.xacro == "expanded"  # what the student wrote is quoted, not what it comes to
+            return Source(path, self.data.decode("utf-8", "replace")) if written else self.urdf.source
         file = self.tree.files.get(path)
         try:
             return Source(path, file.read(URDF_LIMIT).decode("utf-8", "replace")) if file is not None else None
@@ -98,8 +100,11 @@ def read_submission(data: bytes, *, identity: str, path: str) -> Submission:
 def _read(data: bytes, path: str, package: Package | None) -> tuple[Reading, Xacro]:
     """A URDF as ROS 2 gets to read it: expanded, if it is xacro by its name or the package's launch file has xacro read it."""
     reading = read_urdf(data, path)
-    is_xacro = any(problem.kind is RAW_XACRO for problem in reading.problems)
-    if not is_xacro or not (".xacro" in path or (package is not None and package.expands_xacro)):
+    if not any(problem.kind is RAW_XACRO for problem in reading.problems):
+        return reading, "none"
+    name = path.rpartition("/")[2]
+    readers = package.readers(name) if package is not None else set()
+    if (readers and readers != {"xacro"}) or (not readers and (".xacro" not in name or name.endswith(".urdf"))):
         return reading, "none"
     from grader.submission.xacro import expand
 
@@ -121,6 +126,10 @@ def open_submission(path: str, *, wanted: str, package: str = "", limit: int = U
         raise InputError("the path is empty")
     place = Path(path)
     tree = open_tree(place)
+    if tree is None and place.suffix.lower() in _NO_URDFS:
+        raise InputError(
+            f"{printable_path(place)} is no URDF: name a .urdf, or the folder or archive that was handed in"
+        )
     if tree is None:
         identity = printable_path(place.stem)
         return read_submission(read_capped(place, limit), identity=identity, path=printable_path(place.name))
@@ -131,11 +140,11 @@ def open_submission(path: str, *, wanted: str, package: str = "", limit: int = U
 
 def submission_of(tree: Tree, identity: str, *, wanted: str, package: str = "", limit: int = URDF_LIMIT) -> Submission:
     """The submission that a tree of files makes; raises InputError for a URDF that is too large."""
-    from grader.submission.find import find_urdf, read_packages
+    from grader.submission.find import find_urdf, read_packages, why_not
 
     packages = read_packages(tree, package, wanted)
     found = find_urdf(tree, wanted, packages[0].folder if packages else None)
-    others = [PassedOver(each.path("package.xml"), _why_not(packages[0], each)) for each in packages[1:]]
+    others = [PassedOver(each.path("package.xml"), why_not(packages[0], each, wanted)) for each in packages[1:]]
     data = tree.files[found.path].read(limit) if found.path is not None else None
     reading: Reading | None = None
     xacro: Xacro = "none"
@@ -143,16 +152,6 @@ def submission_of(tree: Tree, identity: str, *, wanted: str, package: str = "", 
         reading, xacro = _read(data, found.path, packages[0] if packages else None)
     passed_over = (*found.passed_over, *others)
     return Submission(identity, found.path, data, reading, passed_over, tree, packages, is_single=False, xacro=xacro)
-
-
-def _why_not(graded: Package, other: Package) -> str:
-    if other.name != graded.name:
-        return f"the package {graded.name!r} is graded, not {other.name!r}"
-    if len(other.tree.files) != len(graded.tree.files):
-        return "the package that is graded holds more of what the lab asks for"
-    if other.folder.count("/") != graded.folder.count("/"):
-        return "it is equally good, but stands deeper in the folders"
-    return "it is equally good, but comes later in the alphabet"
 
 
 def _because(tree: Tree) -> str:

@@ -62,6 +62,7 @@ class Tree:
     left_out: tuple[str, ...] = ()
     generated: tuple[str, ...] = ()
     unseen: frozenset[str] = frozenset()
+    unopened: tuple[str, ...] = ()  # archives in it that could not be opened
     kept: "tuple[Tree, ...]" = field(default=(), repr=False, compare=False)  # trees whose archives have to stay open
 
     def below(self, folder: str) -> "Tree":
@@ -88,6 +89,7 @@ def make_tree(
     left_out: Iterable[str] = (),
     generated: Iterable[str] = (),
     unseen: Iterable[str] = (),
+    unopened: Iterable[str] = (),
     kept: "tuple[Tree, ...]" = (),
 ) -> Tree:
     """A tree of these files, its folders completed by those that the files stand in; raises InputError for too many."""
@@ -95,7 +97,16 @@ def make_tree(
     given = set(folders)
     above = folders_above([*by_path, *given], name)
     everything = frozenset(above | given)
-    return Tree(name, by_path, everything, tuple(left_out), tuple(generated), frozenset(unseen) - everything, kept)
+    return Tree(
+        name,
+        by_path,
+        everything,
+        tuple(left_out),
+        tuple(generated),
+        frozenset(unseen) - everything,
+        tuple(unopened),
+        kept,
+    )
 
 
 def folders_above(paths: Iterable[str], name: str) -> set[str]:

@@ -35,7 +35,8 @@ class HandIn:
     def submission(self) -> Submission:
         """What the grader sees of it."""
         files = [_file(path, self.data(path)) for path in self.files]
-        return submission_of(make_tree("hand-in", files, ()), "hand-in", wanted="urdf/my_robot.urdf", package=FOLDER)
+        tree = make_tree("hand-in", files, (), unopened=[path for path in self.files if path.endswith(".rar")])
+        return submission_of(tree, "hand-in", wanted="urdf/my_robot.urdf", package=FOLDER)
 
     @property
     def package(self) -> Package:

@@ -233,7 +233,7 @@ def test_without_the_readers_the_document_is_named(name: str, monkeypatch: pytes
     assert f"{name} takes too long to read: open it yourself" in answer_in(ALONE.with_files({name: b""})).message
     monkeypatch.undo()
     monkeypatch.setattr("grader.submission.document_text.MISSING", 1)  # as a damaged document ends
-    message = f"{name} is read only with `pip install 'grader[documents]'`: open it yourself"
+    message = f"{name} is read only with the grader's extra `documents`: open it yourself"
     assert message in answer_in(ALONE.with_files({name: b"no document"})).message
 
 
@@ -282,7 +282,7 @@ def test_pictures_are_found_however_they_are_named(path: str) -> None:
 )
 def test_pictures_of_other_steps_are_not_meant(path: str) -> None:
     """Step 18 is not step 8, and that of another task is not meant; what there is is listed."""
-    message = f"no picture or PDF named as 'task 1 step 8' was found; there are {path}; a person decides"
+    message = f"no picture or PDF named as 'task 1 step 8' was found; there is {path}; a person decides"
     assert pictures(ALONE.with_files({path: png()})) == (message, None)
 
 

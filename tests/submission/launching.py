@@ -91,6 +91,6 @@ def _fault(fault: Fault) -> str:
 
 def _reference(named: Reference) -> str:
     line = f"{named.location.line}: "
-    if named.path is not None:
+    if named.path is not None and not named.reason:
         return line + named.path.removeprefix(f"{PREFIX}/share/")
     return f"{line}{'wrong' if named.sure else 'unknown'}: {named.reason}"

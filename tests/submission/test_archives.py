@@ -651,19 +651,32 @@ def test_archives_nested_too_deep(tmp_path: Path) -> None:
 
 
 def test_an_archive_beside_a_package(tmp_path: Path) -> None:
-    """Where there is something to grade, the archives beside it stay closed."""
+    """Where a package and a URDF stand beside them, archives stay closed."""
     (tmp_path / "lab6.zip").write_bytes(make_zip())
     (tmp_path / "notes.txt").write_bytes(b"")
     alone = open_tree(tmp_path)
     assert alone is not None
     assert f"lab6.zip/{URDF}" in alone.files
     assert text(alone, f"lab6.zip/{URDF}") == ROBOT
-    for name in ("a.urdf", "package.xml", "setup.py"):
-        (tmp_path / name).write_bytes(ROBOT)
+    for names in (("a.urdf",), ("package.xml",), ("a.urdf", "package.xml"), ("a.urdf", "setup.py")):
+        for name in names:
+            (tmp_path / name).write_bytes(ROBOT)
         beside = open_tree(tmp_path)
         assert beside is not None
-        assert set(beside.files) == {"lab6.zip", "notes.txt", name}
-        (tmp_path / name).unlink()
+        assert (f"lab6.zip/{URDF}" in beside.files) == (len(names) == 1)
+        assert {"lab6.zip", "notes.txt", *names} <= set(beside.files)
+        for name in names:
+            (tmp_path / name).unlink()
+
+
+def test_an_archive_that_cannot_be_opened(tmp_path: Path) -> None:
+    """It is named, and kept in mind: what is missing may be in it."""
+    (tmp_path / "lab6.rar").write_bytes(b"Rar!\x1a\x07")
+    (tmp_path / "notes.txt").write_bytes(b"")
+    tree = open_tree(tmp_path)
+    assert tree is not None
+    assert tree.unopened == ("lab6.rar",)
+    assert "rar archive" in tree.left_out[0]
 
 
 def test_bad_archives_in_a_folder(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from grader.submission.submission import Submission, read_submission
 from grader.submission.xacro import expand
+from tests.patience import processor_time
 from tests.samples import LAB6, opened
 
 START = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
@@ -70,6 +71,13 @@ def compare(text: str) -> None:
         .replace("</robot>", '<cylinder radius="${r}"/></robot>'),
         robot("<xacro:property name='n' value='left'></xacro:property>", '<link name="${n}_wheel"/>'),
         robot('<box size="${0.6} ${2*0.2} ${sqrt(0.04)}"/>', '<origin rpy="${radians(90)} ${max(1, 2)}"/>'),
+        robot('<xacro:property value="1" name="a"/><a x="${a}"/>', '<xacro:property name="a" value="2"/><a x="${a}"/>'),
+        robot(
+            '<xacro:property name="h" value="0.2"/>',
+            '<xacro:property name="pos" value="0.15 0 ${h}"/>',
+            '<a xyz="${pos}"/>',
+        ),
+        robot('<xacro:arg name="unused" default="1"/>', '<a x="${1}"/>'),
         robot("<!-- ${ not this } <xacro:include/> -->", '<origin xyz="${1} 0 0"/>'),
     ],
 )
@@ -106,13 +114,19 @@ def test_any_numbers(values: list[str]) -> None:
         '<xacro:macro name="w" params="p"/>',
         '<xacro:include filename="/etc/passwd"/>',
         '<xacro:if value="true"><link name="a"/></xacro:if>',
-        '<xacro:arg name="a" default="1"/>',
         '<origin xyz="$(arg a) 0 0"/>',
         '<origin xyz="${unknown} 0 0"/>',
         "<origin xyz=\"${__import__('os').system('true')} 0 0\"/>",
         '<origin xyz="${(lambda: 1)()} 0 0"/>',
         '<origin xyz="${9**9**9} 0 0"/>',
         '<origin xyz="${1/0} 0 0"/>',
+        '<origin xyz="$${1} 0 0"/>',
+        '<xacro:property name="n" value="' + "9" * 190 + '"/><origin xyz="${' + "*".join("n" * 60) + '} 0 0"/>',
+        '<origin xyz="${late} 0 0"/><xacro:property name="late" value="1"/>',
+        '<xacro:property name="if" value="1"/>',
+        '<xacro:property name="a" value="true"/><origin xyz="${a} 0 0"/>',
+        '<xacro:property name="a" value="0.1_0"/><origin xyz="${a * 2} 0 0"/>',
+        "<xacro:property name='a\" value='1'/>",
         '<origin xyz="${[1][0]} 0 0"/>',
         "<origin xyz=\"${'a' * 3} 0 0\"/>",
         '<origin xyz="${' + "-" * 5000 + '1} 0 0"/>',
@@ -123,6 +137,20 @@ def test_any_numbers(values: list[str]) -> None:
 def test_anything_more_is_left(line: str) -> None:
     """What runs code, includes files or takes more than numbers is not worked out."""
     assert expand(robot(line)) is None
+
+
+def test_a_chain_of_properties_takes_no_time() -> None:
+    """Each property is worked out once, however often it is used."""
+    lines = [f'<xacro:property name="p{i}" value="${{{"+".join([f"p{i - 1}"] * 9)}}}"/>' for i in range(10, 0, -1)]
+    text = robot('<xacro:property name="p0" value="1"/>', *lines, '<a x="${p10}"/>')
+    with processor_time(0.2):
+        expand(text)
+    compare(text)
+
+
+def test_without_its_namespace_it_is_no_xml() -> None:
+    """xacro refuses a prefix that is not declared."""
+    assert expand('<robot name="r">\n<xacro:property name="a" value="1"/></robot>') is None
 
 
 @given(st.text(alphabet="$ {}()<>xacro:propety/=\"'.+-*01\n", max_size=200))

@@ -137,11 +137,7 @@ class Follower:
         if when is False or not isinstance(name, str) or (declares and name in context.arguments):
             return
         value = made.argument(1, "default_value", "value")
-        if declares and len(made.args) > 1:
-            context.wrong.append(("DeclareLaunchArgument takes its default by name: default_value=...", made.at))
-        if isinstance(value, int | float):
-            told = str(value).lower() if isinstance(value, bool) else str(value)
-            context.wrong.append((f"the value of a launch argument is a text: write {told!r}", made.at))
+        _check_value(made, name, value, context, declares=declares)
         if when is None:
             known: Value = Unknown(f"the launch argument {name!r} is set under a condition", made.at)
         elif value is None:
@@ -261,6 +257,19 @@ class Follower:
         elif reason:
             self._untold(reason, made.at)
         self.files.refer("include", path, made)
+
+
+def _check_value(made: Made, name: str, value: Value, context: Context, *, declares: bool) -> None:
+    """Note a value of a launch argument that launch does not take."""
+    given = made.kwargs.get("choices")
+    choices = list(given) if declares and isinstance(given, list | tuple) else []
+    if declares and len(made.args) > 1:
+        context.wrong.append(("DeclareLaunchArgument takes its default by name: default_value=...", made.at))
+    if choices and all(isinstance(each, str) for each in [value, *choices]) and value not in choices:
+        context.wrong.append((f"the default {value!r} of {name!r} is none of its choices", made.at))
+    if isinstance(value, int | float):
+        told = str(value).lower() if isinstance(value, bool) else str(value)
+        context.wrong.append((f"the value of a launch argument is a text: write {told!r}", made.at))
 
 
 def _needs_list(made: Made, actions: Value, context: Context) -> None:

@@ -67,7 +67,7 @@ class NamedFiles:
                 if by != "xacro" and path.endswith(".xacro"):
                     name = path.rpartition("/")[2]
                     message = f"{name} is read as it is; if anything of xacro is in it, use Command(['xacro ', ...])"
-                    self.references.append(Reference("urdf", None, self.place(made.at), message, sure=False))
+                    self.references.append(Reference("urdf", path, self.place(made.at), message, sure=False, by=by))
                     return
                 self.refer("urdf", path, made, value, by)
             case str() if "<robot" in known:
