@@ -57,6 +57,11 @@ class _Run:
         self.robot = Configuration(robot) if robot is not None else None
         self.results: dict[str, Result] = {}
         self.missed: dict[tuple[str, str], str] = {}
+        self._at_hand: dict[Subject, object] = {"submission": submission}
+        if submission.urdf is not None and submission.xacro != "left":
+            self._at_hand["urdf"] = submission.urdf
+            if self.robot is not None:
+                self._at_hand["robot"] = self.robot
 
     @property
     def _problems(self) -> tuple[Problem, ...]:
@@ -80,7 +85,9 @@ class _Run:
 
     def _ask(self, criterion: Criterion) -> Result:
         try:
-            outcome = criterion.check.function(self._subject(criterion.check.subject), **criterion.arguments)
+            asked = criterion.check.subject
+            subject = self._at_hand.get(asked) or self._missing(asked)
+            outcome = criterion.check.function(subject, **criterion.arguments)
             if outcome.status == "failed":
                 outcome = self._explained(outcome)
             return Result(criterion, outcome)
@@ -96,19 +103,12 @@ class _Run:
             message = f"the grader itself failed here ({type(error).__name__}); please report it"
             return Result(criterion, Outcome("errored", message), traceback=format_exc())
 
-    def _subject(self, name: Subject) -> object:
-        """What a check is asked of; raises MissingElement where it was not handed in."""
-        match name:
-            case "submission":
-                return self.submission
-            case "package":
-                return self.submission.needed_package()
-            case "urdf":
-                return self.submission.needed_urdf()
+    def _missing(self, name: Subject) -> object:
+        """The package; for whatever else is asked of and is not at hand, raises MissingElement or NotDecided."""
+        if name == "package":
+            return self.submission.needed_package()
         self.submission.needed_urdf()
-        if self.robot is None:
-            raise MissingElement("robot", "", message="ROS 2 cannot read the file, so there is no robot to look at")
-        return self.robot
+        raise MissingElement("robot", "", message="ROS 2 cannot read the file, so there is no robot to look at")
 
     def _miss(self, criterion: Criterion, missing: MissingElement) -> Result:
         """The first criterion that misses a thing fails; those after it would only repeat it, and are skipped."""
