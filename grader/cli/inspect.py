@@ -53,6 +53,8 @@ def inspect(
     from grader.submission.submission import open_submission
 
     submission = open_submission(path, wanted=_ANY_URDF, limit=max_size)
+    if submission.unread:
+        raise InputError(submission.unread)
     if submission.urdf is None or submission.path is None:
         raise InputError(f"{printable_path(path)} holds no URDF: no file has a <robot> in it")
     if submission.passed_over:

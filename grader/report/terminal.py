@@ -72,7 +72,7 @@ def _show_head(report: Report, console: Console) -> None:
         f"{report.counts(status)} {status}" for status in ("passed", "failed", "skipped", "pending", "errored")
         if report.counts(status)
     ]  # fmt: skip
-    graded = "no URDF was submitted"
+    graded = f"{printable(submission.path or '')}: not read" if submission.unread else "no URDF was submitted"
     if submission.path is not None and submission.urdf is not None:
         verdict = (
             "xacro that a person has to expand" if submission.xacro == "left" else _VERDICTS[submission.urdf.verdict]

@@ -29,7 +29,7 @@ class Submission:
 
     `is_single` tells a URDF on its own from a folder or archive. `packages` begins with the one that is graded. `xacro` tells
     whether the URDF is xacro that is expanded before ROS 2 reads it: `urdf` is then what it comes to, if that could be worked
-    out, and left to a person if not.
+    out, and left to a person if not. `unread` says why the URDF at `path` could not be read, where it is too large or damaged.
     """
 
     id: str
@@ -41,6 +41,7 @@ class Submission:
     packages: tuple[Package, ...] = field(default=(), repr=False)
     is_single: bool = True
     xacro: Xacro = "none"
+    unread: str = ""
 
     @property
     def sha256(self) -> str | None:
@@ -62,6 +63,8 @@ class Submission:
 
     def needed_urdf(self) -> Reading:
         """The URDF that is graded; raises MissingElement where there is none, NotDecided where that cannot be told."""
+        if self.unread:
+            raise NotDecided(self.unread)
         if self.xacro == "left" and self.path is not None:
             name = self.path.rpartition("/")[2]
             raise NotDecided(f"{name} is xacro that is not worked out here (ros2 run xacro xacro {name} does)")
@@ -139,19 +142,25 @@ def open_submission(path: str, *, wanted: str, package: str = "", limit: int = U
 
 
 def submission_of(tree: Tree, identity: str, *, wanted: str, package: str = "", limit: int = URDF_LIMIT) -> Submission:
-    """The submission that a tree of files makes; raises InputError for a URDF that is too large."""
+    """The submission that a tree of files makes."""
     from grader.submission.find import find_urdf, read_packages, why_not
 
     packages = read_packages(tree, package, wanted)
     found = find_urdf(tree, wanted, packages[0].folder if packages else None)
     others = [PassedOver(each.path("package.xml"), why_not(packages[0], each, wanted)) for each in packages[1:]]
-    data = tree.files[found.path].read(limit) if found.path is not None else None
+    data, unread = None, ""
+    try:
+        data = tree.files[found.path].read(limit) if found.path is not None else None
+    except InputError as error:  # the rest of the hand-in is graded all the same
+        unread = str(error)
     reading: Reading | None = None
     xacro: Xacro = "none"
     if data is not None and found.path is not None:
         reading, xacro = _read(data, found.path, packages[0] if packages else None)
     passed_over = (*found.passed_over, *others)
-    return Submission(identity, found.path, data, reading, passed_over, tree, packages, is_single=False, xacro=xacro)
+    return Submission(
+        identity, found.path, data, reading, passed_over, tree, packages, is_single=False, xacro=xacro, unread=unread
+    )
 
 
 def _because(tree: Tree) -> str:

@@ -190,6 +190,7 @@ DEFECTS: Mapping[str, tuple[HandIn, Sequence[str], Sequence[str]]] = {
         (),
         (*INSTALLS, "setup-imports", "launch-finds-files"),
     ),
+    "a URDF that is too large": (REFERENCE.with_files({URDF: " " * 1_100_000}), (), OF_URDF),
     "an archive that cannot be opened": (
         HandIn({"lab6.rar": b"Rar!", "Task1_Step8.png": png()}),
         (),
