@@ -6,13 +6,12 @@ from typing import TYPE_CHECKING
 from grader.checks.outcome import Outcome, judged_as, passed
 from grader.errors import MissingElement, NotDecided
 from grader.robot.names import closest
-from grader.submission.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER, is_launch_named
+from grader.submission.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER, is_launch_named, is_of_one_machine
 from grader.submission.package import Package
 
 if TYPE_CHECKING:
     from grader.submission.launch.model import Launch, Reference, StartedNode
 
-_ONE_MACHINE = "which exists on one machine only"
 _WORDS = {"urdf": "URDF", "rviz": "RViz file", "include": "launch file", "launch": "launch file"}
 _ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".py", ".xml", ".yaml", ".yml")}
 
@@ -79,7 +78,7 @@ def launch_finds_files(package: Package, *, name: str) -> Outcome:
     wrong = [(text, each) for (status, text), each in verdicts if status == "failed"]
     if wrong:
         message = "; ".join(dict.fromkeys(text for text, _ in wrong))
-        if _ONE_MACHINE in message:
+        if any(each.path is not None and is_of_one_machine(each.path) for _, each in wrong):
             message += f": get_package_share_directory({package.name!r}) tells where it is installed"
         return judged_as("failed", message, at=wrong[0][1].location)
     for (status, text), each in verdicts:
@@ -151,9 +150,9 @@ def _verdict(package: Package, named: "Reference") -> tuple[str, str]:
     if path.startswith(f"{SHARE}/"):
         owner, _, rest = path.removeprefix(f"{SHARE}/").partition("/")
         return _below_share(package, owner, rest, named)
-    if path.startswith((HOME, "/home/", "/Users/", "/root/", "/mnt/", "/media/")) or path[1:3] in (":\\", ":/"):
+    if is_of_one_machine(path):
         shown = path.replace(HOME, "~")
-        return "failed", f"it looks for the {what} at {shown}, {_ONE_MACHINE}"
+        return "failed", f"it looks for the {what} at {shown}, which exists on one machine only"
     if path.startswith(WORKING_FOLDER) or not path.startswith("/"):
         shown = path.removeprefix(WORKING_FOLDER + "/")
         if shown.startswith("~"):

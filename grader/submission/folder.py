@@ -132,11 +132,6 @@ def _generated(folder: Path, path: str) -> list[str]:
     return found
 
 
-def single_file(path: Path) -> File:
-    """One file outside of any tree; its path is its name."""
-    return File(printable_path(path.name), 0, partial(_read, path, printable_path(path.name)))
-
-
 def _read(path: Path, shown: str, limit: int, *, first: bool = False) -> bytes:
     """The bytes of a file; messages name it as the submission does, so that they are the same on every machine."""
     start = read_start(path, limit if first else limit + 1, shown)

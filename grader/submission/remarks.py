@@ -6,12 +6,11 @@ from grader.robot.catalogue import Problem
 from grader.robot.source import Location
 from grader.submission import catalogue
 from grader.submission.launch.model import Launch
-from grader.submission.launch.places import HOME
+from grader.submission.launch.places import HOME, is_of_one_machine
 from grader.submission.package import Package
 from grader.submission.setup_py import Setup
 
 _MOST_FILES = 5
-_ONE_MACHINE = (HOME, "/home/", "/Users/")
 
 
 def remarks(package: Package) -> tuple[Problem, ...]:
@@ -80,6 +79,6 @@ def _of_launch(launch: Launch) -> Iterator[Problem]:
     for unknown in launch.unknown:
         yield Problem(catalogue.LAUNCH_UNKNOWN, unknown.message, unknown.location)
     for named in launch.references:
-        if named.path is not None and named.path.startswith(_ONE_MACHINE):
+        if named.path is not None and is_of_one_machine(named.path):
             shown = named.path.replace(HOME, "~")
             yield Problem(catalogue.HARD_CODED, f"{shown}, which exists on one machine only", named.location)

@@ -2,7 +2,7 @@
 
 import ast
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 from grader.robot.source import Location, Source
 from grader.submission.data_files import Copy, Entries, Stop
@@ -44,7 +44,6 @@ class Setup:
     unknown: tuple[Unknown, ...] = ()
     is_called: bool = True
     called_at: Spot = _START
-    code: Code | None = field(default=None, repr=False)
 
     def location(self, spot: Spot) -> Location:
         """A place in the file."""
@@ -108,8 +107,7 @@ def _follow(code: Code, tree: Tree, order: str) -> Setup:
         tuple(sorted(machine.faults, key=lambda fault: fault.at)),
         tuple(reader.unknown),
         bool(calls) or bool(machine.stopped),
-        calls[0].at if calls else Spot(1, 1),
-        code,
+        calls[0].at if calls else _START,
     )
 
 

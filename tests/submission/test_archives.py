@@ -24,7 +24,7 @@ from grader.errors import InputError
 from grader.submission import archive as archives
 from grader.submission import folder as folders
 from grader.submission.archive import read_archive
-from grader.submission.folder import read_folder, single_file
+from grader.submission.folder import read_folder
 from grader.submission.opening import archive_kind, open_tree, tree_name
 from grader.submission.tree import File, Tree
 from tests.patience import processor_time
@@ -736,7 +736,6 @@ def test_a_folder(home: Path) -> None:
     assert tree.folders == {"my_robot", "my_robot/urdf", "my_robot/meshes"}
     assert (tree.name, text(tree), tree.files[URDF].size, tree.left_out) == ("lab6", ROBOT, len(ROBOT), ())
     assert (tree.files[URDF].name, tree.files[URDF].suffix) == ("my_robot.urdf", ".urdf")
-    assert single_file(home / URDF).read(100) == ROBOT
 
 
 def test_links_in_folders(home: Path) -> None:

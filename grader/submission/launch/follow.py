@@ -6,9 +6,10 @@ from dataclasses import dataclass, field
 
 from grader.robot.names import did_you_mean
 from grader.robot.source import Location
+from grader.submission.launch.conditions import holds
 from grader.submission.launch.model import Fault, StartedNode
 from grader.submission.launch.named_files import DESCRIBED, SHOWS, NamedFiles
-from grader.submission.launch.substitutions import UNTOLD, Context, arguments_of, holds, resolve
+from grader.submission.launch.substitutions import UNTOLD, Context, arguments_of, resolve
 from grader.submission.python.values import Function, Made, Named, Spot, Unknown, Value
 
 _NODES = ("Node", "LifecycleNode")

@@ -8,6 +8,9 @@ WORKING_FOLDER = "/<current folder>"
 HOME = "/<home>"
 SHARE = f"{PREFIX}/share"
 
+# Folders at the top of a file system that are one person's or one machine's own.
+_OWN = frozenset({"home", "Users", "root", "mnt", "media"})
+
 ENDINGS = (".launch.py", ".launch.xml", ".launch.yaml", ".launch.yml", "_launch.py", "_launch.xml", "_launch.yaml")
 _LANGUAGES = (".py", ".xml", ".yaml", ".yml")
 
@@ -30,3 +33,11 @@ def launch_stem(name: str) -> str:
     """The name of a launch file without what tells its language."""
     base = name.rpartition("/")[2]
     return base.split(".launch")[0] if ".launch" in base else base.rpartition("_launch.")[0] or base
+
+
+def is_of_one_machine(path: str) -> bool:
+    """Whether a path leads into somebody's home folder, or to a disk of one machine."""
+    if path.startswith(HOME) or path[1:3] in (":\\", ":/"):
+        return True
+    top, _, rest = path.removeprefix("/").partition("/")
+    return path.startswith("/") and top in _OWN and bool(rest)

@@ -5,10 +5,10 @@ import re
 import shlex
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from math import isclose
 from pathlib import PurePosixPath
 
 from grader.submission.launch.places import HOME, PREFIX, SHARE
+from grader.submission.launch.truths import LOGIC, logical, operands_of
 from grader.submission.python.machine import Machine
 from grader.submission.python.methods import as_text
 from grader.submission.python.parse import SyntaxFault, parse
@@ -110,16 +110,34 @@ def _made(made: Made, context: Context, depth: int) -> "str | Contents | Unknown
         case "FindPackagePrefix" | "FindPackage" | "get_package_prefix":
             package = of(0, "package", "package_name")
             return PREFIX if isinstance(package, str) else package
-        case "join" if made.name == "os.path.join":
-            _needs_texts(made.args, "os.path.join takes texts, not substitutions: use PathJoinSubstitution([...])",
-                         made, context)  # fmt: skip
-            return _path(made.args, context, depth, made.at)
         case "ThisLaunchFileDir":
             return context.folder
         case "FindExecutable":
             return of(0, "name")
         case "Command":
             return _command(made, context, depth)
+        case "FileContent":
+            path = of(0, "path")
+            return Contents(path, "open") if isinstance(path, str) else path
+        case "PythonExpression":
+            return _expression(of(0, "expression"), made.at)
+        case _ if last in LOGIC:
+            return logical(last, [resolve(each, context, depth + 1) for each in operands_of(made)], made.at)
+        case _:
+            return _of_python(made, last, context, depth)
+
+
+def _of_python(made: Made, last: str, context: Context, depth: int) -> "str | Contents | Unknown":
+    """What a function of Python's or xacro's gives; Unknown for all others."""
+
+    def of(position: int, *names: str) -> "str | Contents | Unknown":
+        return resolve(made.argument(position, *names), context, depth + 1)
+
+    match last:
+        case "join" if made.name == "os.path.join":
+            _needs_texts(made.args, "os.path.join takes texts, not substitutions: use PathJoinSubstitution([...])",
+                         made, context)  # fmt: skip
+            return _path(made.args, context, depth, made.at)
         case "process_file" | "process" if made.name.startswith("xacro."):
             _needs_texts(made.args[:1], f"xacro.{last} takes a path, not a substitution: use Command(['xacro ', ...])",
                          made, context)  # fmt: skip
@@ -132,9 +150,6 @@ def _made(made: Made, context: Context, depth: int) -> "str | Contents | Unknown
                          made, context)  # fmt: skip
             path = of(0, "file")
             return Contents(path, "open") if isinstance(path, str) else path
-        case "FileContent":
-            path = of(0, "path")
-            return Contents(path, "open") if isinstance(path, str) else path
         case "EnvironmentVariable" | "getenv" | "environ[]" | "get" if "nviron" in made.name or last == "getenv":
             return HOME if of(0, "name") == "HOME" else Unknown("it depends on the environment", made.at)
         case "expanduser":
@@ -144,10 +159,6 @@ def _made(made: Made, context: Context, depth: int) -> "str | Contents | Unknown
             return HOME
         case "perform" | "read" | "toxml" | "toprettyxml" | "documentElement" | "decode" | "strip":
             return resolve(made.owner, context, depth + 1)
-        case "PythonExpression":
-            return _expression(of(0, "expression"), made.at)
-        case _ if last in _LOGIC:
-            return _logical(last, [resolve(each, context, depth + 1) for each in _operands(made)], made.at)
         case _:
             return Unknown(f"what {last} gives is told only by a run", made.at)
 
@@ -244,83 +255,6 @@ def _expression(text: "str | Contents | Unknown", spot: Spot) -> "str | Contents
     value = machine.run().names.get("value")
     plain = as_text(value) if value is not None and not machine.faults and not machine.stopped else None
     return plain if plain is not None else unknown
-
-
-_LOGIC = frozenset(
-    {"EqualsSubstitution", "NotEqualsSubstitution", "NotSubstitution", "AndSubstitution", "OrSubstitution",
-     "IfElseSubstitution", "AllSubstitution", "AnySubstitution"}
-)  # fmt: skip
-_OPERANDS = ("left", "right", "value", "condition", "if_value", "else_value")
-
-
-def _operands(made: Made) -> list[Value]:
-    return [*made.args, *(made.kwargs[name] for name in _OPERANDS if name in made.kwargs)]
-
-
-def _logical(kind: str, operands: "list[str | Contents | Unknown]", spot: Spot) -> "str | Contents | Unknown":
-    """What launch's substitutions for true and false come to."""
-    unknown = next((each for each in operands if isinstance(each, Unknown)), None)
-    texts = [each for each in operands if isinstance(each, str)]
-    if len(texts) != len(operands):
-        return unknown or Unknown("the content of a file is compared", spot)
-    truths = [_truth(each) for each in texts]
-    match kind, texts:
-        case (("EqualsSubstitution" | "NotEqualsSubstitution"), [left, right]):
-            return str(_are_equal(left, right) == (kind == "EqualsSubstitution")).lower()
-        case "NotSubstitution", [_] if truths[0] is not None:
-            return str(not truths[0]).lower()
-        case "IfElseSubstitution", [_, yes, *no] if truths[0] is not None:
-            return yes if truths[0] else "".join(no[:1])
-        case (("AndSubstitution" | "AllSubstitution"), _) if None not in truths:
-            return str(all(truths)).lower()
-        case (("OrSubstitution" | "AnySubstitution"), _) if None not in truths:
-            return str(any(truths)).lower()
-    return Unknown("this condition is not followed", spot)
-
-
-def _are_equal(left: str, right: str) -> bool:
-    """Whether two texts say the same to launch, which takes true and True, 1 and 1.0 for equal."""
-    truths = (_truth(left), _truth(right))
-    if None not in truths:
-        return truths[0] == truths[1]
-    try:
-        return isclose(float(left), float(right))
-    except ValueError:
-        return left == right
-
-
-def holds(condition: Value, context: Context) -> bool | None:
-    """Whether a condition of a node holds with the defaults; None where only a run would tell."""
-    if condition is None:
-        return True
-    if not isinstance(condition, Made):
-        return None
-    last = condition.name.rpartition(".")[2]
-    if last in ("IfCondition", "UnlessCondition"):
-        predicate = condition.argument(0, "predicate_expression")
-        if isinstance(predicate, int | float):
-            context.wrong.append(
-                (f"{last} takes a text or a substitution, not {predicate}: write 'true'", condition.at)
-            )
-        text = resolve(predicate, context)
-        known = _truth(text)
-        if known is None and isinstance(text, str):
-            context.wrong.append((f"a condition is {text[:40]!r}, which is neither true nor false", condition.at))
-        return known if known is None or last == "IfCondition" else not known
-    if last in ("LaunchConfigurationEquals", "LaunchConfigurationNotEquals"):
-        name = condition.argument(0, "launch_configuration_name")
-        value = resolve(condition.argument(1, "expected_value"), context)
-        actual = resolve(context.arguments.get(name) if isinstance(name, str) else None, context)
-        if not isinstance(value, str) or not isinstance(actual, str):
-            return None
-        return (value == actual) == (last == "LaunchConfigurationEquals")
-    return None
-
-
-def _truth(value: "str | Contents | Unknown") -> bool | None:
-    if not isinstance(value, str):
-        return None
-    return {"true": True, "1": True, "false": False, "0": False}.get(value.strip().lower())
 
 
 def arguments_of(given: Value, context: Context, spot: Spot) -> dict[str, Value] | None:
