@@ -3,17 +3,28 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 from decimal import Decimal
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
+from grader import __version__
 from grader.checks.outcome import Outcome
 from grader.grading.rubric import Criterion, Evidence, Rubric
 from grader.robot.catalogue import Problem
-from grader.submission.submission import Submission
+from grader.robot.reader import Verdict
+from grader.robot.source import Source
+from grader.submission.tree import PassedOver
 
 if TYPE_CHECKING:
     from grader.submission.evidence import Exhibit
 
 _NOTHING = Decimal(0)
+
+
+class Ruling(NamedTuple):
+    """What a person has decided of a criterion: its points, whatever the check has found; who says so, and why."""
+
+    points: Decimal
+    by: str
+    comment: str = ""
 
 
 class Result(NamedTuple):
@@ -23,11 +34,19 @@ class Result(NamedTuple):
     outcome: Outcome
     because: str | None = None
     traceback: str = ""
+    ruling: Ruling | None = None
 
     @property
     def points(self) -> Decimal:
-        """What the criterion earns: all or nothing."""
+        """What the criterion earns: all or nothing, unless a person has said what."""
+        if self.ruling is not None:
+            return self.ruling.points
         return self.criterion.points if self.outcome.status == "passed" else _NOTHING
+
+    @property
+    def is_open(self) -> bool:
+        """Whether a person still has to decide."""
+        return self.outcome.status == "pending" and self.ruling is None
 
 
 class Exhibits(NamedTuple):
@@ -35,6 +54,65 @@ class Exhibits(NamedTuple):
 
     evidence: Evidence
     files: "tuple[Exhibit, ...]"
+
+
+class Named(Protocol):
+    """The package that is graded: the folder that it stands in, empty for the submission itself, and its name."""
+
+    @property
+    def folder(self) -> str:
+        """Its folder."""
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+
+
+class HandedIn(Protocol):
+    """What a report says of the submission itself: a Submission, or what has been kept of one."""
+
+    @property
+    def id(self) -> str:
+        """What it is called."""
+
+    @property
+    def path(self) -> str | None:
+        """The path of the URDF in it."""
+
+    @property
+    def sha256(self) -> str | None:
+        """The hash of the URDF's bytes."""
+
+    @property
+    def package(self) -> Named | None:
+        """The package that is graded."""
+
+    @property
+    def passed_over(self) -> tuple[PassedOver, ...]:
+        """Files that might have been graded."""
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """What was not taken in, and why."""
+
+    @property
+    def has_urdf(self) -> bool:
+        """Whether there is a URDF that could be read."""
+
+    @property
+    def verdict(self) -> Verdict | None:
+        """What ROS 2 makes of it."""
+
+    @property
+    def is_single(self) -> bool:
+        """Whether it is a URDF on its own."""
+
+    @property
+    def unread(self) -> str:
+        """Why the URDF could not be read."""
+
+    def source(self, path: str) -> Source | None:
+        """The text of one of its files, for quoting; None where it cannot be read."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +123,7 @@ class Report:
     evidence asks for. `notes` say in a sentence each what is worth knowing of how the submission was read.
     """
 
-    submission: Submission
+    submission: HandedIn
     rubric: Rubric
     parts: tuple[str, ...]
     results: tuple[Result, ...]
@@ -53,6 +131,7 @@ class Report:
     exhibits: tuple[Exhibits, ...] = ()
     others: "tuple[Exhibit, ...]" = ()
     notes: tuple[str, ...] = ()
+    version: str = __version__  # of the grader that has decided
 
     @property
     def score(self) -> Decimal:
@@ -67,7 +146,7 @@ class Report:
     @property
     def pending(self) -> Decimal:
         """The points that a person still has to give or refuse."""
-        return _sum(result.criterion.points for result in self.results if result.outcome.status == "pending")
+        return _sum(result.criterion.points for result in self.results if result.is_open)
 
     def counts(self, *statuses: str) -> int:
         """How many criteria have one of these statuses."""

@@ -2,10 +2,8 @@
 
 from typing import TYPE_CHECKING, Any
 
-from grader import __version__
-from grader.grading.report import Exhibits, Report, Result
+from grader.grading.report import Exhibits, HandedIn, Report, Result
 from grader.report.plain import exact, location, problem, rounded, to_json
-from grader.submission.submission import Submission
 
 if TYPE_CHECKING:
     from grader.submission.evidence import Exhibit
@@ -21,7 +19,7 @@ def report_data(report: Report) -> dict[str, Any]:
     submission, rubric = report.submission, report.rubric
     return {
         "schema": "grader/report/v1",
-        "grader": {"version": __version__},
+        "grader": {"version": report.version},
         "rubric": {"id": rubric.id, "title": rubric.title, "sha256": rubric.sha256},
         "submission": {
             "id": submission.id,
@@ -29,7 +27,7 @@ def report_data(report: Report) -> dict[str, Any]:
             "sha256": submission.sha256,
             "package": package_path(submission),
             "passed_over": [{"path": each.path, "because": each.because} for each in submission.passed_over],
-            "left_out": list(submission.tree.left_out),
+            "left_out": list(submission.left_out),
         },
         "notes": list(report.notes),
         "parts": list(report.parts),
@@ -43,7 +41,7 @@ def report_data(report: Report) -> dict[str, Any]:
     }
 
 
-def package_path(submission: Submission) -> str | None:
+def package_path(submission: HandedIn) -> str | None:
     """The folder of the package that is graded, `.` for the submission itself; None where there is none."""
     return (submission.package.folder or ".") if submission.package is not None else None
 

@@ -73,10 +73,8 @@ def _show_head(report: Report, console: Console) -> None:
         if report.counts(status)
     ]  # fmt: skip
     graded = f"{printable(submission.path or '')}: not read" if submission.unread else "no URDF was submitted"
-    if submission.path is not None and submission.urdf is not None:
-        verdict = (
-            "xacro that a person has to expand" if submission.xacro == "left" else _VERDICTS[submission.urdf.verdict]
-        )
+    if submission.path is not None and submission.has_urdf:
+        verdict = _VERDICTS[submission.verdict] if submission.verdict else "xacro that a person has to expand"
         graded = f"{printable(submission.path)}: {verdict}"
     wrapped(console, Text(f"{graded}; {', '.join(counted)}"), 0)
     package = submission.package
@@ -88,7 +86,7 @@ def _show_head(report: Report, console: Console) -> None:
     for note in report.notes:
         wrapped(console, Text(f"Note: {printable(note)}", style="cyan"), 0)
     passed_over = [f"Passed over {each.path}: {each.because}" for each in submission.passed_over]
-    _show_lines([*passed_over, *(f"Left out: {each}" for each in submission.tree.left_out)], console)
+    _show_lines([*passed_over, *(f"Left out: {each}" for each in submission.left_out)], console)
 
 
 def _show_lines(lines: list[str], console: Console) -> None:
@@ -177,7 +175,7 @@ def _show_result(result: Result, report: Report, console: Console, shown: set[st
         source = report.submission.source(outcome.location.path)
         if source is not None:
             show_excerpt(console, source, outcome.location, _INDENT)
-    is_there = report.submission.urdf is not None or criterion.check.subject not in ("urdf", "robot")
+    is_there = report.submission.has_urdf or criterion.check.subject not in ("urdf", "robot")
     if criterion.feedback and criterion.feedback not in shown and is_there:
         shown.add(criterion.feedback)
         wrapped(console, Text(criterion.feedback, style="italic"), _INDENT)
@@ -228,7 +226,7 @@ def _sentence(message: str) -> str:
 def _advice(report: Report) -> str:
     first = next(_failed(report.results))
     rubric = "" if report.rubric.is_shipped else f" --rubric {printable(report.rubric.path.name)}"
-    whole = ", `grader inspect` shows the whole robot" if report.submission.urdf is not None else ""
+    whole = ", `grader inspect` shows the whole robot" if report.submission.has_urdf else ""
     return f"`grader explain {first}{rubric}` says how it is decided{whole}."
 
 

@@ -41,7 +41,7 @@ _MOST_RATIO = 200  # what is in an archive, as a multiple of its own size
 _HARMLESS = 32 * 1024 * 1024  # bytes that are taken in whatever the ratio
 _IN_MEMORY = 16 * 1024 * 1024
 _CHUNK = 1024 * 1024
-_DAMAGED = (
+DAMAGED = (
     zipfile.BadZipFile,
     tarfile.TarError,
     zlib.error,
@@ -88,10 +88,10 @@ def read_archive(file: IO[bytes], kind: str, name: str, allowance: Allowance | N
         if kind in _COMPRESSED:
             opened.append(tempfile.SpooledTemporaryFile(max_size=_IN_MEMORY))  # noqa: SIM115  it lives as long as the tree
             _decompress(file, kind, opened[1], name, limit, allowance)
-        tree = _tree(_members(_zip_members(file) if kind == "zip" else _tar_members(opened[-1]), name, limit), name)
+        tree = tree_of(bounded(zip_members(file) if kind == "zip" else _tar_members(opened[-1]), name, limit), name)
         if kind not in _COMPRESSED:
             allowance.spend(sum(member.size for member in tree.files.values()), name)
-    except _DAMAGED as error:
+    except DAMAGED as error:
         _close(opened)
         raise InputError(f"{name} cannot be read as an archive: {_words(error)}") from None
     except InputError:
@@ -116,7 +116,7 @@ def _close(files: list[IO[bytes]]) -> None:
         file.close()
 
 
-def _members(members: Iterable[Member], name: str, limit: int) -> list[Member]:
+def bounded(members: Iterable[Member], name: str, limit: int) -> list[Member]:
     """The members of an archive: no more of them, and not more in them, than there may be."""
     listed: list[Member] = []
     total = 0
@@ -134,7 +134,8 @@ def _too_much(name: str) -> InputError:
     return InputError(f"{name} would unpack to far more than anyone hands in, and was not read")
 
 
-def _tree(members: list[Member], name: str) -> Tree:
+def tree_of(members: Iterable[Member], name: str) -> Tree:
+    """The tree that the members of an archive make."""
     found: dict[str, Member] = {}
     left_out: list[str] = []
     generated: set[str] = set()
@@ -179,12 +180,13 @@ def _read(member: Member, path: str, limit: int, *, first: bool = False) -> byte
     try:
         with member.open() as file:
             data = file.read(limit if first else limit + 1)
-    except _DAMAGED as error:
+    except DAMAGED as error:
         raise InputError(f"cannot read {path}: {_words(error)}") from None
     return capped(data, limit, path, advice_for(path))
 
 
-def _zip_members(file: IO[bytes]) -> Iterator[Member]:
+def zip_members(file: IO[bytes]) -> Iterator[Member]:
+    """The members of a zip, which stays open for them."""
     bounded = _Bounded(file)
     archive = zipfile.ZipFile(bounded)
     bounded.most = None
@@ -210,7 +212,7 @@ def _zip_link(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> str:
     try:
         with archive.open(info) as file:
             return file.read(LONGEST_NAME).decode("utf-8", "replace")
-    except _DAMAGED:
+    except DAMAGED:
         return "/"
 
 

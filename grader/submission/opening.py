@@ -29,7 +29,13 @@ def archive_kind(start: bytes) -> str | None:
 
 
 def open_tree(path: Path) -> Tree | None:
-    """The files at a path; None where it is a single file that is no archive. Raises InputError."""
+    """The files at a path, those in its archives included; None where it is a single file that is no archive."""
+    tree = outer_tree(path)
+    return with_inner(tree) if tree is not None else None
+
+
+def outer_tree(path: Path) -> Tree | None:
+    """The files at a path, archives among them unopened; None where it is a single file that is no archive. Raises InputError."""
     try:
         is_folder = path.is_dir()
         if not is_folder and not os.path.lexists(path):
@@ -40,7 +46,7 @@ def open_tree(path: Path) -> Tree | None:
     if is_folder:
         from grader.submission.folder import read_folder  # what a single URDF does not need is loaded late
 
-        return _with_inner(read_folder(path))
+        return read_folder(path)
     if path.name.lower().endswith((".urdf", ".xacro", ".xml")):
         return None
     shown = printable_path(path)
@@ -51,7 +57,7 @@ def open_tree(path: Path) -> Tree | None:
         return None
     from grader.submission.archive import read_archive
 
-    return _with_inner(read_archive(path.open("rb"), kind, shown))
+    return read_archive(path.open("rb"), kind, shown)
 
 
 def tree_name(path: Path) -> str:
@@ -63,11 +69,11 @@ def tree_name(path: Path) -> str:
     return (
         printable_path(path.resolve().name or "submission")
         if is_folder
-        else printable_path(_without_endings(str(path)))
+        else printable_path(without_endings(str(path)))
     )
 
 
-def _with_inner(tree: Tree, allowance: "Allowance | None" = None, depth: int = 0) -> Tree:
+def with_inner(tree: Tree, allowance: "Allowance | None" = None, depth: int = 0) -> Tree:
     """The tree with what is in its archives, unless a package and a URDF stand beside them."""
     archives = [file for file in tree.files.values() if file.suffix in ARCHIVES]
     has_package = any(file.name in _WORTH_FINDING for file in tree.files.values())
@@ -113,10 +119,10 @@ def _inner(archive: File, allowance: "Allowance", depth: int) -> Tree:
     kind = archive_kind(data[:512])
     if kind is None:
         raise InputError(f"{archive.path} is no archive that can be read, for all its name: it is damaged or empty")
-    return _with_inner(read_archive(io.BytesIO(data), kind, archive.path, allowance), allowance, depth + 1)
+    return with_inner(read_archive(io.BytesIO(data), kind, archive.path, allowance), allowance, depth + 1)
 
 
-def _without_endings(path: str) -> str:
+def without_endings(path: str) -> str:
     """The name of an archive without its endings: lab6.tar.gz is lab6."""
     name = PurePosixPath(path).name
     for ending in (".tar.gz", ".tar.bz2", ".tar.xz"):

@@ -6,7 +6,7 @@ from typing import Literal
 
 from grader.errors import InputError, MissingElement, NotDecided
 from grader.robot.catalogue import RAW_XACRO
-from grader.robot.reader import Reading, read_urdf
+from grader.robot.reader import Reading, Verdict, read_urdf
 from grader.robot.source import Source
 from grader.submission.files import URDF_LIMIT, printable_path, read_capped, read_standard_input, sha256_of
 from grader.submission.opening import open_tree, tree_name
@@ -47,6 +47,21 @@ class Submission:
     def sha256(self) -> str | None:
         """The hash of the URDF's bytes."""
         return sha256_of(self.data) if self.data is not None else None
+
+    @property
+    def has_urdf(self) -> bool:
+        """Whether there is a URDF that could be read, whatever ROS 2 makes of it."""
+        return self.urdf is not None
+
+    @property
+    def verdict(self) -> Verdict | None:
+        """What ROS 2 makes of the URDF; None where there is none, or nobody can tell."""
+        return self.urdf.verdict if self.urdf is not None and self.xacro != "left" else None
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """What was not taken in, and why, in one line each."""
+        return self.tree.left_out
 
     @property
     def package(self) -> Package | None:
@@ -136,13 +151,16 @@ def open_submission(path: str, *, wanted: str, package: str = "", limit: int = U
     if tree is None:
         identity = printable_path(place.stem)
         return read_submission(read_capped(place, limit), identity=identity, path=printable_path(place.name))
+    shown = printable_path(place)
+    return submission_of(tree, tree_name(place), wanted=wanted, package=package, limit=limit, shown=shown)
+
+
+def submission_of(
+    tree: Tree, identity: str, *, wanted: str, package: str = "", limit: int = URDF_LIMIT, shown: str = ""
+) -> Submission:
+    """The submission that a tree of files makes; raises InputError, which calls it `shown`, where there are none."""
     if not tree.files and not tree.generated:
-        raise InputError(f"{printable_path(place)} is empty{_because(tree)}")
-    return submission_of(tree, tree_name(place), wanted=wanted, package=package, limit=limit)
-
-
-def submission_of(tree: Tree, identity: str, *, wanted: str, package: str = "", limit: int = URDF_LIMIT) -> Submission:
-    """The submission that a tree of files makes."""
+        raise InputError(f"{shown or identity} is empty{_because(tree)}")
     from grader.submission.find import find_urdf, read_packages, why_not
 
     packages = read_packages(tree, package, wanted)

@@ -1,0 +1,144 @@
+"""A report as plain data that keeps all of it, and the report that such data was made from: what a gradebook stores."""
+
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+from grader.checks.outcome import Outcome
+from grader.grading.report import Exhibits, Report, Result
+from grader.grading.rubric import Rubric
+from grader.robot.catalogue import Kind, Problem
+from grader.robot.reader import Verdict
+from grader.robot.source import Location, Source
+from grader.submission.evidence import Exhibit
+from grader.submission.tree import PassedOver
+
+
+Quote = Callable[[str], Source | None]  # the text of one file of a submission; None where it cannot be read
+_ENTRY = 10  # values of a result
+
+
+class KeptPackage(NamedTuple):
+    """The package that was graded: its folder in the submission, and its name."""
+
+    folder: str
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Kept:
+    """What is kept of a submission. Its files are not: nothing of them is quoted, unless `quote` has their text."""
+
+    id: str
+    path: str | None = None
+    sha256: str | None = None
+    package: KeptPackage | None = None
+    passed_over: tuple[PassedOver, ...] = ()
+    left_out: tuple[str, ...] = ()
+    has_urdf: bool = False
+    verdict: Verdict | None = None
+    is_single: bool = False
+    unread: str = ""
+    quote: Quote | None = field(default=None, repr=False, compare=False)
+
+    def source(self, path: str) -> Source | None:
+        """The text of one of its files, where it is at hand."""
+        return self.quote(path) if self.quote is not None else None
+
+
+def to_record(report: Report) -> str:
+    """A report as JSON text. What the rubric says is not in it: `from_record` needs the same rubric."""
+    order = {criterion.id: index for index, criterion in enumerate(report.rubric.criteria)}
+    kept = report.submission
+    package = kept.package
+    data = {
+        "version": report.version,
+        "submission": [
+            kept.id, kept.path, kept.sha256, (package.folder, package.name) if package is not None else None,
+            kept.passed_over, kept.left_out, kept.has_urdf, kept.verdict, kept.is_single, kept.unread,
+        ],
+        "parts": report.parts,
+        "results": [_result(order, each) for each in report.results],
+        "problems": [(each.code, each.severity, each.message, _place(each.location)) for each in report.problems],
+        "exhibits": [[_exhibit(file) for file in each.files] for each in report.exhibits],
+        "evidence": [each.evidence.id for each in report.exhibits],
+        "others": [_exhibit(each) for each in report.others],
+        "notes": report.notes,
+    }  # fmt: skip
+    return json.dumps(data, separators=(",", ":"))
+
+
+def from_record(text: str, rubric: Rubric, quote: Quote | None = None) -> Report:
+    """The report that a record was made from, under the same rubric."""
+    data = json.loads(text)
+    identity, path, sha256, package, passed_over, left_out, has_urdf, verdict, is_single, unread = data["submission"]
+    kept = Kept(
+        identity,
+        path,
+        sha256,
+        KeptPackage(*package) if package is not None else None,
+        tuple(PassedOver(*each) for each in passed_over),
+        tuple(left_out),
+        has_urdf,
+        verdict,
+        is_single,
+        unread,
+        quote,
+    )
+    evidence = {each.id: each for each in rubric.evidence}
+    return Report(
+        kept,
+        rubric,
+        tuple(data["parts"]),
+        tuple(_read_result(rubric, each) for each in data["results"]),
+        tuple(_read_problem(*each) for each in data["problems"]),
+        tuple(
+            Exhibits(evidence[name], tuple(Exhibit(*each) for each in files))
+            for name, files in zip(data["evidence"], data["exhibits"], strict=True)
+        ),
+        tuple(Exhibit(*each) for each in data["others"]),
+        tuple(data["notes"]),
+        data["version"],
+    )
+
+
+def _result(order: dict[str, int], result: Result) -> list[Any]:
+    status, message, measured, expected, tolerance, unit, location = result.outcome
+    place = _place(location) if location is not None else None
+    entry = [
+        order[result.criterion.id], status, message, _plain(measured), _plain(expected), tolerance, unit, place,
+        result.because, result.traceback or None,
+    ]  # fmt: skip
+    while entry[-1] is None:
+        del entry[-1]
+    return entry
+
+
+def _read_result(rubric: Rubric, entry: Sequence[Any]) -> Result:
+    whole = [*entry, *[None] * (_ENTRY - len(entry))]
+    index, status, message, measured, expected, tolerance, unit, place, because, traceback = whole
+    location = Location(*place) if place is not None else None
+    outcome = Outcome(status, message, _value(measured), _value(expected), tolerance, unit, location)
+    return Result(rubric.criteria[index], outcome, because, traceback or "")
+
+
+def _plain(value: Any) -> Any:
+    """A measured value as JSON takes it: a mapping is one already, or is made a dictionary."""
+    return value if value is None or isinstance(value, bool | float | int | str | tuple | list | dict) else dict(value)
+
+
+def _value(value: Any) -> Any:
+    return tuple(value) if isinstance(value, list) else value
+
+
+def _place(where: Location) -> tuple[str, int, int]:
+    return where.path, where.line, where.column
+
+
+def _exhibit(exhibit: Exhibit) -> tuple[Any, ...]:
+    return exhibit.path, exhibit.size, exhibit.width, exhibit.height
+
+
+def _read_problem(code: str, severity: Any, message: str, place: Sequence[Any]) -> Problem:
+    return Problem(Kind(code, severity, "other", "", ""), message, Location(*place))

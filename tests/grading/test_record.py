@@ -1,0 +1,20 @@
+"""A record keeps all of a report."""
+
+import json
+
+import pytest
+
+from grader.grading.record import from_record, to_record
+from grader.report.as_json import render_json
+from tests.samples import SAMPLES
+
+
+@pytest.mark.parametrize("name", SAMPLES)
+def test_a_record_gives_the_same_report(name: str) -> None:
+    """What is made from a record is the report that it was made of, byte for byte, and makes the same record again."""
+    report = SAMPLES[name].grade()
+    record = to_record(report)
+    again = from_record(record, report.rubric)
+    assert render_json(again) == render_json(report)
+    assert to_record(again) == record
+    json.loads(record)
