@@ -1,6 +1,7 @@
 """The rows of a rubric's TOML, checked: every mistake is noted with the path of the key that it is in."""
 
 from collections.abc import Iterable, Mapping
+from datetime import datetime
 from decimal import Decimal
 from typing import Any
 
@@ -10,6 +11,7 @@ from grader.grading.toml_lines import Path
 from grader.robot.names import closest, did_you_mean
 
 _TEXT, _NUMBER, _TEXTS, _TABLE = "a text", "a number", "a list of texts", "a table"
+_TIME = "a date and time with its offset, such as 2026-11-20T23:59:00+01:00"
 _RUBRIC = {"id": _TEXT, "title": _TEXT, "reference": _TEXT, "urdf": _TEXT, "package": _TEXT, "points": _NUMBER}
 _PART = {"id": _TEXT, "title": _TEXT, "needs": _TEXT, "points": _NUMBER}
 _CRITERION = {
@@ -24,9 +26,12 @@ _CRITERION = {
     "feedback": _TEXT,
 }
 _EVIDENCE = {"id": _TEXT, "part": _TEXT, "title": _TEXT, "names": _TEXTS}
+_LATE = {"due": _TIME, "grace_minutes": _NUMBER, "percent_per_day": _NUMBER, "floor_percent": _NUMBER}
 _MOST_POINTS = 1_000_000
+_DECIMALS = 4  # of points: gradebooks keep them as whole numbers of ten-thousandths
 _NEEDS = ("urdf", "package", "files")
 _OPTIONAL = {"reference", "urdf", "package", "needs", "about", "with", "requires", "feedback"}
+_OPTIONAL |= {"due", "grace_minutes", "floor_percent"}
 
 
 Bound = tuple[Check, dict[str, Any]]
@@ -42,7 +47,7 @@ class Rows:
         self.table = table
         self.complaints: list[tuple[Path, str]] = []
         self.bound: list[Bound] = []
-        self._keys((), table, {**_RUBRIC, "part": "tables", "criterion": "tables", "evidence": "tables"}, "rubric")
+        self._keys((), table, {**_RUBRIC, "part": "tables", "criterion": "tables", "evidence": "tables", "late": _TABLE}, "rubric")
         parts, rows = self._rows("part"), self._rows("criterion")
         for index, row in enumerate(parts):
             self._keys(("part", index), row, _PART, "part")
@@ -58,6 +63,15 @@ class Rows:
             self._keys(("evidence", index), row, _EVIDENCE, "piece of evidence")
             self._part(("evidence", index), row, part_ids)
         self._totals(parts, rows)
+        if isinstance(table.get("late"), dict):
+            self._late(table["late"])
+
+    def _late(self, row: dict[str, Any]) -> None:
+        self._keys(("late",), row, _LATE, "late policy")
+        for key, most in (("percent_per_day", 100), ("floor_percent", 100), ("grace_minutes", _MOST_POINTS)):
+            value = row.get(key, 0)
+            if _has_type(value, _NUMBER) and not (Decimal(value).is_finite() and 0 <= value <= most):
+                self._complain(("late", key), f"{key} must be a number from 0 to {most}, not {value}")
 
     def _part(self, where: Path, row: dict[str, Any], parts: list[str]) -> None:
         part = row.get("part")
@@ -120,13 +134,15 @@ class Rows:
                 self._complain((*where, key), f"points must be a number of at least 0, not {value}")
             elif key == "points" and value > _MOST_POINTS:
                 self._complain((*where, key), f"points must be a number of at most {_MOST_POINTS}")
+            elif key == "points" and Decimal(value).scaleb(_DECIMALS) % 1:
+                self._complain((*where, key), f"points have at most {_DECIMALS} decimals, not as many as {value}")
             elif key in ("id", "title", "urdf") and not value.strip():
                 self._complain((*where, key), f"{key} must not be empty")
             elif key == "urdf" and value.rstrip("/").split("/")[-1] in ("", ".", ".."):
                 self._complain((*where, key), f"urdf must be the path of a file, not {value!r}")
         needed = [key for key in known if key not in _OPTIONAL and (key != "points" or what == "criterion")]
         for key in needed:
-            if key not in row and known[key] != "tables":
+            if key not in row and known[key] not in ("tables", _TABLE):
                 self._complain(where, f"this {what} has no {key}")
 
     def _unique(self, key: str, rows: list[dict[str, Any]]) -> None:
@@ -175,6 +191,8 @@ def _has_type(value: object, wanted: str) -> bool:
         return isinstance(value, list) and all(isinstance(each, str) for each in value)
     if wanted == _TABLE:
         return isinstance(value, dict)
+    if wanted == _TIME:
+        return isinstance(value, datetime) and value.tzinfo is not None
     return wanted != _TEXT or isinstance(value, str)
 
 

@@ -3,6 +3,7 @@
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from datetime import datetime
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
@@ -50,6 +51,19 @@ class Criterion:
 
 
 @dataclass(frozen=True, slots=True)
+class Late:
+    """What a late hand-in costs: of all points that can be earned, so many percent for each day begun after the grace.
+
+    No mark is taken below `floor_percent` of them, and none that is below already is changed. `due` has a time zone.
+    """
+
+    due: datetime | None
+    grace_minutes: Decimal
+    percent_per_day: Decimal
+    floor_percent: Decimal
+
+
+@dataclass(frozen=True, slots=True)
 class Rubric:
     """A lab as data. Criteria run in file order."""
 
@@ -63,6 +77,7 @@ class Rubric:
     path: Path = field(compare=False)
     package: str = ""
     evidence: tuple[Evidence, ...] = ()
+    late: Late | None = None
 
     @property
     def sha256(self) -> str:
@@ -116,7 +131,11 @@ def find_rubric(name: str) -> Path:
 def load_rubric(name: str) -> Rubric:
     """Load a rubric by its id or path; raises RubricError with one line for each mistake in it, InputError if unreadable."""
     path = find_rubric(name)
-    data = read_capped(path, advice="")
+    return read_rubric(read_capped(path, advice=""), path)
+
+
+def read_rubric(data: bytes, path: Path) -> Rubric:
+    """The rubric in the bytes of a file; raises RubricError."""
     shown = printable_path(path)
     try:
         text = data.decode().removeprefix("\ufeff")
@@ -141,7 +160,13 @@ def load_rubric(name: str) -> Rubric:
         path,
         table.get("package", ""),
         tuple(_evidence(row) for row in table.get("evidence", ())),
+        _late(table["late"]) if "late" in table else None,
     )
+
+
+def _late(row: dict[str, Any]) -> Late:
+    kept = {key: Decimal(row.get(key, 0)) for key in ("grace_minutes", "percent_per_day", "floor_percent")}
+    return Late(row.get("due"), **kept)
 
 
 def _evidence(row: dict[str, Any]) -> Evidence:

@@ -139,6 +139,11 @@ def rubric_schema() -> dict[str, Any]:
         ("needs", "points"),
     )
     evidence = _object({"id": _TEXT, "part": _TEXT, "title": _TEXT, "names": {**_array(_TEXT), "minItems": 1}})
+    percent = {"type": "number", "minimum": 0, "maximum": 100}
+    late = _object(
+        {"due": _TEXT, "grace_minutes": _POINTS, "percent_per_day": percent, "floor_percent": percent},
+        optional=("due", "grace_minutes", "floor_percent"),
+    )
     rubric = _object(
         {
             "id": _TEXT,
@@ -150,8 +155,9 @@ def rubric_schema() -> dict[str, Any]:
             "part": {**_array(part), "minItems": 1},
             "criterion": {**_array(criterion), "minItems": 1},
             "evidence": {**_array(evidence), "minItems": 1},
+            "late": late,
         },
-        optional=("reference", "urdf", "package", "points", "evidence"),
+        optional=("reference", "urdf", "package", "points", "evidence", "late"),
     )
     return {"$schema": _DIALECT, "title": "grader rubric", **rubric}
 

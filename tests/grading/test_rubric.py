@@ -464,7 +464,8 @@ def worth(*points: str, total: str = "", part: str = "") -> str:
         (("1", "2", "0"), "3"),
         (("0.1", "0.7"), "8e-1"),
         (("1_000.5", "0.5"), "1_001"),
-        (("0.0000000000000001", "1"), "1.0000000000000001"),
+        (("0.0001", "1"), "1.0001"),
+        (("0.50000", "0.5"), "1"),
     ],
 )
 def test_points_are_exact(tmp_path: Path, points: tuple[str, ...], total: str) -> None:
@@ -488,10 +489,47 @@ def test_any_points_in_hundredths_add_up(tmp_path_factory: pytest.TempPathFactor
 
 def test_totals_that_do_not_add_up_are_told(tmp_path: Path) -> None:
     """What the rubric and each part declare is compared with the sums."""
-    assert complaints(tmp_path, worth("0.1", "0.2", total="0.30001", part="1")) == [
-        "3: the rubric declares 0.30001 points, but its criteria add up to 0.3",
+    assert complaints(tmp_path, worth("0.1", "0.2", total="0.3001", part="1")) == [
+        "3: the rubric declares 0.3001 points, but its criteria add up to 0.3",
         "7: part 'a' declares 1 points, but its criteria add up to 0.3",
     ]
+
+
+def test_points_have_four_decimals_at_most(tmp_path: Path) -> None:
+    """A gradebook keeps points as whole numbers of ten-thousandths."""
+    assert loaded(tmp_path, worth("0.0001")).points == Decimal("0.0001")
+    found = complaints(tmp_path, worth("0.00001"))
+    assert [each.split(": ", 1)[1] for each in found] == ["points have at most 4 decimals, not as many as 0.00001"]
+
+
+def test_a_late_policy_is_read(tmp_path: Path) -> None:
+    """What is not given is nothing; the time that it is due at keeps its offset."""
+    policy = "[late]\ndue = 2026-11-20T23:59:00+01:00\npercent_per_day = 10.5\n"
+    late = loaded(tmp_path, worth("1") + policy).late
+    assert late is not None
+    assert late.due is not None
+    assert late.due.isoformat() == "2026-11-20T23:59:00+01:00"
+    assert (late.grace_minutes, late.percent_per_day, late.floor_percent) == (0, Decimal("10.5"), 0)
+    assert loaded(tmp_path, worth("1")).late is None
+
+
+@pytest.mark.parametrize(
+    ("line", "complaint"),
+    [
+        ("percent_per_day = 101", "percent_per_day must be a number from 0 to 100, not 101"),
+        ("percent_per_day = nan", "percent_per_day must be a number from 0 to 100, not NaN"),
+        ("percent_per_day = 1\ngrace_minutes = -1", "grace_minutes must be a number from 0 to 1000000, not -1"),
+        ("percent_per_day = 1\nfloor_percent = true", "floor_percent must be a number, not true or false"),
+        ("grace_minutes = 5", "this late policy has no percent_per_day"),
+        ("percent_per_day = 1\nper_hour = 1", "a late policy has no key 'per_hour'"),
+        ("percent_per_day = 1\ndue = 2026-11-20T23:59:00", "due must be a date and time with its offset"),
+    ],
+)
+def test_mistakes_in_a_late_policy_are_named(tmp_path: Path, line: str, complaint: str) -> None:
+    """A policy that cannot be applied is a mistake of the rubric, not of a student."""
+    found = complaints(tmp_path, worth("1") + f"[late]\n{line}\n")
+    assert len(found) == 1
+    assert found[0].split(": ", 1)[1].startswith(complaint)
 
 
 def test_a_part_is_worth_its_own_criteria(tmp_path: Path) -> None:
