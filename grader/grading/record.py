@@ -16,7 +16,6 @@ from grader.submission.tree import PassedOver
 
 
 Quote = Callable[[str], Source | None]  # the text of one file of a submission; None where it cannot be read
-_ENTRY = 10  # values of a result
 
 
 class KeptPackage(NamedTuple):
@@ -60,13 +59,13 @@ def to_record(report: Report) -> str:
         ],
         "parts": report.parts,
         "results": [_result(order, each) for each in report.results],
-        "problems": [(each.code, each.severity, each.message, _place(each.location)) for each in report.problems],
+        "problems": [(each.code, each.severity, each.message, each.location) for each in report.problems],
         "exhibits": [[_exhibit(file) for file in each.files] for each in report.exhibits],
         "evidence": [each.evidence.id for each in report.exhibits],
         "others": [_exhibit(each) for each in report.others],
         "notes": report.notes,
     }  # fmt: skip
-    return json.dumps(data, separators=(",", ":"))
+    return _ENCODER.encode(data)
 
 
 def from_record(text: str, rubric: Rubric, quote: Quote | None = None) -> Report:
@@ -103,29 +102,23 @@ def from_record(text: str, rubric: Rubric, quote: Quote | None = None) -> Report
     )
 
 
-def _result(order: dict[str, int], result: Result) -> list[Any]:
-    status, message, measured, expected, tolerance, unit, location = result.outcome
-    place = _place(location) if location is not None else None
-    entry = [
-        order[result.criterion.id], status, message, _plain(measured), _plain(expected), tolerance, unit, place,
-        result.because, result.traceback or None,
-    ]  # fmt: skip
-    while entry[-1] is None:
-        del entry[-1]
-    return entry
+def _result(order: dict[str, int], result: Result) -> tuple[Any, ...]:
+    index = order[result.criterion.id]
+    if result.because is None and not result.traceback:
+        return index, result.outcome
+    return index, result.outcome, result.because, result.traceback
 
 
 def _read_result(rubric: Rubric, entry: Sequence[Any]) -> Result:
-    whole = [*entry, *[None] * (_ENTRY - len(entry))]
-    index, status, message, measured, expected, tolerance, unit, place, because, traceback = whole
+    index, (status, message, measured, expected, tolerance, unit, place), *rest = entry
     location = Location(*place) if place is not None else None
     outcome = Outcome(status, message, _value(measured), _value(expected), tolerance, unit, location)
-    return Result(rubric.criteria[index], outcome, because, traceback or "")
+    return Result(rubric.criteria[index], outcome, *rest)
 
 
 def _plain(value: Any) -> Any:
-    """A measured value as JSON takes it: a mapping is one already, or is made a dictionary."""
-    return value if value is None or isinstance(value, bool | float | int | str | tuple | list | dict) else dict(value)
+    """What JSON does not know by itself: a place, or a mapping that cannot be changed."""
+    return _place(value) if isinstance(value, Location) else dict(value)
 
 
 def _value(value: Any) -> Any:
@@ -134,6 +127,9 @@ def _value(value: Any) -> Any:
 
 def _place(where: Location) -> tuple[str, int, int]:
     return where.path, where.line, where.column
+
+
+_ENCODER = json.JSONEncoder(separators=(",", ":"), default=_plain)
 
 
 def _exhibit(exhibit: Exhibit) -> tuple[Any, ...]:

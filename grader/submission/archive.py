@@ -93,7 +93,7 @@ def read_archive(file: IO[bytes], kind: str, name: str, allowance: Allowance | N
             allowance.spend(sum(member.size for member in tree.files.values()), name)
     except DAMAGED as error:
         _close(opened)
-        raise InputError(f"{name} cannot be read as an archive: {_words(error)}") from None
+        raise InputError(f"{name} cannot be read as an archive: {words_of(error)}") from None
     except InputError:
         _close(opened)
         raise
@@ -141,7 +141,7 @@ def tree_of(members: Iterable[Member], name: str) -> Tree:
     generated: set[str] = set()
     unseen: set[str] = set()
     for member in members:
-        path = _inside(member.path) if len(member.path) <= LONGEST_NAME else None
+        path = inside(member.path) if len(member.path) <= LONGEST_NAME else None
         if len(member.path) > LONGEST_NAME:
             left_out.append(f"{clean(member.path[:40])}... has a name that is far too long, and was not read")
         elif path is None:
@@ -168,7 +168,7 @@ def tree_of(members: Iterable[Member], name: str) -> Tree:
     return make_tree(name, files, folders | linked.folders, sorted(left_out), sorted(generated), unseen)
 
 
-def _inside(path: str) -> str | None:
+def inside(path: str) -> str | None:
     """A member's name as a path inside the archive; empty for its root; None where it leads out."""
     plain = path.replace("\\", "/")
     if plain.startswith("/") or plain[1:2] == ":" or ".." in plain.split("/"):
@@ -181,7 +181,7 @@ def _read(member: Member, path: str, limit: int, *, first: bool = False) -> byte
         with member.open() as file:
             data = file.read(limit if first else limit + 1)
     except DAMAGED as error:
-        raise InputError(f"cannot read {path}: {_words(error)}") from None
+        raise InputError(f"cannot read {path}: {words_of(error)}") from None
     return capped(data, limit, path, advice_for(path))
 
 
@@ -294,6 +294,7 @@ class _Bounded(io.RawIOBase):
         return True
 
 
-def _words(error: BaseException) -> str:
+def words_of(error: BaseException) -> str:
+    """What an error says, fit for a message."""
     text = " ".join(str(error).split())
     return clean(text[:200]) or type(error).__name__

@@ -11,32 +11,32 @@ URDF_LIMIT = 1024 * 1024  # bytes
 _ADVICE = " for a URDF (--max-size raises it)"
 
 
-def read_capped(path: Path, limit: int = URDF_LIMIT, *, advice: str = _ADVICE) -> bytes:
+def read_capped(path: Path | str, limit: int = URDF_LIMIT, *, advice: str = _ADVICE) -> bytes:
     """The bytes of a regular file of at most `limit` bytes; raises InputError, in one plain sentence, for anything else.
 
     `advice` says what to do about a file that is too large.
     """
-    return capped(read_start(path, limit + 1), limit, printable_path(path), advice)
+    data = read_start(path, limit + 1)
+    return data if len(data) <= limit else capped(data, limit, printable_path(path), advice)
 
 
-def read_start(path: Path, count: int, shown: str = "") -> bytes:
+def read_start(path: Path | str, count: int, shown: str = "") -> bytes:
     """The first bytes of a regular file; raises InputError, in one plain sentence, for anything else.
 
     `shown` is what messages call it, the path unless told.
     """
-    shown = shown or printable_path(path)
     try:
         # A FIFO would block at open and a device could be endless: both are recognised without reading.
         handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
         try:
             if not stat.S_ISREG(os.fstat(handle).st_mode):
-                raise InputError(f"{shown} is not a regular file")
+                raise InputError(f"{shown or printable_path(path)} is not a regular file")
             with os.fdopen(handle, "rb", closefd=False) as file:
                 return file.read(count)
         finally:
             os.close(handle)
     except OSError as error:
-        raise InputError(f"cannot read {shown}: {error.strerror or error}") from None
+        raise InputError(f"cannot read {shown or printable_path(path)}: {error.strerror or error}") from None
 
 
 def read_standard_input(limit: int = URDF_LIMIT) -> bytes:
@@ -59,6 +59,8 @@ def sha256_of(data: bytes) -> str:
 def printable_path(path: Path | str) -> str:
     """A path for a message: bytes that are no UTF-8 are replaced, control characters are spelt out."""
     text = os.fsencode(path).decode("utf-8", "replace")
+    if text.isprintable():
+        return text
     return "".join(c if c.isprintable() else f"\\x{ord(c):02x}" for c in text)
 
 

@@ -116,6 +116,17 @@ class _Walk:
             return []
 
 
+def file_at(path: Path, name: str) -> File:
+    """A file on its own, as it is called in a submission; raises InputError where it is a link or cannot be found."""
+    try:
+        status = path.lstat()
+    except OSError as error:
+        raise InputError(f"cannot read {name}: {error.strerror}") from None
+    if stat.S_ISLNK(status.st_mode):
+        raise InputError(f"{name} is a link, and was not followed")
+    return File(name, status.st_size, partial(_read, path, name))
+
+
 def _generated(folder: Path, path: str) -> list[str]:
     """URDFs below a folder that a build has made: named in the report, never read."""
     found: list[str] = []

@@ -1,0 +1,81 @@
+"""A zip with the hand-ins of a whole class, as an LMS gives it: each is read from where it is."""
+
+import io
+from pathlib import Path
+from typing import IO
+
+from grader.errors import InputError
+from grader.submission.archive import ARCHIVE_LIMIT, DAMAGED, bounded, inside, read_archive, tree_of, words_of, zip_members
+from grader.submission.files import printable_path
+from grader.submission.members import Member
+from grader.submission.opening import archive_kind
+from grader.submission.tree import File, Tree
+
+_MOST_MEMBERS = 200_000
+
+
+class Bulk:
+    """An open zip of many hand-ins. Its paths are those of its members, with forward slashes. Raises InputError."""
+
+    def __init__(self, path: Path) -> None:
+        self._shown = printable_path(path)
+        self._members: dict[str, Member] = {}
+        try:
+            self._file: IO[bytes] = path.open("rb")
+            for member in zip_members(self._file):
+                self._members[inside(member.path) or ""] = member
+                if len(self._members) > _MOST_MEMBERS:
+                    raise InputError(f"{self._shown} holds more than {_MOST_MEMBERS} files")
+        except DAMAGED as error:
+            raise InputError(f"{self._shown} cannot be read as an archive: {words_of(error)}") from None
+
+    def folder(self, path: str) -> Tree:
+        """The files below a folder."""
+        start = f"{path}/"
+        below = [
+            member._replace(path=name.removeprefix(start))
+            for name, member in self._members.items()
+            if name.startswith(start)
+        ]
+        return self._tree(below, path.rpartition("/")[2])
+
+    def files(self, named: dict[str, str], name: str) -> Tree:
+        """Some files as one tree, each under the name that it is given there."""
+        chosen = [self._member(path)._replace(path=given) for path, given in named.items()]
+        return self._tree(chosen, name)
+
+    def is_folder(self, path: str) -> bool:
+        """Whether a path is that of a folder, or of nothing."""
+        member = self._members.get(path)
+        return member is None or member.kind == "folder"
+
+    def read(self, path: str, limit: int) -> bytes:
+        """The bytes of one file, of at most `limit` bytes; raises InputError."""
+        return self._file_of(path).read(limit)
+
+    def archive(self, path: str) -> Tree:
+        """The files of an archive in it; raises InputError where it cannot be read."""
+        file = self._file_of(path)
+        data = file.read(ARCHIVE_LIMIT)
+        kind = archive_kind(data[:512])
+        if kind is None:
+            raise InputError(f"{path} is no archive that can be read, for all its name: it is damaged or empty")
+        return read_archive(io.BytesIO(data), kind, path)
+
+    def _file_of(self, path: str) -> File:
+        tree = self.files({path: path.rpartition("/")[2]}, path)
+        for file in tree.files.values():
+            return file
+        raise InputError(tree.left_out[0] if tree.left_out else f"{path} cannot be read")
+
+    def _member(self, path: str) -> Member:
+        member = self._members.get(path)
+        if member is None:
+            raise InputError(f"{path} is not in {self._shown}")
+        return member
+
+    def _tree(self, members: list[Member], name: str) -> Tree:
+        try:
+            return tree_of(bounded(members, name, ARCHIVE_LIMIT), name)
+        except DAMAGED as error:
+            raise InputError(f"{name} cannot be read: {words_of(error)}") from None
