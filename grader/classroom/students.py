@@ -25,7 +25,8 @@ class HandIn:
     """What one student has handed in: the last attempt, and where the earlier ones are.
 
     `paths` lead from the top of the class folder (or archive) to one folder, one file, or the several files that an LMS has
-    saved side by side; with forward slashes. `submitted` is a time as ISO 8601, empty where nobody says.
+    saved side by side; with forward slashes. `names` says what the student called each of these, where the LMS has renamed
+    them. `submitted` is a time as ISO 8601, empty where nobody says.
     """
 
     student: Student
@@ -34,3 +35,4 @@ class HandIn:
     submitted: str = ""
     attempt: int = 1
     earlier: tuple[str, ...] = ()
+    names: tuple[str, ...] = ()

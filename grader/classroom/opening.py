@@ -1,0 +1,171 @@
+"""One hand-in of a class folder or archive, opened: the same submission that `grader grade` would see, and its key."""
+
+import os
+import stat
+from collections.abc import Iterator
+from functools import lru_cache
+from hashlib import sha256
+from pathlib import Path, PurePosixPath
+from typing import NamedTuple
+
+from grader.errors import InputError
+from grader.grading.rubric import Rubric
+from grader.submission.bulk import Bulk
+from grader.submission.folder import file_at
+from grader.submission.files import URDF_LIMIT, printable_path, read_capped
+from grader.submission.opening import ARCHIVES, outer_tree, tree_name, with_inner, without_endings
+from grader.submission.submission import Submission, read_submission, submission_of
+from grader.submission.tree import Tree, make_tree
+
+_WHOLE = 64 * 1024 * 1024  # bytes of a file that its digest is made of; of a larger one the size is
+_CHUNK = 1024 * 1024
+_MOST_ENTRIES = 100_000
+_SETTLED = 50_000_000  # nanoseconds in which a file system may not tell two changes apart
+
+
+class Opened(NamedTuple):
+    """A hand-in before it is graded: its digest, and either the bytes of a URDF on its own or all of its files."""
+
+    name: str
+    shown: str
+    digest: str
+    data: bytes | None
+    tree: Tree | None
+
+    def submission(self, rubric: Rubric) -> Submission:
+        """What is graded of it; raises InputError where there is nothing."""
+        if self.tree is None:
+            return read_submission(self.data or b"", identity=self.name, path=self.shown)
+        return submission_of(
+            with_inner(self.tree), self.name, wanted=rubric.urdf, package=rubric.package, shown=self.shown
+        )
+
+
+def open_hand_in(root: str, paths: tuple[str, ...], names: tuple[str, ...], name: str) -> Opened:
+    """What stands at `paths` below a class folder, or in a zip; raises InputError.
+
+    Several files make one hand-in, which is called `name`, and stand in it side by side as `names`.
+    """
+    if len(paths) == 1:
+        return _in_bulk(root, paths[0]) if is_bulk(root) else _on_disk(f"{root}/{paths[0]}")
+    given = dict(zip(paths, names or [PurePosixPath(path).name for path in paths], strict=True))
+    tree = _bulk(root, _stamp(root)).files(given, name) if is_bulk(root) else _side_by_side(root, given, name)
+    return Opened(name, name, _digest_of_tree(tree), None, tree)
+
+
+@lru_cache(maxsize=4)
+def is_bulk(root: str) -> bool:
+    """Whether a class comes as one zip."""
+    return not Path(root).is_dir()
+
+
+def _on_disk(path: str) -> Opened:
+    stem, _, ending = path.rpartition("/")[2].rpartition(".")
+    if ending.lower() in ("urdf", "xacro"):
+        data, name = read_capped(path), printable_path(stem)
+        return Opened(name, f"{name}.{ending}", sha256(data).hexdigest(), data, None)
+    place = Path(path)
+    tree = outer_tree(place)
+    if tree is None:
+        raise InputError(f"{printable_path(place.name)} is neither a URDF nor a folder or archive")
+    digest = _digest_of_tree(tree) if place.is_dir() else _digest_of_file(place)
+    return Opened(tree_name(place), printable_path(place), digest, None, tree)
+
+
+def _in_bulk(root: str, path: str) -> Opened:
+    bulk = _bulk(root, _stamp(root))
+    last = path.rpartition("/")[2]
+    if bulk.is_folder(path):
+        tree = bulk.folder(path)
+        return Opened(last, path, _digest_of_tree(tree), None, tree)
+    if last.lower().endswith(ARCHIVES):
+        tree = bulk.archive(path)
+        return Opened(without_endings(last), path, _digest_of_tree(tree), None, tree)
+    data = bulk.read(path, URDF_LIMIT)
+    return Opened(PurePosixPath(last).stem, last, sha256(data).hexdigest(), data, None)
+
+
+@lru_cache(maxsize=2)
+def _bulk(root: str, stamp: str) -> Bulk:
+    """The open zip, as long as the file stays the same."""
+    del stamp
+    return Bulk(Path(root))
+
+
+def _side_by_side(root: str, named: dict[str, str], name: str) -> Tree:
+    return make_tree(name, [file_at(Path(root, path), given) for path, given in named.items()], ())
+
+
+def _digest_of_file(path: Path) -> str:
+    digest = sha256()
+    try:
+        with path.open("rb") as file:
+            while chunk := file.read(_CHUNK):
+                digest.update(chunk)
+    except OSError as error:
+        raise InputError(f"cannot read {printable_path(path)}: {error.strerror}") from None
+    return digest.hexdigest()
+
+
+def _digest_of_tree(tree: Tree) -> str:
+    """The hash of all that a submission is read from: its files with their paths, and what was left out."""
+    digest = sha256(repr((sorted(tree.folders), tree.left_out, tree.generated, sorted(tree.unseen))).encode())
+    for path, file in tree.files.items():
+        digest.update(repr((path, file.size)).encode())
+        try:
+            digest.update(file.read(_WHOLE, first=True))
+        except InputError as error:
+            digest.update(str(error).encode())
+    return digest.hexdigest()
+
+
+def fingerprint(root: str, paths: tuple[str, ...], now: int) -> str:
+    """What the file system says of a hand-in: as long as it says the same, the bytes are the same. Empty where nobody knows.
+
+    `now` is the time in nanoseconds: what has changed just then may change once more unseen.
+    """
+    if is_bulk(root):
+        stamp = _stamp(root)
+        return f"{stamp} {paths}" if stamp else ""
+    digest = sha256()
+    newest = 0
+    try:
+        for path in paths:
+            for entry, status in _walk(f"{root}/{path}"):
+                newest = max(newest, status.st_ctime_ns)
+                digest.update(f"{entry}\0{_of(status)}\0".encode("utf-8", "surrogateescape"))
+    except OSError:
+        return ""
+    return digest.hexdigest() if newest < now - _SETTLED else ""
+
+
+def _walk(top: str) -> Iterator[tuple[str, os.stat_result]]:
+    """Every file and folder at and below a path, links as such, in the order of the alphabet; OSError where there are too many."""
+    status = os.lstat(top)
+    yield "", status
+    if not stat.S_ISDIR(status.st_mode):
+        return
+    waiting = [top]
+    count = 0
+    while waiting:
+        where = waiting.pop()
+        with os.scandir(where) as found:
+            entries = sorted(found, key=lambda each: each.name)
+        for entry in entries:
+            count += 1
+            if count > _MOST_ENTRIES:
+                raise OSError("too many")
+            yield entry.path, entry.stat(follow_symlinks=False)
+            if entry.is_dir(follow_symlinks=False):
+                waiting.append(entry.path)
+
+
+def _of(status: os.stat_result) -> str:
+    return f"{status.st_ino} {status.st_size} {status.st_mtime_ns} {status.st_ctime_ns}"
+
+
+def _stamp(path: str) -> str:
+    try:
+        return _of(os.stat(path))  # noqa: PTH116
+    except OSError:
+        return ""

@@ -1,0 +1,92 @@
+"""Processes that do the work, on this machine: an executor as in `concurrent.futures` whose tasks end, whatever they do."""
+
+import multiprocessing
+import os
+from collections.abc import Callable
+from concurrent.futures import CancelledError, Executor, Future
+from concurrent.futures.process import BrokenProcessPool
+from typing import Any
+
+from pebble import ProcessExpired, ProcessPool
+
+from grader.errors import GraderError
+
+MEMORY = 2 * 1024**3  # bytes that one worker may have
+
+
+class Lost(GraderError):
+    """Work that came to nothing, and why, in words for a report. It may have been the fault of what ran beside it."""
+
+    def __init__(self, reason: str, *, is_own_fault: bool = True) -> None:
+        super().__init__(reason)
+        self.is_own_fault = is_own_fault
+
+
+class Processes(Executor):
+    """Worker processes. What takes longer than `timeout` seconds, or ends its worker, raises Lost from its future.
+
+    Another worker then takes the place of the one that ended. `prepare` is run in each at its start; `preload` names the
+    modules that are loaded once for all of them, where the system can fork.
+    """
+
+    def __init__(
+        self, workers: int, timeout: float, prepare: Callable[[int], None], memory: int = MEMORY, preload: str = ""
+    ) -> None:
+        self._timeout = timeout
+        context = _context(preload)
+        self._new_pool = lambda: ProcessPool(workers, initializer=prepare, initargs=(memory,), context=context)
+        self._pool = self._new_pool()
+
+    def submit(self, function: Callable[..., Any], /, *arguments: Any, **named: Any) -> "Future[Any]":
+        """Have a function run in a worker."""
+        done: Future[Any] = Future()
+        if not self._pool.active:  # it breaks where a worker is ended in the midst of speaking
+            self._end()
+            self._pool = self._new_pool()
+        inner = self._pool.schedule(function, arguments, named, self._timeout)
+        inner.add_done_callback(lambda future: self._pass_on(future, done))
+        return done
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """End the workers: at once, whatever they do."""
+        del cancel_futures
+        self._end()
+        if wait:
+            self._pool.join()
+
+    def _end(self) -> None:
+        self._pool.stop()  # type: ignore[no-untyped-call]
+
+    def _pass_on(self, inner: "Future[Any]", done: "Future[Any]") -> None:
+        try:
+            done.set_result(inner.result())
+        except TimeoutError:
+            done.set_exception(Lost(f"grading it took longer than {self._timeout:g} s, and was stopped"))
+        except ProcessExpired as error:
+            done.set_exception(Lost(f"the process that graded it {_end_of(error.exitcode)}"))
+        except (BrokenProcessPool, CancelledError):
+            done.set_exception(Lost("the processes that grade came to an end", is_own_fault=False))
+        except MemoryError:
+            done.set_exception(Lost("grading it needs more memory than a worker may have"))
+        except Exception as error:  # noqa: BLE001  it is told, whatever it is
+            done.set_exception(error)
+
+
+def _end_of(code: int) -> str:
+    return f"was ended by signal {-code}" if code < 0 else f"ended with exit code {code}"
+
+
+def _context(preload: str) -> Any:
+    """Where workers come from: a server that has loaded everything once, and forks; spawned where there is no such thing."""
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # each worker is one thread; there are enough of them
+    methods = multiprocessing.get_all_start_methods()
+    context: Any = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
+    if "forkserver" in methods and preload:
+        context.set_forkserver_preload([preload])
+    return context
+
+
+def processors() -> int:
+    """How many workers this machine keeps busy."""
+    affinity = getattr(os, "sched_getaffinity", None)
+    return len(affinity(0)) if affinity is not None else os.cpu_count() or 1

@@ -1,0 +1,141 @@
+"""The tables of a gradebook, one step for each version of them. Points are whole numbers of ten-thousandths."""
+
+APPLICATION_ID = 0x47524452  # by which a SQLite file says what it is: "GRDR"
+
+_FIRST = """
+CREATE TABLE rubric (
+    sha256 TEXT PRIMARY KEY,
+    id TEXT NOT NULL,
+    title TEXT NOT NULL,
+    path TEXT NOT NULL,
+    text BLOB NOT NULL
+) WITHOUT ROWID;
+
+CREATE TABLE criterion (
+    rubric TEXT NOT NULL REFERENCES rubric,
+    id TEXT NOT NULL,
+    position INTEGER NOT NULL,
+    points INTEGER NOT NULL,
+    PRIMARY KEY (rubric, id)
+) WITHOUT ROWID;
+
+CREATE TABLE student (
+    id INTEGER PRIMARY KEY,
+    key TEXT NOT NULL UNIQUE,
+    name TEXT NOT NULL,
+    email TEXT NOT NULL,
+    login TEXT NOT NULL,
+    sis TEXT NOT NULL,
+    canvas TEXT NOT NULL,
+    moodle TEXT NOT NULL,
+    expected INTEGER,              -- 1 on the roster, 0 not on it, NULL while there is none
+    due TEXT NOT NULL DEFAULT '',  -- an extension of their own
+    late TEXT NOT NULL DEFAULT ''  -- what the roster says: a time such as 2 days
+);
+
+CREATE TABLE run (
+    id INTEGER PRIMARY KEY,
+    started TEXT NOT NULL,
+    finished TEXT,                 -- NULL of a run that was cut off
+    source TEXT NOT NULL,
+    layout TEXT NOT NULL,
+    rubric TEXT NOT NULL REFERENCES rubric,
+    version TEXT NOT NULL,
+    last_mark INTEGER NOT NULL     -- the newest mark by hand when it began
+);
+
+CREATE TABLE result (
+    id INTEGER PRIMARY KEY,
+    student INTEGER NOT NULL REFERENCES student,
+    rubric TEXT NOT NULL REFERENCES rubric,
+    version TEXT NOT NULL,
+    digest TEXT NOT NULL,
+    verdict TEXT NOT NULL CHECK (verdict IN ('graded', 'unreadable', 'errored')),
+    reason TEXT NOT NULL,
+    score INTEGER NOT NULL,
+    out_of INTEGER NOT NULL,
+    pending INTEGER NOT NULL,
+    signs TEXT NOT NULL,           -- a letter for each criterion: p f s ? !, - where it was not graded
+    record BLOB NOT NULL           -- the report as compressed JSON
+);
+CREATE INDEX result_of_student ON result (student);
+
+CREATE TABLE seen (
+    student INTEGER NOT NULL REFERENCES student,
+    run INTEGER NOT NULL REFERENCES run,
+    result INTEGER NOT NULL REFERENCES result,
+    paths TEXT NOT NULL,
+    names TEXT NOT NULL,
+    fingerprint TEXT NOT NULL,
+    is_late INTEGER NOT NULL,
+    submitted TEXT NOT NULL,
+    attempt INTEGER NOT NULL,
+    earlier TEXT NOT NULL,
+    PRIMARY KEY (student, run)
+) WITHOUT ROWID;
+
+CREATE TABLE mark (
+    id INTEGER PRIMARY KEY,
+    student INTEGER NOT NULL REFERENCES student,
+    criterion TEXT NOT NULL,
+    points INTEGER,                -- NULL takes the mark back: what the check says counts again
+    comment TEXT NOT NULL,
+    author TEXT NOT NULL,
+    at TEXT NOT NULL,
+    result INTEGER NOT NULL REFERENCES result
+);
+CREATE INDEX mark_of_student ON mark (student, criterion);
+
+CREATE TRIGGER mark_stays BEFORE DELETE ON mark
+BEGIN SELECT raise(ABORT, 'a mark by hand is never deleted'); END;
+CREATE TRIGGER mark_unchanged BEFORE UPDATE ON mark
+BEGIN SELECT raise(ABORT, 'a mark by hand is never changed: add another'); END;
+CREATE TRIGGER result_stays BEFORE DELETE ON result
+BEGIN SELECT raise(ABORT, 'a result is never deleted'); END;
+CREATE TRIGGER result_unchanged BEFORE UPDATE ON result
+BEGIN SELECT raise(ABORT, 'a result is never changed: add another'); END;
+
+-- The marks by hand that count: the newest of each student and criterion, unless it was taken back.
+CREATE VIEW ruling AS
+SELECT * FROM mark WHERE points IS NOT NULL
+AND id = (SELECT max(id) FROM mark AS newer WHERE newer.student = mark.student AND newer.criterion = mark.criterion);
+
+-- What the marks by hand change of a student's newest result. CROSS JOIN keeps the few marks in front.
+CREATE VIEW ruled AS
+SELECT ruling.student,
+    count(*) AS marks,
+    sum(ruling.points - iif(sign = 'p', criterion_points, 0)) AS score,
+    sum(iif(sign = '-', criterion_points, 0)) AS out_of,
+    sum(iif(sign = '?', criterion_points, 0)) AS pending,
+    sum(sign = '!') AS faults,
+    sum(ruling.result <> seen_result) AS older
+FROM (
+    SELECT ruling.student, ruling.points, ruling.result, seen.result AS seen_result,
+        criterion.points AS criterion_points, substr(result.signs, criterion.position + 1, 1) AS sign
+    FROM ruling
+    CROSS JOIN seen ON seen.student = ruling.student
+        AND seen.run = (SELECT max(run) FROM seen AS newer WHERE newer.student = ruling.student)
+    CROSS JOIN result ON result.id = seen.result
+    CROSS JOIN criterion ON criterion.rubric = result.rubric AND criterion.id = ruling.criterion
+) AS ruling
+GROUP BY ruling.student;
+
+-- The current grade of everyone: what the checks have found, with the marks by hand.
+CREATE VIEW grade AS
+SELECT student.*, seen.run, seen.result, result.rubric, result.version, result.digest,
+    coalesce(result.verdict, 'missing') AS verdict, coalesce(result.reason, '') AS reason,
+    result.score + coalesce(ruled.score, 0) AS score,
+    result.out_of + coalesce(ruled.out_of, 0) AS out_of,
+    result.pending - coalesce(ruled.pending, 0) AS pending,
+    length(signs) - length(replace(signs, '!', '')) - coalesce(ruled.faults, 0) AS faults,
+    coalesce(ruled.marks, 0) AS marks, coalesce(ruled.older, 0) AS older_marks,
+    result.signs, seen.paths, seen.names, seen.fingerprint, coalesce(seen.is_late, 0) AS is_late,
+    coalesce(seen.submitted, '') AS submitted, seen.attempt, coalesce(seen.earlier, '[]') AS earlier
+FROM student
+LEFT JOIN seen ON seen.student = student.id
+    AND seen.run = (SELECT max(run) FROM seen AS newer WHERE newer.student = student.id)
+LEFT JOIN result ON result.id = seen.result
+LEFT JOIN ruled ON ruled.student = student.id;
+"""
+
+STEPS = (_FIRST,)  # the first makes version 1; each later one brings a gradebook to the next

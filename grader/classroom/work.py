@@ -1,0 +1,122 @@
+"""What a worker does: grade some hand-ins, each on its own. Everything here is plain data, fit to be sent anywhere."""
+
+import gc
+import os
+import time
+import zlib
+from collections.abc import Sequence
+from contextlib import suppress
+from functools import lru_cache
+from pathlib import Path
+from typing import Literal, NamedTuple
+
+from grader.checks.outcome import Outcome, Status
+from grader.classroom.opening import fingerprint, open_hand_in
+from grader.errors import InputError
+from grader.grading.grade import grade
+from grader.grading.record import Kept, to_record
+from grader.grading.report import Report, Result
+from grader.grading.rubric import Rubric, read_rubric
+
+Verdict = Literal["graded", "unreadable", "errored", "unchanged"]
+UNITS = 10_000  # points are kept as whole numbers of ten-thousandths
+SIGNS: dict[Status, str] = {"passed": "p", "failed": "f", "skipped": "s", "pending": "?", "errored": "!"}
+NOT_GRADED = "-"
+
+
+class Class(NamedTuple):
+    """What all tasks of a run share: the top of the class folder or archive, and the rubric's file."""
+
+    root: str
+    rubric: bytes
+    rubric_path: str
+
+
+class Task(NamedTuple):
+    """One hand-in: where it is, and its digest if it has been graded by the same rubric and grader before."""
+
+    key: str
+    paths: tuple[str, ...]
+    names: tuple[str, ...] = ()
+    graded: str = ""
+
+
+class Graded(NamedTuple):
+    """What came of one hand-in. `signs` has a letter for each criterion of the rubric; points are in ten-thousandths."""
+
+    key: str
+    verdict: Verdict
+    digest: str
+    fingerprint: str
+    score: int = 0
+    out_of: int = 0
+    pending: int = 0
+    signs: str = ""
+    record: bytes = b""
+    reason: str = ""
+
+
+def grade_all(common: Class, tasks: Sequence[Task]) -> list[Graded]:
+    """Grade hand-ins one after the other; what is wrong with one of them costs the others nothing."""
+    return [_grade_one(common, task) for task in tasks]
+
+
+def prepare(memory: int) -> None:
+    """Make a process fit for grading: bounded in memory (bytes), deaf to Ctrl-C, which is for the one that hands out the work."""
+    import signal
+
+    import grader.submission.find  # noqa: F401  loaded before the first hand-in
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    with suppress(ImportError, ValueError, OSError):
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+    gc.collect()
+    gc.freeze()  # what is loaded now stays: it need not be looked through again
+    gc.set_threshold(100_000, 20, 100)
+
+
+def _grade_one(common: Class, task: Task) -> Graded:
+    rubric = _rubric(common.rubric, common.rubric_path)
+    mark = fingerprint(common.root, task.paths, time.time_ns())
+    digest = ""
+    try:
+        opened = open_hand_in(common.root, task.paths, task.names, task.key)
+        digest = opened.digest
+        if digest == task.graded:
+            return Graded(task.key, "unchanged", digest, mark)
+        report = grade(rubric, opened.submission(rubric))
+    except InputError as error:
+        reason = str(error).replace(f"{common.root}{os.sep}", "")
+        return failed(rubric, task, "unreadable", reason, digest, mark)
+    except MemoryError:
+        return failed(rubric, task, "errored", "grading it needs more memory than a worker may have", digest, mark)
+    except Exception as error:  # noqa: BLE001  a fault of ours must cost nobody else anything
+        return failed(rubric, task, "errored", f"the grader itself failed: {type(error).__name__}: {error}", digest, mark)
+    faulty = next((each.outcome.message for each in report.results if each.outcome.status == "errored"), "")
+    return _of(report, task, "errored" if faulty else "graded", faulty, digest, mark)
+
+
+def failed(rubric: Rubric, task: Task, verdict: Verdict, reason: str, digest: str = "", mark: str = "") -> Graded:
+    """The result of a hand-in that could not be graded: no criterion is decided, and each says why."""
+    status: Status = "errored" if verdict == "errored" else "pending"
+    message = reason if status == "errored" else f"{reason}; a person has to look"
+    results = tuple(Result(criterion, Outcome(status, message)) for criterion in rubric.criteria)
+    name = Path(task.paths[0]).name if len(task.paths) == 1 else task.key
+    report = Report(Kept(name), rubric, tuple(part.id for part in rubric.parts), results)
+    return _of(report, task, verdict, reason, digest, mark)
+
+
+def _of(report: Report, task: Task, verdict: Verdict, reason: str, digest: str, mark: str) -> Graded:
+    signs = dict.fromkeys((criterion.id for criterion in report.rubric.criteria), NOT_GRADED)
+    for result in report.results:
+        signs[result.criterion.id] = SIGNS[result.outcome.status]
+    score, out_of, pending = (int(each * UNITS) for each in (report.score, report.max_score, report.pending))
+    record = zlib.compress(to_record(report).encode(), 1)
+    return Graded(task.key, verdict, digest, mark, score, out_of, pending, "".join(signs.values()), record, reason)
+
+
+@lru_cache(maxsize=4)
+def _rubric(data: bytes, path: str) -> Rubric:
+    return read_rubric(data, Path(path))
