@@ -1,21 +1,19 @@
 """Grade a class: what is new or changed is handed out, what comes back goes into the gradebook at once."""
 
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from grader import __version__
-from grader.classroom.gradebook import Gradebook, Known
+from grader.classroom.gradebook import Gradebook, Known, Standing
 from grader.classroom.opening import fingerprint
 from grader.classroom.queue import Queue
+from grader.classroom.roster import Roster
 from grader.classroom.students import HandIn, Student
 from grader.classroom.work import Class, Graded, Task
 from grader.grading.rubric import Rubric
-
-_MOST_UNWRITTEN = 500  # hand-ins that have not changed
-_PATIENCE = 0.5  # seconds until such a thing is written
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,14 +44,14 @@ class Progress:
 
 
 class Settings(NamedTuple):
-    """How a run is done. `root` is the absolute path of the class; `expected` tells whether a student is on the roster."""
+    """How a run is done. `root` is the absolute path of the class."""
 
     root: str
     layout: str
     total: int
     workers: int
     force: bool = False
-    expected: Callable[[Student], bool | None] = lambda _: None
+    roster: Roster | None = None
 
 
 class Batch:
@@ -70,47 +68,49 @@ class Batch:
         self._book, self._rubric, self._settings, self._listener = book, rubric, settings, listener
         self._queue = Queue(executor, settings.workers, Class(settings.root, rubric.data, str(rubric.path)), rubric)
         self._waiting: dict[str, tuple[HandIn, Known | None]] = {}
-        self._unwritten: list[tuple[HandIn, Known, str]] = []
-        self._written_at = time.monotonic()
+        self._before: Iterator[Known] = iter(())
+        self._next: Known | None = None
         self._progress = Progress(settings.total)
         self._run = 0
 
-    def grade(self, hand_ins: Iterable[HandIn], missing: Sequence[Student] = ()) -> Progress:
-        """Grade all hand-ins that are new or changed. `missing` are students of whom there is none."""
+    def grade(self, hand_ins: Iterable[HandIn], absent: Sequence[Student] = ()) -> Progress:
+        """Grade all hand-ins that are new or changed. `absent` are students of whom there is none."""
         self._run = self._book.begin(self._settings.root, self._settings.layout, self._rubric)
-        was_empty = self._book.is_empty()
+        self._before = self._book.all_known()
+        self._next = next(self._before, None)
         for hand_in in hand_ins:
-            known = None if was_empty else self._known(hand_in)
-            if not self._is_unchanged(hand_in, known):
+            known = self._known(hand_in)
+            if known is not None and self._is_unchanged(hand_in, known):
+                self._tell(("unchanged",))
+            else:
                 self._hand_out(hand_in, known)
             while self._queue.is_full:
                 self._take(all_in=False)
         while len(self._queue):
             self._take(all_in=True)
-        self._write_unchanged()
         with self._book.transaction():
-            for student in missing:
-                self._book.keep_student(student, expected=True)
+            for student in absent:
+                self._book.keep_student(student, self._standing(student))
         self._book.finish(self._run)
         return self._progress
 
     def _known(self, hand_in: HandIn) -> Known | None:
         """The result of this student that may still hold: of the same rubric and grader, and no failure of ours."""
-        known = self._book.known(hand_in.student.key)
+        key = hand_in.student.key
+        while self._next is not None and self._next.key < key:  # both come in the order of the keys
+            self._next = next(self._before, None)
+        known = self._next if self._next is not None and self._next.key == key else None
         if known is None or (known.rubric, known.version) != (self._rubric.sha256, __version__):
             return None
         return None if known.verdict == "errored" or self._settings.force else known
 
-    def _is_unchanged(self, hand_in: HandIn, known: Known | None) -> bool:
-        if known is None or not known.fingerprint:
-            return False
-        mark = fingerprint(self._settings.root, hand_in.paths, time.time_ns())
-        if mark != known.fingerprint:
-            return False
-        self._unwritten.append((hand_in, known, mark))
-        if len(self._unwritten) >= _MOST_UNWRITTEN or time.monotonic() - self._written_at > _PATIENCE:
-            self._write_unchanged()
-        return True
+    def _is_unchanged(self, hand_in: HandIn, known: Known) -> bool:
+        """Whether the file system and the roster say what they said before."""
+        return (
+            known.fingerprint != ""
+            and known.is_same(hand_in, self._standing(hand_in.student))
+            and fingerprint(self._settings.root, hand_in.paths, time.time_ns()) == known.fingerprint
+        )
 
     def _hand_out(self, hand_in: HandIn, known: Known | None) -> None:
         self._waiting[hand_in.student.key] = (hand_in, known)
@@ -136,16 +136,13 @@ class Batch:
         self._book.see(student, self._run, result, hand_in, graded.fingerprint)
 
     def _keep_student(self, hand_in: HandIn) -> int:
-        return self._book.keep_student(hand_in.student, self._settings.expected(hand_in.student))
+        return self._book.keep_student(hand_in.student, self._standing(hand_in.student))
 
-    def _write_unchanged(self) -> None:
-        if self._unwritten:
-            with self._book.transaction():
-                for hand_in, known, mark in self._unwritten:
-                    self._book.see(self._keep_student(hand_in), self._run, known.result, hand_in, mark)
-            self._tell("unchanged" for _ in self._unwritten)
-            self._unwritten.clear()
-        self._written_at = time.monotonic()
+    def _standing(self, student: Student) -> Standing | None:
+        if self._settings.roster is None:
+            return None
+        entry = self._settings.roster.entry(student.key)
+        return Standing(0) if entry is None else Standing(1, entry.due, entry.extension_days, entry.days_late)
 
     def _tell(self, verdicts: Iterable[str]) -> None:
         for verdict in verdicts:

@@ -20,8 +20,24 @@ _PATIENCE = 60.0  # seconds in which another process may finish its transaction
 _STUDENT = ("key", "name", "email", "login", "sis", "canvas", "moodle")
 
 
+class Standing(NamedTuple):
+    """What the roster says of a student: whether they are in it, when it is due for them, and how late they were."""
+
+    expected: int | None  # 1 on the roster, 0 not on it, None while there is none
+    due: str = ""
+    extension: float = 0.0
+    days_late: float | None = None
+
+
+_COLUMNS = (*_STUDENT, *Standing._fields)
+_FIND_STUDENT = f"SELECT id, {', '.join(_COLUMNS)} FROM student WHERE key = ?"
+_ADD_STUDENT = f"INSERT INTO student ({', '.join(_COLUMNS)}) VALUES (?{', ?' * (len(_COLUMNS) - 1)})"
+_CHANGE_STUDENT = f"UPDATE student SET {', '.join(f'{name} = ?' for name in _COLUMNS)} WHERE id = ?"
+_UNKNOWN = Standing(None)
+
+
 class Known(NamedTuple):
-    """What the gradebook has of a student: the row, the newest result and what it was made from."""
+    """What the gradebook has of a student: the newest result, what it was made from, and what was told of the student."""
 
     student: int
     result: int
@@ -30,6 +46,33 @@ class Known(NamedTuple):
     digest: str
     verdict: str
     fingerprint: str
+    place: str
+    is_late: int
+    submitted: str
+    told: tuple[Any, ...]
+
+    @property
+    def key(self) -> str:
+        """The student's key."""
+        return str(self.told[0])
+
+    def is_same(self, hand_in: HandIn, standing: Standing | None) -> bool:
+        """Whether nothing new is said of the student and the hand-in, whatever is in it."""
+        return (
+            self.place == place_of(hand_in)
+            and self.is_late == hand_in.is_late
+            and self.submitted == hand_in.submitted
+            and _told(self.told, hand_in.student, standing) == self.told
+        )
+
+
+_KNOWN = f"""
+SELECT student.id, seen.result, result.rubric, result.version, result.digest, result.verdict, seen.fingerprint,
+    seen.place, seen.is_late, seen.submitted, {", ".join(f"student.{name}" for name in _COLUMNS)}
+FROM student JOIN seen ON seen.student = student.id AND seen.run =
+    (SELECT max(run) FROM seen AS newer WHERE newer.student = student.id)
+JOIN result ON result.id = seen.result
+"""
 
 
 class Run(NamedTuple):
@@ -52,7 +95,9 @@ class Gradebook:
         self.path = path
         self._shown = printable_path(path)
         if not create and not path.exists():
-            raise InputError(f"there is no gradebook {self._shown}: grader batch PATH --gradebook {self._shown} makes one")
+            raise InputError(
+                f"there is no gradebook {self._shown}: grader batch PATH --gradebook {self._shown} makes one"
+            )
         with self.complaining():
             self.connection = sqlite3.connect(path, timeout=_PATIENCE, isolation_level=None)
             try:
@@ -146,66 +191,52 @@ class Gradebook:
             ],
         )
 
-    def is_empty(self) -> bool:
-        """Whether there is no student in it yet."""
-        return self.connection.execute("SELECT 1 FROM student LIMIT 1").fetchone() is None
-
     def known(self, key: str) -> Known | None:
-        """The newest result of a student."""
-        row = self.connection.execute(
-            "SELECT student.id, seen.result, result.rubric, result.version, result.digest, result.verdict, seen.fingerprint"
-            " FROM student JOIN seen ON seen.student = student.id JOIN result ON result.id = seen.result"
-            " WHERE student.key = ? ORDER BY seen.run DESC LIMIT 1",
-            (key,),
-        ).fetchone()
-        return Known(*row) if row is not None else None
+        """What there is of a student."""
+        row = self.connection.execute(f"{_KNOWN} WHERE student.key = ?", (key,)).fetchone()
+        return _known(row) if row is not None else None
 
-    def keep_student(self, student: Student, expected: bool | None, due: str = "", late: str = "") -> int:
-        """Take in what is known of a student; what was known before and is not said now stays."""
-        values = tuple(getattr(student, name) for name in _STUDENT)
-        found = self.connection.execute(
-            f"SELECT id, expected, due, late, {', '.join(_STUDENT)} FROM student WHERE key = ?", (student.key,)
-        ).fetchone()
-        on_roster = None if expected is None else int(expected)
+    def all_known(self) -> Iterator[Known]:
+        """What there is of everyone, in the order of their keys, as it was when this began, whatever is written meanwhile."""
+        with self.complaining(), closing(sqlite3.connect(self.path, timeout=_PATIENCE)) as beside:
+            for row in beside.execute(f"{_KNOWN} ORDER BY student.key"):
+                yield _known(row)
+
+    def keep_student(self, student: Student, standing: Standing | None) -> int:
+        """Take in what is known of a student; what was known before and is not said now stays. `standing` is the roster's word."""
+        found = self.connection.execute(_FIND_STUDENT, (student.key,)).fetchone()
         if found is None:
-            added = self.connection.execute(
-                f"INSERT INTO student (expected, due, late, {', '.join(_STUDENT)}) VALUES (?, ?, ?{', ?' * len(_STUDENT)})",
-                (on_roster, due, late, *values),
-            )
+            added = self.connection.execute(_ADD_STUDENT, (*_values(student), *(standing or _UNKNOWN)))
             return int(added.lastrowid or 0)
         identity, *before = found
-        told = [on_roster, due or before[1], late or before[2], *(new or old for new, old in zip(values, before[3:], strict=True))]
-        told[0] = before[0] if on_roster is None else on_roster
-        if told != before:
-            columns = ", ".join(f"{name} = ?" for name in ("expected", "due", "late", *_STUDENT))
-            self.connection.execute(f"UPDATE student SET {columns} WHERE id = ?", (*told, identity))
+        told = _told(tuple(before), student, standing)
+        if told != tuple(before):
+            self.connection.execute(_CHANGE_STUDENT, (*told, identity))
         return int(identity)
 
     def keep(self, student: int, rubric: str, graded: Graded) -> int:
         """Add a result, unless the newest one of the student says the same; its number."""
         newest = self.connection.execute(
-            "SELECT id, rubric, version, digest, record FROM result WHERE student = ? ORDER BY id DESC LIMIT 1", (student,)
+            "SELECT id, rubric, version, digest, record FROM result WHERE student = ? ORDER BY id DESC LIMIT 1",
+            (student,),
         ).fetchone()
         if newest is not None and newest[1:] == (rubric, __version__, graded.digest, graded.record):
             return int(newest[0])
         row = (
             student, rubric, __version__, graded.digest, graded.verdict, graded.reason, graded.score, graded.out_of,
-            graded.pending, graded.signs, graded.record,
+            graded.pending, graded.signs, graded.misses, graded.record,
         )  # fmt: skip
         added = self.connection.execute(
-            "INSERT INTO result (student, rubric, version, digest, verdict, reason, score, out_of, pending, signs, record)"
-            " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+            "INSERT INTO result (student, rubric, version, digest, verdict, reason, score, out_of, pending, signs, misses,"
+            " record) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
             row,
         )
         return int(added.lastrowid or 0)
 
     def see(self, student: int, run: int, result: int, hand_in: HandIn, fingerprint: str) -> None:
         """Note that a run has seen this of a student, and which result it has."""
-        row = (
-            student, run, result, _json(hand_in.paths), _json(hand_in.names), fingerprint, int(hand_in.is_late),
-            hand_in.submitted, hand_in.attempt, _json(hand_in.earlier),
-        )  # fmt: skip
-        self.connection.execute("INSERT INTO seen VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)", row)
+        row = (student, run, result, place_of(hand_in), fingerprint, int(hand_in.is_late), hand_in.submitted)
+        self.connection.execute("INSERT INTO seen VALUES (?, ?, ?, ?, ?, ?, ?)", row)
 
     # --- what others read ----------------------------------------------------------------------------------------------
 
@@ -248,5 +279,24 @@ def _now() -> str:
     return datetime.now(UTC).isoformat(timespec="seconds")
 
 
-def _json(texts: tuple[str, ...]) -> str:
-    return json.dumps(texts)
+def place_of(hand_in: HandIn) -> str:
+    """Where a hand-in is, as JSON: paths, names, attempt, paths of earlier attempts."""
+    return json.dumps((hand_in.paths, hand_in.names, hand_in.attempt, hand_in.earlier))
+
+
+def _known(row: tuple[Any, ...]) -> Known:
+    identity, result, rubric, version, digest, verdict, fingerprint, place, is_late, submitted, *told = row
+    return Known(
+        identity, result, rubric, version, digest, verdict, fingerprint, place, is_late, submitted, tuple(told)
+    )
+
+
+def _values(student: Student) -> tuple[str, ...]:
+    return (student.key, student.name, student.email, student.login, student.sis, student.canvas, student.moodle)
+
+
+def _told(before: tuple[Any, ...], student: Student, standing: Standing | None) -> tuple[Any, ...]:
+    """What is known of a student after something more was said."""
+    count = len(_STUDENT)
+    values = tuple(new or old for new, old in zip(_values(student), before[:count], strict=True))
+    return values + (before[count:] if standing is None else tuple(standing))

@@ -130,6 +130,10 @@ def fingerprint(root: str, paths: tuple[str, ...], now: int) -> str:
     digest = sha256()
     newest = 0
     try:
+        if len(paths) == 1:
+            status = os.lstat(f"{root}/{paths[0]}")
+            if stat.S_ISREG(status.st_mode):  # what the most hand-ins of a large class are
+                return _of(status) if status.st_ctime_ns < now - _SETTLED else ""
         for path in paths:
             for entry, status in _walk(f"{root}/{path}"):
                 newest = max(newest, status.st_ctime_ns)

@@ -32,9 +32,8 @@ class Processes(Executor):
     def __init__(
         self, workers: int, timeout: float, prepare: Callable[[int], None], memory: int = MEMORY, preload: str = ""
     ) -> None:
-        self._timeout = timeout
-        context = _context(preload)
-        self._new_pool = lambda: ProcessPool(workers, initializer=prepare, initargs=(memory,), context=context)
+        self._workers, self._timeout, self._prepare, self._memory = workers, timeout, prepare, memory
+        self._context = _context(preload)
         self._pool = self._new_pool()
 
     def submit(self, function: Callable[..., Any], /, *arguments: Any, **named: Any) -> "Future[Any]":
@@ -53,6 +52,9 @@ class Processes(Executor):
         self._end()
         if wait:
             self._pool.join()
+
+    def _new_pool(self) -> ProcessPool:
+        return ProcessPool(self._workers, initializer=self._prepare, initargs=(self._memory,), context=self._context)
 
     def _end(self) -> None:
         self._pool.stop()  # type: ignore[no-untyped-call]

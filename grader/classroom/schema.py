@@ -29,8 +29,9 @@ CREATE TABLE student (
     canvas TEXT NOT NULL,
     moodle TEXT NOT NULL,
     expected INTEGER,              -- 1 on the roster, 0 not on it, NULL while there is none
-    due TEXT NOT NULL DEFAULT '',  -- an extension of their own
-    late TEXT NOT NULL DEFAULT ''  -- what the roster says: a time such as 2 days
+    due TEXT NOT NULL,             -- a time of their own, from the roster, as are the next two
+    extension REAL NOT NULL,       -- days
+    days_late REAL                 -- NULL where the roster does not say
 );
 
 CREATE TABLE run (
@@ -56,21 +57,20 @@ CREATE TABLE result (
     out_of INTEGER NOT NULL,
     pending INTEGER NOT NULL,
     signs TEXT NOT NULL,           -- a letter for each criterion: p f s ? !, - where it was not graded
+    misses TEXT NOT NULL,          -- JSON: each failed criterion's position with what was measured, in a few words
     record BLOB NOT NULL           -- the report as compressed JSON
 );
 CREATE INDEX result_of_student ON result (student);
 
+-- What a run has seen of a student, if that is not what the run before has seen.
 CREATE TABLE seen (
     student INTEGER NOT NULL REFERENCES student,
     run INTEGER NOT NULL REFERENCES run,
     result INTEGER NOT NULL REFERENCES result,
-    paths TEXT NOT NULL,
-    names TEXT NOT NULL,
+    place TEXT NOT NULL,           -- JSON: paths, names, attempt, paths of earlier attempts
     fingerprint TEXT NOT NULL,
     is_late INTEGER NOT NULL,
     submitted TEXT NOT NULL,
-    attempt INTEGER NOT NULL,
-    earlier TEXT NOT NULL,
     PRIMARY KEY (student, run)
 ) WITHOUT ROWID;
 
@@ -129,8 +129,8 @@ SELECT student.*, seen.run, seen.result, result.rubric, result.version, result.d
     result.pending - coalesce(ruled.pending, 0) AS pending,
     length(signs) - length(replace(signs, '!', '')) - coalesce(ruled.faults, 0) AS faults,
     coalesce(ruled.marks, 0) AS marks, coalesce(ruled.older, 0) AS older_marks,
-    result.signs, seen.paths, seen.names, seen.fingerprint, coalesce(seen.is_late, 0) AS is_late,
-    coalesce(seen.submitted, '') AS submitted, seen.attempt, coalesce(seen.earlier, '[]') AS earlier
+    result.signs, coalesce(result.misses, '[]') AS misses, coalesce(seen.place, '[[], [], 0, []]') AS place,
+    seen.fingerprint, coalesce(seen.is_late, 0) AS is_late, coalesce(seen.submitted, '') AS submitted
 FROM student
 LEFT JOIN seen ON seen.student = student.id
     AND seen.run = (SELECT max(run) FROM seen AS newer WHERE newer.student = student.id)

@@ -1,6 +1,7 @@
 """What a worker does: grade some hand-ins, each on its own. Everything here is plain data, fit to be sent anywhere."""
 
 import gc
+import json
 import os
 import time
 import zlib
@@ -11,6 +12,7 @@ from pathlib import Path
 from typing import Literal, NamedTuple
 
 from grader.checks.outcome import Outcome, Status
+from grader.classroom.misses import kind_of_miss
 from grader.classroom.opening import fingerprint, open_hand_in
 from grader.errors import InputError
 from grader.grading.grade import grade
@@ -52,6 +54,7 @@ class Graded(NamedTuple):
     out_of: int = 0
     pending: int = 0
     signs: str = ""
+    misses: str = "[]"
     record: bytes = b""
     reason: str = ""
 
@@ -93,7 +96,9 @@ def _grade_one(common: Class, task: Task) -> Graded:
     except MemoryError:
         return failed(rubric, task, "errored", "grading it needs more memory than a worker may have", digest, mark)
     except Exception as error:  # noqa: BLE001  a fault of ours must cost nobody else anything
-        return failed(rubric, task, "errored", f"the grader itself failed: {type(error).__name__}: {error}", digest, mark)
+        return failed(
+            rubric, task, "errored", f"the grader itself failed: {type(error).__name__}: {error}", digest, mark
+        )
     faulty = next((each.outcome.message for each in report.results if each.outcome.status == "errored"), "")
     return _of(report, task, "errored" if faulty else "graded", faulty, digest, mark)
 
@@ -114,7 +119,21 @@ def _of(report: Report, task: Task, verdict: Verdict, reason: str, digest: str, 
         signs[result.criterion.id] = SIGNS[result.outcome.status]
     score, out_of, pending = (int(each * UNITS) for each in (report.score, report.max_score, report.pending))
     record = zlib.compress(to_record(report).encode(), 1)
-    return Graded(task.key, verdict, digest, mark, score, out_of, pending, "".join(signs.values()), record, reason)
+    misses = _misses(report)
+    return Graded(
+        task.key, verdict, digest, mark, score, out_of, pending, "".join(signs.values()), misses, record, reason
+    )
+
+
+def _misses(report: Report) -> str:
+    """What was measured where a criterion failed, so roughly that the same mistake is the same text."""
+    order = {criterion.id: index for index, criterion in enumerate(report.rubric.criteria)}
+    found = [
+        (order[each.criterion.id], kind_of_miss(each.outcome))
+        for each in report.results
+        if each.outcome.status == "failed"
+    ]
+    return json.dumps(found) if found else "[]"
 
 
 @lru_cache(maxsize=4)

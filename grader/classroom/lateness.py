@@ -1,0 +1,78 @@
+"""What a late hand-in costs under a rubric's policy: a line of its own, never part of a criterion."""
+
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from decimal import Decimal
+from math import ceil
+
+from grader.errors import InputError
+from grader.grading.rubric import Late, Rubric
+
+_DAY = timedelta(days=1)
+
+
+@dataclass(frozen=True, slots=True)
+class Lateness:
+    """How late a hand-in is, in days begun, and the points (0 or less) that it costs. `words` say why."""
+
+    days: int = 0
+    points: Decimal = Decimal(0)
+    words: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Times:
+    """What is known of when something was handed in and when it was due: ISO 8601, empty or None where nobody says."""
+
+    is_late: bool = False
+    submitted: str = ""
+    due: str = ""
+    extension: float = 0.0
+    days_late: float | None = None
+
+
+def lateness(rubric: Rubric, times: Times, score: Decimal, due: datetime | None = None) -> Lateness:
+    """What a hand-in with these times and points loses. `due` goes before the rubric's; a student's own before both."""
+    policy = rubric.late
+    days, words = _days(times, policy, due)
+    if policy is None or not days:
+        return Lateness(days, Decimal(0), words)
+    least = min(score, rubric.points * policy.floor_percent / 100)
+    left = max(least, score - rubric.points * policy.percent_per_day * days / 100)
+    return Lateness(days, left - score, words)
+
+
+def read_time(text: str) -> datetime:
+    """A time as ISO 8601; raises InputError."""
+    try:
+        return datetime.fromisoformat(text.strip())
+    except ValueError:
+        raise InputError(f"{text!r} is no time: write it as 2026-11-20T23:59+01:00") from None
+
+
+def _days(times: Times, policy: Late | None, due: datetime | None) -> tuple[int, str]:
+    if times.days_late is not None:
+        days = max(0, ceil(times.days_late))
+        return days, f"{_many(days)} late, by the roster" if days else ""
+    own = read_time(times.due) if times.due else due or (policy.due if policy is not None else None)
+    if times.submitted and own is not None:
+        late_by = _since(own + times.extension * _DAY, read_time(times.submitted))
+        grace = timedelta(minutes=float(policy.grace_minutes)) if policy is not None else timedelta()
+        if late_by <= max(grace, timedelta()):
+            return 0, ""
+        days = ceil(late_by / _DAY)
+        return days, f"{_many(days)} late: handed in {times.submitted}"
+    return (1, "late by an unknown time, which counts as 1 day") if times.is_late else (0, "")
+
+
+def _since(due: datetime, handed_in: datetime) -> timedelta:
+    """How long after; a time without an offset is one where the other is."""
+    if handed_in.tzinfo is None:
+        handed_in = handed_in.replace(tzinfo=due.tzinfo)
+    elif due.tzinfo is None:
+        due = due.replace(tzinfo=handed_in.tzinfo)
+    return handed_in - due
+
+
+def _many(days: int) -> str:
+    return f"{days} day{'' if days == 1 else 's'}"

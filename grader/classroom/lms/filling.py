@@ -1,0 +1,68 @@
+"""The account that is kept while an LMS file is filled, row by row."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+from grader.classroom.lms.grades import Grade
+from grader.classroom.lms.matching import Join
+from grader.classroom.lms.preflight import Conflict, Filled, Left, Preflight
+from grader.classroom.lms.tables import Row, Table
+
+
+@dataclass(slots=True)
+class Filling:
+    """What has been filled so far and what has not; `result` makes the values of it that others see."""
+
+    column: str
+    found: Join
+    filled: int = 0
+    unchanged: int = 0
+    unknown: tuple[Left, ...] = ()
+    ungraded: list[Left] = field(default_factory=list)
+    conflicts: list[Conflict] = field(default_factory=list)
+    kept_feedback: list[Left] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.unknown = self.found.unknown
+
+    def grade_of(self, row: Row, who: str, width: int) -> Grade | None:
+        """The grade that belongs into a row; None, and noted why, where there is none or where cells are out of place."""
+        grade = self.found.matched.get(row.number)
+        if grade is None:
+            return None
+        if grade.total is None:
+            self.leave(row, who, grade.why_not or "has no grade")
+            return None
+        if len(row.cells) != width:
+            self.leave(row, who, f"the row has {len(row.cells)} cells and the header {width}")
+            return None
+        return grade
+
+    def leave(self, row: Row, who: str, why: str) -> None:
+        """A student of ours gets no grade in this row."""
+        self.ungraded.append(Left(row.number, who, why))
+
+    def overwrite(self, row: Row, who: str, was: str, becomes: str) -> None:
+        """A grade that is not ours is overwritten."""
+        self.conflicts.append(Conflict(row.number, who, was, becomes))
+
+    def keep_feedback(self, row: Row, who: str, why: str) -> None:
+        """A comment that is not ours stays."""
+        self.kept_feedback.append(Left(row.number, who, why))
+
+    def result(self, table: Table, rows: Sequence[Row]) -> Filled:
+        """The filled file and the account of it."""
+        preflight = Preflight(
+            column=self.column,
+            filled=self.filled,
+            unchanged=self.unchanged,
+            conflicts=tuple(self.conflicts),
+            ungraded=tuple(self.ungraded),
+            unknown=self.unknown,
+            missing=self.found.missing,
+            ambiguous=self.found.ambiguous,
+            kept_feedback=tuple(self.kept_feedback),
+            warnings=tuple(self.warnings),
+        )
+        return Filled(replace(table, rows=tuple(rows)).encoded(), preflight)

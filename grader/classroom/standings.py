@@ -1,0 +1,156 @@
+"""Everyone's current grade: what the checks have found, what people have decided, and what being late costs."""
+
+import json
+import zlib
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from datetime import datetime
+from decimal import Decimal
+from functools import cache
+from typing import Any
+
+from grader.checks.outcome import Outcome
+from grader.classroom.gradebook import Gradebook
+from grader.classroom.lateness import Lateness, Times, lateness
+from grader.classroom.students import Student
+from grader.classroom.work import UNITS
+from grader.errors import InputError
+from grader.grading.record import Quote, from_record
+from grader.grading.report import Report, Result, Ruling
+from grader.grading.rubric import Rubric
+from grader.robot.names import did_you_mean
+
+_QUERY = (
+    "SELECT id, key, name, email, login, sis, canvas, moodle, due, extension, days_late, expected, run, result, rubric,"
+    " digest, verdict, reason, score, out_of, pending, faults, marks, older_marks, signs, place, is_late, submitted"
+    " FROM grade"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """One student's current grade. Without a hand-in `verdict` is `missing`, and there are no points.
+
+    `score` has the marks by hand in it, but not what being late costs. `faults` counts criteria on which the grader failed;
+    `older_marks` those marks that were given on an earlier hand-in or result.
+    """
+
+    id: int
+    student: Student
+    is_expected: bool | None
+    verdict: str
+    reason: str
+    run: int | None
+    result: int | None
+    rubric: str
+    digest: str
+    score: Decimal
+    out_of: Decimal
+    pending: Decimal
+    faults: int
+    marks: int
+    older_marks: int
+    signs: str
+    paths: tuple[str, ...]
+    names: tuple[str, ...]
+    attempt: int
+    earlier: tuple[str, ...]
+    late: Lateness
+    is_late: bool
+    submitted: str
+
+    @property
+    def total(self) -> Decimal:
+        """The points after what being late costs."""
+        return self.score + self.late.points
+
+    @property
+    def why_not_final(self) -> str:
+        """Why this is no grade to be handed on yet, in words; empty where it is one."""
+        if self.verdict == "missing":
+            return "nothing was handed in"
+        if self.faults:
+            return f"the grader failed: {self.reason}" if self.reason else "the grader failed on a criterion"
+        if self.verdict == "unreadable" and self.pending:
+            return f"it could not be graded: {self.reason}"
+        if self.pending:
+            return f"{format(self.pending.normalize(), 'f')} points wait for a person"
+        return ""
+
+
+class Standings:
+    """The current grades in a gradebook, with the rubrics that they are made by."""
+
+    def __init__(self, book: Gradebook, due: datetime | None = None) -> None:
+        self._book = book
+        self._due = due
+        self.rubric = cache(book.rubric)
+
+    def all(self) -> Iterator[Standing]:
+        """Everyone, in the order of their keys."""
+        for row in self._book.rows(f"{_QUERY} ORDER BY key"):
+            yield self._standing(row)
+
+    def find(self, name: str) -> Standing:
+        """The one whom a key, login, address, number or full name belongs to; raises InputError."""
+        columns = ("key", "login", "email", "sis", "canvas", "moodle", "name")
+        for column in columns:
+            rows = list(self._book.rows(f"{_QUERY} WHERE {column} = ? LIMIT 2", name)) if name else []
+            if len(rows) == 1:
+                return self._standing(rows[0])
+            if rows:
+                raise InputError(f"{name!r} is the {column} of several in the gradebook: name one by their key")
+        keys = [str(row[0]) for row in self._book.rows("SELECT key FROM student ORDER BY key LIMIT 5000")]
+        raise InputError(f"there is no {name!r} in the gradebook{did_you_mean(name, keys)}")
+
+    def report(self, standing: Standing, quote: Quote | None = None) -> Report:
+        """The report on a student's newest hand-in, with the marks by hand in it; raises InputError where there is none."""
+        if standing.result is None:
+            raise InputError(f"{standing.student.key} has handed in nothing")
+        rubric = self.rubric(standing.rubric)
+        record = zlib.decompress(self._book.record(standing.result)).decode()
+        report = from_record(record, rubric, quote)
+        rulings = self._rulings(standing.id) if standing.marks else {}
+        return replace(report, results=_ruled(report, rulings)) if rulings else report
+
+    def _rulings(self, student: int) -> dict[str, Ruling]:
+        rows = self._book.rows("SELECT criterion, points, author, comment FROM ruling WHERE student = ?", student)
+        return {name: Ruling(Decimal(points) / UNITS, author, comment) for name, points, author, comment in rows}
+
+    def _standing(self, row: tuple[Any, ...]) -> Standing:
+        (
+            identity, *known, due, extension, days_late, expected, run, result, rubric, digest, verdict, reason, score,
+            out_of, pending, faults, marks, older, signs, place, is_late, submitted,
+        ) = row  # fmt: skip
+        earned, most, waiting = (Decimal(each or 0) / UNITS for each in (score, out_of, pending))
+        times = Times(bool(is_late), str(submitted), str(due), float(extension or 0), days_late)
+        paths, names, attempt, earlier = json.loads(place)
+        late = lateness(self.rubric(rubric), times, earned, self._due) if rubric else Lateness()
+        return Standing(
+            identity, Student(*known), None if expected is None else bool(expected), verdict, reason, run, result,
+            rubric or "", digest or "", earned, most, waiting, faults or 0, marks, older, signs or "",
+            tuple(paths), tuple(names), attempt, tuple(earlier), late, bool(is_late), submitted,
+        )  # fmt: skip
+
+
+def _ruled(report: Report, rulings: dict[str, Ruling]) -> tuple[Result, ...]:
+    """The results with what people have decided, also of criteria that the check was not asked for."""
+    asked = {each.criterion.id: each for each in report.results}
+    not_asked = Outcome("skipped", "not graded: it was not handed in")
+    results = []
+    for criterion in report.rubric.criteria:
+        result = asked.get(criterion.id)
+        ruling = rulings.get(criterion.id)
+        if result is None and ruling is not None:
+            result = Result(criterion, not_asked)
+        if result is not None:
+            results.append(result._replace(ruling=ruling))
+    return tuple(results)
+
+
+def rubric_of_newest(book: Gradebook) -> Rubric:
+    """The rubric of the newest run; raises InputError where there was none."""
+    runs = book.runs()
+    if not runs:
+        raise InputError("nothing has been graded into this gradebook yet")
+    return book.rubric(runs[-1].rubric)

@@ -1,0 +1,163 @@
+"""CSV kept as it was written: values as Python's csv reads them, every byte but the changed cell's where it was."""
+
+import csv
+import io
+from dataclasses import replace
+from typing import Literal
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grader.classroom.lms import tables
+from grader.classroom.lms.tables import Table, read_table
+from grader.errors import InputError
+
+CELLS = st.text(st.sampled_from("ab ü=é😀א\"\n\r\t,;'\\\u202e\xa0"), max_size=6)
+WELL_FORMED = st.lists(st.lists(CELLS, max_size=5), max_size=6)
+LOOSE = st.text(st.sampled_from('ab"",;\n\r\t '), max_size=40)
+
+
+def written(rows: list[list[str]], delimiter: str, end: str, quoting: Literal[0, 1]) -> str:
+    text = io.StringIO(newline="")
+    csv.writer(text, delimiter=delimiter, lineterminator=end, quoting=quoting).writerows(rows)
+    return text.getvalue()
+
+
+def values(table: Table) -> list[list[str]]:
+    return [[cell.value for cell in row.cells] for row in table.rows]
+
+
+def by_csv(text: str, delimiter: str) -> list[list[str]]:
+    return list(csv.reader(io.StringIO(text, newline=""), delimiter=delimiter))
+
+
+@given(
+    WELL_FORMED,
+    st.sampled_from(",;\t"),
+    st.sampled_from(["\n", "\r\n", "\r"]),
+    st.sampled_from([csv.QUOTE_ALL, csv.QUOTE_MINIMAL]),
+)
+def test_what_csv_wrote_is_read_as_it_was_meant(
+    rows: list[list[str]], delimiter: str, end: str, quoting: Literal[0, 1]
+) -> None:
+    """A header and any cells, in any quoting, have the values that were written, and the same bytes come out."""
+    text = written([["Student", "ID"], *rows], delimiter, end, quoting)
+    table = read_table(text.encode(), "x.csv")
+    assert table.delimiter == delimiter
+    assert values(table) == by_csv(text, delimiter)
+    if quoting == csv.QUOTE_ALL:  # else csv.writer leaves a bare CR without quotes
+        assert values(table) == [["Student", "ID"], *rows]
+    assert table.encoded() == text.encode()
+
+
+@given(LOOSE)
+def test_any_text_is_read_as_csv_reads_it_or_refused(text: str) -> None:
+    """Quotes in odd places, mixed line breaks: the values of csv.reader and the same bytes; an open quote is refused."""
+    try:
+        table = read_table(text.encode(), "x.csv")
+    except InputError as error:
+        assert "never closed" in str(error)
+        with pytest.raises(csv.Error):
+            list(csv.reader(io.StringIO(text, newline=""), delimiter=first_delimiter(text), strict=True))
+        return
+    assert values(table) == by_csv(text, table.delimiter)
+    assert table.encoded() == text.encode()
+
+
+def first_delimiter(text: str) -> str:
+    """The delimiter that a table of this text has, found with the quote closed."""
+    return read_table(text.encode() + b'"', "x.csv").delimiter
+
+
+@given(WELL_FORMED, st.data(), CELLS)
+def test_a_changed_cell_changes_nothing_else(rows: list[list[str]], data: st.DataObject, value: str) -> None:
+    """After a change the file has the new value in that one cell; all other cells are the same, byte for byte."""
+    table = read_table(written([["a", "b"], *rows], ",", "\r\n", csv.QUOTE_MINIMAL).encode(), "x.csv")
+    row = data.draw(st.sampled_from([row for row in table.rows if row.cells]))
+    column = data.draw(st.integers(0, len(row.cells) - 1))
+    changed = table.changed(row, column, value)
+    others = [cell for index, cell in enumerate(changed.cells) if index != column]
+    assert others == [cell for index, cell in enumerate(row.cells) if index != column]
+    after = replace(table, rows=tuple(changed if each is row else each for each in table.rows))
+    again = read_table(after.encoded(), "x.csv")
+    expected = values(after)
+    if changed.cells == (tables.Cell("", ""),):  # one empty cell alone is a blank line
+        expected[row.number - 1] = []
+    assert values(again) == expected
+
+
+@pytest.mark.parametrize(
+    ("data", "encoding"),
+    [
+        ("Student,ID\nJörg,1\n".encode(), "utf-8"),
+        ("Student,ID\nJörg,1\n".encode("utf-8-sig"), "utf-8"),
+        ("Student,ID\nJörg,1\n".encode("utf-16"), "utf-16-le"),
+        (b"\xfe\xff" + "Student,ID\nJörg,1\n".encode("utf-16-be"), "utf-16-be"),
+        ("Student,ID\nJörg “J” Ødegård,1\n".encode("cp1252"), "windows-1252"),
+    ],
+)
+def test_encodings(data: bytes, encoding: str) -> None:
+    """UTF-8 and UTF-16 with their marks, and Windows' encoding, are told apart; the mark is no part of the first header."""
+    table = read_table(data, "x.csv")
+    assert table.encoding == encoding
+    assert table.rows[0].value(0) == "Student"
+    assert table.rows[1].value(0).startswith("Jörg")
+    assert table.encoded() == data
+
+
+@pytest.mark.parametrize(
+    "text", ["a,b\r\n1,2\n3,4\r5,6", "a,b\n\n\r\n1,2\n\n", 'a,b\n"x\r\ny\n",2\n', "a,b\n1,", "", "\n", "a"]
+)
+def test_line_breaks_stay(text: str) -> None:
+    """Mixed line breaks, blank lines, breaks inside quotes and a missing last one come out as they are."""
+    table = read_table(text.encode(), "x.csv")
+    assert table.encoded() == text.encode()
+    assert values(table) == by_csv(text, ",")
+
+
+def test_delimiter_outside_quotes() -> None:
+    """Commas inside a quoted header, or later in a header without quotes, are no delimiter."""
+    assert read_table(b'"a,b";c;d', "x.csv").delimiter == ";"
+    assert read_table(b"Student;ID;Lab 6, part 2, again, and again (7)", "x.csv").delimiter == ";"
+
+
+def test_refused() -> None:
+    """What is no CSV is refused in one sentence that says what it is."""
+    for data, words in [
+        (b'a,b\n1,"2', "row 2 is never closed"),
+        (b"a,b\n\0,2", "NUL"),
+        ("a,b".encode("utf-32"), "NUL"),
+        (b"\xff\xfea", "no text in utf-16-le"),
+        (b"a,\x81", "no text in UTF-8 or Windows-1252"),
+    ]:
+        with pytest.raises(InputError, match=words):
+            read_table(data, "x.csv")
+
+
+def test_limits(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A file at a limit is read, and one above it is refused."""
+    for name, data in [("SIZE_LIMIT", b"a,b\n"), ("ROW_LIMIT", b"a\nb\nc\nd"), ("CELL_LIMIT", b"a,b\nc,d")]:
+        monkeypatch.setattr(tables, name, 4)
+        read_table(data, "x.csv")
+        monkeypatch.setattr(tables, name, 3)
+        with pytest.raises(InputError, match="the limit"):
+            read_table(data, "x.csv")
+        monkeypatch.undo()
+
+
+def test_what_an_encoding_lacks_becomes_a_reference() -> None:
+    """A new cell with an emoji, in a file of Windows' encoding, is written as HTML writes it."""
+    table = read_table("Name,Text\nJörg,x\n".encode("cp1252"), "x.csv")
+    changed = table.changed(table.rows[1], 1, "gut 😀")
+    assert replace(table, rows=(table.rows[0], changed)).encoded() == "Name,Text\nJörg,gut &#128512;\n".encode("cp1252")
+
+
+def test_quoting_of_a_changed_cell() -> None:
+    """A cell that was quoted stays quoted; one that was not is, where its new value has to be."""
+    table = read_table(b'a,b\n"1",2\n', "x.csv")
+    row = table.rows[1]
+    assert table.changed(row, 0, "3").cells[0].raw == '"3"'
+    assert table.changed(row, 1, "3").cells[1].raw == "3"
+    assert table.changed(row, 1, "3,5").cells[1].raw == '"3,5"'
+    assert table.changed(row, 1, 'a "b"').cells[1].raw == '"a ""b"""'
