@@ -73,6 +73,11 @@ class Batch:
         self._progress = Progress(settings.total)
         self._run = 0
 
+    @property
+    def progress(self) -> Progress:
+        """How far it has come."""
+        return self._progress
+
     def grade(self, hand_ins: Iterable[HandIn], absent: Sequence[Student] = ()) -> Progress:
         """Grade all hand-ins that are new or changed. `absent` are students of whom there is none."""
         self._run = self._book.begin(self._settings.root, self._settings.layout, self._rubric)

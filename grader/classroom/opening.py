@@ -11,8 +11,8 @@ from typing import NamedTuple
 from grader.errors import InputError
 from grader.grading.rubric import Rubric
 from grader.submission.bulk import Bulk
-from grader.submission.folder import file_at
 from grader.submission.files import URDF_LIMIT, printable_path, read_capped
+from grader.submission.folder import file_at
 from grader.submission.opening import ARCHIVES, outer_tree, tree_name, with_inner, without_endings
 from grader.submission.submission import Submission, read_submission, submission_of
 from grader.submission.tree import Tree, make_tree

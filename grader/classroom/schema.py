@@ -130,11 +130,13 @@ SELECT student.*, seen.run, seen.result, result.rubric, result.version, result.d
     length(signs) - length(replace(signs, '!', '')) - coalesce(ruled.faults, 0) AS faults,
     coalesce(ruled.marks, 0) AS marks, coalesce(ruled.older, 0) AS older_marks,
     result.signs, coalesce(result.misses, '[]') AS misses, coalesce(seen.place, '[[], [], 0, []]') AS place,
-    seen.fingerprint, coalesce(seen.is_late, 0) AS is_late, coalesce(seen.submitted, '') AS submitted
+    seen.fingerprint, coalesce(seen.is_late, 0) AS is_late, coalesce(seen.submitted, '') AS submitted,
+    run.source
 FROM student
 LEFT JOIN seen ON seen.student = student.id
     AND seen.run = (SELECT max(run) FROM seen AS newer WHERE newer.student = student.id)
 LEFT JOIN result ON result.id = seen.result
+LEFT JOIN run ON run.id = seen.run
 LEFT JOIN ruled ON ruled.student = student.id;
 """
 

@@ -7,23 +7,24 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 from decimal import Decimal
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
 from grader.checks.outcome import Outcome
 from grader.classroom.gradebook import Gradebook
 from grader.classroom.lateness import Lateness, Times, lateness
+from grader.classroom.quoting import Origin, Quoting
 from grader.classroom.students import Student
 from grader.classroom.work import UNITS
 from grader.errors import InputError
-from grader.grading.record import Quote, from_record
+from grader.grading.record import from_record
 from grader.grading.report import Report, Result, Ruling
 from grader.grading.rubric import Rubric
 from grader.robot.names import did_you_mean
 
 _QUERY = (
     "SELECT id, key, name, email, login, sis, canvas, moodle, due, extension, days_late, expected, run, result, rubric,"
-    " digest, verdict, reason, score, out_of, pending, faults, marks, older_marks, signs, place, is_late, submitted"
-    " FROM grade"
+    " digest, verdict, reason, score, out_of, pending, faults, marks, older_marks, signs, place, is_late, submitted,"
+    " source, fingerprint FROM grade"
 )
 
 
@@ -51,8 +52,7 @@ class Standing:
     marks: int
     older_marks: int
     signs: str
-    paths: tuple[str, ...]
-    names: tuple[str, ...]
+    origin: Origin
     attempt: int
     earlier: tuple[str, ...]
     late: Lateness
@@ -78,49 +78,92 @@ class Standing:
         return ""
 
 
+class Look(NamedTuple):
+    """Who needs a look, and why."""
+
+    who: str
+    why: str
+
+
+class Looks(NamedTuple):
+    """Those who need a look, as far as they are listed, and how many there are in all."""
+
+    listed: tuple[Look, ...]
+    total: int
+
+
 class Standings:
     """The current grades in a gradebook, with the rubrics that they are made by."""
 
     def __init__(self, book: Gradebook, due: datetime | None = None) -> None:
-        self._book = book
+        self.book = book
         self._due = due
         self.rubric = cache(book.rubric)
 
+    def newest_rubric(self) -> Rubric:
+        """The rubric of the newest run; raises InputError where there was none."""
+        runs = self.book.runs()
+        if not runs:
+            raise InputError("nothing has been graded into this gradebook yet")
+        return self.rubric(runs[-1].rubric)
+
+    def points(self, standing: Standing) -> dict[str, Decimal]:
+        """The points of each criterion that is decided, by the check or by hand."""
+        if not standing.rubric:
+            return {}
+        criteria = self.rubric(standing.rubric).criteria
+        found = {
+            criterion.id: criterion.points if sign == "p" else Decimal(0)
+            for criterion, sign in zip(criteria, standing.signs, strict=True)
+            if sign in "pfs"
+        }
+        rulings = self._rulings(standing.id) if standing.marks else {}
+        known = {criterion.id for criterion in criteria}
+        return found | {name: ruling.points for name, ruling in rulings.items() if name in known}
+
     def all(self) -> Iterator[Standing]:
         """Everyone, in the order of their keys."""
-        for row in self._book.rows(f"{_QUERY} ORDER BY key"):
+        for row in self.book.rows(f"{_QUERY} ORDER BY key"):
             yield self._standing(row)
+
+    def looks(self, most: int) -> Looks:
+        """Who needs a look: nothing or nothing readable was handed in, the grader failed, a mark may be out of date."""
+        where = "WHERE verdict <> 'graded' OR faults OR older_marks OR expected = 0"
+        ((count,),) = self.book.rows(f"SELECT count(*) FROM grade {where}")
+        found = (self._standing(row) for row in self.book.rows(f"{_QUERY} {where} ORDER BY key LIMIT ?", most))
+        return Looks(tuple(Look(each.student.key, _why(each)) for each in found), count)
 
     def find(self, name: str) -> Standing:
         """The one whom a key, login, address, number or full name belongs to; raises InputError."""
         columns = ("key", "login", "email", "sis", "canvas", "moodle", "name")
         for column in columns:
-            rows = list(self._book.rows(f"{_QUERY} WHERE {column} = ? LIMIT 2", name)) if name else []
+            rows = list(self.book.rows(f"{_QUERY} WHERE {column} = ? LIMIT 2", name)) if name else []
             if len(rows) == 1:
                 return self._standing(rows[0])
             if rows:
                 raise InputError(f"{name!r} is the {column} of several in the gradebook: name one by their key")
-        keys = [str(row[0]) for row in self._book.rows("SELECT key FROM student ORDER BY key LIMIT 5000")]
+        keys = [str(row[0]) for row in self.book.rows("SELECT key FROM student ORDER BY key LIMIT 5000")]
         raise InputError(f"there is no {name!r} in the gradebook{did_you_mean(name, keys)}")
 
-    def report(self, standing: Standing, quote: Quote | None = None) -> Report:
+    def report(self, standing: Standing) -> Report:
         """The report on a student's newest hand-in, with the marks by hand in it; raises InputError where there is none."""
         if standing.result is None:
             raise InputError(f"{standing.student.key} has handed in nothing")
         rubric = self.rubric(standing.rubric)
-        record = zlib.decompress(self._book.record(standing.result)).decode()
-        report = from_record(record, rubric, quote)
+        record = zlib.decompress(self.book.record(standing.result)).decode()
+        report = from_record(record, rubric, Quoting(standing.origin, rubric))
         rulings = self._rulings(standing.id) if standing.marks else {}
         return replace(report, results=_ruled(report, rulings)) if rulings else report
 
     def _rulings(self, student: int) -> dict[str, Ruling]:
-        rows = self._book.rows("SELECT criterion, points, author, comment FROM ruling WHERE student = ?", student)
+        rows = self.book.rows("SELECT criterion, points, author, comment FROM ruling WHERE student = ?", student)
         return {name: Ruling(Decimal(points) / UNITS, author, comment) for name, points, author, comment in rows}
 
     def _standing(self, row: tuple[Any, ...]) -> Standing:
         (
             identity, *known, due, extension, days_late, expected, run, result, rubric, digest, verdict, reason, score,
             out_of, pending, faults, marks, older, signs, place, is_late, submitted,
+            source, mark,
         ) = row  # fmt: skip
         earned, most, waiting = (Decimal(each or 0) / UNITS for each in (score, out_of, pending))
         times = Times(bool(is_late), str(submitted), str(due), float(extension or 0), days_late)
@@ -129,8 +172,19 @@ class Standings:
         return Standing(
             identity, Student(*known), None if expected is None else bool(expected), verdict, reason, run, result,
             rubric or "", digest or "", earned, most, waiting, faults or 0, marks, older, signs or "",
-            tuple(paths), tuple(names), attempt, tuple(earlier), late, bool(is_late), submitted,
+            Origin(source or "", tuple(paths), tuple(names), known[0], mark or ""), attempt, tuple(earlier), late, bool(is_late), submitted,
         )  # fmt: skip
+
+
+def _why(standing: Standing) -> str:
+    reasons = []
+    if standing.verdict != "graded" or standing.faults:
+        reasons.append(standing.why_not_final or "it could not be graded, and was marked by hand")
+    if standing.is_expected is False:
+        reasons.append("not on the roster")
+    if standing.older_marks:
+        reasons.append(f"{standing.older_marks} marks by hand are from before the newest result")
+    return "; ".join(reasons)
 
 
 def _ruled(report: Report, rulings: dict[str, Ruling]) -> tuple[Result, ...]:
@@ -146,11 +200,3 @@ def _ruled(report: Report, rulings: dict[str, Ruling]) -> tuple[Result, ...]:
         if result is not None:
             results.append(result._replace(ruling=ruling))
     return tuple(results)
-
-
-def rubric_of_newest(book: Gradebook) -> Rubric:
-    """The rubric of the newest run; raises InputError where there was none."""
-    runs = book.runs()
-    if not runs:
-        raise InputError("nothing has been graded into this gradebook yet")
-    return book.rubric(runs[-1].rubric)

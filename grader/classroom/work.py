@@ -24,6 +24,7 @@ Verdict = Literal["graded", "unreadable", "errored", "unchanged"]
 UNITS = 10_000  # points are kept as whole numbers of ten-thousandths
 SIGNS: dict[Status, str] = {"passed": "p", "failed": "f", "skipped": "s", "pending": "?", "errored": "!"}
 NOT_GRADED = "-"
+PRELOAD = "grader.classroom.work"  # what a process is to have loaded before it forks
 
 
 class Class(NamedTuple):

@@ -6,7 +6,9 @@ from typing import Annotated
 
 import typer
 
+from grader.cli.batch import batch
 from grader.cli.explain import explain
+from grader.cli.export import export
 from grader.cli.grade import grade
 from grader.cli.inspect import inspect
 from grader.cli.output import complain
@@ -38,6 +40,8 @@ def _main(
 
 app.command()(grade)
 app.command()(inspect)
+app.command()(batch)
+app.command()(export)
 app.command()(explain)
 app.command()(schema)
 app.add_typer(rubric, name="rubric")

@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from grader.cli.grade import DEFAULT_RUBRIC
+from grader.cli.options import DEFAULT_RUBRIC
 from grader.cli.output import emit
 
 

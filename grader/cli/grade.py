@@ -1,28 +1,19 @@
 """grader grade: one submission against a rubric."""
 
 from decimal import Decimal, InvalidOperation
-from enum import StrEnum
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from grader.cli.output import complain, draw, emit, save
+from grader.cli.formats import Format, render
+from grader.cli.options import DEFAULT_RUBRIC
+from grader.cli.output import complain, emit, save
 from grader.errors import GraderError
 from grader.submission.files import URDF_LIMIT
 
 if TYPE_CHECKING:
     from grader.grading.report import Report
-
-DEFAULT_RUBRIC = "lab6"
-
-
-class Format(StrEnum):
-    """The formats of a report."""
-
-    TERMINAL = "terminal"
-    JSON = "json"
 
 
 def grade(
@@ -71,8 +62,8 @@ def grade(
         if result.traceback:
             complain(printable(f"{result.criterion.id}: {result.traceback.strip().splitlines()[-1]}"))
     for kind, file in saves:
-        save(file, _render(report, kind, to_file=True))
-    emit(_render(report, output_format, to_file=False))
+        save(file, render(report, kind, to_file=True))
+    emit(render(report, output_format, to_file=False))
     return _exit_code(report, threshold)
 
 
@@ -105,13 +96,3 @@ def _split_save(text: str) -> tuple[Format, Path]:
     if kind not in list(Format) or not equals or file in ("", "-"):
         raise GraderError(f"--save takes FORMAT=FILE with one of the formats {', '.join(Format)}, not {text!r}")
     return Format(kind), Path(file)
-
-
-def _render(report: "Report", kind: Format, *, to_file: bool) -> str:
-    if kind is Format.JSON:
-        from grader.report.as_json import render_json
-
-        return render_json(report)
-    from grader.report.terminal import render_terminal
-
-    return draw(partial(render_terminal, report), to_file=to_file)

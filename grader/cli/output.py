@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 _DEFAULT_WIDTH = 80
 
 
-def emit(text: str) -> None:
+def emit(text: str | bytes) -> None:
     """Write a report to standard output, whole or not at all; raises InputError where it is closed."""
     stream = sys.stdout
     if stream is None:
@@ -24,9 +24,10 @@ def emit(text: str) -> None:
     try:
         if hasattr(stream, "buffer"):
             stream.flush()
-            stream.buffer.write(text.encode(stream.encoding or "utf-8", "backslashreplace"))
+            encoding = stream.encoding or "utf-8"
+            stream.buffer.write(text if isinstance(text, bytes) else text.encode(encoding, "backslashreplace"))
         else:
-            stream.write(text)
+            stream.write(text if isinstance(text, str) else text.decode())
         stream.flush()
     except OSError as error:
         _silence(stream.fileno())
@@ -67,7 +68,11 @@ def save(path: Path, text: str) -> None:
 
     A link is followed. What is no regular file, such as a pipe or device, is written to as it is.
     """
-    data = text.encode("utf-8", "backslashreplace")
+    save_bytes(path, text.encode("utf-8", "backslashreplace"))
+
+
+def save_bytes(path: Path, data: bytes) -> None:
+    """As `save`, for what is no text."""
     try:
         target = Path(os.path.realpath(path))
         if target.exists() and not target.is_file():

@@ -14,7 +14,6 @@ from grader.robot.source import Location, Source
 from grader.submission.evidence import Exhibit
 from grader.submission.tree import PassedOver
 
-
 Quote = Callable[[str], Source | None]  # the text of one file of a submission; None where it cannot be read
 
 

@@ -47,7 +47,12 @@ class Rows:
         self.table = table
         self.complaints: list[tuple[Path, str]] = []
         self.bound: list[Bound] = []
-        self._keys((), table, {**_RUBRIC, "part": "tables", "criterion": "tables", "evidence": "tables", "late": _TABLE}, "rubric")
+        self._keys(
+            (),
+            table,
+            {**_RUBRIC, "part": "tables", "criterion": "tables", "evidence": "tables", "late": _TABLE},
+            "rubric",
+        )
         parts, rows = self._rows("part"), self._rows("criterion")
         for index, row in enumerate(parts):
             self._keys(("part", index), row, _PART, "part")

@@ -57,7 +57,8 @@ def _exhibit(exhibit: "Exhibit") -> dict[str, Any]:
 
 
 def _result(result: Result) -> dict[str, Any]:
-    criterion, outcome = result.criterion, result.outcome
+    criterion, outcome, ruling = result.criterion, result.outcome, result.ruling
+    by_hand = {"points": exact(ruling.points), "by": ruling.by, "comment": ruling.comment} if ruling else None
     return {
         "id": criterion.id,
         "part": criterion.part,
@@ -74,4 +75,5 @@ def _result(result: Result) -> dict[str, Any]:
         "location": location(outcome.location),
         "feedback": criterion.feedback if outcome.status == "failed" else "",
         "hints": [],
+        **({"mark": by_hand} if by_hand else {}),
     }

@@ -53,7 +53,9 @@ _RESULT = _object(
         "location": _nullable(_LOCATION),
         "feedback": _TEXT,
         "hints": _array(_object({"message": _TEXT, "edit": {"type": "object"}, "verified": {"type": "boolean"}})),
-    }
+        "mark": _object({"points": _POINTS, "by": _TEXT, "comment": _TEXT}),
+    },
+    optional=("mark",),
 )
 _EXHIBIT = _object(
     {"path": _TEXT, "size": {"type": "integer", "minimum": 0}, "width": _nullable(_COUNT), "height": _nullable(_COUNT)}

@@ -7,7 +7,7 @@ from itertools import groupby
 from rich.console import Console
 from rich.text import Text
 
-from grader.grading.report import Exhibits, Report, Result
+from grader.grading.report import Exhibits, Report, Result, Ruling
 from grader.report.layout import place_words, show_excerpt, show_problems, symbol, wrapped
 from grader.report.points import points_words
 from grader.report.text import printable
@@ -68,10 +68,9 @@ def _show_head(report: Report, console: Console) -> None:
     style = "bold green" if report.score + report.pending == report.max_score else "bold"
     wrapped(console, Text.assemble((score, style), "  ", (printable(report.rubric.title), "bold")), 0)
     submission = report.submission
-    counted = [
-        f"{report.counts(status)} {status}" for status in ("passed", "failed", "skipped", "pending", "errored")
-        if report.counts(status)
-    ]  # fmt: skip
+    decided = [each.outcome.status if each.ruling is None else "marked by hand" for each in report.results]
+    statuses = ("passed", "failed", "skipped", "pending", "errored", "marked by hand")
+    counted = [f"{decided.count(status)} {status}" for status in statuses if status in decided]
     graded = f"{printable(submission.path or '')}: not read" if submission.unread else "no URDF was submitted"
     if submission.path is not None and submission.has_urdf:
         verdict = _VERDICTS[submission.verdict] if submission.verdict else "xacro that a person has to expand"
@@ -131,9 +130,9 @@ def _shared(results: tuple[Result, ...]) -> str | None:
 
 
 def _reason(result: Result) -> str | None:
-    if result.because is not None:
+    if result.because is not None and result.ruling is None:
         return f"skipped, because {result.because} failed"
-    is_open = result.outcome.status == "pending" and result.outcome.expected is None
+    is_open = result.is_open and result.outcome.expected is None
     return f"pending: {result.outcome.message}" if is_open else None
 
 
@@ -156,6 +155,9 @@ def _show_result(result: Result, report: Report, console: Console, shown: set[st
     points = f"{points_words(result.points)}/{points_words(criterion.points)}"
     head = Text.assemble("  ", (symbol(console, *_SYMBOLS[outcome.status]), style), f" {points:<5}")
     title = Text(printable(criterion.title))
+    if result.ruling is not None:
+        _show_ruling(result, result.ruling, title, head, console)
+        return
     if outcome.status == "passed":
         wrapped(console, title, _INDENT, head.append(" "))
         return
@@ -179,6 +181,18 @@ def _show_result(result: Result, report: Report, console: Console, shown: set[st
     if criterion.feedback and criterion.feedback not in shown and is_there:
         shown.add(criterion.feedback)
         wrapped(console, Text(criterion.feedback, style="italic"), _INDENT)
+
+
+def _show_ruling(result: Result, ruling: Ruling, title: Text, head: Text, console: Console) -> None:
+    """What a person has decided, whatever the check has found."""
+    outcome = result.outcome
+    wrapped(console, title + Text(f"  {result.criterion.id}", style="dim"), _INDENT, head.append(" "))
+    comment = f": {ruling.comment}" if ruling.comment else ""
+    wrapped(console, Text(_sentence(f"Marked by {ruling.by}{comment}"), style="bold"), _INDENT)
+    if outcome.status == "pending" and isinstance(outcome.expected, str):
+        _show_answer(outcome.measured, outcome.expected, console)
+    elif outcome.status != "pending":
+        wrapped(console, Text(_sentence(f"The check: {outcome.status}. {outcome.message}"), style="dim"), _INDENT)
 
 
 def _show_answer(found: object, model: str, console: Console) -> None:

@@ -5,7 +5,16 @@ from pathlib import Path
 from typing import IO
 
 from grader.errors import InputError
-from grader.submission.archive import ARCHIVE_LIMIT, DAMAGED, bounded, inside, read_archive, tree_of, words_of, zip_members
+from grader.submission.archive import (
+    ARCHIVE_LIMIT,
+    DAMAGED,
+    bounded,
+    inside,
+    read_archive,
+    tree_of,
+    words_of,
+    zip_members,
+)
 from grader.submission.files import printable_path
 from grader.submission.members import Member
 from grader.submission.opening import archive_kind

@@ -67,9 +67,7 @@ def tree_name(path: Path) -> str:
     except OSError:
         is_folder = False
     return (
-        printable_path(path.resolve().name or "submission")
-        if is_folder
-        else printable_path(without_endings(str(path)))
+        printable_path(path.resolve().name or "submission") if is_folder else printable_path(without_endings(str(path)))
     )
 
 

@@ -1,0 +1,116 @@
+"""Canvas' bulk download: all files side by side, each with its student's name and number in its own name.
+
+canvas-lms, lib/content_zipper.rb: `{name}[_LATE]_{user id}_{attachment id}_{file}`, or `[LATE_]anon_{5 letters}_{attachment
+id}_{file}` where students are anonymous; `..._text.html` is a text entry, `..._link.html` a web address. A file that is handed
+in again under the same name is saved with `-1`, `-2` behind its stem (attachment.rb, make_unique_filename).
+"""
+
+import re
+from collections import defaultdict
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from grader.classroom.layouts.shelf import LeftOut, Listed, listed
+from grader.classroom.listing import Children
+from grader.classroom.names import ending_of, is_word
+from grader.classroom.students import HandIn, Student
+
+_NAME = re.compile(
+    r"(?:(?P<late_anon>LATE_)?anon_(?P<anon>[1-9A-HJ-NP-Za-km-z]{5})|(?P<name>.*?)(?P<late>_LATE)?_(?P<user>[0-9]{1,20}))"
+    r"_(?:(?P<attachment>[0-9]{1,20})_(?P<file>.+)|(?P<page>text|link)\.(?:html|url))",
+    re.DOTALL,
+)
+_REPEATED = re.compile(
+    r"(?P<stem>.+?)(?:-(?P<number>[1-9]\d?))?(?P<ending>(?:\.[A-Za-z][A-Za-z0-9]*)*(?:\.[A-Za-z0-9]*)?)", re.DOTALL
+)
+
+
+class _Saved(NamedTuple):
+    """One file of a download: whose it is, and what the student called it."""
+
+    path: str
+    name: str
+    user: str
+    is_anonymous: bool
+    is_late: bool
+    attachment: int
+    file: str
+
+
+def fits(children: Children) -> bool:
+    """Whether this is surely a download of Canvas: at least three in four of what could be submissions are named like it.
+
+    Canvas writes names in lower case; a name with capitals speaks against it.
+    """
+    names = children.folders + children.files
+    fitting = {name for name in names if _is_lower(_saved(name))}
+    if not fitting:
+        return False
+    folders = set(children.folders)
+    others = sum(1 for name in names if name not in fitting and (name in folders or ending_of(name)))
+    return len(fitting) >= 3 * others
+
+
+def shelve(children: Children, start: str, left_out: LeftOut) -> Listed:
+    """The hand-ins of a download, one for each user. Folders count as files that someone has unpacked."""
+    by_user: dict[tuple[bool, str], list[_Saved]] = defaultdict(list)
+    for name in (*children.folders, *children.files):
+        saved = _saved(name)
+        if saved is None:
+            left_out.add(start + name, "is not named as Canvas names what was handed in")
+        else:
+            by_user[saved.is_anonymous, saved.user].append(saved)
+    left_out.add_all((start + name, reason) for name, reason in children.refused)
+    return listed(_hand_in(saved, start) for saved in by_user.values())
+
+
+def _is_lower(saved: _Saved | None) -> bool:
+    return saved is not None and not any(letter.isupper() for letter in saved.name)
+
+
+def _saved(name: str) -> _Saved | None:
+    if name.count("_") < 2:
+        return None
+    found = _NAME.fullmatch(name)
+    if found is None or not all(is_word(letter) or letter == "-" for letter in found["name"] or ""):
+        return None
+    anonymous = found["anon"]
+    return _Saved(
+        name,
+        "anon" if anonymous else found["name"],
+        anonymous or found["user"],
+        anonymous is not None,
+        bool(found["late_anon"] or found["late"]),
+        int(found["attachment"] or 0),
+        found["file"] or f"{found['page']}_entry.html",
+    )
+
+
+def _hand_in(saved: Iterable[_Saved], start: str) -> HandIn:
+    last, earlier = _attempts(saved)
+    first = min(last, key=lambda each: each.name)
+    canvas = "" if first.is_anonymous else first.user
+    return HandIn(
+        Student(f"{first.name}_{first.user}", canvas=canvas),
+        tuple(start + each.path for each in last),
+        is_late=any(each.is_late for each in last),
+        attempt=1 + max((len(each) for each in earlier), default=0),
+        earlier=tuple(start + each.path for attempts in earlier for each in attempts),
+        names=tuple(each.file for each in last),
+    )
+
+
+def _attempts(saved: Iterable[_Saved]) -> tuple[list[_Saved], list[list[_Saved]]]:
+    """The files that count, and for each of them the earlier ones of that name, in order.
+
+    `step-1.png` is a later `step.png` only where there is a `step.png`: without it, the number is the student's own.
+    """
+    given = sorted(saved, key=lambda each: (each.attachment, each.path))
+    plain = {each.file for each in given}
+    by_file: dict[str, list[_Saved]] = defaultdict(list)
+    for each in given:
+        found = _REPEATED.fullmatch(each.file)
+        first = f"{found['stem']}{found['ending']}" if found else each.file
+        by_file[first if first in plain else each.file].append(each)
+    last = [attempts[-1] for _, attempts in sorted(by_file.items())]
+    return last, [attempts[:-1] for _, attempts in sorted(by_file.items()) if len(attempts) > 1]

@@ -1,0 +1,121 @@
+"""The rows of a roster: from the bytes of a CSV to cells that are known by what they say of a student."""
+
+import csv
+import io
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from grader.errors import InputError
+
+_ALIASES = {
+    "id": "id userid key",
+    "sis": "sis sisid sisuserid studentid studentnumber studentno idnumber matriculationnumber matrikelnummer",
+    "login": "login loginid username user sisloginid netid account",
+    "github": "github githubusername githublogin githubuser githubid githubaccount",
+    "name": "name fullname student studentname sortablename vollständigername",
+    "first": "first firstname firstnames givenname givennames forename vorname",
+    "last": "last lastname surname familyname nachname",
+    "email": "email emailaddress mail sisemail emailadresse",
+    "canvas": "canvas canvasid canvasuserid",
+    "moodle": "moodle moodleid participantid participant identifier",
+    "section": "section group class tutorial",
+    "due": "due duedate dueat deadline dueuntil extendeduntil extensionuntil",
+    "extension": "extension extensiondays extradays",
+    "submitted": "submitted submittedat submissiontime",
+    "late": "late islate dayslate latedays",
+}
+_FIELD_OF = {alias: field for field, aliases in _ALIASES.items() for alias in aliases.split()}
+_WHO = ("id", "sis", "login", "github", "email", "name", "canvas", "moodle")
+_AS_TEXT = re.compile(r'="(.*)"', re.DOTALL)  # how spreadsheets are kept from making a number of something
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A student's row: the line that it begins in, and its cells by field."""
+
+    line: int
+    cells: Mapping[str, str]
+
+    def __getitem__(self, field: str) -> str:
+        return self.cells.get(field, "")
+
+
+def text_of(data: bytes, shown: str) -> str:
+    """The text of a CSV in UTF-8, in UTF-16 with a byte order mark, or else in cp1252; raises InputError."""
+    encodings = ("utf-16",) if data.startswith((b"\xff\xfe", b"\xfe\xff")) else ("utf-8-sig", "cp1252")
+    for encoding in encodings:
+        try:
+            text = data.decode(encoding)
+        except UnicodeError:
+            continue
+        if "\0" not in text:
+            return text
+    raise InputError(f"{shown} is no text that can be read: save it as CSV in UTF-8")
+
+
+def rows_of(text: str, shown: str) -> Iterator[Row]:
+    """The rows of students, each with its cells by field."""
+    fields: list[str] | None = None
+    of_canvas = False
+    width = 0
+    for line, cells in _cells(text, shown):
+        if not any(cells):
+            continue
+        if fields is None:
+            fields, width = _header(cells, shown), len(cells)
+            of_canvas = {"student", "id"} <= {_plain(cell) for cell in cells} and bool({"sis", "login"} & set(fields))
+            continue
+        if len(cells) < width or any(cells[width:]):
+            count = len(cells)
+            raise InputError(f"line {line} of {shown} has {count} cells where the first line has {width}")
+        row = Row(line, _by_field(fields, cells))
+        if of_canvas:
+            if not row["id"]:  # Canvas has rows of points and of remarks between the header and the students
+                continue
+            row = Row(line, {**row.cells, "canvas": row["canvas"] or row["id"]})
+        yield row
+
+
+def _cells(text: str, shown: str) -> Iterator[tuple[int, list[str]]]:
+    """The cells of every row, without needless spaces, with the line that it begins in."""
+    text = text.removeprefix("sep=;\r\n").removeprefix("sep=;\n").removeprefix("sep=,\r\n").removeprefix("sep=,\n")
+    header = next((line for line in text.splitlines() if line.strip(' ,;\t"')), "")
+    unquoted = re.sub(r'"[^"]*"', "", header)
+    delimiter = max(",;\t", key=unquoted.count)
+    reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, strict=True)
+    line = 1
+    try:
+        for cells in reader:
+            yield line, [_clean(cell) for cell in cells]
+            line = reader.line_num + 1
+    except csv.Error as error:
+        raise InputError(f"line {line} of {shown} cannot be read as CSV: {error}") from None
+
+
+def _clean(cell: str) -> str:
+    cell = cell.strip()
+    found = _AS_TEXT.fullmatch(cell)
+    return " ".join((found[1] if found else cell).split())
+
+
+def _header(cells: list[str], shown: str) -> list[str]:
+    """The field of every column, empty where it is not known."""
+    fields = [_FIELD_OF.get(_plain(cell), "") for cell in cells]
+    if not any(field in (*_WHO, "last") for field in fields):
+        named = ", ".join(cell for cell in cells if cell)[:200]
+        raise InputError(f"{shown} has no column for an id, login, name or email in its first line, only: {named}")
+    return fields
+
+
+def _plain(header: str) -> str:
+    return "".join(letter for letter in header.casefold() if letter.isalnum())
+
+
+def _by_field(fields: list[str], cells: list[str]) -> dict[str, str]:
+    """The first cell with something in it for every field."""
+    found: dict[str, str] = {}
+    for field, cell in zip(fields, cells, strict=False):
+        if field and cell:
+            found.setdefault(field, cell)
+    return found

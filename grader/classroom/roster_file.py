@@ -1,0 +1,95 @@
+"""A roster as a CSV: an instructor's own, a gradebook that Canvas exports, or a grading worksheet of Moodle."""
+
+import re
+from pathlib import Path
+
+from grader.classroom.names import iso_time
+from grader.classroom.roster import Entry, Roster
+from grader.classroom.roster_cells import Row, rows_of, text_of
+from grader.classroom.students import Student
+from grader.errors import InputError
+from grader.submission.files import printable_path, read_capped
+
+_LIMIT = 16 * 1024 * 1024  # bytes
+_YES = frozenset({"yes", "y", "true", "late", "x", "ja"})
+_NO = frozenset({"no", "n", "false", "on time", "-", "nein"})
+_PARTICIPANT = re.compile(r"(?:participant|teilnehmer(?:/?in)?)\s*([0-9]+)", re.IGNORECASE)
+
+
+def read_roster(path: Path) -> Roster:
+    """The roster in a CSV file, in UTF-8, UTF-16 with a byte order mark, or cp1252; raises InputError for one that is of no use.
+
+    Columns stand in any order, between commas, semicolons or tabs; those that are not known are passed over. A student's key is
+    their id, else the university's number, login, address, name, or number in an LMS.
+    """
+    shown = printable_path(path)
+    text = text_of(read_capped(path, _LIMIT, advice=""), shown)
+    entries: list[Entry] = []
+    notes: list[str] = []
+    lines: dict[tuple[str, str], int] = {}
+    for row in rows_of(text, shown):
+        entry = _entry(row, shown, notes)
+        for field in ("key", "canvas", "moodle"):
+            value = getattr(entry.student, field)
+            first = lines.setdefault((field, value), row.line) if value else row.line
+            if first != row.line:
+                what = "id" if field == "key" else f"{field} id"
+                raise InputError(f"{shown} has the {what} {value} twice, in lines {first} and {row.line}")
+        entries.append(entry)
+    if not entries:
+        raise InputError(f"{shown} has no students in it")
+    return Roster(entries, tuple(notes))
+
+
+def _entry(row: Row, shown: str, notes: list[str]) -> Entry:
+    participant = _PARTICIPANT.fullmatch(row["id"])
+    own_id = "" if participant else row["id"]
+    moodle = row["moodle"] or (participant[1] if participant else "")
+    moodle = found[1] if (found := re.search(r"([0-9]+)$", moodle)) else ""
+    sis = row["sis"] or ("" if own_id == row["canvas"] else own_id)
+    login = row["login"] or row["github"]
+    name = row["name"] or " ".join(part for part in (row["first"], row["last"]) if part)
+    key = own_id or row["sis"] or login or row["email"] or name or row["canvas"] or moodle
+    if not key:
+        raise InputError(f"line {row.line} of {shown} says nothing of who the student is")
+    is_late, days_late = _late(row, shown)
+    submitted = iso_time(row["submitted"])
+    if row["submitted"] and not submitted:
+        notes.append(f"line {row.line}: {row['submitted']!r} is no time such as 2026-09-01T10:00, and was passed over")
+    return Entry(
+        Student(printable_path(key), name, row["email"], login, sis, row["canvas"], moodle),
+        row["section"],
+        *_due(row, shown),
+        submitted,
+        is_late,
+        days_late,
+        (row["github"],) if row["github"] not in ("", login) else (),
+    )
+
+
+def _due(row: Row, shown: str) -> tuple[str, float]:
+    """Until when a student may hand in, and by how many days more: an extension is either."""
+    days = _number(row["extension"].removesuffix("days").removesuffix("day").strip())
+    written = row["due"] or ("" if days is not None else row["extension"])
+    due = iso_time(written)
+    if written and not due:
+        raise InputError(
+            f"line {row.line} of {shown} has the date {written!r}: write it as 2026-09-01 or 2026-09-01T23:59"
+        )
+    return due, days or 0.0
+
+
+def _late(row: Row, shown: str) -> tuple[bool | None, float | None]:
+    said = row["late"].casefold()
+    if not said:
+        return None, None
+    if said in _YES or said in _NO:
+        return said in _YES, None
+    days = _number(said.removesuffix("days").removesuffix("day").strip())
+    if days is None:
+        raise InputError(f"line {row.line} of {shown} has {row['late']!r} for late: write yes, no, or a number of days")
+    return days > 0, days
+
+
+def _number(text: str) -> float | None:
+    return float(text.replace(",", ".")) if re.fullmatch(r"[0-9]{1,4}(?:[.,][0-9]{1,4})?", text) else None

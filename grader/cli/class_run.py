@@ -1,0 +1,118 @@
+"""A run over a class: taken in, graded, told; reports and grades written."""
+
+from collections.abc import Iterator
+from concurrent.futures import Executor
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+from grader.classroom.batch import Batch, Progress, Settings
+from grader.classroom.gradebook import Gradebook
+from grader.classroom.intake import Intake, take_in
+from grader.classroom.lateness import read_time
+from grader.classroom.pool import Processes, processors
+from grader.classroom.roster_file import read_roster
+from grader.classroom.standings import Standings
+from grader.classroom.work import PRELOAD, prepare
+from grader.cli.class_export import grades_csv
+from grader.cli.class_reports import write_reports
+from grader.cli.class_text import class_text
+from grader.cli.formats import Format
+from grader.cli.options import ClassFormat
+from grader.cli.output import complain, emit, save
+from grader.cli.progress import ProgressDisplay
+from grader.grading.rubric import Rubric, load_rubric
+from grader.report.text import printable
+from grader.submission.files import printable_path
+
+_MOST_TOLD = 10
+
+
+class Wanted(NamedTuple):
+    """What is to come of a run beside the gradebook."""
+
+    reports: Path | None
+    report_formats: tuple[Format, ...]
+    csv: Path | None
+    output: ClassFormat
+
+
+def grade_class(
+    path: Path,
+    gradebook: Path,
+    rubric: str,
+    wanted: Wanted,
+    *,
+    jobs: int | None,
+    timeout: float,
+    roster: Path | None,
+    layout: str,
+    assignment: str,
+    due: str | None,
+    force: bool,
+    cluster: str | None,
+) -> None:
+    """Grade a class into a gradebook, and write what is wanted of it. Raises InputError and RubricError."""
+    rules = load_rubric(rubric)
+    deadline = read_time(due) if due else None
+    known = read_roster(roster) if roster is not None else None
+    intake = take_in(path, known, layout, assignment, rules.id)
+    _tell(intake)
+    root = path.resolve()
+    with Gradebook(gradebook, create=True) as book:
+        with _executor(cluster, jobs, timeout, root) as (executor, workers):
+            settings = Settings(str(root), intake.layout, len(intake), workers, force, known)
+            done = _run(book, rules, intake, settings, executor)
+        if wanted.reports is not None:
+            with _processes(jobs, timeout) as local:
+                count = write_reports(local, gradebook, wanted.reports, wanted.report_formats, deadline)
+            complain(f"{count} reports are in {printable_path(wanted.reports)}")
+        if wanted.csv is not None:
+            save(wanted.csv, grades_csv(Standings(book, deadline)))
+        emit(class_text(Standings(book, deadline), wanted.output, done))
+
+
+@contextmanager
+def _executor(cluster: str | None, jobs: int | None, timeout: float, root: Path) -> "Iterator[tuple[Executor, int]]":
+    """Who does the work, and how many tasks at once."""
+    if cluster is None:
+        with _processes(jobs, timeout) as local:
+            yield local, jobs or processors()
+        return
+    from grader.classroom.cluster import Cluster
+
+    with Cluster(cluster, timeout, root) as far:
+        yield far, far.workers
+
+
+def _processes(jobs: int | None, timeout: float) -> "Executor":
+    return Processes(jobs or processors(), timeout, prepare, preload=PRELOAD)
+
+
+def _run(
+    book: "Gradebook", rules: "Rubric", intake: "Intake", settings: "Settings", executor: "Executor"
+) -> "Progress":
+    """Grade what is new; where it is interrupted, say what is kept."""
+    with ProgressDisplay() as display:
+        run = Batch(book, rules, settings, executor, display.show)
+        try:
+            done = run.grade(intake.hand_ins(), intake.absent)
+        except BaseException:
+            complain(
+                f"stopped: {run.progress.done} of {len(intake)} have a result, which is kept; the same command goes on"
+            )
+            raise
+    lost = f", {done.errored} of them errored" if done.errored else ""
+    complain(f"{done.graded} graded{lost}, {done.unchanged} unchanged since they were")
+    return done
+
+
+def _tell(intake: "Intake") -> None:
+    """Say how the class was taken in, and what was left out."""
+    complain(f"{len(intake)} hand-ins, laid out as {intake.layout}")
+    strangers = [f"{key} is not on the roster" for key in intake.strangers]
+    for lines in (intake.notes, strangers, [f"left out: {line}" for line in intake.left_out]):
+        for line in lines[:_MOST_TOLD]:
+            complain(printable(line))
+        if len(lines) > _MOST_TOLD:
+            complain(f"... and {len(lines) - _MOST_TOLD} more")
