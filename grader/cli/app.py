@@ -7,13 +7,17 @@ from typing import Annotated
 import typer
 
 from grader.cli.batch import batch
+from grader.cli.diff import diff
 from grader.cli.explain import explain
 from grader.cli.export import export
 from grader.cli.grade import grade
 from grader.cli.inspect import inspect
+from grader.cli.mark import mark
 from grader.cli.output import complain
+from grader.cli.review import review
 from grader.cli.rubric import rubric
 from grader.cli.schema import schema
+from grader.cli.stats import stats
 from grader.errors import GraderError, RubricError
 
 FAULT_OF_USE, FAULT_OF_OURS, INTERRUPTED = 2, 3, 130
@@ -41,7 +45,11 @@ def _main(
 app.command()(grade)
 app.command()(inspect)
 app.command()(batch)
+app.command()(mark)
+app.command()(review)
 app.command()(export)
+app.command()(diff)
+app.command()(stats)
 app.command()(explain)
 app.command()(schema)
 app.add_typer(rubric, name="rubric")

@@ -1,0 +1,57 @@
+"""grader mark: what a person says of one criterion of one submission."""
+
+import getpass
+from typing import Annotated
+
+import typer
+
+from grader.cli.options import GradebookOption
+from grader.cli.output import emit
+
+ByOption = Annotated[str, typer.Option("--by", metavar="NAME", help="Who says so; you, if not told.")]
+
+
+def mark(
+    submission: Annotated[str, typer.Argument(metavar="SUBMISSION", help="A student's key, login, address or name.")],
+    criterion: Annotated[str, typer.Argument(metavar="CRITERION", help="Its id, such as answer-floating-link.")],
+    points: Annotated[str, typer.Argument(metavar="POINTS", help="The points, or - to take a mark back.")],
+    gradebook: GradebookOption,
+    comment: Annotated[str, typer.Option(metavar="TEXT", help="Why; the student reads it.")] = "",
+    by: ByOption = "",
+) -> int:
+    """Give a submission points for a criterion by hand: for what waits for a person, or in place of what the check says.
+
+    A mark stays, whatever is graded again; a later one goes before it, and all are kept.
+
+    Examples:
+
+      grader mark alice answer-floating-link 3.5 --gradebook lab6.db --comment "the roots are missing"
+
+      grader mark alice lidar-frame - --gradebook lab6.db
+    """
+    from grader.classroom.gradebook import Gradebook
+    from grader.classroom.marking import criterion_of, read_points
+    from grader.classroom.marking import mark as add_mark
+    from grader.classroom.standings import Standings
+    from grader.report.points import points_words
+    from grader.report.text import printable
+
+    with Gradebook(gradebook) as book:
+        standings = Standings(book)
+        standing = standings.find(submission)
+        asked = criterion_of(
+            standings.rubric(standing.rubric) if standing.rubric else standings.newest_rubric(), criterion
+        )
+        add_mark(book, standing, asked, read_points(points, asked), by or author(), comment)
+        now = standings.find(standing.student.key)
+    waits = f", {points_words(now.pending)} wait for a person" if now.pending else ""
+    emit(printable(f"{now.student.key}: {points_words(now.score)} of {points_words(now.out_of)} points{waits}") + "\n")
+    return 0
+
+
+def author() -> str:
+    """Who is at the keyboard, as the system knows them."""
+    try:
+        return getpass.getuser()
+    except (OSError, KeyError, ImportError):  # nobody, as in a container without accounts
+        return "someone"

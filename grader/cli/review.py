@@ -1,0 +1,87 @@
+"""grader review: walk through what waits for a person, one by one."""
+
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from grader.cli.mark import ByOption, author
+from grader.cli.options import GradebookOption
+from grader.cli.output import complain, draw, emit
+from grader.errors import InputError
+
+if TYPE_CHECKING:
+    from grader.classroom.marking import Pending
+    from grader.classroom.standings import Standings
+
+_HELP = "points and a comment, or s to skip, q to stop (everything is kept), ? for this line"
+
+
+def review(
+    gradebook: GradebookOption,
+    criterion: Annotated[str, typer.Option(metavar="ID", help="Only this criterion.")] = "",
+    by: ByOption = "",
+) -> int:
+    """Walk through what waits for a person: the answer that was found, the model answer, the pictures; give points and a comment.
+
+    Type the points and, behind them, a comment: 3.5 the roots are missing. Stop whenever you like: what is given is kept, and
+    the next review goes on with the rest.
+
+    Example:
+
+      grader review --gradebook lab6.db --criterion answer-floating-link
+    """
+    from grader.classroom.gradebook import Gradebook
+    from grader.classroom.marking import criterion_of, pending
+    from grader.classroom.standings import Standings
+
+    with Gradebook(gradebook) as book:
+        standings = Standings(book)
+        if criterion:
+            criterion_of(standings.newest_rubric(), criterion)
+        waiting = list(pending(standings, criterion))
+        given = 0
+        for number, each in enumerate(waiting, 1):
+            answer = _ask(standings, each, f"{number} of {len(waiting)}", by or author())
+            if answer is None:
+                break
+            given += answer
+    emit(f"{given} marked, {len(waiting) - given} still wait\n")
+    return 0
+
+
+def _ask(standings: "Standings", pending: "Pending", place: str, by: str) -> int | None:
+    """Ask until there is an answer: how many marks came of it, None to stop."""
+    from grader.classroom.marking import mark, read_points
+    from grader.report.review import render_pending
+
+    emit(draw(lambda console: render_pending(pending, place, console)))
+    criterion = pending.result.criterion
+    while (text := _line(f"points, 0 to {format(criterion.points.normalize(), 'f')} (? for help): ")) is not None:
+        word, _, comment = text.strip().partition(" ")
+        if word.lower() in ("q", "quit"):
+            return None
+        if word.lower() in ("s", "skip", ""):
+            return 0
+        if word == "?":
+            complain(_HELP)
+            continue
+        try:
+            points = read_points(word, criterion)
+        except InputError as error:
+            complain(str(error))
+            continue
+        if points is None:
+            complain(_HELP)
+            continue
+        mark(standings.book, pending.standing, criterion, points, by, comment.strip())
+        return 1
+    return None
+
+
+def _line(prompt: str) -> str | None:
+    """A line that is typed; None where there is no more."""
+    emit(prompt)
+    try:
+        return input()
+    except EOFError:
+        return None
