@@ -64,7 +64,10 @@ class _State(NamedTuple):
 
 
 def last_two(book: Gradebook, before: int | None = None, after: int | None = None) -> tuple[Side, Side]:
-    """The last two runs in a gradebook, or two that are named by their numbers; raises InputError."""
+    """The last two runs in a gradebook, or two that are named by their numbers; raises InputError.
+
+    The older is taken as it was when it ended, the newer with the marks by hand that followed it.
+    """
     runs = {run.id: run for run in book.runs()}
     if len(runs) < 2:
         raise InputError("there are no two runs to compare: grade again first, or name another gradebook")
@@ -73,9 +76,9 @@ def last_two(book: Gradebook, before: int | None = None, after: int | None = Non
     for run in chosen:
         if run not in runs:
             raise InputError(f"there is no run {run}; there are: {', '.join(map(str, runs))}")
-    following = [run.last_mark for run in runs.values() if run.id > chosen[0]]
-    until = [run.last_mark for run in runs.values() if run.id > chosen[1]]
-    return Side(book, chosen[0], min(following, default=_EVER)), Side(book, chosen[1], min(until, default=_EVER))
+    older, newer = chosen
+    later = [run.last_mark for run in runs.values() if run.id > newer]
+    return Side(book, older, runs[older].last_mark), Side(book, newer, min(later, default=_EVER))
 
 
 def newest(book: Gradebook) -> Side:

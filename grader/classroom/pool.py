@@ -2,6 +2,7 @@
 
 import multiprocessing
 import os
+import threading
 from collections.abc import Callable
 from concurrent.futures import CancelledError, Executor, Future
 from concurrent.futures.process import BrokenProcessPool
@@ -12,6 +13,7 @@ from pebble import ProcessExpired, ProcessPool
 from grader.errors import GraderError
 
 MEMORY = 2 * 1024**3  # bytes that one worker may have
+_WATCHED = 0.5  # seconds between two looks at whether the pool still lives
 
 
 class Lost(GraderError):
@@ -34,24 +36,31 @@ class Processes(Executor):
     ) -> None:
         self._workers, self._timeout, self._prepare, self._memory = workers, timeout, prepare, memory
         self._context = _context(preload)
+        self._lock = threading.RLock()
+        self._promised: set[Future[Any]] = set()
+        self._is_shut = threading.Event()
         self._pool = self._new_pool()
+        self._watch = threading.Thread(target=self._watch_pool, daemon=True)
+        self._watch.start()
 
     def submit(self, function: Callable[..., Any], /, *arguments: Any, **named: Any) -> "Future[Any]":
         """Have a function run in a worker."""
         done: Future[Any] = Future()
-        if not self._pool.active:  # it breaks where a worker is ended in the midst of speaking
-            self._end()
-            self._pool = self._new_pool()
-        inner = self._pool.schedule(function, arguments, named, self._timeout)
+        with self._lock:
+            self._mend()
+            self._promised.add(done)
+            inner = self._pool.schedule(function, arguments, named, self._timeout)
         inner.add_done_callback(lambda future: self._pass_on(future, done))
         return done
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """End the workers: at once, whatever they do."""
         del cancel_futures
+        self._is_shut.set()
         self._end()
         if wait:
             self._pool.join()
+            self._watch.join()
 
     def _new_pool(self) -> ProcessPool:
         return ProcessPool(self._workers, initializer=self._prepare, initargs=(self._memory,), context=self._context)
@@ -59,19 +68,46 @@ class Processes(Executor):
     def _end(self) -> None:
         self._pool.stop()  # type: ignore[no-untyped-call]
 
+    def _watch_pool(self) -> None:
+        """A pool can break where a worker is ended in the midst of speaking, and then forgets what it had promised."""
+        while not self._is_shut.wait(_WATCHED):
+            with self._lock:
+                if self._promised:
+                    self._mend()
+
+    def _mend(self) -> None:
+        """Take a new pool for one that is broken; what was in it is lost."""
+        if self._pool.active or self._is_shut.is_set():
+            return
+        self._end()
+        self._pool = self._new_pool()
+        for done in tuple(self._promised):
+            self._settle(done, Lost("the processes that grade came to an end", is_own_fault=False))
+
     def _pass_on(self, inner: "Future[Any]", done: "Future[Any]") -> None:
         try:
-            done.set_result(inner.result())
+            self._settle(done, result=inner.result())
         except TimeoutError:
-            done.set_exception(Lost(f"grading it took longer than {self._timeout:g} s, and was stopped"))
+            self._settle(done, Lost(f"grading it took longer than {self._timeout:g} s, and was stopped"))
         except ProcessExpired as error:
-            done.set_exception(Lost(f"the process that graded it {_end_of(error.exitcode)}"))
+            self._settle(done, Lost(f"the process that graded it {_end_of(error.exitcode)}"))
         except (BrokenProcessPool, CancelledError):
-            done.set_exception(Lost("the processes that grade came to an end", is_own_fault=False))
+            self._settle(done, Lost("the processes that grade came to an end", is_own_fault=False))
         except MemoryError:
-            done.set_exception(Lost("grading it needs more memory than a worker may have"))
+            self._settle(done, Lost("grading it needs more memory than a worker may have"))
         except Exception as error:  # noqa: BLE001  it is told, whatever it is
+            self._settle(done, error)
+
+    def _settle(self, done: "Future[Any]", error: Exception | None = None, *, result: Any = None) -> None:
+        """Keep a promise, once."""
+        with self._lock:
+            if done not in self._promised:
+                return
+            self._promised.discard(done)
+        if error is not None:
             done.set_exception(error)
+        else:
+            done.set_result(result)
 
 
 def _end_of(code: int) -> str:

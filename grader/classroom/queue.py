@@ -64,8 +64,14 @@ class Queue:
         self._began = self._began or time.perf_counter()
         while len(self._out) < self._workers * _AHEAD:
             if self._alone:
+                if (
+                    self._alone[0][1] > 1 and self._out
+                ):  # it was at work when all processes ended: nothing runs beside it now
+                    return
                 task, tries = self._alone.popleft()
                 self._submit([task], tries)
+                if tries > 1:
+                    return
                 continue
             count = self._together
             if not self._waiting or (len(self._waiting) < count and not all_in):

@@ -96,7 +96,7 @@ def _grade_one(common: Class, task: Task) -> Graded:
         return failed(rubric, task, "unreadable", reason, digest, mark)
     except MemoryError:
         return failed(rubric, task, "errored", "grading it needs more memory than a worker may have", digest, mark)
-    except Exception as error:  # noqa: BLE001  a fault of ours must cost nobody else anything
+    except (Exception, SystemExit) as error:  # noqa: BLE001  a fault of ours must cost nobody else anything
         return failed(
             rubric, task, "errored", f"the grader itself failed: {type(error).__name__}: {error}", digest, mark
         )

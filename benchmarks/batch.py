@@ -1,0 +1,296 @@
+"""What the claims about whole classes rest on: `python benchmarks/batch.py`. Quote the ratios; absolute figures are the machine's.
+
+Classes are made up (class_generator.py); no file in them is like another. Whatever is compared is timed in turn, A B A B. A figure
+by its name is run alone: `python benchmarks/batch.py speed memory`.
+"""
+
+import argparse
+import os
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+from class_generator import make_class
+from run import check_urdf, in_turn, once
+
+from grader.classroom.batch import Batch, Progress, Settings
+from grader.classroom.gradebook import Gradebook
+from grader.classroom.pool import Processes, processors
+from grader.classroom.students import HandIn, Student
+from grader.classroom.work import Class, Task, grade_all, prepare
+from grader.grading.rubric import load_rubric
+
+_TIMEOUT = 60.0  # seconds for one hand-in
+_WARMING = 50  # hand-ins that each worker grades before the clock starts
+_REPEATED = 10_000  # hand-ins of the largest class that is graded more than once
+_SAMPLED = 0.05  # seconds between two looks at the memory
+_PATIENCE = 60.0  # seconds in which all workers have to show up
+
+
+class Bench(NamedTuple):
+    """Where classes are kept, how large they are, and how often each figure is measured."""
+
+    top: Path
+    sizes: Sequence[int]
+    jobs: int
+    runs: int
+
+    @property
+    def usual(self) -> int:
+        """The size of a class for figures that take one: about a thousand."""
+        return max(size for size in self.sizes if size <= 1_000 or size == min(self.sizes))
+
+    def folder(self, count: int) -> Path:
+        """A class of so many URDFs, made when it is first asked for."""
+        folder = self.top / f"class-{count}"
+        if not folder.exists():
+            for _ in make_class(folder, count, seed=count):
+                pass
+        return folder
+
+
+def main() -> None:
+    """Print the figures that are asked for, or all."""
+    parser = argparse.ArgumentParser(description="Measure how whole classes are graded.")
+    parser.add_argument(
+        "figures", nargs="*", metavar="figure", help=f"any of: {', '.join(FIGURES)}; all of them if left out"
+    )
+    parser.add_argument(
+        "--sizes", type=int, nargs="+", default=[100, 1_000, 10_000], help="how many hand-ins a class has"
+    )
+    parser.add_argument("--all", action="store_true", help="a class of 100,000 as well")
+    parser.add_argument("--jobs", type=int, default=processors())
+    parser.add_argument("--runs", type=int, default=5)
+    given = parser.parse_args()
+    unknown = sorted(set(given.figures) - set(FIGURES))
+    if unknown:
+        parser.error(f"there is no figure {', '.join(unknown)}")
+    sizes = sorted({*given.sizes, 100_000} if given.all else set(given.sizes))
+    with tempfile.TemporaryDirectory() as top:
+        bench = Bench(Path(top), sizes, given.jobs, given.runs)
+        for name in given.figures or FIGURES:
+            FIGURES[name](bench)
+
+
+# --- The figures ------------------------------------------------------------------------------------------------------
+
+
+def speed(bench: Bench) -> None:
+    """Submissions a second with warm workers, gradebook included, for every size of a class."""
+    with workers(bench, bench.jobs) as executor:
+        runs = {size: _fresh(bench, size, bench.jobs, executor) for size in bench.sizes}
+        times = in_turn({str(size): run for size, run in runs.items() if size <= _REPEATED}, bench.runs)
+        times |= {str(size): [run()] for size, run in runs.items() if size > _REPEATED}
+    print(f"\nSubmissions a second, {bench.jobs} warm workers, gradebook included (1 = the smallest class)")
+    base = bench.sizes[0] / statistics.median(times[str(bench.sizes[0])])
+    for size in bench.sizes:
+        rate, best = size / statistics.median(times[str(size)]), size / min(times[str(size)])
+        print(f"  {size:>7} hand-ins  median {rate:9.0f} /s  {rate / base:6.2f} x   best {best:9.0f} /s")
+
+
+def parallel(bench: Bench) -> None:
+    """How much of a second worker's time is gained."""
+    size = bench.usual
+    with workers(bench, 1) as one, workers(bench, 2) as two:
+        pools = {1: one, 2: two}
+        times = in_turn({str(jobs): _fresh(bench, size, jobs, pool) for jobs, pool in pools.items()}, bench.runs)
+    rates = {name: size / statistics.median(values) for name, values in times.items()}
+    print(f"\nTwo workers against one, {size} hand-ins, warm, {processors()} processors")
+    for name, rate in rates.items():
+        print(f"  {name} worker{'s' if name == '2' else ' '}   median {rate:9.0f} /s")
+    print(f"  parallel efficiency, rate(2) / (2 rate(1)): {rates['2'] / (2 * rates['1']):.2f}")
+
+
+def against_check_urdf(bench: Bench) -> None:
+    """Grading a class against a shell loop over urdfdom's own check_urdf, which only parses."""
+    program = check_urdf()
+    if program is None or shutil.which("sh") is None:
+        print("\ncheck_urdf is not installed: pip install --editable '.[test]'")
+        return
+    size, few = bench.usual, min(300, bench.usual)
+    folder, environment = bench.folder(few), {**os.environ, "LD_LIBRARY_PATH": str(program.parent.parent / "lib")}
+    script = 'for f in "$1"/*.urdf; do "$0" "$f" >/dev/null 2>&1; done'
+    command = ["sh", "-c", script, str(program), str(folder)]
+    with workers(bench, bench.jobs) as executor:
+        runs = {
+            "shell loop": lambda: once(lambda: subprocess.run(command, env=environment, check=False)) / few,
+            "grader": lambda: fresh_run(bench, size, bench.jobs, executor) / size,
+        }
+        times = in_turn(runs, bench.runs)
+    print(f"\nA class against `for f in *.urdf; do check_urdf $f; done` ({size} hand-ins, {few} in the loop)")
+    _ratios(times, "shell loop")
+
+
+def again(bench: Bench) -> None:
+    """The first run over a class against the second one, when nothing has changed."""
+    size = bench.usual
+    with workers(bench, bench.jobs) as executor:
+        _compare_runs(
+            f"First run against second, warm workers, {size} unchanged hand-ins",
+            lambda book: once(lambda: grade_class(bench.folder(size), size, bench.jobs, executor, book)),
+            bench,
+        )
+    if _has_command():
+        _compare_runs(
+            f"First run against second, whole processes, {size} unchanged hand-ins",
+            lambda book: once(lambda: subprocess.run(_command(bench, size, book), capture_output=True, check=True)),
+            bench,
+        )
+
+
+def memory(bench: Bench) -> None:
+    """The peak of memory of the whole process tree, for the smallest class of a thousand or so and for the largest."""
+    if not Path("/proc/self/smaps_rollup").exists() or not _has_command():
+        print("\nThe memory of a batch is measured where there is /proc/PID/smaps_rollup, and a command `grader batch`")
+        return
+    print(f"\nPeak memory of `grader batch`, all its {bench.jobs} workers included (1 = the smaller class)")
+    base = 0.0
+    for size in dict.fromkeys((bench.usual, bench.sizes[-1])):
+        peak = peak_memory(_command(bench, size, bench.top / f"memory-{size}.db"))
+        base = base or peak
+        print(f"  {size:>7} hand-ins  {peak / 2**20:8.1f} MiB  {peak / base:6.2f} x")
+
+
+FIGURES: dict[str, Callable[[Bench], None]] = {
+    "speed": speed,
+    "parallel": parallel,
+    "check_urdf": against_check_urdf,
+    "again": again,
+    "memory": memory,
+}
+
+
+# --- Runs -------------------------------------------------------------------------------------------------------------
+
+
+@contextmanager
+def workers(bench: Bench, jobs: int) -> Iterator[Executor]:
+    """Workers, each of which has graded a few dozen hand-ins that are in no class."""
+    executor = Processes(jobs, _TIMEOUT, prepare, preload="grader.classroom.work")
+    folder, rubric = bench.folder(_WARMING), load_rubric("lab6")
+    common = Class(str(folder), rubric.data, str(rubric.path))
+    tasks = [Task(name, (name,)) for name in names_in(folder)]
+    warm: set[int] = set()
+    end = time.monotonic() + _PATIENCE
+    try:
+        while len(warm) < jobs and time.monotonic() < end:
+            warm |= {future.result() for future in [executor.submit(warmed, common, tasks) for _ in range(2 * jobs)]}
+        yield executor
+    finally:
+        executor.shutdown()
+
+
+def warmed(common: Class, tasks: Sequence[Task]) -> int:
+    """Grade these in a worker; which process that is."""
+    grade_all(common, tasks)
+    return os.getpid()
+
+
+def fresh_run(bench: Bench, count: int, jobs: int, executor: Executor) -> float:
+    """Seconds that a class takes into a new gradebook."""
+    folder = bench.folder(count)
+    with tempfile.TemporaryDirectory(dir=bench.top) as top:
+        return once(lambda: grade_class(folder, count, jobs, executor, Path(top, "gradebook.db")))
+
+
+def _fresh(bench: Bench, count: int, jobs: int, executor: Executor) -> Callable[[], float]:
+    return lambda: fresh_run(bench, count, jobs, executor)
+
+
+def grade_class(folder: Path, count: int, jobs: int, executor: Executor, book: Path) -> Progress:
+    """Grade a class into a gradebook; every hand-in gets a mark or has been marked before."""
+    root, rubric = str(folder), load_rubric("lab6")
+    hand_ins = (HandIn(Student(name.removesuffix(".urdf")), (name,)) for name in names_in(folder))
+    with Gradebook(book, create=True) as opened:
+        progress = Batch(opened, rubric, Settings(root, "folders", count, jobs), executor).grade(hand_ins)
+    assert (progress.done, progress.errored, progress.unreadable) == (count, 0, 0), progress
+    return progress
+
+
+def names_in(folder: Path) -> list[str]:
+    """What is in a folder, in the order of the alphabet."""
+    with os.scandir(folder) as entries:
+        return sorted(entry.name for entry in entries)
+
+
+def _command(bench: Bench, count: int, book: Path) -> list[str]:
+    folder = str(bench.folder(count))
+    return [sys.executable, "-m", "grader", "batch", folder, "--gradebook", str(book), "--jobs", str(bench.jobs)]
+
+
+def _has_command() -> bool:
+    return not subprocess.run(
+        [sys.executable, "-m", "grader", "batch", "--help"], capture_output=True, check=False
+    ).returncode
+
+
+def _compare_runs(title: str, run: Callable[[Path], float], bench: Bench) -> None:
+    """Time pairs of runs into one gradebook each, behind a pair that does not count."""
+    times: dict[str, list[float]] = {"first": [], "second": []}
+    for number in range(bench.runs + 1):
+        with tempfile.TemporaryDirectory(dir=bench.top) as top:
+            for values in times.values():
+                values.append(run(Path(top, "gradebook.db")))
+        if not number:
+            times = {name: [] for name in times}
+    print(f"\n{title}")
+    _ratios(times, "first", "a run")
+
+
+def _ratios(times: dict[str, list[float]], base: str, what: str = "a hand-in") -> None:
+    """Print medians, and how many times as fast as the base each is."""
+    middle = statistics.median(times[base])
+    for name, values in times.items():
+        median = statistics.median(values)
+        print(f"  {name:<12} median {median * 1e3:10.3f} ms {what}   {middle / median:6.2f} x as fast as the {base}")
+
+
+# --- Memory -----------------------------------------------------------------------------------------------------------
+
+
+def peak_memory(command: list[str]) -> int:
+    """The most bytes that a process and all below it have at once; a page that several share is counted once in all."""
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    peak = 0
+    while process.poll() is None:
+        peak = max(peak, sum(map(_share, _tree(process.pid))))
+        time.sleep(_SAMPLED)
+    if process.returncode:
+        raise subprocess.CalledProcessError(process.returncode, command)
+    return peak
+
+
+def _tree(top: int) -> list[int]:
+    """A process and all below it."""
+    below: dict[int, list[int]] = {}
+    for place in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            fields = place.read_text(errors="replace").rpartition(")")[2].split()
+        except OSError:  # it has ended meanwhile
+            continue
+        below.setdefault(int(fields[1]), []).append(int(place.parent.name))
+    found = [top]
+    for process in found:
+        found += below.get(process, [])
+    return found
+
+
+def _share(process: int) -> int:
+    """A process's share of the memory in bytes: what is its own, and its part of what it shares (PSS)."""
+    try:
+        lines = Path(f"/proc/{process}/smaps_rollup").read_text(encoding="ascii").splitlines()
+    except OSError:
+        return 0
+    return next((int(line.split()[1]) * 1024 for line in lines if line.startswith("Pss:")), 0)
+
+
+if __name__ == "__main__":
+    main()

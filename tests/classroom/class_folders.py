@@ -1,0 +1,33 @@
+"""Class folders and zips made for tests, and what is taken in of them in short."""
+
+import zipfile
+from collections.abc import Iterable
+from pathlib import Path
+
+from grader.classroom.intake import Intake
+
+
+def lay_out(top: Path, *paths: str) -> Path:
+    """Make a folder with these files in it, empty ones; a folder is a path that ends in a slash."""
+    top.mkdir(parents=True, exist_ok=True)
+    for path in paths:
+        place = top / path
+        if path.endswith("/"):
+            place.mkdir(parents=True, exist_ok=True)
+        else:
+            place.parent.mkdir(parents=True, exist_ok=True)
+            place.touch()
+    return top
+
+
+def pack(place: Path, names: Iterable[str]) -> Path:
+    """Make a zip with these members, empty ones."""
+    with zipfile.ZipFile(place, "w") as archive:
+        for name in names:
+            archive.writestr(name, b"")
+    return place
+
+
+def taken(intake: Intake) -> dict[str, tuple[str, ...]]:
+    """The paths of each hand-in by its student's key, in their order."""
+    return {each.student.key: each.paths for each in intake.hand_ins()}

@@ -1,0 +1,244 @@
+"""A roster read from a CSV, and whom in it a name belongs to."""
+
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grader.classroom.names import canvas_name, canvas_names, iso_time, plain_name, surname
+from grader.classroom.roster import Entry, Match, Roster
+from grader.classroom.roster_file import read_roster
+from grader.classroom.students import Student
+from grader.errors import InputError
+
+
+def read(tmp_path: Path, text: str | bytes) -> Roster:
+    place = tmp_path / "roster.csv"
+    place.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return read_roster(place)
+
+
+def only(tmp_path: Path, text: str) -> Entry:
+    (entry,) = read(tmp_path, text).entries
+    return entry
+
+
+PLAIN = "id,name,email\n100,Ann Ash,ann@example.org\n\n200,Jörg Müller,jm@example.org\n"
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        PLAIN.encode(),
+        PLAIN.encode("utf-8-sig"),
+        PLAIN.encode("utf-16"),
+        PLAIN.encode("cp1252"),
+        PLAIN.replace("\n", "\r\n").encode(),
+        PLAIN.replace(",", ";").encode(),
+        PLAIN.replace(",", "\t").encode(),
+        b"sep=;\n" + PLAIN.replace(",", ";").encode(),
+        '\n"ID","Full Name","E-mail"\n="100","Ann  Ash",ann@example.org\n 200 ,Jörg Müller,jm@example.org,,\n'.encode(),
+        "Student_Number;e mail address;NAME\n100;ann@example.org;Ann Ash\n200;jm@example.org;Jörg Müller\n;;\n".replace(
+            "e mail address", "Email Address"
+        ).encode(),
+    ],
+)
+def test_spellings_of_one_roster(tmp_path: Path, data: bytes) -> None:
+    """Encodings, delimiters, line ends, quotes, blank lines and names of columns are read alike."""
+    assert read(tmp_path, data).students == (
+        Student("100", "Ann Ash", "ann@example.org", sis="100"),
+        Student("200", "Jörg Müller", "jm@example.org", sis="200"),
+    )
+
+
+def test_a_gradebook_of_canvas(tmp_path: Path) -> None:
+    """The ID of a Canvas export is Canvas' own number; its row of points is no student."""
+    text = (
+        "Student,ID,SIS User ID,SIS Login ID,Section,Lab 6 (98765)\n"
+        ",,,,,Manual Posting\n    Points Possible,,,,,100\n"
+        '"Doe, Jane",33,s100,jdoe,Tutorial 1,\n'
+    )
+    entry = only(tmp_path, text)
+    assert entry.student == Student("33", "Doe, Jane", login="jdoe", sis="s100", canvas="33")
+    assert entry.section == "Tutorial 1"
+
+
+def test_a_worksheet_of_moodle(tmp_path: Path) -> None:
+    """The number in Moodle's Identifier is the participant's."""
+    text = 'Identifier,"Full name","Email address",Status\n"Participant 123",Jane Doe,jane@example.org,Submitted\n'
+    assert only(tmp_path, text).student == Student("jane@example.org", "Jane Doe", "jane@example.org", moodle="123")
+    german = "ID;Vollständiger Name;E-Mail-Adresse\nTeilnehmer/in123;Jane Doe;\n"
+    assert only(tmp_path, german).student == Student("Jane Doe", "Jane Doe", moodle="123")
+
+
+def test_everything_that_a_row_may_say(tmp_path: Path) -> None:
+    """All columns that are known, and one that is not."""
+    text = (
+        "First name,Surname,Login,GitHub username,SIS ID,Canvas ID,Moodle ID,Group,Due date,Extension,Submitted at,Late,Shoe\n"
+        "Ann,Ash,aash,annie,s1,11,22,A,2026-09-01T23:59+02:00,2 days,2026-09-02 10:00:00Z,1.5,44\n"
+    )
+    assert only(tmp_path, text) == Entry(
+        Student("s1", "Ann Ash", "", "aash", "s1", "11", "22"),
+        section="A",
+        due="2026-09-01T23:59:00+02:00",
+        extension_days=2.0,
+        submitted="2026-09-02T10:00:00Z",
+        is_late=True,
+        days_late=1.5,
+        aliases=("annie",),
+    )
+
+
+@pytest.mark.parametrize(
+    ("cell", "late"),
+    [("yes", (True, None)), ("No", (False, None)), ("0", (False, 0.0)), ("2 days", (True, 2.0)), ("", (None, None))],
+)
+def test_late(tmp_path: Path, cell: str, late: tuple[bool | None, float | None]) -> None:
+    """Late is yes, no, or a number of days."""
+    entry = only(tmp_path, f"id,late\n1,{cell}\n")
+    assert (entry.is_late, entry.days_late) == late
+
+
+def test_an_extension_is_days_or_a_date(tmp_path: Path) -> None:
+    """A number is one of days, and anything else the day until which."""
+    first, second = read(tmp_path, "id,extension\n1,3\n2,2026-09-04\n").entries
+    assert (first.due, first.extension_days) == ("", 3.0)
+    assert (second.due, second.extension_days) == ("2026-09-04", 0.0)
+
+
+def test_a_time_that_is_none_is_noted(tmp_path: Path) -> None:
+    """What an LMS writes about handing in may be no time: it is passed over, and said."""
+    roster = read(tmp_path, "id,submitted\n1,yesterday\n")
+    assert roster.entries[0].submitted == ""
+    assert roster.notes == ("line 2: 'yesterday' is no time such as 2026-09-01T10:00, and was passed over",)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "has no students in it"),
+        ("id,name\n", "has no students in it"),
+        ("points,grade\n1,2\n", "no column for an id, login, name or email in its first line, only: points, grade"),
+        ("id,name\n1,Ann\n2,Bea\n1,Cal\n", "has the id 1 twice, in lines 2 and 4"),
+        ("id,canvas id\n1,7\n2,7\n", "has the canvas id 7 twice, in lines 2 and 3"),
+        ('id,name\n1,"An\nn"\n1,Bea\n', "has the id 1 twice, in lines 2 and 4"),
+        ("id,name\n1\n", "line 2 of .* has 1 cells where the first line has 2"),
+        ("id,name\n1,Ann,extra\n", "line 2 of .* has 3 cells where the first line has 2"),
+        ("id,name,points\n,,7\n", "line 2 of .* says nothing of who the student is"),
+        ("id,name\n1,Ann\n2,'Bea\n3,\"Cal\n", "line 4 of .* cannot be read as CSV"),
+        ("id,due\n1,12/7/26\n", "line 2 of .* has the date '12/7/26': write it as"),
+        ("id,late\n1,maybe\n", "line 2 of .* has 'maybe' for late: write yes, no"),
+        (b"\xff\xfe\x00", "no text that can be read"),
+        (b"i\0d\0,\0", "no text that can be read"),
+        (b"id\n\x81\n", "no text that can be read"),
+    ],
+)
+def test_what_cannot_be_used(tmp_path: Path, text: str | bytes, message: str) -> None:
+    """Each mistake is one line, with the line of the file where there is one."""
+    with pytest.raises(InputError, match=message) as caught:
+        read(tmp_path, text)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_file_that_cannot_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A missing file and a huge one are errors of one line."""
+    with pytest.raises(InputError, match="cannot read"):
+        read_roster(tmp_path / "none.csv")
+    monkeypatch.setattr("grader.classroom.roster_file._LIMIT", 10)
+    with pytest.raises(InputError, match=r"larger than 10 bytes, the limit$"):
+        read(tmp_path, PLAIN)
+
+
+ANN = Student("100", "Ann Ash", "ann@example.org", "aash", "s100")
+BEA = Student("200", "Bea Ash", "bea@example.org", "bash", canvas="5", moodle="6")
+CAL = Student("300", "José de la Cruz", "ann@other.example")
+CLASS = Roster([Entry(ANN, aliases=("annie",)), Entry(BEA), Entry(CAL)])
+
+
+@pytest.mark.parametrize(
+    ("name", "student"),
+    [
+        *(
+            (name, ANN)
+            for name in ("100", "AASH", "s100", "Annie", "ANN@example.org", "ann  ash", "Ash, Ann", "Ann_Ash")
+        ),
+        *((name, BEA) for name in ("bea", "BASH", "Ｂea Ash")),
+        *((name, CAL) for name in ("JOSE\u0301 DE LA CRUZ", "de la Cruz, José", "\u200fJosé de la Cruz")),
+        *((name, None) for name in ("ann", "ash", "", "cruz", "Jose de la Cruz", "5", "An Ash")),
+    ],
+)
+def test_find(name: str, student: Student | None) -> None:
+    """A name is somebody's only if it is exactly theirs, but for case, spaces and the way it is encoded."""
+    assert CLASS.find(name) == student
+    assert CLASS.knows(name) is (student is not None)
+
+
+def test_numbers_of_an_lms_decide() -> None:
+    """A number goes before a name, and a name is of nobody whose number is another."""
+    assert CLASS.find("Ann Ash", canvas="5") == BEA
+    assert CLASS.find(moodle="6") == BEA
+    assert CLASS.find("Bea Ash", canvas="7") is None
+    assert CLASS.match(Student("x", "Bea Ash", moodle="7")) == Match(None, 5, "has the name of 200, but another number")
+
+
+def test_surnames_count_only_where_they_are_told_to() -> None:
+    """A surname is somebody's if it is of one student, and if it was asked for."""
+    assert CLASS.knows_surname("cruz")
+    assert not CLASS.knows_surname("Ash")
+    assert not CLASS.knows("cruz")
+    assert CLASS.entry("100") == Entry(ANN, aliases=("annie",))
+    assert CLASS.entry("x") is None
+
+
+@pytest.mark.parametrize(
+    ("name", "form"),
+    [
+        ("Doe, Jane", "doejane"),
+        ("O'Neil-Smith, Zoë", "oneilsmithzoë"),
+        ("_12_, x", "12x"),
+        ("לוי, עדה", "לויעדה"),
+        ("!?", ""),
+    ],
+)
+def test_what_canvas_makes_of_a_name(name: str, form: str) -> None:
+    """Small letters, marks, digits and underscores of any script are what is left."""
+    assert canvas_name(name) == form
+
+
+@given(st.lists(st.from_regex(r"[^\W_]{1,8}", fullmatch=True), min_size=1, max_size=6))
+def test_canvas_may_sort_by_any_word(words: list[str]) -> None:
+    """Wherever the surname begins, the sortable name is among those that are known."""
+    forms = set(canvas_names(" ".join(words)))
+    for index in range(len(words)):
+        assert canvas_name(f"{' '.join(words[index:])}, {' '.join(words[:index])}") in forms
+
+
+@given(st.text(max_size=30))
+def test_plain_names_stay_as_they_are(name: str) -> None:
+    """To make a name plain twice changes nothing, and the two orders of a name are one."""
+    plain = plain_name(name)
+    assert plain_name(plain.replace(",", " ")) == plain_name(plain.replace(",", " "))
+    assert plain_name("Ash, Ann") == plain_name("ann  ASH")
+    assert surname("Ash, Ann") == surname("Ann Ash") == "ash"
+
+
+@given(st.datetimes())
+def test_times(time: object) -> None:
+    """A time as Python writes it is read to the second."""
+    text = str(time)
+    assert iso_time(text) == text[:19].replace(" ", "T")
+    assert iso_time(f"{text} UTC") == f"{text[:19].replace(' ', 'T')}Z"
+    assert iso_time(text[:10]) == text[:10]
+    assert iso_time(f"on {text}") == ""
+
+
+@given(st.binary(max_size=300))
+def test_any_bytes_give_a_roster_or_one_line(tmp_path_factory: pytest.TempPathFactory, data: bytes) -> None:
+    """Whatever is in the file, it is read or refused in one line."""
+    try:
+        roster = read(tmp_path_factory.getbasetemp(), b"id,name\n" + data)
+    except InputError as error:
+        assert "\n" not in str(error)
+    else:
+        assert all(each.key.isprintable() for each in roster.students)

@@ -1,0 +1,188 @@
+"""Classes that are made up are the same everywhere, and each URDF in them loses what it was made to lose."""
+
+import hashlib
+import json
+import os
+import sys
+from collections.abc import Iterable
+from itertools import combinations
+from pathlib import Path
+
+import pytest
+
+from grader.classroom.intake import take_in
+from grader.classroom.roster_file import read_roster
+from grader.classroom.work import Class, Graded, Task, grade_all
+from grader.grading.grade import grade
+from grader.submission.submission import read_submission
+from tests.samples import LAB6, ROOT
+
+sys.path.insert(0, str(ROOT / "benchmarks"))  # a folder of scripts
+import class_generator as made_up
+
+MIXED, SEED = 300, 1
+ALL_WAYS = (*made_up.MISTAKES, *made_up.EQUIVALENTS, *made_up.BROKEN)
+
+
+def lost(text: str) -> set[str]:
+    """The criteria of a URDF that did not pass."""
+    report = grade(LAB6, read_submission(text.encode(), identity="student", path="my_robot.urdf"))
+    assert report.counts("errored") == 0
+    return {result.criterion.id for result in report.results if result.outcome.status != "passed"}
+
+
+def digest(folder: Path) -> str:
+    """A hash of all names, links and bytes below a folder."""
+    found = hashlib.sha256()
+    for path in sorted(folder.rglob("*"), key=os.fsencode):
+        found.update(os.fsencode(path.relative_to(folder)) + b"\0")
+        if path.is_symlink():
+            found.update(os.fsencode(path.readlink()))
+        elif path.is_file():
+            found.update(path.read_bytes())
+    return found.hexdigest()
+
+
+def every(made: Iterable[made_up.Written]) -> list[made_up.Written]:
+    """All hand-ins of a class, which are written as they are asked for."""
+    return list(made)
+
+
+@pytest.mark.parametrize("layout", made_up.LAYOUTS)
+@pytest.mark.parametrize("kind", ["urdf", "mixed"])
+def test_the_same_seed_gives_the_same_bytes(kind: str, layout: str, tmp_path: Path) -> None:
+    """Two classes of one seed are alike to the last byte; one of another seed is not."""
+    for name, seed in (("one", 1), ("two", 1), ("other", 2)):
+        every(made_up.make_class(tmp_path / name, 40, seed, kind, layout))
+    assert digest(tmp_path / "one") == digest(tmp_path / "two") != digest(tmp_path / "other")
+
+
+def test_chance_falls_the_same_way_on_every_python() -> None:
+    """What is made of one seed was written down once."""
+    dice = made_up.Dice("1/work/0")
+    assert [dice.below(1000) for _ in range(4)] == [585, 830, 108, 419]
+    assert made_up.Dice("x").shuffled("abcdefgh") == list("hagbdcef")
+    assert hashlib.sha256(made_up.bomb()).hexdigest()[:16] == "b1417c6a66512962"
+
+
+def test_no_two_urdfs_are_alike() -> None:
+    """Nothing that is kept by its content helps with the next one."""
+    texts = {hand_in.made.text for hand_in in made_up.hand_ins(500, SEED, "urdf") if hand_in.made}
+    assert len(texts) == 500
+
+
+def test_the_proportions_are_those_of_real_classes() -> None:
+    """Some 37 in 100 are right, half of them with other numbers; 6 are broken; the commonest mistakes lead."""
+    made = [hand_in.made for hand_in in made_up.hand_ins(2_000, SEED, "urdf") if hand_in.made]
+    share = {sort: sum(each.sort == sort for each in made) / len(made) for sort in {each.sort for each in made}}
+    wanted = {"as told": 0.185, "equivalent": 0.185, "mistaken": 0.57, "broken": 0.06}
+    assert share == pytest.approx(wanted, abs=0.03)
+    met = {way.name: sum(way.name in each.ways for each in made) for way in ALL_WAYS}
+    assert all(met.values())
+    assert {"right-mirrored", "lidar-buried"} == set(sorted(met, key=lambda name: met[name])[-2:])
+
+
+def test_a_made_up_class_loses_what_it_should() -> None:
+    """Every URDF of a class gets the marks that it was made for."""
+    for hand_in in made_up.hand_ins(150, SEED, "urdf"):
+        assert hand_in.made is not None
+        assert lost(hand_in.made.text) == set(hand_in.made.lost), hand_in.made
+
+
+@pytest.mark.parametrize("way", ALL_WAYS, ids=lambda way: way.name)
+def test_a_way_loses_what_it_should(way: made_up.Way) -> None:
+    """Each way to build or spoil the robot alone, in two styles; each of its edits finds its text once."""
+    for edit in way.edits:
+        assert not edit.old or made_up.elements()[edit.element].count(edit.old) == 1, edit
+    for number in range(2):
+        made = made_up.built(made_up.Dice(f"{way.name}/{number}"), "a student", "alone", (way,))
+        assert lost(made.text) == set(made.lost), made.text
+
+
+def test_two_mistakes_do_not_hide_each_other() -> None:
+    """Any two mistakes that touch different things lose what both lose."""
+    for one, two in combinations(made_up.MISTAKES, 2):
+        if set(one.touches.split()).isdisjoint(two.touches.split()):
+            made = made_up.built(made_up.Dice(one.name + two.name), "a student", "pair", (one, two))
+            assert lost(made.text) == set(made.lost), made.ways
+
+
+# --- A class of all kinds ---------------------------------------------------------------------------------------------
+
+
+def test_all_kinds_and_names_are_there(tmp_path: Path) -> None:
+    """Each kind of hand-in and each awkward name occurs in a class of 300, and is on the disk as far as it can hold it."""
+    written = every(made_up.make_class(tmp_path, MIXED, SEED, "mixed"))
+    assert {each.kind for each in written} == set(made_up.KINDS)
+    names = {each.person.name for each in written}
+    assert {f"{first} {last}" for first, last in made_up.AWKWARD} <= names
+    assert all(os.path.lexists(tmp_path / path) for each in written for path in each.paths)
+    assert any(path.endswith(" (1).urdf") for each in written for path in each.paths)
+    assert [each.kind for each in written if not each.paths] == ["nothing"] * sum(
+        each.kind == "nothing" for each in written
+    )
+    assert written[-1].person.login.endswith(str(MIXED))
+
+
+@pytest.mark.parametrize("layout", made_up.LAYOUTS)
+def test_every_mixed_hand_in_is_opened(layout: str, tmp_path: Path) -> None:
+    """None of them is a fault of ours, and where it is certain what one is worth, that is what it gets."""
+    folder = tmp_path / "class"
+    written = every(made_up.make_class(folder, MIXED, SEED, "mixed", layout))
+    by_path = {path: each for each in written for path in each.paths}
+    graded = {path: each for path, each in _graded(folder)}
+    assert set(graded) <= set(by_path)
+    assert {each.verdict for each in graded.values()} == {"graded", "unreadable"}
+    assert len(graded) == sum(bool(each.paths) for each in written)
+    for path, each in graded.items():
+        made = by_path[path].made
+        assert made is None or (each.verdict, _lost(each)) == ("graded", set(made.lost)), (by_path[path].kind, made)
+    refused = {by_path[path].kind for path, each in graded.items() if each.verdict == "unreadable"}
+    assert layout == "moodle" or refused >= {"broken-zip", "garbage-zip", "zip-bomb"}  # Moodle's are in a folder each
+
+
+def _graded(folder: Path) -> Iterable[tuple[str, Graded]]:
+    """The result of each hand-in, with the top name of what counted."""
+    common = Class(str(folder), LAB6.data, str(LAB6.path))
+    for hand_in in take_in(folder).hand_ins():
+        (graded,) = grade_all(common, [Task(hand_in.student.key, hand_in.paths, hand_in.names)])
+        yield hand_in.paths[0].partition("/")[0], graded
+
+
+def _lost(graded: Graded) -> set[str]:
+    """The criteria of the URDF that failed or were skipped."""
+    lost = {each.id for each, sign in zip(LAB6.criteria, graded.signs, strict=True) if sign in "fs"}
+    return lost & set(made_up.criteria())
+
+
+@pytest.mark.parametrize("layout", ["canvas", "moodle"])
+@pytest.mark.parametrize("list_name", ["roster.csv", "lms.csv"])
+def test_the_lists_match_the_class(layout: str, list_name: str, tmp_path: Path) -> None:
+    """By an instructor's roster and by the LMS's own file, one hand-in is of nobody, and those without one are absent."""
+    folder = tmp_path / "class"
+    written = every(made_up.make_class(folder, MIXED, SEED, "mixed", layout))
+    made_up.write_beside(written, MIXED, layout, None, tmp_path / "roster.csv", tmp_path / "lms.csv")
+    intake = take_in(folder, read_roster(tmp_path / list_name))
+    assert intake.layout == layout
+    assert len(intake.strangers) == 1
+    assert len(intake.absent) == sum(not each.paths for each in written)
+
+
+def test_expectations_are_kept_beside_the_class(tmp_path: Path) -> None:
+    """The JSON file says of every student what was made for them, in whatever bytes the names are."""
+    written = every(made_up.make_class(tmp_path / "class", MIXED, SEED, "mixed"))
+    made_up.write_beside(written, MIXED, "folders", tmp_path / "expected.json", None, None)
+    known = json.loads((tmp_path / "expected.json").read_text(encoding="utf-8"))
+    assert len(known) == MIXED + 1
+    assert known[written[0].person.key]["kind"] == written[0].kind
+    assert known[written[-1].person.key]["lost"] is not None
+
+
+def test_the_bomb_is_one(tmp_path: Path) -> None:
+    """A zip of 64 KiB that says, and is, a thousand times as much."""
+    import zipfile
+
+    (tmp_path / "bomb.zip").write_bytes(made_up.bomb())
+    with zipfile.ZipFile(tmp_path / "bomb.zip") as archive:
+        assert archive.testzip() is None
+        assert sum(info.file_size for info in archive.infolist()) > 900 * len(made_up.bomb())
