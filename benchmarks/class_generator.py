@@ -251,12 +251,12 @@ _COMMENTS = (
     "<!-- length = 5 m -->",
 )
 _DECLARATIONS = (
-    *4 * ('<?xml version="1.0"?>\n',),
-    '<?xml version="1.0" encoding="UTF-8"?>\n',
-    "<?xml version='1.0' ?>\n\n",
+    *30 * ('<?xml version="1.0"?>\n',),
+    *10 * ('<?xml version="1.0" encoding="UTF-8"?>\n',),
+    *4 * ("<?xml version='1.0' ?>\n\n",),
+    *4 * ("",),
     '\n\n<?xml version="1.0"?>\n',
     '\ufeff<?xml version="1.0"?>\n',
-    "",
 )
 _NUMBERS = re.compile(r'(?<=[a-z]=")[-.\d][-.\d ]*(?=")')
 _ORIGIN = re.compile(r'(xyz="[^"]*") (rpy="[^"]*")')

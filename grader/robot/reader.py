@@ -43,9 +43,10 @@ def read_urdf(data: bytes, path: str = "robot.urdf") -> Reading:
     of the tree; `rejected`. Every problem is reported, sorted by place. Never raises for any input.
     """
     text = data.decode("utf-8", "surrogateescape")
-    if dialect.is_plain(data):
+    body = dialect.without_mark(data)
+    if dialect.is_plain(body):
         try:
-            root = parse_xml(data)
+            root = parse_xml(body)
         except XMLSyntaxError:
             pass
         else:

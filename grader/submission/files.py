@@ -31,12 +31,20 @@ def read_start(path: Path | str, count: int, shown: str = "") -> bytes:
         try:
             if not stat.S_ISREG(os.fstat(handle).st_mode):
                 raise InputError(f"{shown or printable_path(path)} is not a regular file")
-            with os.fdopen(handle, "rb", closefd=False) as file:
-                return file.read(count)
+            return _read(handle, count)
         finally:
             os.close(handle)
     except OSError as error:
         raise InputError(f"cannot read {shown or printable_path(path)}: {error.strerror or error}") from None
+
+
+def _read(handle: int, count: int) -> bytes:
+    """At most so many bytes of an open file. A small one is there at once, and needs no buffer of its own."""
+    start = os.read(handle, count)
+    if len(start) < count and (more := os.read(handle, count - len(start))):
+        with os.fdopen(handle, "rb", closefd=False) as file:
+            return start + more + file.read(count - len(start) - len(more))
+    return start
 
 
 def read_standard_input(limit: int = URDF_LIMIT) -> bytes:

@@ -15,9 +15,15 @@ if TYPE_CHECKING:
 _UNIMPORTANT = bytes(sorted(set(range(256)) - set(b"=\"'\t\n\r")))
 _BROKEN_VALUE = re.compile(rb"""=[\t\n\r]*(?:"[='\t\n\r]*?[\t\n\r]|'[="\t\n\r]*?[\t\n\r])""")
 _DEFAULT_NAMESPACE = re.compile(rb"xmlns[ \t\r\n]*=")
+_BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 _PLAIN_START = re.compile(
-    rb"""(?:\xef\xbb\xbf)?(?!<\?|\xff\xfe|\xfe\xff)|<\?xml\s+version\s*=\s*["']1\.0["'](?:\s+encoding\s*=\s*["'](?i:utf-8)["'])?\s*\?>"""
+    rb"""(?!<\?|\xff\xfe|\xfe\xff|\xef\xbb\xbf)|<\?xml\s+version\s*=\s*["']1\.0["'](?:\s+encoding\s*=\s*["'](?i:utf-8)["'])?\s*\?>"""
 )
+
+
+def without_mark(data: bytes) -> bytes:
+    """A text without its byte-order mark, over which TinyXML2 goes in silence."""
+    return data.removeprefix(_BYTE_ORDER_MARK)
 
 
 def is_plain(data: bytes) -> bool:
