@@ -13,6 +13,9 @@ from grader.classroom.queue import Queue
 from grader.classroom.roster import Roster
 from grader.classroom.students import HandIn, Student
 from grader.classroom.work import Class, Graded, Task
+from grader.errors import InputError
+from grader.grading.record import to_record
+from grader.grading.reference import grade_reference
 from grader.grading.rubric import Rubric
 
 
@@ -66,7 +69,9 @@ class Batch:
         listener: Callable[[Progress], None] = lambda _: None,
     ) -> None:
         self._book, self._rubric, self._settings, self._listener = book, rubric, settings, listener
-        self._queue = Queue(executor, settings.workers, Class(settings.root, rubric.data, str(rubric.path)), rubric)
+        self._template = _template(rubric)
+        common = Class(settings.root, rubric.data, str(rubric.path), self._template)
+        self._queue = Queue(executor, settings.workers, common, rubric)
         self._waiting: dict[str, tuple[HandIn, Known | None]] = {}
         self._before: Iterator[Known] = iter(())
         self._next: Known | None = None
@@ -80,7 +85,7 @@ class Batch:
 
     def grade(self, hand_ins: Iterable[HandIn], absent: Sequence[Student] = ()) -> Progress:
         """Grade all hand-ins that are new or changed. `absent` are students of whom there is none."""
-        self._run = self._book.begin(self._settings.root, self._settings.layout, self._rubric)
+        self._run = self._book.begin(self._settings.root, self._settings.layout, self._rubric, self._template)
         self._before = self._book.all_known()
         self._next = next(self._before, None)
         for hand_in in hand_ins:
@@ -153,3 +158,11 @@ class Batch:
         for verdict in verdicts:
             self._progress = self._progress.with_result(verdict)
         self._listener(self._progress)
+
+
+def _template(rubric: Rubric) -> str:
+    """The record of the rubric's reference solution, which most records resemble; empty where there is none to be read."""
+    try:
+        return to_record(grade_reference(rubric)) if rubric.reference else ""
+    except InputError:
+        return ""

@@ -2,6 +2,7 @@
 
 import json
 import sqlite3
+import zlib
 from collections.abc import Iterator
 from contextlib import closing, contextmanager, suppress
 from datetime import UTC, datetime
@@ -14,7 +15,7 @@ from grader.classroom.students import HandIn, Student
 from grader.classroom.work import UNITS, Graded
 from grader.errors import GraderError, InputError
 from grader.grading.rubric import Rubric, read_rubric
-from grader.submission.files import printable_path
+from grader.submission.files import printable_path, sha256_of
 
 _PATIENCE = 60.0  # seconds in which another process may finish its transaction
 _STUDENT = ("key", "name", "email", "login", "sis", "canvas", "moodle")
@@ -94,6 +95,7 @@ class Gradebook:
     def __init__(self, path: Path, *, create: bool = False) -> None:
         self.path = path
         self._shown = printable_path(path)
+        self._template: str | None = None
         if not create and not path.exists():
             raise InputError(
                 f"there is no gradebook {self._shown}: grader batch PATH --gradebook {self._shown} makes one"
@@ -164,10 +166,13 @@ class Gradebook:
 
     # --- what a batch writes -------------------------------------------------------------------------------------------
 
-    def begin(self, source: str, layout: str, rubric: Rubric) -> int:
-        """Begin a run; its number."""
+    def begin(self, source: str, layout: str, rubric: Rubric, template: str = "") -> int:
+        """Begin a run; its number. Its results' records are kept beside the template."""
+        self._template = sha256_of(template.encode()) if template else None
         with self.transaction():
             self._keep_rubric(rubric)
+            if template:
+                self.connection.execute("INSERT OR IGNORE INTO template VALUES (?, ?)", (self._template, template))
             last_mark = self.connection.execute("SELECT coalesce(max(id), 0) FROM mark").fetchone()[0]
             row = (_now(), source, layout, rubric.sha256, __version__, last_mark)
             found = self.connection.execute(
@@ -224,11 +229,11 @@ class Gradebook:
             return int(newest[0])
         row = (
             student, rubric, __version__, graded.digest, graded.verdict, graded.reason, graded.score, graded.out_of,
-            graded.pending, graded.signs, graded.misses, graded.record,
+            graded.pending, graded.signs, graded.misses, self._template, graded.record,
         )  # fmt: skip
         added = self.connection.execute(
             "INSERT INTO result (student, rubric, version, digest, verdict, reason, score, out_of, pending, signs, misses,"
-            " record) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+            " template, record) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
             row,
         )
         return int(added.lastrowid or 0)
@@ -254,10 +259,11 @@ class Gradebook:
             raise GraderError(f"the gradebook {self._shown} holds no rubric {sha256[:12]}")
         return read_rubric(row[0], Path(row[1]))
 
-    def record(self, result: int) -> bytes:
-        """The compressed record of a result."""
-        row = self.connection.execute("SELECT record FROM result WHERE id = ?", (result,)).fetchone()
-        return bytes(row[0])
+    def record(self, result: int) -> tuple[str, str]:
+        """The record of a result, and the template that it is kept beside, empty where there is none."""
+        query = "SELECT record, coalesce(text, '') FROM result LEFT JOIN template ON sha256 = template WHERE id = ?"
+        row = self.connection.execute(query, (result,)).fetchone()
+        return zlib.decompress(row[0]).decode(), str(row[1])
 
     def rows(self, query: str, *values: Any) -> Iterator[tuple[Any, ...]]:
         """What a query gives, row by row."""

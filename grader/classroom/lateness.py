@@ -1,7 +1,11 @@
-"""What a late hand-in costs under a rubric's policy: a line of its own, never part of a criterion."""
+"""What a late hand-in costs under a rubric's policy: a line of its own, never part of a criterion.
+
+As Canvas does it (app/models/late_policy.rb): so many percent of all points that can be earned for each day begun, and never
+more than down to the floor.
+"""
 
 from dataclasses import dataclass
-from datetime import datetime, timedelta
+from datetime import date, datetime, time, timedelta
 from decimal import Decimal
 from math import ceil
 
@@ -43,7 +47,11 @@ def lateness(rubric: Rubric, times: Times, score: Decimal, due: datetime | None 
 
 
 def read_time(text: str) -> datetime:
-    """A time as ISO 8601; raises InputError."""
+    """When something is due, as ISO 8601: a date alone is the end of that day. Raises InputError."""
+    try:
+        return datetime.combine(date.fromisoformat(text.strip()), time.max)
+    except ValueError:
+        pass
     try:
         return datetime.fromisoformat(text.strip())
     except ValueError:
@@ -54,24 +62,21 @@ def _days(times: Times, policy: Late | None, due: datetime | None) -> tuple[int,
     if times.days_late is not None:
         days = max(0, ceil(times.days_late))
         return days, f"{_many(days)} late, by the roster" if days else ""
-    own = read_time(times.due) if times.due else due or (policy.due if policy is not None else None)
-    if times.submitted and own is not None:
-        late_by = _since(own + times.extension * _DAY, read_time(times.submitted))
-        grace = timedelta(minutes=float(policy.grace_minutes)) if policy is not None else timedelta()
-        if late_by <= max(grace, timedelta()):
-            return 0, ""
-        days = ceil(late_by / _DAY)
-        return days, f"{_many(days)} late: handed in {times.submitted}"
-    return (1, "late by an unknown time, which counts as 1 day") if times.is_late else (0, "")
+    due = read_time(times.due) if times.due else due or (policy.due if policy is not None else None)
+    if not times.submitted or due is None:
+        return (1, "late by an unknown time, which counts as 1 day") if times.is_late else (0, "")
+    due, handed_in = _in_one_zone(due, datetime.fromisoformat(times.submitted))
+    allowed = times.extension * _DAY + timedelta(minutes=float(policy.grace_minutes) if policy is not None else 0)
+    days = max(0, -((allowed - (handed_in - due)) // _DAY))  # those begun: rounded up
+    if not days:
+        return 0, ""
+    more = f" and {format(Decimal(str(times.extension)).normalize(), 'f')} days more" if times.extension else ""
+    return days, f"{_many(days)} late: handed in {times.submitted}, due {due.isoformat(timespec='minutes')}{more}"
 
 
-def _since(due: datetime, handed_in: datetime) -> timedelta:
-    """How long after; a time without an offset is one where the other is."""
-    if handed_in.tzinfo is None:
-        handed_in = handed_in.replace(tzinfo=due.tzinfo)
-    elif due.tzinfo is None:
-        due = due.replace(tzinfo=handed_in.tzinfo)
-    return handed_in - due
+def _in_one_zone(due: datetime, handed_in: datetime) -> tuple[datetime, datetime]:
+    """Two times that can be compared: one without an offset is taken for one where the other is."""
+    return due.replace(tzinfo=due.tzinfo or handed_in.tzinfo), handed_in.replace(tzinfo=handed_in.tzinfo or due.tzinfo)
 
 
 def _many(days: int) -> str:

@@ -19,6 +19,11 @@ CREATE TABLE criterion (
     PRIMARY KEY (rubric, id)
 ) WITHOUT ROWID;
 
+CREATE TABLE template (
+    sha256 TEXT PRIMARY KEY,
+    text TEXT NOT NULL
+) WITHOUT ROWID;
+
 CREATE TABLE student (
     id INTEGER PRIMARY KEY,
     key TEXT NOT NULL UNIQUE,
@@ -58,6 +63,7 @@ CREATE TABLE result (
     pending INTEGER NOT NULL,
     signs TEXT NOT NULL,           -- a letter for each criterion: p f s ? !, - where it was not graded
     misses TEXT NOT NULL,          -- JSON: each failed criterion's position with what was measured, in a few words
+    template TEXT REFERENCES template,  -- what the record is kept beside
     record BLOB NOT NULL           -- the report as compressed JSON
 );
 CREATE INDEX result_of_student ON result (student);

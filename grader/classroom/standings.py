@@ -1,7 +1,6 @@
 """Everyone's current grade: what the checks have found, what people have decided, and what being late costs."""
 
 import json
-import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from datetime import datetime
@@ -16,7 +15,7 @@ from grader.classroom.quoting import Origin, Quoting
 from grader.classroom.students import Student
 from grader.classroom.work import UNITS
 from grader.errors import InputError
-from grader.grading.record import from_record
+from grader.grading.record import Template, from_record
 from grader.grading.report import Report, Result, Ruling
 from grader.grading.rubric import Rubric
 from grader.robot.names import did_you_mean
@@ -99,6 +98,7 @@ class Standings:
         self.book = book
         self._due = due
         self.rubric = cache(book.rubric)
+        self._templates: dict[tuple[str, str], Template] = {}
 
     def newest_rubric(self) -> Rubric:
         """The rubric of the newest run; raises InputError where there was none."""
@@ -150,8 +150,11 @@ class Standings:
         if standing.result is None:
             raise InputError(f"{standing.student.key} has handed in nothing")
         rubric = self.rubric(standing.rubric)
-        record = zlib.decompress(self.book.record(standing.result)).decode()
-        report = from_record(record, rubric, Quoting(standing.origin, rubric))
+        record, template = self.book.record(standing.result)
+        if (standing.rubric, template) not in self._templates:
+            self._templates[standing.rubric, template] = Template(template, rubric)
+        beside = self._templates[standing.rubric, template]
+        report = from_record(record, rubric, Quoting(standing.origin, rubric), beside)
         rulings = self._rulings(standing.id) if standing.marks else {}
         return replace(report, results=_ruled(report, rulings)) if rulings else report
 

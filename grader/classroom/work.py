@@ -16,7 +16,7 @@ from grader.classroom.misses import kind_of_miss
 from grader.classroom.opening import fingerprint, open_hand_in
 from grader.errors import InputError
 from grader.grading.grade import grade
-from grader.grading.record import Kept, to_record
+from grader.grading.record import Kept, Template, to_record
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric, read_rubric
 
@@ -33,6 +33,7 @@ class Class(NamedTuple):
     root: str
     rubric: bytes
     rubric_path: str
+    template: str = ""  # the record that those of the class are kept beside
 
 
 class Task(NamedTuple):
@@ -82,7 +83,7 @@ def prepare(memory: int) -> None:
 
 
 def _grade_one(common: Class, task: Task) -> Graded:
-    rubric = _rubric(common.rubric, common.rubric_path)
+    rubric, template = _rules(common.rubric, common.rubric_path, common.template)
     mark = fingerprint(common.root, task.paths, time.time_ns())
     digest = ""
     try:
@@ -101,7 +102,7 @@ def _grade_one(common: Class, task: Task) -> Graded:
             rubric, task, "errored", f"the grader itself failed: {type(error).__name__}: {error}", digest, mark
         )
     faulty = next((each.outcome.message for each in report.results if each.outcome.status == "errored"), "")
-    return _of(report, task, "errored" if faulty else "graded", faulty, digest, mark)
+    return _of(report, task, "errored" if faulty else "graded", faulty, digest, mark, template)
 
 
 def failed(rubric: Rubric, task: Task, verdict: Verdict, reason: str, digest: str = "", mark: str = "") -> Graded:
@@ -114,12 +115,20 @@ def failed(rubric: Rubric, task: Task, verdict: Verdict, reason: str, digest: st
     return _of(report, task, verdict, reason, digest, mark)
 
 
-def _of(report: Report, task: Task, verdict: Verdict, reason: str, digest: str, mark: str) -> Graded:
+def _of(
+    report: Report,
+    task: Task,
+    verdict: Verdict,
+    reason: str,
+    digest: str,
+    mark: str,
+    template: Template | None = None,
+) -> Graded:
     signs = dict.fromkeys((criterion.id for criterion in report.rubric.criteria), NOT_GRADED)
     for result in report.results:
         signs[result.criterion.id] = SIGNS[result.outcome.status]
     score, out_of, pending = (int(each * UNITS) for each in (report.score, report.max_score, report.pending))
-    record = zlib.compress(to_record(report).encode(), 1)
+    record = zlib.compress(to_record(report, template).encode(), 1)
     misses = _misses(report)
     return Graded(
         task.key, verdict, digest, mark, score, out_of, pending, "".join(signs.values()), misses, record, reason
@@ -138,5 +147,6 @@ def _misses(report: Report) -> str:
 
 
 @lru_cache(maxsize=4)
-def _rubric(data: bytes, path: str) -> Rubric:
-    return read_rubric(data, Path(path))
+def _rules(data: bytes, path: str, template: str) -> tuple[Rubric, Template]:
+    rubric = read_rubric(data, Path(path))
+    return rubric, Template(template, rubric)

@@ -48,18 +48,15 @@ def check_rubric(
     file: Annotated[str, typer.Argument(metavar="FILE", help="A .toml file, or the id of a rubric.")],
 ) -> int:
     """Check a rubric and its reference solution: exits 2 and names every mistake, each with its line."""
-    from grader.grading.grade import grade
+    from grader.grading.reference import grade_reference
     from grader.grading.rubric import load_rubric
     from grader.report.points import points_words
     from grader.report.text import printable
-    from grader.submission.submission import open_submission
 
     rules = load_rubric(file)
     summary = f"{rules.id}: {len(rules.criteria)} criteria, {points_words(rules.points)} points, no mistakes found"
     if rules.reference:
-        report = grade(
-            rules, open_submission(str(rules.path.parent / rules.reference), wanted=rules.urdf, package=rules.package)
-        )
+        report = grade_reference(rules)
         lost = [each for each in report.results if each.outcome.status not in ("passed", "pending")]
         if lost:
             raise RubricError(

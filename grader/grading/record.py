@@ -45,8 +45,23 @@ class Kept:
         return self.quote(path) if self.quote is not None else None
 
 
-def to_record(report: Report) -> str:
-    """A report as JSON text. What the rubric says is not in it: `from_record` needs the same rubric."""
+class Template:
+    """The outcomes of a report that most others resemble, such as the reference's: what is the same need not be kept again."""
+
+    def __init__(self, record: str, rubric: Rubric) -> None:
+        self.text = record
+        results = from_record(record, rubric).results if record else ()
+        self.outcomes = {each.criterion.id: each.outcome for each in results}
+
+    @classmethod
+    def of(cls, report: Report) -> "Template":
+        """The template that a report makes."""
+        return cls(to_record(report), report.rubric)
+
+
+def to_record(report: Report, template: Template | None = None) -> str:
+    """A report as JSON text. What the rubric or the template says is not in it: `from_record` needs the same ones."""
+    same = template.outcomes if template is not None else {}
     order = {criterion.id: index for index, criterion in enumerate(report.rubric.criteria)}
     kept = report.submission
     package = kept.package
@@ -57,7 +72,7 @@ def to_record(report: Report) -> str:
             kept.passed_over, kept.left_out, kept.has_urdf, kept.verdict, kept.is_single, kept.unread,
         ],
         "parts": report.parts,
-        "results": [_result(order, each) for each in report.results],
+        "results": [_result(order, same, each) for each in report.results],
         "problems": [(each.code, each.severity, each.message, each.location) for each in report.problems],
         "exhibits": [[_exhibit(file) for file in each.files] for each in report.exhibits],
         "evidence": [each.evidence.id for each in report.exhibits],
@@ -67,8 +82,9 @@ def to_record(report: Report) -> str:
     return _ENCODER.encode(data)
 
 
-def from_record(text: str, rubric: Rubric, quote: Quote | None = None) -> Report:
-    """The report that a record was made from, under the same rubric."""
+def from_record(text: str, rubric: Rubric, quote: Quote | None = None, template: Template | None = None) -> Report:
+    """The report that a record was made from, with the same rubric and template."""
+    same = template.outcomes if template is not None else {}
     data = json.loads(text)
     identity, path, sha256, package, passed_over, left_out, has_urdf, verdict, is_single, unread = data["submission"]
     kept = Kept(
@@ -89,7 +105,7 @@ def from_record(text: str, rubric: Rubric, quote: Quote | None = None) -> Report
         kept,
         rubric,
         tuple(data["parts"]),
-        tuple(_read_result(rubric, each) for each in data["results"]),
+        tuple(_read_result(rubric, same, each) for each in data["results"]),
         tuple(_read_problem(*each) for each in data["problems"]),
         tuple(
             Exhibits(evidence[name], tuple(Exhibit(*each) for each in files))
@@ -101,14 +117,16 @@ def from_record(text: str, rubric: Rubric, quote: Quote | None = None) -> Report
     )
 
 
-def _result(order: dict[str, int], result: Result) -> tuple[Any, ...]:
-    index = order[result.criterion.id]
+def _result(order: dict[str, int], same: dict[str, Outcome], result: Result) -> Any:
+    name, outcome = result.criterion.id, result.outcome
     if result.because is None and not result.traceback:
-        return index, result.outcome
-    return index, result.outcome, result.because, result.traceback
+        return order[name] if same.get(name) == outcome else (order[name], outcome)
+    return order[name], outcome, result.because, result.traceback
 
 
-def _read_result(rubric: Rubric, entry: Sequence[Any]) -> Result:
+def _read_result(rubric: Rubric, same: dict[str, Outcome], entry: Any) -> Result:
+    if isinstance(entry, int):
+        return Result(rubric.criteria[entry], same[rubric.criteria[entry].id])
     index, (status, message, measured, expected, tolerance, unit, place), *rest = entry
     location = Location(*place) if place is not None else None
     outcome = Outcome(status, message, _value(measured), _value(expected), tolerance, unit, location)
