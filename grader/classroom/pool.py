@@ -2,10 +2,12 @@
 
 import multiprocessing
 import os
+import signal
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import CancelledError, Executor, Future
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager, suppress
 from typing import Any
 
 from pebble import ProcessExpired, ProcessPool
@@ -14,6 +16,8 @@ from grader.errors import GraderError
 
 MEMORY = 2 * 1024**3  # bytes that one worker may have
 _WATCHED = 0.5  # seconds between two looks at whether the pool still lives
+_TRIES = 3  # to have work taken by a pool, which may break at any moment
+_LEFT = 70  # the exit code of a worker that was ended in the midst of its work as if all were well
 
 
 class Lost(GraderError):
@@ -27,8 +31,9 @@ class Lost(GraderError):
 class Processes(Executor):
     """Worker processes. What takes longer than `timeout` seconds, or ends its worker, raises Lost from its future.
 
-    Another worker then takes the place of the one that ended. `prepare` is run in each at its start; `preload` names the
-    modules that are loaded once for all of them, where the system can fork.
+    Another worker then takes the place of the one that ended. All of them end with the process that has started them, however
+    that ends. `prepare` is run in each at its start; `preload` names the modules that are loaded once for all of them, where
+    the system can fork.
     """
 
     def __init__(
@@ -39,19 +44,40 @@ class Processes(Executor):
         self._lock = threading.RLock()
         self._promised: set[Future[Any]] = set()
         self._is_shut = threading.Event()
+        self._has_begun = False
         self._pool = self._new_pool()
         self._watch = threading.Thread(target=self._watch_pool, daemon=True)
         self._watch.start()
 
     def submit(self, function: Callable[..., Any], /, *arguments: Any, **named: Any) -> "Future[Any]":
         """Have a function run in a worker."""
+        return self.submit_within(self._timeout, function, arguments, named)
+
+    def submit_within(
+        self, timeout: float, function: Callable[..., Any], arguments: tuple[Any, ...], named: dict[str, Any]
+    ) -> "Future[Any]":
+        """Have a function run in a worker for at most so many seconds, whatever the others may take."""
         done: Future[Any] = Future()
         with self._lock:
-            self._mend()
+            inner = self._scheduled(timeout, function, arguments, named)
             self._promised.add(done)
-            inner = self._pool.schedule(function, arguments, named, self._timeout)
-        inner.add_done_callback(lambda future: self._pass_on(future, done))
+        inner.add_done_callback(lambda future: self._pass_on(future, done, timeout))
         return done
+
+    def _scheduled(
+        self, timeout: float, function: Callable[..., Any], arguments: tuple[Any, ...], named: dict[str, Any]
+    ) -> "Future[Any]":
+        if not self._has_begun:
+            self._has_begun = True
+            _start_server(self._context)
+        for left in reversed(range(_TRIES)):
+            self._mend()
+            try:
+                return self._pool.schedule(function, arguments, named, timeout)
+            except (RuntimeError, BrokenProcessPool):  # it broke just now
+                if not left or self._is_shut.is_set():
+                    raise
+        raise AssertionError
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """End the workers: at once, whatever they do."""
@@ -63,7 +89,9 @@ class Processes(Executor):
             self._watch.join()
 
     def _new_pool(self) -> ProcessPool:
-        return ProcessPool(self._workers, initializer=self._prepare, initargs=(self._memory,), context=self._context)
+        return ProcessPool(
+            self._workers, initializer=_begin, initargs=(self._prepare, self._memory), context=self._context
+        )
 
     def _end(self) -> None:
         self._pool.stop()  # type: ignore[no-untyped-call]
@@ -84,11 +112,11 @@ class Processes(Executor):
         for done in tuple(self._promised):
             self._settle(done, Lost("the processes that grade came to an end", is_own_fault=False))
 
-    def _pass_on(self, inner: "Future[Any]", done: "Future[Any]") -> None:
+    def _pass_on(self, inner: "Future[Any]", done: "Future[Any]", timeout: float) -> None:
         try:
             self._settle(done, result=inner.result())
         except TimeoutError:
-            self._settle(done, Lost(f"grading it took longer than {self._timeout:g} s, and was stopped"))
+            self._settle(done, Lost(f"grading it took longer than {timeout:g} s, and was stopped"))
         except ProcessExpired as error:
             self._settle(done, Lost(f"the process that graded it {_end_of(error.exitcode)}"))
         except (BrokenProcessPool, CancelledError):
@@ -111,17 +139,56 @@ class Processes(Executor):
 
 
 def _end_of(code: int) -> str:
+    if code == _LEFT:
+        return "ended in the midst of it"
     return f"was ended by signal {-code}" if code < 0 else f"ended with exit code {code}"
 
 
 def _context(preload: str) -> Any:
     """Where workers come from: a server that has loaded everything once, and forks; spawned where there is no such thing."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # each worker is one thread; there are enough of them
+    # Python looks for modules in the current folder first, which may be a class's: nothing there may be imported.
+    os.environ["PYTHONSAFEPATH"] = "1"
     methods = multiprocessing.get_all_start_methods()
     context: Any = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
     if "forkserver" in methods and preload:
         context.set_forkserver_preload([preload])
     return context
+
+
+def _start_server(context: Any) -> None:
+    """Start what workers are forked from; while it loads it would take Ctrl-C for its own, and tell of it at length."""
+    if context.get_start_method() == "forkserver":
+        from multiprocessing.forkserver import ensure_running
+
+        with _deaf():
+            ensure_running()
+
+
+@contextmanager
+def _deaf() -> Iterator[None]:
+    """Keep Ctrl-C waiting; processes that are started in here never hear of it."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _begin(prepare: Callable[[int], None], memory: int) -> None:
+    """Make a worker ready for work; from now on it ends with the process that has started it, whatever it does."""
+    leave = os._exit
+    # Of one that ends with 0 pebble hears nothing.
+    os._exit = lambda status: leave(status or _LEFT)
+    prepare(memory)
+    parent = multiprocessing.parent_process()
+    with suppress(ImportError, AttributeError, OSError):
+        import fcntl
+
+        # A signal when the pipe to that process closes: no thread could tell what the interpreter does not get out of.
+        assert parent is not None
+        fcntl.fcntl(parent.sentinel, fcntl.F_SETOWN, os.getpid())
+        fcntl.fcntl(parent.sentinel, fcntl.F_SETFL, fcntl.fcntl(parent.sentinel, fcntl.F_GETFL) | os.O_ASYNC)
 
 
 def processors() -> int:

@@ -24,7 +24,8 @@ Verdict = Literal["graded", "unreadable", "errored", "unchanged"]
 UNITS = 10_000  # points are kept as whole numbers of ten-thousandths
 SIGNS: dict[Status, str] = {"passed": "p", "failed": "f", "skipped": "s", "pending": "?", "errored": "!"}
 NOT_GRADED = "-"
-PRELOAD = "grader.classroom.work"  # what a process is to have loaded before it forks
+# What a process is to have loaded before it forks, late imports included.
+PRELOAD = ("grader.classroom.work", "grader.robot.rims", "grader.submission.find", "grader.submission.remarks")
 
 
 class Class(NamedTuple):
@@ -69,8 +70,6 @@ def grade_all(common: Class, tasks: Sequence[Task]) -> list[Graded]:
 def prepare(memory: int) -> None:
     """Make a process fit for grading: bounded in memory (bytes), deaf to Ctrl-C, which is for the one that hands out the work."""
     import signal
-
-    import grader.submission.find  # noqa: F401  loaded before the first hand-in
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     with suppress(ImportError, ValueError, OSError):

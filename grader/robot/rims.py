@@ -18,6 +18,7 @@ Array = np.ndarray[Any, np.dtype[np.float64]]
 SAGITTA = 4e-5  # metres from a rim to the polygon that stands for it; two of these are less than 0.1 mm
 _BEND = 4e-6  # the same relative to the radius, so that a rim of more than 10 m has no more corners than one of 10 m
 _ROUNDING = 1e-9  # the sine of an angle that is none
+_STEPS = np.arange(-8, 9) / 8.0
 
 
 def least_overlap_at_rims(a: Box | Cylinder, b: Box | Cylinder, T_a_b: Transform) -> Vector:
@@ -27,37 +28,46 @@ def least_overlap_at_rims(a: Box | Cylinder, b: Box | Cylinder, T_a_b: Transform
     stands out from its polygon by no more than `SAGITTA`. Two more rounds look closer about the best normal.
     """
     rotation = np.array(T_a_b.rotation).reshape(3, 3)
-    straight = np.array([*straight_edges(a), *map(T_a_b.rotate, straight_edges(b))])
+    straight = np.array([*straight_edges(a), *map(T_a_b.rotate, straight_edges(b))]).T
     sides = ((a, np.eye(3)), (b, rotation))
-    rims = [(frame, _all_around(shape.radius)) for shape, frame in sides if isinstance(shape, Cylinder)]
-    best = straight[0]
+    rims = [(frame[:, :2], _all_around(shape.radius)) for shape, frame in sides if isinstance(shape, Cylinder)]
+    best = straight[:, 0]
     for _ in range(3):
-        lines = [np.outer(np.cos(turns), f[:, 0]) + np.outer(np.sin(turns), f[:, 1]) for f, turns in rims]
-        spans = [np.cross(p[:, None], q).reshape(-1, 3) for p, q in combinations([straight, *lines], 2)]
-        normals = np.concatenate(spans)
-        lengths = np.linalg.norm(normals, axis=1)
-        normals = normals[lengths > _ROUNDING] / lengths[lengths > _ROUNDING, None]
-        overlaps = _half_widths(a, normals) + _half_widths(b, normals @ rotation) - abs(normals @ T_a_b.translation)
-        best = normals[overlaps.argmin()]
-        rims = [(f, _closer(turns, atan2(best @ f[:, 0], -(best @ f[:, 1])))) for f, turns in rims]
+        lines = [plane @ np.array((np.cos(turns), np.sin(turns))) for plane, turns in rims]
+        normals = np.concatenate([_spanned(p, q) for p, q in combinations([straight, *lines], 2)], axis=1)
+        lengths = np.sqrt((normals * normals).sum(axis=0))
+        lengths[lengths <= _ROUNDING] = np.inf  # parallel lines span nothing: no normal comes of them
+        normals /= lengths
+        overlaps = _half_widths(a, normals) + _half_widths(b, rotation.T @ normals) - abs(T_a_b.translation @ normals)
+        overlaps[lengths == np.inf] = np.inf
+        best = normals[:, overlaps.argmin()]
+        rims = [(plane, _closer(turns, atan2(best @ plane[:, 0], -(best @ plane[:, 1])))) for plane, turns in rims]
     x, y, z = best.tolist()
     return (x, y, z)
 
 
-def _all_around(radius: float) -> list[float]:
+def _spanned(p: Array, q: Array) -> Array:
+    """The cross products of all directions of shape (3, n) with all of (3, m), as (3, n m). np.cross takes far longer."""
+    (a, b, c), (x, y, z) = p[:, :, None], q[:, None, :]
+    return np.array((b * z - c * y, c * x - a * z, a * y - b * x)).reshape(3, -1)
+
+
+def _all_around(radius: float) -> Array:
     """The directions of a polygon's edges as angles over half a turn; across the polygon they come again."""
     sagitta = max(SAGITTA, _BEND * abs(radius))
     count = max(2, ceil(pi / 2.0 * sqrt(abs(radius) / sagitta / 2.0)))  # for 1 - cos(t) is no more than t**2 / 2
-    return [step * pi / count for step in range(count)]
+    turns: Array = np.arange(count) * (pi / count)
+    return turns
 
 
-def _closer(turns: list[float], middle: float) -> list[float]:
-    return [middle + (turns[1] - turns[0]) * (step / 8.0 - 1.0) for step in range(17)]
+def _closer(turns: Array, middle: float) -> Array:
+    closer: Array = middle + (turns[1] - turns[0]) * _STEPS
+    return closer
 
 
 def _half_widths(shape: Box | Cylinder, directions: Array) -> Array:
-    """`half_width` for directions of shape (n, 3)."""
-    x, y, z = directions.T
+    """`half_width` for directions of shape (3, n)."""
+    x, y, z = directions
     if isinstance(shape, Box):
         a, b, c = shape.size
         widths: Array = (abs(a * x) + abs(b * y) + abs(c * z)) / 2.0
