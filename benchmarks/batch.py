@@ -25,7 +25,7 @@ from grader.classroom.batch import Batch, Progress, Settings
 from grader.classroom.gradebook import Gradebook
 from grader.classroom.pool import Processes, processors
 from grader.classroom.students import HandIn, Student
-from grader.classroom.work import Class, Task, grade_all, prepare
+from grader.classroom.work import PRELOAD, Class, Task, grade_all, prepare
 from grader.grading.rubric import load_rubric
 
 _TIMEOUT = 60.0  # seconds for one hand-in
@@ -174,7 +174,7 @@ FIGURES: dict[str, Callable[[Bench], None]] = {
 @contextmanager
 def workers(bench: Bench, jobs: int) -> Iterator[Executor]:
     """Workers, each of which has graded a few dozen hand-ins that are in no class."""
-    executor = Processes(jobs, _TIMEOUT, prepare, preload="grader.classroom.work")
+    executor = Processes(jobs, _TIMEOUT, prepare, preload=PRELOAD)
     folder, rubric = bench.folder(_WARMING), load_rubric("lab6")
     common = Class(str(folder), rubric.data, str(rubric.path))
     tasks = [Task(name, (name,)) for name in names_in(folder)]

@@ -4,7 +4,7 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import CancelledError, Executor, Future
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
@@ -37,7 +37,7 @@ class Processes(Executor):
     """
 
     def __init__(
-        self, workers: int, timeout: float, prepare: Callable[[int], None], memory: int = MEMORY, preload: str = ""
+        self, workers: int, timeout: float, prepare: Callable[[int], None], memory: int = MEMORY, preload: Sequence[str] = ()
     ) -> None:
         self._workers, self._timeout, self._prepare, self._memory = workers, timeout, prepare, memory
         self._context = _context(preload)
@@ -144,7 +144,7 @@ def _end_of(code: int) -> str:
     return f"was ended by signal {-code}" if code < 0 else f"ended with exit code {code}"
 
 
-def _context(preload: str) -> Any:
+def _context(preload: Sequence[str]) -> Any:
     """Where workers come from: a server that has loaded everything once, and forks; spawned where there is no such thing."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # each worker is one thread; there are enough of them
     # Python looks for modules in the current folder first, which may be a class's: nothing there may be imported.
@@ -152,7 +152,7 @@ def _context(preload: str) -> Any:
     methods = multiprocessing.get_all_start_methods()
     context: Any = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
     if "forkserver" in methods and preload:
-        context.set_forkserver_preload([preload])
+        context.set_forkserver_preload(list(preload))
     return context
 
 
