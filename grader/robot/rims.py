@@ -56,8 +56,7 @@ def _all_around(radius: float) -> Array:
     """The directions of a polygon's edges as angles over half a turn; across the polygon they come again."""
     sagitta = max(SAGITTA, _BEND * abs(radius))
     count = max(2, ceil(pi / 2.0 * sqrt(abs(radius) / sagitta / 2.0)))  # for 1 - cos(t) is no more than t**2 / 2
-    turns: Array = np.arange(count) * (pi / count)
-    return turns
+    return np.linspace(0.0, pi, count, endpoint=False)
 
 
 def _closer(turns: Array, middle: float) -> Array:
