@@ -123,26 +123,17 @@ def _of(
     mark: str,
     template: Template | None = None,
 ) -> Graded:
-    signs = dict.fromkeys((criterion.id for criterion in report.rubric.criteria), NOT_GRADED)
-    for result in report.results:
-        signs[result.criterion.id] = SIGNS[result.outcome.status]
+    signs = [NOT_GRADED] * len(report.rubric.criteria)
+    misses = []
+    for criterion, outcome, *_ in report.results:
+        signs[criterion.position] = SIGNS[outcome.status]
+        if outcome.status == "failed":
+            misses.append((criterion.position, kind_of_miss(outcome)))
     score, out_of, pending = (int(each * UNITS) for each in (report.score, report.max_score, report.pending))
     record = zlib.compress(to_record(report, template).encode(), 1)
-    misses = _misses(report)
     return Graded(
-        task.key, verdict, digest, mark, score, out_of, pending, "".join(signs.values()), misses, record, reason
+        task.key, verdict, digest, mark, score, out_of, pending, "".join(signs), json.dumps(misses), record, reason
     )
-
-
-def _misses(report: Report) -> str:
-    """What was measured where a criterion failed, so roughly that the same mistake is the same text."""
-    order = {criterion.id: index for index, criterion in enumerate(report.rubric.criteria)}
-    found = [
-        (order[each.criterion.id], kind_of_miss(each.outcome))
-        for each in report.results
-        if each.outcome.status == "failed"
-    ]
-    return json.dumps(found) if found else "[]"
 
 
 @lru_cache(maxsize=4)

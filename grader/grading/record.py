@@ -62,7 +62,6 @@ class Template:
 def to_record(report: Report, template: Template | None = None) -> str:
     """A report as JSON text. What the rubric or the template says is not in it: `from_record` needs the same ones."""
     same = template.outcomes if template is not None else {}
-    order = {criterion.id: index for index, criterion in enumerate(report.rubric.criteria)}
     kept = report.submission
     package = kept.package
     data = {
@@ -72,7 +71,7 @@ def to_record(report: Report, template: Template | None = None) -> str:
             kept.passed_over, kept.left_out, kept.has_urdf, kept.verdict, kept.is_single, kept.unread,
         ],
         "parts": report.parts,
-        "results": [_result(order, same, each) for each in report.results],
+        "results": [_result(same, each) for each in report.results],
         "problems": [(each.code, each.severity, each.message, each.location) for each in report.problems],
         "exhibits": [[_exhibit(file) for file in each.files] for each in report.exhibits],
         "evidence": [each.evidence.id for each in report.exhibits],
@@ -117,11 +116,11 @@ def from_record(text: str, rubric: Rubric, quote: Quote | None = None, template:
     )
 
 
-def _result(order: dict[str, int], same: dict[str, Outcome], result: Result) -> Any:
-    name, outcome = result.criterion.id, result.outcome
-    if result.because is None and not result.traceback:
-        return order[name] if same.get(name) == outcome else (order[name], outcome)
-    return order[name], outcome, result.because, result.traceback
+def _result(same: dict[str, Outcome], result: Result) -> Any:
+    criterion, outcome, because, traceback, _ = result
+    if because is None and not traceback:
+        return criterion.position if same.get(criterion.id) == outcome else (criterion.position, outcome)
+    return criterion.position, outcome, because, traceback
 
 
 def _read_result(rubric: Rubric, same: dict[str, Outcome], entry: Any) -> Result:

@@ -37,7 +37,7 @@ class Evidence:
 
 @dataclass(frozen=True, slots=True)
 class Criterion:
-    """One row of a rubric: a check with its arguments, and the exact points for passing it."""
+    """One row of a rubric: a check with its arguments, and the exact points for passing it. `position` counts from 0."""
 
     id: str
     title: str
@@ -48,6 +48,7 @@ class Criterion:
     requires: tuple[str, ...] = ()
     feedback: str = ""
     about: str = ""
+    position: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,7 +154,10 @@ def read_rubric(data: bytes, path: Path) -> Rubric:
         table["id"],
         table["title"],
         tuple(Part(row["id"], row["title"], row.get("needs", "urdf")) for row in table["part"]),
-        tuple(_criterion(row, *bound) for row, bound in zip(table["criterion"], rows.bound, strict=True)),
+        tuple(
+            _criterion(position, row, *bound)
+            for position, (row, bound) in enumerate(zip(table["criterion"], rows.bound, strict=True))
+        ),
         table.get("urdf", "robot.urdf"),
         table.get("reference", ""),
         data,
@@ -173,7 +177,7 @@ def _evidence(row: dict[str, Any]) -> Evidence:
     return Evidence(row["id"], row["part"], row["title"], tuple(row["names"]))
 
 
-def _criterion(row: dict[str, Any], check: Check, arguments: dict[str, Any]) -> Criterion:
+def _criterion(position: int, row: dict[str, Any], check: Check, arguments: dict[str, Any]) -> Criterion:
     return Criterion(
         row["id"],
         row["title"],
@@ -184,4 +188,5 @@ def _criterion(row: dict[str, Any], check: Check, arguments: dict[str, Any]) -> 
         tuple(row.get("requires", ())),
         row.get("feedback", ""),
         row.get("about", ""),
+        position,
     )
