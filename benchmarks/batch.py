@@ -125,13 +125,13 @@ def against_check_urdf(bench: Bench) -> None:
 
     installed = Path(sys.executable).with_name("check_urdf")
     with workers(bench, bench.jobs) as executor:
-        runs = {"the bare program": loop(program)}
+        runs = {"bare program": loop(program)}
         if installed.exists():  # what pip puts on the path: a few lines of Python that start the program
             runs["pip's command"] = loop(installed)
         runs["grader"] = lambda: fresh_run(bench, size, bench.jobs, executor) / size
         times = in_turn(runs, bench.runs)
     print(f"\nA class against `for f in *.urdf; do check_urdf $f; done` ({size} hand-ins, {few} in the loop)")
-    _ratios(times, "the bare program")
+    _ratios(times, "bare program")
 
 
 def again(bench: Bench) -> None:

@@ -29,8 +29,9 @@ class Queue:
         self._done = 0
 
     def put(self, task: Task) -> None:
-        """Add a hand-in."""
+        """Add a hand-in, and hand out what is ready."""
         self._waiting.append(task)
+        self._hand_out(all_in=False)
 
     @property
     def is_full(self) -> bool:
