@@ -18,7 +18,7 @@ def test_a_sample_loses_exactly_what_it_should(name: str) -> None:
     """The verdict and the criteria that do not pass are those that stand beside the sample."""
     sample = SAMPLES[name]
     report = sample.grade()
-    urdf = report.submission.urdf
+    urdf = sample.open().urdf
     assert (urdf.verdict if urdf is not None else "missing") == sample.expected["verdict"]
     statuses = {result.criterion.id: result.outcome.status for result in report.results}
     assert [name for name, status in statuses.items() if status in ("failed", "skipped")] == sample.expected["lost"]

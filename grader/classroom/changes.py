@@ -5,10 +5,11 @@ from dataclasses import dataclass
 from decimal import Decimal
 from typing import NamedTuple
 
-from grader.classroom.gradebook import Gradebook
+from grader.classroom.gradebook import Gradebook, Run
 from grader.classroom.work import UNITS
 from grader.errors import InputError
 from grader.grading.rubric import Rubric
+from grader.submission.files import printable_path
 
 _STATE = """
 SELECT student.id, student.key, result.signs, result.verdict, result.digest, result.rubric, result.version
@@ -29,6 +30,14 @@ class Side(NamedTuple):
     book: Gradebook
     run: int
     last_mark: int = _EVER
+
+    @property
+    def newest_run(self) -> Run:
+        """The run itself, or the newest one up to it; raises InputError where there is none."""
+        runs = [run for run in self.book.runs() if run.id <= self.run]
+        if not runs:
+            raise InputError(f"nothing has been graded into {printable_path(self.book.path)} yet")
+        return runs[-1]
 
 
 class Step(NamedTuple):
@@ -66,17 +75,18 @@ class _State(NamedTuple):
 def last_two(book: Gradebook, before: int | None = None, after: int | None = None) -> tuple[Side, Side]:
     """The last two runs in a gradebook, or two that are named by their numbers; raises InputError.
 
-    The older is taken as it was when it ended, the newer with the marks by hand that followed it.
+    The older is taken with the marks by hand that there were when it began, the newer with those that followed it.
     """
     runs = {run.id: run for run in book.runs()}
     if len(runs) < 2:
         raise InputError("there are no two runs to compare: grade again first, or name another gradebook")
-    *_, second, last = runs
-    chosen = before or second, after or last
-    for run in chosen:
-        if run not in runs:
+    for run in (before, after):
+        if run is not None and run not in runs:
             raise InputError(f"there is no run {run}; there are: {', '.join(map(str, runs))}")
-    older, newer = chosen
+    newer = max(runs) if after is None else after
+    older = max((run for run in runs if run < newer), default=newer) if before is None else before
+    if older >= newer:
+        raise InputError(f"run {older} is not before run {newer}")
     later = [run.last_mark for run in runs.values() if run.id > newer]
     return Side(book, older, runs[older].last_mark), Side(book, newer, min(later, default=_EVER))
 

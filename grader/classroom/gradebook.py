@@ -2,6 +2,7 @@
 
 import json
 import sqlite3
+import time
 import zlib
 from collections.abc import Iterator
 from contextlib import closing, contextmanager, suppress
@@ -120,19 +121,32 @@ class Gradebook:
             self.connection.close()
 
     def _prepare(self) -> None:
-        with closing(self.connection.execute("PRAGMA application_id")) as found:
-            marked = found.fetchone()[0] == APPLICATION_ID
-        version = int(self.connection.execute("PRAGMA user_version").fetchone()[0])
-        is_empty = self.connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0] == 0
-        if not marked and not is_empty:
+        self.connection.execute("BEGIN")  # another process may be making it just now: what is read is of one moment
+        queries = ("PRAGMA application_id", "PRAGMA user_version", "SELECT count(*) FROM sqlite_master")
+        kind, version, tables = (int(self.connection.execute(query).fetchone()[0]) for query in queries)
+        self.connection.execute("COMMIT")
+        if tables and kind != APPLICATION_ID:
             raise InputError(f"{self._shown} is a database, but no gradebook")
         if version > len(STEPS):
             raise InputError(f"{self._shown} was made by a newer grader: install that one, or name another file")
-        self.connection.execute("PRAGMA journal_mode = WAL")
+        self._log_ahead()
         self.connection.execute("PRAGMA synchronous = NORMAL")
         self.connection.execute("PRAGMA foreign_keys = ON")
         if version < len(STEPS):
             self._migrate()
+
+    def _log_ahead(self) -> None:
+        """Write ahead, so that readers and a writer do not wait for each other; for this SQLite itself has no patience."""
+        until = time.monotonic() + _PATIENCE
+        while True:
+            try:
+                self.connection.execute("PRAGMA journal_mode = WAL")
+            except sqlite3.OperationalError as error:
+                if "locked" not in str(error) or time.monotonic() > until:
+                    raise
+                time.sleep(0.01)
+            else:
+                return
 
     def _migrate(self) -> None:
         with self.transaction():  # another process may have done it meanwhile
@@ -174,7 +188,7 @@ class Gradebook:
             if template:
                 self.connection.execute("INSERT OR IGNORE INTO template VALUES (?, ?)", (self._template, template))
             last_mark = self.connection.execute("SELECT coalesce(max(id), 0) FROM mark").fetchone()[0]
-            row = (_now(), source, layout, rubric.sha256, __version__, last_mark)
+            row = (_now(), storable(source), layout, rubric.sha256, __version__, last_mark)
             found = self.connection.execute(
                 "INSERT INTO run (started, source, layout, rubric, version, last_mark) VALUES (?, ?, ?, ?, ?, ?)", row
             )
@@ -186,7 +200,7 @@ class Gradebook:
             self.connection.execute("UPDATE run SET finished = ? WHERE id = ?", (_now(), run))
 
     def _keep_rubric(self, rubric: Rubric) -> None:
-        row = (rubric.sha256, rubric.id, rubric.title, str(rubric.path), rubric.data)
+        row = (rubric.sha256, rubric.id, rubric.title, storable(str(rubric.path)), rubric.data)
         self.connection.execute("INSERT OR IGNORE INTO rubric VALUES (?, ?, ?, ?, ?)", row)
         self.connection.executemany(
             "INSERT OR IGNORE INTO criterion VALUES (?, ?, ?, ?)",
@@ -222,13 +236,14 @@ class Gradebook:
     def keep(self, student: int, rubric: str, graded: Graded) -> int:
         """Add a result, unless the newest one of the student says the same; its number."""
         newest = self.connection.execute(
-            "SELECT id, rubric, version, digest, record FROM result WHERE student = ? ORDER BY id DESC LIMIT 1",
+            "SELECT id, rubric, version, digest, template, record FROM result WHERE student = ? ORDER BY id DESC LIMIT 1",
             (student,),
         ).fetchone()
-        if newest is not None and newest[1:] == (rubric, __version__, graded.digest, graded.record):
+        same = (rubric, __version__, graded.digest, self._template, graded.record)
+        if newest is not None and newest[1:] == same:
             return int(newest[0])
         row = (
-            student, rubric, __version__, graded.digest, graded.verdict, graded.reason, graded.score, graded.out_of,
+            student, rubric, __version__, graded.digest, graded.verdict, storable(graded.reason), graded.score, graded.out_of,
             graded.pending, graded.signs, graded.misses, self._template, graded.record,
         )  # fmt: skip
         added = self.connection.execute(
@@ -247,23 +262,20 @@ class Gradebook:
 
     def runs(self) -> list[Run]:
         """All runs, the oldest first."""
-        rows = self.connection.execute(
-            "SELECT id, started, coalesce(finished, ''), source, layout, rubric, version, last_mark FROM run ORDER BY id"
-        )
-        return [Run(*row) for row in rows]
+        columns = "id, started, coalesce(finished, ''), source, layout, rubric, version, last_mark"
+        return [Run(*row) for row in self.rows(f"SELECT {columns} FROM run ORDER BY id")]
 
     def rubric(self, sha256: str) -> Rubric:
         """The rubric of a run, as it was then; raises RubricError where this grader cannot read it."""
-        row = self.connection.execute("SELECT text, path FROM rubric WHERE sha256 = ?", (sha256,)).fetchone()
-        if row is None:
-            raise GraderError(f"the gradebook {self._shown} holds no rubric {sha256[:12]}")
-        return read_rubric(row[0], Path(row[1]))
+        for text, path in list(self.rows("SELECT text, path FROM rubric WHERE sha256 = ?", sha256)):
+            return read_rubric(text, Path(path))
+        raise GraderError(f"the gradebook {self._shown} holds no rubric {sha256[:12]}")
 
     def record(self, result: int) -> tuple[str, str]:
         """The record of a result, and the template that it is kept beside, empty where there is none."""
         query = "SELECT record, coalesce(text, '') FROM result LEFT JOIN template ON sha256 = template WHERE id = ?"
-        row = self.connection.execute(query, (result,)).fetchone()
-        return zlib.decompress(row[0]).decode(), str(row[1])
+        ((record, template),) = self.rows(query, result)
+        return zlib.decompress(record).decode(), str(template)
 
     def rows(self, query: str, *values: Any) -> Iterator[tuple[Any, ...]]:
         """What a query gives, row by row."""
@@ -285,6 +297,11 @@ def _now() -> str:
     return datetime.now(UTC).isoformat(timespec="seconds")
 
 
+def storable(text: str) -> str:
+    """Text as a gradebook can hold it: what is no Unicode is spelt out."""
+    return text.encode("utf-8", "backslashreplace").decode()
+
+
 def place_of(hand_in: HandIn) -> str:
     """Where a hand-in is, as JSON: paths, names, attempt, paths of earlier attempts."""
     return json.dumps((hand_in.paths, hand_in.names, hand_in.attempt, hand_in.earlier))
@@ -298,7 +315,8 @@ def _known(row: tuple[Any, ...]) -> Known:
 
 
 def _values(student: Student) -> tuple[str, ...]:
-    return (student.key, student.name, student.email, student.login, student.sis, student.canvas, student.moodle)
+    told = (student.key, student.name, student.email, student.login, student.sis, student.canvas, student.moodle)
+    return told if "".join(told).isascii() else tuple(map(storable, told))
 
 
 def _told(before: tuple[Any, ...], student: Student, standing: Standing | None) -> tuple[Any, ...]:

@@ -70,7 +70,7 @@ def _days(times: Times, policy: Late | None, due: datetime | None) -> tuple[int,
     days = max(0, -((allowed - (handed_in - due)) // _DAY))  # those begun: rounded up
     if not days:
         return 0, ""
-    more = f" and {format(Decimal(str(times.extension)).normalize(), 'f')} days more" if times.extension else ""
+    more = f", extended by {times.extension:g} day{'' if times.extension == 1 else 's'}" if times.extension else ""
     return days, f"{_many(days)} late: handed in {times.submitted}, due {due.isoformat(timespec='minutes')}{more}"
 
 

@@ -1,11 +1,11 @@
 """Marks by hand: what a person says of a criterion, kept beside what the checks say, never instead of it."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from decimal import Decimal, InvalidOperation
+from typing import NamedTuple
 
-from grader.classroom.gradebook import Gradebook
+from grader.classroom.gradebook import Gradebook, storable
 from grader.classroom.standings import Standing, Standings
 from grader.classroom.work import UNITS
 from grader.errors import InputError
@@ -13,7 +13,15 @@ from grader.grading.report import Result
 from grader.grading.rubric import Criterion, Rubric
 from grader.robot.names import did_you_mean
 
+_UNIT = Decimal(1) / UNITS
 TAKEN_BACK = "-"  # in place of points: what the check says counts again
+
+
+class Waiting(NamedTuple):
+    """A criterion of a student, by their key, that waited for a person when it was looked up."""
+
+    key: str
+    criterion: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,10 +41,10 @@ def read_points(text: str, criterion: Criterion) -> Decimal | None:
         points = Decimal(text.strip().replace(",", "."))
     except InvalidOperation:
         points = Decimal("NaN")
-    if not points.is_finite() or points * UNITS % 1:
-        raise InputError(f"points are a number from 0 to {most}, with at most 4 decimals, not {text!r}")
-    if not 0 <= points <= criterion.points:
+    if points.is_finite() and not 0 <= points <= criterion.points:
         raise InputError(f"{criterion.id} is worth 0 to {most} points, not {text.strip()}")
+    if not points.is_finite() or points != points.quantize(_UNIT):
+        raise InputError(f"points are a number from 0 to {most}, with at most 4 decimals, not {text!r}")
     return points
 
 
@@ -53,7 +61,8 @@ def mark(book: Gradebook, standing: Standing, criterion: Criterion, points: Deci
     if standing.result is None:
         raise InputError(f"{standing.student.key} has handed in nothing that could be marked")
     units = None if points is None else int(points * UNITS)
-    row = (standing.id, criterion.id, units, why, by, datetime.now(UTC).isoformat(timespec="seconds"), standing.result)
+    at = datetime.now(UTC).isoformat(timespec="seconds")
+    row = (standing.id, criterion.id, units, storable(why), storable(by), at, standing.result)
     with book.complaining():
         book.connection.execute("PRAGMA synchronous = FULL")  # a person's word outlives a power cut
     with book.transaction():
@@ -63,26 +72,29 @@ def mark(book: Gradebook, standing: Standing, criterion: Criterion, points: Deci
         )
 
 
-def pending(standings: Standings, criterion: str = "") -> Iterator[Pending]:
+def waiting(standings: Standings, criterion: str = "") -> list[Waiting]:
     """What a person still has to decide, one criterion after the other, so that like is marked beside like.
 
-    Of hand-ins that could not be graded at all nothing is asked: that is not a question of points.
+    Of hand-ins that could not be read nothing is asked: that is not a question of points.
     """
     rubric = standings.newest_rubric()
-    for position, each in enumerate(rubric.criteria):
-        if criterion in ("", each.id):
-            yield from _pending_of(standings, rubric, position)
+    return [
+        Waiting(str(key), each.id)
+        for position, each in enumerate(rubric.criteria)
+        if criterion in ("", each.id)
+        for (key,) in standings.book.rows(_WAITING, rubric.sha256, position + 1, each.id)
+    ]
 
 
-def _pending_of(standings: Standings, rubric: Rubric, position: int) -> Iterator[Pending]:
-    name = rubric.criteria[position].id
-    query = (
-        "SELECT key FROM grade WHERE verdict = 'graded' AND rubric = ? AND substr(signs, ?, 1) = '?' AND NOT EXISTS"
-        " (SELECT 1 FROM ruling WHERE ruling.student = grade.id AND ruling.criterion = ?) ORDER BY key"
-    )
-    keys = [str(row[0]) for row in standings.book.rows(query, rubric.sha256, position + 1, name)]
-    for key in keys:
-        standing = standings.find(key)
-        found = next((each for each in standings.report(standing).results if each.criterion.id == name), None)
-        if found is not None and found.is_open:  # nobody has decided it meanwhile
-            yield Pending(standing, found)
+_WAITING = (
+    "SELECT key FROM grade WHERE verdict <> 'unreadable' AND rubric = ? AND substr(signs, ?, 1) = '?' AND NOT EXISTS"
+    " (SELECT 1 FROM ruling WHERE ruling.student = grade.id AND ruling.criterion = ?) ORDER BY key"
+)
+
+
+def pending(standings: Standings, waiting: Waiting) -> Pending | None:
+    """What is to be decided, as it stands now; None where somebody has decided it meanwhile."""
+    standing = standings.find(waiting.key)
+    results = standings.report(standing).results
+    found = next((each for each in results if each.criterion.id == waiting.criterion and each.is_open), None)
+    return Pending(standing, found) if found is not None else None

@@ -7,7 +7,7 @@ from grader.checks.outcome import Outcome
 _REASON = re.compile(
     r" \([A-Z]+[0-9]{3}: .*\)$|; the (?:file|package|robot) (?:has|have)[: ].*$|; did you mean .*$", re.DOTALL
 )
-_JOINT = re.compile(r"(?<!no )\bjoint '[^']*'")
+_JOINT = re.compile(r"""(?<!no )\bjoint (?:'(?:[^'\\]|\\.)*+'|"(?:[^"\\]|\\.)*+")""")  # as Python quotes a name
 _PLACE = re.compile(r", in line \d+|of line \d+")
 _MOST = 200
 

@@ -50,7 +50,7 @@ def open_hand_in(root: str, paths: tuple[str, ...], names: tuple[str, ...], name
         return _in_bulk(root, paths[0]) if is_bulk(root) else _on_disk(f"{root}/{paths[0]}")
     given = dict(zip(paths, names or [PurePosixPath(path).name for path in paths], strict=True))
     tree = _bulk(root, _stamp(root)).files(given, name) if is_bulk(root) else _side_by_side(root, given, name)
-    return Opened(name, name, _digest_of_tree(tree), None, tree)
+    return Opened(name, name, _digest_of_tree(name, tree), None, tree)
 
 
 @lru_cache(maxsize=4)
@@ -63,13 +63,15 @@ def _on_disk(path: str) -> Opened:
     stem, _, ending = path.rpartition("/")[2].rpartition(".")
     if ending.lower() in ("urdf", "xacro"):
         data, name = read_capped(path), printable_path(stem)
-        return Opened(name, f"{name}.{ending}", sha256(data).hexdigest(), data, None)
+        shown = f"{name}.{ending}"
+        return Opened(name, shown, _digest_of(shown, data), data, None)
     place = Path(path)
     tree = outer_tree(place)
     if tree is None:
         raise InputError(f"{printable_path(place.name)} is neither a URDF nor a folder or archive")
-    digest = _digest_of_tree(tree) if place.is_dir() else _digest_of_file(place)
-    return Opened(tree_name(place), printable_path(place), digest, None, tree)
+    name = tree_name(place)
+    digest = _digest_of_tree(name, tree) if place.is_dir() else _digest_of_file(name, place)
+    return Opened(name, printable_path(place), digest, None, tree)
 
 
 def _in_bulk(root: str, path: str) -> Opened:
@@ -77,12 +79,13 @@ def _in_bulk(root: str, path: str) -> Opened:
     last = path.rpartition("/")[2]
     if bulk.is_folder(path):
         tree = bulk.folder(path)
-        return Opened(last, path, _digest_of_tree(tree), None, tree)
+        return Opened(last, path, _digest_of_tree(last, tree), None, tree)
     if last.lower().endswith(ARCHIVES):
         tree = bulk.archive(path)
-        return Opened(without_endings(last), path, _digest_of_tree(tree), None, tree)
+        name = without_endings(last)
+        return Opened(name, path, _digest_of_tree(name, tree), None, tree)
     data = bulk.read(path, URDF_LIMIT)
-    return Opened(PurePosixPath(last).stem, last, sha256(data).hexdigest(), data, None)
+    return Opened(PurePosixPath(last).stem, last, _digest_of(last, data), data, None)
 
 
 @lru_cache(maxsize=2)
@@ -96,8 +99,13 @@ def _side_by_side(root: str, named: dict[str, str], name: str) -> Tree:
     return make_tree(name, [file_at(Path(root, path), given) for path, given in named.items()], ())
 
 
-def _digest_of_file(path: Path) -> str:
-    digest = sha256()
+def _digest_of(name: str, data: bytes) -> str:
+    """The hash of a name, which stands in the report, and of some bytes."""
+    return sha256(repr(name).encode() + data).hexdigest()
+
+
+def _digest_of_file(name: str, path: Path) -> str:
+    digest = sha256(repr(name).encode())
     try:
         with path.open("rb") as file:
             while chunk := file.read(_CHUNK):
@@ -107,9 +115,9 @@ def _digest_of_file(path: Path) -> str:
     return digest.hexdigest()
 
 
-def _digest_of_tree(tree: Tree) -> str:
-    """The hash of all that a submission is read from: its files with their paths, and what was left out."""
-    digest = sha256(repr((sorted(tree.folders), tree.left_out, tree.generated, sorted(tree.unseen))).encode())
+def _digest_of_tree(name: str, tree: Tree) -> str:
+    """The hash of all that a submission is read from: its name, its files with their paths, and what was left out."""
+    digest = sha256(repr((name, sorted(tree.folders), tree.left_out, tree.generated, sorted(tree.unseen))).encode())
     for path, file in tree.files.items():
         digest.update(repr((path, file.size)).encode())
         try:
@@ -125,8 +133,7 @@ def fingerprint(root: str, paths: tuple[str, ...], now: int) -> str:
     `now` is the time in nanoseconds: what has changed just then may change once more unseen.
     """
     if is_bulk(root):
-        stamp = _stamp(root)
-        return f"{stamp} {paths}" if stamp else ""
+        return _fingerprint_of_bulk(root, paths, now)
     digest = sha256()
     newest = 0
     try:
@@ -143,10 +150,25 @@ def fingerprint(root: str, paths: tuple[str, ...], now: int) -> str:
     return digest.hexdigest() if newest < now - _SETTLED else ""
 
 
+def _fingerprint_of_bulk(root: str, paths: tuple[str, ...], now: int) -> str:
+    try:
+        status = os.stat(root)  # noqa: PTH116
+    except OSError:
+        return ""
+    return f"{_of(status)} {paths}" if status.st_ctime_ns < now - _SETTLED else ""
+
+
 def _walk(top: str) -> Iterator[tuple[str, os.stat_result]]:
-    """Every file and folder at and below a path, links as such, in the order of the alphabet; OSError where there are too many."""
+    """Every file and folder at and below a path, links in it as such, in the order of the alphabet; OSError where there are too many.
+
+    Where the path is a link itself, what it leads to is what was handed in.
+    """
     status = os.lstat(top)
     yield "", status
+    if stat.S_ISLNK(status.st_mode):
+        top = os.path.realpath(top)
+        status = os.lstat(top)
+        yield top, status
     if not stat.S_ISDIR(status.st_mode):
         return
     waiting = [top]

@@ -10,13 +10,15 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from typing import Any
 
-from pebble import ProcessExpired, ProcessPool
+from pebble import CONSTS, ProcessExpired, ProcessPool
 
 from grader.errors import GraderError
 
 MEMORY = 2 * 1024**3  # bytes that one worker may have
 _WATCHED = 0.5  # seconds between two looks at whether the pool still lives
 _TRIES = 3  # to have work taken by a pool, which may break at any moment
+_SPEAKING = 3.0  # seconds that a worker may wait for its turn to speak; one that was ended while it spoke keeps the turn
+_MUTE = 1  # the exit code of a worker that had to wait longer
 _LEFT = 70  # the exit code of a worker that was ended in the midst of its work as if all were well
 
 
@@ -37,7 +39,12 @@ class Processes(Executor):
     """
 
     def __init__(
-        self, workers: int, timeout: float, prepare: Callable[[int], None], memory: int = MEMORY, preload: Sequence[str] = ()
+        self,
+        workers: int,
+        timeout: float,
+        prepare: Callable[[int], None],
+        memory: int = MEMORY,
+        preload: Sequence[str] = (),
     ) -> None:
         self._workers, self._timeout, self._prepare, self._memory = workers, timeout, prepare, memory
         self._context = _context(preload)
@@ -108,6 +115,7 @@ class Processes(Executor):
         if self._pool.active or self._is_shut.is_set():
             return
         self._end()
+        threading.Thread(target=self._pool.join, daemon=True).start()  # which ends what is left of it
         self._pool = self._new_pool()
         for done in tuple(self._promised):
             self._settle(done, Lost("the processes that grade came to an end", is_own_fault=False))
@@ -118,7 +126,8 @@ class Processes(Executor):
         except TimeoutError:
             self._settle(done, Lost(f"grading it took longer than {timeout:g} s, and was stopped"))
         except ProcessExpired as error:
-            self._settle(done, Lost(f"the process that graded it {_end_of(error.exitcode)}"))
+            is_own_fault = error.exitcode != _MUTE
+            self._settle(done, Lost(f"the process that graded it {_end_of(error.exitcode)}", is_own_fault=is_own_fault))
         except (BrokenProcessPool, CancelledError):
             self._settle(done, Lost("the processes that grade came to an end", is_own_fault=False))
         except MemoryError:
@@ -152,17 +161,18 @@ def _context(preload: Sequence[str]) -> Any:
     methods = multiprocessing.get_all_start_methods()
     context: Any = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
     if "forkserver" in methods and preload:
-        context.set_forkserver_preload(list(preload))
+        context.set_forkserver_preload([*preload, "grader.classroom.forked"])
     return context
 
 
 def _start_server(context: Any) -> None:
     """Start what workers are forked from; while it loads it would take Ctrl-C for its own, and tell of it at length."""
     if context.get_start_method() == "forkserver":
-        from multiprocessing.forkserver import ensure_running
+        from multiprocessing import forkserver, resource_tracker
 
+        resource_tracker.ensure_running()  # it takes care of itself, and has signals let through when it is done
         with _deaf():
-            ensure_running()
+            forkserver.ensure_running()
 
 
 @contextmanager
@@ -180,6 +190,7 @@ def _begin(prepare: Callable[[int], None], memory: int) -> None:
     leave = os._exit
     # Of one that ends with 0 pebble hears nothing.
     os._exit = lambda status: leave(status or _LEFT)
+    CONSTS.channel_lock_timeout = _SPEAKING
     prepare(memory)
     parent = multiprocessing.parent_process()
     with suppress(ImportError, AttributeError, OSError):

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from grader.classroom.names import canvas_name, canvas_names, plain_name, plain_word, surname
 from grader.classroom.students import HandIn, Student
+from grader.submission.files import printable_path
 
 _SEVERAL = -1
 
@@ -135,7 +136,7 @@ class Roster:
             (self._words, {plain_word(word) for word in words}),
             (self._local_parts, (plain_word(local_part) if at else "",)),
             (self._canvas_names, set(canvas_names(student.name))),
-            (self._names, (plain_name(student.name),)),
+            (self._names, {plain_name(student.name), plain_name(printable_path(student.name))}),
             (self._surnames, (surname(student.name),)),
         ):
             for key in keys:

@@ -100,13 +100,19 @@ CREATE TRIGGER result_stays BEFORE DELETE ON result
 BEGIN SELECT raise(ABORT, 'a result is never deleted'); END;
 CREATE TRIGGER result_unchanged BEFORE UPDATE ON result
 BEGIN SELECT raise(ABORT, 'a result is never changed: add another'); END;
+-- INSERT OR REPLACE deletes what it replaces without asking the triggers above.
+CREATE TRIGGER mark_not_replaced BEFORE INSERT ON mark WHEN EXISTS (SELECT 1 FROM mark WHERE id = new.id)
+BEGIN SELECT raise(ABORT, 'a mark by hand is never changed: add another'); END;
+CREATE TRIGGER result_not_replaced BEFORE INSERT ON result WHEN EXISTS (SELECT 1 FROM result WHERE id = new.id)
+BEGIN SELECT raise(ABORT, 'a result is never changed: add another'); END;
 
 -- The marks by hand that count: the newest of each student and criterion, unless it was taken back.
 CREATE VIEW ruling AS
 SELECT * FROM mark WHERE points IS NOT NULL
 AND id = (SELECT max(id) FROM mark AS newer WHERE newer.student = mark.student AND newer.criterion = mark.criterion);
 
--- What the marks by hand change of a student's newest result. CROSS JOIN keeps the few marks in front.
+-- What the marks by hand change of a student's newest result. CROSS JOIN keeps the few marks in front. A mark is older where
+-- it was given on another submission, or when the criterion was worth something else.
 CREATE VIEW ruled AS
 SELECT ruling.student,
     count(*) AS marks,
@@ -114,11 +120,16 @@ SELECT ruling.student,
     sum(iif(sign = '-', criterion_points, 0)) AS out_of,
     sum(iif(sign = '?', criterion_points, 0)) AS pending,
     sum(sign = '!') AS faults,
-    sum(ruling.result <> seen_result) AS older
+    sum(is_older) AS older
 FROM (
-    SELECT ruling.student, ruling.points, ruling.result, seen.result AS seen_result,
-        criterion.points AS criterion_points, substr(result.signs, criterion.position + 1, 1) AS sign
+    SELECT ruling.student, ruling.points, criterion.points AS criterion_points,
+        substr(result.signs, criterion.position + 1, 1) AS sign,
+        marked.id <> result.id AND (
+            marked.digest = '' OR marked.digest <> result.digest OR before.points IS NOT criterion.points
+        ) AS is_older
     FROM ruling
+    CROSS JOIN result AS marked ON marked.id = ruling.result
+    LEFT JOIN criterion AS before ON before.rubric = marked.rubric AND before.id = ruling.criterion
     CROSS JOIN seen ON seen.student = ruling.student
         AND seen.run = (SELECT max(run) FROM seen AS newer WHERE newer.student = ruling.student)
     CROSS JOIN result ON result.id = seen.result

@@ -9,7 +9,7 @@ from functools import cache
 from typing import Any, NamedTuple
 
 from grader.checks.outcome import Outcome
-from grader.classroom.gradebook import Gradebook
+from grader.classroom.gradebook import Gradebook, storable
 from grader.classroom.lateness import Lateness, Times, lateness
 from grader.classroom.quoting import Origin, Quoting
 from grader.classroom.students import Student
@@ -73,7 +73,8 @@ class Standing:
         if self.verdict == "unreadable" and self.pending:
             return f"it could not be graded: {self.reason}"
         if self.pending:
-            return f"{format(self.pending.normalize(), 'f')} points wait for a person"
+            words = "1 point waits" if self.pending == 1 else f"{format(self.pending.normalize(), 'f')} points wait"
+            return f"{words} for a person"
         return ""
 
 
@@ -126,24 +127,37 @@ class Standings:
         for row in self.book.rows(f"{_QUERY} ORDER BY key"):
             yield self._standing(row)
 
+    def between(self, first: str, last: str) -> Iterator[Standing]:
+        """Those whose keys are not before the first and not behind the last of two, in the order of their keys."""
+        for row in self.book.rows(f"{_QUERY} WHERE key BETWEEN ? AND ? ORDER BY key", first, last):
+            yield self._standing(row)
+
     def looks(self, most: int) -> Looks:
-        """Who needs a look: nothing or nothing readable was handed in, the grader failed, a mark may be out of date."""
-        where = "WHERE verdict <> 'graded' OR faults OR older_marks OR expected = 0"
-        ((count,),) = self.book.rows(f"SELECT count(*) FROM grade {where}")
-        found = (self._standing(row) for row in self.book.rows(f"{_QUERY} {where} ORDER BY key LIMIT ?", most))
-        return Looks(tuple(Look(each.student.key, _why(each)) for each in found), count)
+        """Who needs a look: nothing or nothing readable was handed in, the grader failed, a grade or mark may be out of date."""
+        newest = self.newest_rubric().sha256
+        where = "WHERE verdict <> 'graded' OR faults OR older_marks OR expected = 0 OR rubric <> ?"
+        ((count,),) = self.book.rows(f"SELECT count(*) FROM grade {where}", newest)
+        found = (self._standing(row) for row in self.book.rows(f"{_QUERY} {where} ORDER BY key LIMIT ?", newest, most))
+        return Looks(tuple(Look(each.student.key, _why(each, newest)) for each in found), count)
 
     def find(self, name: str) -> Standing:
-        """The one whom a key, login, address, number or full name belongs to; raises InputError."""
-        columns = ("key", "login", "email", "sis", "canvas", "moodle", "name")
-        for column in columns:
-            rows = list(self.book.rows(f"{_QUERY} WHERE {column} = ? LIMIT 2", name)) if name else []
-            if len(rows) == 1:
-                return self._standing(rows[0])
-            if rows:
-                raise InputError(f"{name!r} is the {column} of several in the gradebook: name one by their key")
-        keys = [str(row[0]) for row in self.book.rows("SELECT key FROM student ORDER BY key LIMIT 5000")]
-        raise InputError(f"there is no {name!r} in the gradebook{did_you_mean(name, keys)}")
+        """The one whom a key, or else a login, address, number or full name belongs to; raises InputError, also for several."""
+        name = storable(name)
+        found = list(self.book.rows(f"{_QUERY} WHERE key = ?", name))
+        if found:
+            return self._standing(found[0])
+        known = "SELECT key FROM student WHERE ? IN (login, email, sis, canvas, moodle, name) ORDER BY key LIMIT 6"
+        keys = [str(row[0]) for row in self.book.rows(known, name)] if name else []
+        if len(keys) == 1:
+            return self.find(keys[0])
+        if keys:
+            more = " and others" if len(keys) > 5 else ""
+            listed = f"{', '.join(map(repr, keys[:5]))}{more}"
+            raise InputError(f"{name!r} may be any of {listed}: name one by this key")
+        rows = self.book.rows("SELECT key, login, name FROM student ORDER BY key LIMIT 5000")
+        raise InputError(
+            f"there is no {name!r} in the gradebook{did_you_mean(name, {each for row in rows for each in row})}"
+        )
 
     def report(self, standing: Standing) -> Report:
         """The report on a student's newest hand-in, with the marks by hand in it; raises InputError where there is none."""
@@ -179,14 +193,17 @@ class Standings:
         )  # fmt: skip
 
 
-def _why(standing: Standing) -> str:
+def _why(standing: Standing, newest: str) -> str:
     reasons = []
     if standing.verdict != "graded" or standing.faults:
         reasons.append(standing.why_not_final or "it could not be graded, and was marked by hand")
+    if standing.rubric and standing.rubric != newest:
+        reasons.append("graded by an earlier rubric only")
     if standing.is_expected is False:
         reasons.append("not on the roster")
     if standing.older_marks:
-        reasons.append(f"{standing.older_marks} marks by hand are from before the newest result")
+        many = f"{standing.older_marks} marks by hand are" if standing.older_marks > 1 else "a mark by hand is"
+        reasons.append(f"{many} from before the submission or the points changed")
     return "; ".join(reasons)
 
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from math import sqrt
+from typing import NamedTuple
 
 from grader.classroom.gradebook import Gradebook
 from grader.classroom.work import UNITS
@@ -13,12 +14,12 @@ from grader.grading.rubric import Criterion, Rubric
 
 _BINS = 10
 _MOST_FAILURES = 20
-_EARNED = {"p": 1.0, "f": 0.0, "s": 0.0}
+_BY_HAND = "m"  # in place of a sign, where a person has decided
 
 
 @dataclass(frozen=True, slots=True)
 class CriterionStatistics:
-    """How a criterion went. `passed` of `decided` got it; the others are counted by what became of it.
+    """How a criterion went. `passed` of `decided` got it by the check, a person has `marked` others; the rest is counted as well.
 
     `share` is the mean share of its points that was earned (the lower, the harder). `discrimination` is the correlation of
     that share with the points in all other criteria: below about 0.2 it tells little of a student, below 0 it may be
@@ -28,6 +29,7 @@ class CriterionStatistics:
     criterion: Criterion
     decided: int
     passed: int
+    marked: int
     failed: int
     skipped: int
     pending: int
@@ -47,7 +49,7 @@ class Failure:
 
 @dataclass(frozen=True, slots=True)
 class ClassStatistics:
-    """A class at a glance. `scores` are of those who are graded, as points; `verdicts` counts everyone.
+    """A class at a glance: the marks of those who are graded, before what being late costs; `verdicts` counts everyone.
 
     `bins` counts the graded by tenths of the points that can be earned; all of them is in the last one.
     """
@@ -67,30 +69,43 @@ class ClassStatistics:
 
 
 class _Tally:
-    """Sums over students of the share x earned of one criterion, and of the points r earned in all others."""
+    """Sums over students of what x a criterion earned and of what r all others did, in whole numbers: nothing is rounded."""
 
-    def __init__(self) -> None:
+    def __init__(self, criterion: Criterion) -> None:
+        self.criterion = criterion
+        self.units = int(criterion.points * UNITS)
+        self.worth = self.units or 1  # that one without points went well can be told as well
         self.signs: Counter[str] = Counter()
-        self.count = 0
-        self.x = self.r = self.xx = self.rr = self.xr = 0.0
+        self.count = self.x = self.r = self.xx = self.rr = self.xr = 0
 
-    def add(self, sign: str, share: float | None, rest: float, count: int) -> None:
+    def earned(self, sign: str) -> int | None:
+        """What it earns by its check; None where that has not decided."""
+        return {"p": self.worth, "f": 0, "s": 0}.get(sign)
+
+    def add(self, sign: str, earned: int | None, rest: int, count: int) -> None:
         self.signs[sign] += count
-        if share is None:
+        if earned is None:
             return
         self.count += count
-        self.x += share * count
+        self.x += earned * count
         self.r += rest * count
-        self.xx += share * share * count
+        self.xx += earned * earned * count
         self.rr += rest * rest * count
-        self.xr += share * rest * count
+        self.xr += earned * rest * count
 
     def correlation(self) -> float | None:
         spread_x = self.count * self.xx - self.x * self.x
         spread_r = self.count * self.rr - self.r * self.r
-        if spread_x <= 1e-9 or spread_r <= 1e-9:
+        if not spread_x or not spread_r:
             return None
         return (self.count * self.xr - self.x * self.r) / sqrt(spread_x * spread_r)
+
+    def result(self) -> CriterionStatistics:
+        passed, marked, failed, skipped, pending, errored = (self.signs[sign] for sign in f"p{_BY_HAND}fs?!")
+        share = self.x / (self.count * self.worth) if self.count else None
+        return CriterionStatistics(
+            self.criterion, self.count, passed, marked, failed, skipped, pending, errored, share, self.correlation()
+        )
 
 
 def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
@@ -99,54 +114,67 @@ def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
         str(name): int(count) for name, count in book.rows("SELECT verdict, count(*) FROM grade GROUP BY verdict")
     }
     scores: Counter[int] = Counter()
-    tallies = [_Tally() for _ in rubric.criteria]
+    failures: Counter[tuple[int, str]] = Counter()
+    tallies = [_Tally(criterion) for criterion in rubric.criteria]
     pending = 0
-    for signs, rulings, score, waits, count in _patterns(book, rubric):
-        scores[score] += count
-        pending += count * waits
-        _count(rubric, tallies, signs, rulings, count)
+    for alike in _patterns(book, rubric):
+        scores[alike.score] += alike.many
+        pending += alike.many * alike.waits
+        _count(tallies, alike)
+    for index, message, count in _misses(book, rubric):
+        failures[index, message] += count
     values = sorted(scores.items())
     graded = scores.total()
     mean = sum(score * count for score, count in values) / graded / UNITS if graded else 0.0
     variance = sum((score / UNITS - mean) ** 2 * count for score, count in values) / graded if graded else 0.0
-    criteria = tuple(_of(criterion, tally) for criterion, tally in zip(rubric.criteria, tallies, strict=True))
+    median = (_at(values, (graded - 1) // 2) + _at(values, graded // 2)) / 2
+    ranked = sorted(failures.items(), key=lambda each: (-each[1], each[0]))[:_MOST_FAILURES]
     return ClassStatistics(
-        verdicts, rubric.points, graded, pending, mean, sqrt(variance), _at(values, 0), _at(values, (graded - 1) // 2),
-        _at(values, graded - 1), _bins(values, rubric.points), criteria, _failures(book, rubric),
+        verdicts, rubric.points, graded, pending, mean, sqrt(variance), _at(values, 0), median,
+        _at(values, graded - 1), _bins(values, rubric.points), tuple(tally.result() for tally in tallies),
+        tuple(Failure(rubric.criteria[index], message, count) for (index, message), count in ranked),
     )  # fmt: skip
 
 
-def _patterns(book: Gradebook, rubric: Rubric) -> Iterator[tuple[str, dict[str, float], int, bool, int]]:
-    """How the criteria went, and how many have it like that: signs, shares by hand, score, whether something waits, count."""
-    where = "FROM grade WHERE verdict = 'graded' AND rubric = ?"
-    alike = f"SELECT signs, score, pending > 0, count(*) {where} AND marks = 0 GROUP BY signs, score, pending > 0"
-    for signs, score, waits, count in book.rows(alike, rubric.sha256):
-        yield signs, {}, score, bool(waits), count
-    points = {criterion.id: int(criterion.points * UNITS) for criterion in rubric.criteria}
-    for student, signs, score, waits in book.rows(
-        f"SELECT id, signs, score, pending > 0 {where} AND marks", rubric.sha256
-    ):
-        given = book.rows("SELECT criterion, points FROM ruling WHERE student = ?", student)
-        shares = {name: value / points[name] if points[name] else 0.0 for name, value in given if name in points}
-        yield signs, shares, score, bool(waits), 1
+class _Alike(NamedTuple):
+    """How the criteria went, and how many have it like that; `marks` are points by hand, in ten-thousandths."""
+
+    signs: str
+    score: int
+    waits: bool
+    many: int
+    marks: Mapping[str, int]
 
 
-def _count(rubric: Rubric, tallies: list[_Tally], signs: str, rulings: dict[str, float], count: int) -> None:
-    shares = [
-        rulings.get(criterion.id, _EARNED.get(sign)) for criterion, sign in zip(rubric.criteria, signs, strict=True)
+_GRADED = "FROM grade WHERE verdict = 'graded' AND rubric = ?"
+
+
+def _patterns(book: Gradebook, rubric: Rubric) -> Iterator[_Alike]:
+    columns = "signs, score, pending > 0"
+    query = f"SELECT {columns}, count(*) {_GRADED} AND marks = 0 GROUP BY {columns}"
+    for signs, score, waits, count in book.rows(query, rubric.sha256):
+        yield _Alike(signs, score, bool(waits), count, {})
+    for student, signs, score, waits in book.rows(f"SELECT id, {columns} {_GRADED} AND marks", rubric.sha256):
+        yield _Alike(signs, score, bool(waits), 1, _marks(book, student))
+
+
+def _marks(book: Gradebook, student: int) -> dict[str, int]:
+    return {str(name): int(points) for name, points in book.rows(_MARKS, student)}
+
+
+_MARKS = "SELECT criterion, points FROM ruling WHERE student = ?"
+
+
+def _count(tallies: list[_Tally], alike: _Alike) -> None:
+    names = [tally.criterion.id for tally in tallies]
+    signs = [_BY_HAND if name in alike.marks else sign for name, sign in zip(names, alike.signs, strict=True)]
+    earned = [
+        alike.marks.get(name, tally.earned(sign)) for tally, name, sign in zip(tallies, names, signs, strict=True)
     ]
-    earned = [float(each.points) * (share or 0.0) for each, share in zip(rubric.criteria, shares, strict=True)]
-    total = sum(earned)
-    for tally, sign, share, own in zip(tallies, signs, shares, earned, strict=True):
-        tally.add(sign, share, total - own, count)
-
-
-def _of(criterion: Criterion, tally: _Tally) -> CriterionStatistics:
-    passed, failed, skipped, pending, errored = (tally.signs[sign] for sign in "pfs?!")
-    share = tally.x / tally.count if tally.count else None
-    return CriterionStatistics(
-        criterion, tally.count, passed, failed, skipped, pending, errored, share, tally.correlation()
-    )
+    own = [points or 0 if tally.units else 0 for tally, points in zip(tallies, earned, strict=True)]
+    total = sum(own)
+    for tally, sign, points, part in zip(tallies, signs, earned, own, strict=True):
+        tally.add(sign, points, total - part, alike.many)
 
 
 def _at(values: list[tuple[int, int]], place: int) -> Decimal:
@@ -166,12 +194,14 @@ def _bins(values: list[tuple[int, int]], out_of: Decimal) -> tuple[int, ...]:
     return tuple(bins)
 
 
-def _failures(book: Gradebook, rubric: Rubric) -> tuple[Failure, ...]:
-    """The commonest failures, as their checks put them."""
-    counted: Counter[tuple[int, str]] = Counter()
-    query = "SELECT misses, count(*) FROM grade WHERE verdict = 'graded' AND rubric = ? GROUP BY misses"
+def _misses(book: Gradebook, rubric: Rubric) -> Iterator[tuple[int, str, int]]:
+    """What went wrong, as the checks put it, and how often; not where a person has given all points for it."""
+    query = f"SELECT misses, count(*) {_GRADED} AND marks = 0 GROUP BY misses"
     for misses, count in book.rows(query, rubric.sha256):
+        yield from ((index, message, count) for index, message in json.loads(misses))
+    for student, misses in book.rows(f"SELECT id, misses {_GRADED} AND marks", rubric.sha256):
+        marks = _marks(book, student)
         for index, message in json.loads(misses):
-            counted[index, message] += count
-    ranked = sorted(counted.items(), key=lambda each: (-each[1], each[0]))
-    return tuple(Failure(rubric.criteria[index], message, count) for (index, message), count in ranked[:_MOST_FAILURES])
+            criterion = rubric.criteria[index]
+            if marks.get(criterion.id) != criterion.points * UNITS:
+                yield index, message, 1

@@ -43,7 +43,7 @@ def lms_grades(standings: Standings, *, feedback: bool, pending_as_zero: bool) -
     """Everyone's grade for an LMS. One that is not final has no total, unless what still waits counts as nothing."""
     for standing in standings.all():
         reason = standing.why_not_final
-        waits_only = standing.verdict == "graded" and not standing.faults and standing.pending > 0
+        waits_only = standing.verdict in ("graded", "errored") and not standing.faults and standing.pending > 0
         if reason and not (waits_only and pending_as_zero):
             yield Grade(standing.student, None, "", reason)
             continue

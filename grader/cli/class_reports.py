@@ -2,6 +2,7 @@
 
 import hashlib
 import re
+import unicodedata
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 _TOGETHER = 50
 _UNSAFE = re.compile(r'[\x00-\x1f\x7f<>:"/\\|?*\s]+')
 _RESERVED = re.compile(r"(?i)(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?")  # names that Windows keeps for devices
-_LONGEST = 100  # characters
+_LONGEST = 180  # bytes: with a digest, an ending and what `save` puts around it a file system takes 255
 
 
 def write_reports(
@@ -55,8 +56,10 @@ def _write_some(
 
     with Gradebook(Path(book)) as opened:
         standings = Standings(opened, due)
-        for key, name in names.items():
-            standing = standings.find(key)
+        for standing in list(standings.between(min(names), max(names))):
+            name = names.get(standing.student.key)
+            if name is None:
+                continue
             report = report_of(standings, standing)
             for kind in formats:
                 save(Path(folder, f"{name}.{kind.ending}"), render(report, kind, to_file=True))
@@ -69,8 +72,12 @@ def report_of(standings: "Standings", standing: "Standing") -> "Report":
         return report
     from grader.report.points import points_words
 
-    costs = f"{points_words(-standing.late.points)} points are taken off, which leaves {points_words(standing.total)}"
-    return replace(report, notes=(*report.notes, f"{standing.late.words}: {costs}"))
+    note = standing.late.words
+    if standing.late.points:
+        note += (
+            f": {points_words(-standing.late.points)} points are taken off, which leaves {points_words(standing.total)}"
+        )
+    return replace(report, notes=(*report.notes, note))
 
 
 def file_names(keys: Sequence[str]) -> dict[str, str]:
@@ -86,7 +93,8 @@ def file_names(keys: Sequence[str]) -> dict[str, str]:
 
 
 def _plain(key: str) -> str:
-    name = _UNSAFE.sub("_", key)[:_LONGEST].strip(" .") or "_"
+    data = _UNSAFE.sub("_", unicodedata.normalize("NFC", key)).encode("utf-8", "replace")
+    name = data[:_LONGEST].decode("utf-8", "ignore").strip(" .") or "_"
     return f"_{name}" if _RESERVED.fullmatch(name) or name.startswith("-") else name
 
 

@@ -26,6 +26,7 @@ from grader.report.text import printable
 from grader.submission.files import printable_path
 
 _MOST_TOLD = 10
+_REPORTING = 600.0  # seconds that a few dozen reports may take
 
 
 class Wanted(NamedTuple):
@@ -64,7 +65,7 @@ def grade_class(
             settings = Settings(str(root), intake.layout, len(intake), workers, force, known)
             done = _run(book, rules, intake, settings, executor)
         if wanted.reports is not None:
-            with _processes(jobs, timeout) as local:
+            with _processes(jobs, _REPORTING) as local:
                 count = write_reports(local, gradebook, wanted.reports, wanted.report_formats, deadline)
             complain(f"{count} reports are in {printable_path(wanted.reports)}")
         if wanted.csv is not None:

@@ -23,8 +23,8 @@ def diff(
 ) -> int:
     """Say who changed between two runs or two gradebooks, by how much, in which criteria, and why.
 
-    That is whether the submission, the rubric or the grader changed, or somebody marked by hand. What being late costs is not
-    in it.
+    That is whether the submission, the rubric or the grader changed, or somebody marked by hand: since the older run began, and
+    until the run after the newer one did. What being late costs is not in it. Runs count from 1.
 
     Examples:
 
@@ -44,12 +44,13 @@ def diff(
         else:
             sides = newest(book), newest(opened.enter_context(Gradebook(other)))
         found = changes(*sides)
+        runs = sides[0].newest_run, sides[1].newest_run
     if output_format is ClassFormat.JSON:
         from grader.report.changes import render_changes_json
 
-        emit(render_changes_json(found))
+        emit(render_changes_json(found, runs))
         return 0
     from grader.report.changes import render_changes
 
-    emit(draw(partial(render_changes, found)))
+    emit(draw(partial(render_changes, found, runs)))
     return 0

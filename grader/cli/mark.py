@@ -44,7 +44,7 @@ def mark(
         )
         add_mark(book, standing, asked, read_points(points, asked), by or author(), comment)
         now = standings.find(standing.student.key)
-    waits = f", {points_words(now.pending)} wait for a person" if now.pending else ""
+    waits = f"; waiting for a person: {points_words(now.pending)}" if now.pending else ""
     emit(printable(f"{now.student.key}: {points_words(now.score)} of {points_words(now.out_of)} points{waits}") + "\n")
     return 0
 

@@ -1,5 +1,7 @@
 """grader review: walk through what waits for a person, one by one."""
 
+import io
+import sys
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -31,21 +33,27 @@ def review(
       grader review --gradebook lab6.db --criterion answer-floating-link
     """
     from grader.classroom.gradebook import Gradebook
-    from grader.classroom.marking import criterion_of, pending
+    from grader.classroom.marking import criterion_of, pending, waiting
     from grader.classroom.standings import Standings
 
+    if isinstance(sys.stdin, io.TextIOWrapper):
+        sys.stdin.reconfigure(errors="backslashreplace")  # a terminal in another encoding
     with Gradebook(gradebook) as book:
         standings = Standings(book)
         if criterion:
             criterion_of(standings.newest_rubric(), criterion)
-        waiting = list(pending(standings, criterion))
+        asked = waiting(standings, criterion)
         given = 0
-        for number, each in enumerate(waiting, 1):
-            answer = _ask(standings, each, f"{number} of {len(waiting)}", by or author())
+        for number, each in enumerate(asked, 1):
+            found = pending(standings, each)
+            if found is None:  # somebody else has decided it meanwhile
+                continue
+            answer = _ask(standings, found, f"{number} of {len(asked)}", by or author())
             if answer is None:
                 break
             given += answer
-    emit(f"{given} marked, {len(waiting) - given} still wait\n")
+        left = len(waiting(standings, criterion))
+    emit(f"{given} marked, {left} still wait\n" if asked else "nothing waits for a person\n")
     return 0
 
 
@@ -83,5 +91,5 @@ def _line(prompt: str) -> str | None:
     emit(prompt)
     try:
         return input()
-    except EOFError:
+    except (EOFError, RuntimeError):  # the latter where there is no standard input at all
         return None

@@ -14,18 +14,24 @@ class SchemaName(StrEnum):
     REPORT = "report"
     RUBRIC = "rubric"
     INSPECT = "inspect"
+    CLASS = "class"
+    DIFF = "diff"
 
 
 def schema(name: Annotated[SchemaName, typer.Argument(help="Which schema.")]) -> int:
-    """Print a JSON Schema: of a report, of a rubric, or of an inspection."""
+    """Print a JSON Schema: of a report, a rubric, an inspection, a class (batch, stats, export json), or of what a diff says."""
     from grader.report.plain import to_json
-    from grader.report.schemas import INSPECT_SCHEMA, REPORT_SCHEMA, rubric_schema
+    from grader.report.schemas import CLASS_SCHEMA, DIFF_SCHEMA, INSPECT_SCHEMA, REPORT_SCHEMA, rubric_schema
 
     match name:
         case SchemaName.REPORT:
             emit(to_json(REPORT_SCHEMA))
         case SchemaName.INSPECT:
             emit(to_json(INSPECT_SCHEMA))
+        case SchemaName.CLASS:
+            emit(to_json(CLASS_SCHEMA))
+        case SchemaName.DIFF:
+            emit(to_json(DIFF_SCHEMA))
         case SchemaName.RUBRIC:
             emit(to_json(rubric_schema()))
     return 0

@@ -7,6 +7,8 @@ from grader.cli.output import emit
 def stats(gradebook: GradebookOption, due: DueOption = None, output_format: FormatOption = ClassFormat.TERMINAL) -> int:
     """Show how a class did: the marks, each criterion's difficulty and discrimination, what went wrong most often.
 
+    Marks by hand are in it; what being late costs is only in the students' totals of --format json.
+
     Example:
 
       grader stats --gradebook lab6.db

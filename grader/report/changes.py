@@ -2,19 +2,23 @@
 
 from collections.abc import Sequence
 from decimal import Decimal
+from typing import Any
 
 from rich.console import Console
 from rich.text import Text
 
 from grader.classroom.changes import Change, Step
+from grader.classroom.gradebook import Run
 from grader.report.layout import wrapped
 from grader.report.plain import exact, to_json
 from grader.report.points import points_words
 from grader.report.text import printable
 
 
-def render_changes(changes: Sequence[Change], console: Console) -> None:
-    """Print who changed, by how much, in which criteria, and why."""
+def render_changes(changes: Sequence[Change], runs: tuple[Run, Run], console: Console) -> None:
+    """Print which runs are compared, who changed, by how much, in which criteria, and why."""
+    before, after = (f"run {run.id} of {run.started}" for run in runs)
+    wrapped(console, Text(printable(f"From {before} to {after}"), style="dim"), 0)
     if not changes:
         wrapped(console, Text("nothing changed"), 0)
     for change in changes:
@@ -24,7 +28,7 @@ def render_changes(changes: Sequence[Change], console: Console) -> None:
             wrapped(console, Text(printable(_step(step))), 4)
 
 
-def render_changes_json(changes: Sequence[Change]) -> str:
+def render_changes_json(changes: Sequence[Change], runs: tuple[Run, Run]) -> str:
     """The same as JSON, schema grader/diff/v1."""
     listed = [
         {
@@ -39,7 +43,12 @@ def render_changes_json(changes: Sequence[Change]) -> str:
         }
         for change in changes
     ]
-    return to_json({"schema": "grader/diff/v1", "students": listed})
+    before, after = (_run(run) for run in runs)
+    return to_json({"schema": "grader/diff/v1", "from": before, "to": after, "students": listed})
+
+
+def _run(run: Run) -> dict[str, Any]:
+    return {"run": run.id, "started": run.started, "grader": {"version": run.version}, "rubric": {"sha256": run.rubric}}
 
 
 def _step(step: Step) -> str:
@@ -56,7 +65,7 @@ def _signed(points: Decimal) -> str:
 
 
 def _words(points: Decimal | None) -> str:
-    return "open" if points is None else points_words(points)
+    return "none" if points is None else points_words(points)
 
 
 def _number(points: Decimal | None) -> int | float | None:

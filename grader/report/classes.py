@@ -1,6 +1,7 @@
 """A class for a person at a terminal: the marks, how each criterion went, what went wrong most often, who needs a look."""
 
 from collections.abc import Iterable
+from decimal import ROUND_FLOOR, Decimal
 
 from rich.console import Console
 from rich.table import Table
@@ -28,6 +29,9 @@ def render_class(title: str, statistics: ClassStatistics, looks: Looks, console:
     ]
     wrapped(console, Text(printable(title), style="bold"), 0)
     wrapped(console, Text(", ".join(f"{count} {what}" for count, what in counted if count) or "nobody yet"), 0)
+    earlier = verdicts.get("graded", 0) - statistics.graded
+    if earlier:
+        wrapped(console, Text(f"{earlier} of the graded by an earlier rubric only: not in what follows"), 0)
     if statistics.graded:
         _show_marks(statistics, console)
         _show_criteria(statistics.criteria, console)
@@ -39,7 +43,7 @@ def _show_marks(statistics: ClassStatistics, console: Console) -> None:
     console.print()
     waits = f"; {statistics.pending} still wait for a person" if statistics.pending else ""
     words = (
-        f"Marks of {points_words(statistics.out_of)}: mean {statistics.mean:.1f}, deviation {statistics.deviation:.1f}, "
+        f"Marks of {points_words(statistics.out_of)}: mean {_mean(statistics)}, deviation {statistics.deviation:.1f}, "
         f"lowest {points_words(statistics.lowest)}, median {points_words(statistics.median)}, "
         f"highest {points_words(statistics.highest)}{waits}"
     )
@@ -56,22 +60,35 @@ def _show_criteria(criteria: Iterable[CriterionStatistics], console: Console) ->
     console.print()
     table = Table(box=None, pad_edge=False, header_style="bold")
     table.add_column("criterion", no_wrap=True)
-    for name in ("points", "passed", "of", "share", "tells"):
+    asked = [each for each in criteria if each.decided or each.pending or each.errored]
+    has_marks = any(each.marked for each in asked)
+    for name in ("points", "passed", *(["by hand"] if has_marks else []), "of", "share", "tells"):
         table.add_column(name, justify="right", no_wrap=True)
-    for each in criteria:
-        if not (each.decided or each.pending or each.errored):
-            continue
+    for each in asked:
         table.add_row(
             printable(each.criterion.id),
             points_words(each.criterion.points),
             str(each.passed),
-            str(each.passed + each.failed + each.skipped + each.pending + each.errored),
-            f"{each.share:.0%}" if each.share is not None else "",
+            *([str(each.marked)] if has_marks else []),
+            str(each.decided + each.pending + each.errored),
+            _percent(each.share) if each.share is not None else "",
             _tells(each.discrimination),
         )
     console.print(table)
     hint = "share: of its points earned; tells: how well it goes with the rest of the mark, from -1 to 1"
     wrapped(console, Text(hint, style="dim"), 0)
+
+
+def _mean(statistics: ClassStatistics) -> str:
+    """The mean to one decimal, but never up to full marks."""
+    words = f"{statistics.mean:.1f}"
+    is_full = Decimal(words) >= statistics.out_of > statistics.mean
+    return format(Decimal(statistics.mean).quantize(Decimal("0.1"), ROUND_FLOOR), "f") if is_full else words
+
+
+def _percent(share: float) -> str:
+    """A share in percent, but never up to all or down to nothing."""
+    return f"{share:.0%}" if share in (0, 1) else f"{min(99, max(1, round(100 * share)))}%"
 
 
 def _tells(discrimination: float | None) -> Text:

@@ -75,6 +75,7 @@ def _criterion(each: CriterionStatistics) -> dict[str, Any]:
         "id": each.criterion.id,
         "max_points": exact(each.criterion.points),
         "passed": each.passed,
+        "marked_by_hand": each.marked,
         "failed": each.failed,
         "skipped": each.skipped,
         "pending": each.pending,

@@ -118,6 +118,96 @@ INSPECT_SCHEMA: dict[str, Any] = {
 }
 
 
+_TOTAL: dict[str, Any] = {"type": "integer", "minimum": 0}
+_DEDUCTION: dict[str, Any] = {"type": "number", "maximum": 0}
+_GRADER = _object({"version": _TEXT})
+_CRITERION_STATISTICS = _object(
+    {
+        "id": _TEXT,
+        "max_points": _POINTS,
+        "passed": _TOTAL,
+        "marked_by_hand": _TOTAL,
+        "failed": _TOTAL,
+        "skipped": _TOTAL,
+        "pending": _TOTAL,
+        "errored": _TOTAL,
+        "share": _nullable({"type": "number", "minimum": 0}),
+        "discrimination": _nullable({"type": "number", "minimum": -1, "maximum": 1}),
+    }
+)
+_STATISTICS = _object(
+    {
+        "counts": _object(
+            {"errored": _COUNT, "graded": _COUNT, "missing": _COUNT, "unreadable": _COUNT},
+            optional=("errored", "graded", "missing", "unreadable"),
+        ),
+        "max_score": _POINTS,
+        "graded": _TOTAL,
+        "pending": _TOTAL,
+        "mean": _POINTS,
+        "deviation": _POINTS,
+        "lowest": _POINTS,
+        "median": _POINTS,
+        "highest": _POINTS,
+        "tenths": {**_array(_TOTAL), "minItems": 10, "maxItems": 10},
+        "criteria": _array(_CRITERION_STATISTICS),
+        "failures": _array(_object({"criterion": _TEXT, "message": _TEXT, "count": _COUNT})),
+    }
+)
+_STUDENT = _object(
+    {
+        "id": _TEXT,
+        "name": _TEXT,
+        "email": _TEXT,
+        "status": {"enum": ["graded", "unreadable", "errored", "missing"]},
+        "reason": _TEXT,
+        "score": _nullable(_POINTS),
+        "max_score": _nullable(_POINTS),
+        "pending": _nullable(_POINTS),
+        "late": _object({"days": _TOTAL, "points": _DEDUCTION, "because": _TEXT}),
+        "total": _nullable(_POINTS),
+        "is_final": {"type": "boolean"},
+        "marks_by_hand": _TOTAL,
+        "paths": _array(_TEXT),
+        "attempt": _TOTAL,
+        "earlier": _array(_TEXT),
+    }
+)
+
+CLASS_SCHEMA: dict[str, Any] = {
+    "$schema": _DIALECT,
+    "title": "grader class",
+    **_object(
+        {
+            "schema": {"const": "grader/class/v1"},
+            "grader": _GRADER,
+            "rubric": _object({"id": _TEXT, "title": _TEXT, "sha256": _HASH}),
+            "run": _object({"total": _TOTAL, "graded": _TOTAL, "unchanged": _TOTAL, "errored": _TOTAL}),
+            "statistics": _STATISTICS,
+            "needs_a_look": _TOTAL,
+            "students": _array(_STUDENT),
+        },
+        optional=("run",),
+    ),
+}
+
+_RUN = _object({"run": _COUNT, "started": _TEXT, "grader": _GRADER, "rubric": _object({"sha256": _HASH})})
+_CHANGE: dict[str, Any] = {"id": _TEXT, "before": _nullable(_POINTS), "after": _nullable(_POINTS)}
+
+DIFF_SCHEMA: dict[str, Any] = {
+    "$schema": _DIALECT,
+    "title": "grader diff",
+    **_object(
+        {
+            "schema": {"const": "grader/diff/v1"},
+            "from": _RUN,
+            "to": _RUN,
+            "students": _array(_object({**_CHANGE, "because": _array(_TEXT), "criteria": _array(_object(_CHANGE))})),
+        }
+    ),
+}
+
+
 def rubric_schema() -> dict[str, Any]:
     """The schema of a rubric file, with the arguments of every check that comes with the grader."""
     checks = [describe(function) for function in CHECKS]

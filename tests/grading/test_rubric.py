@@ -509,7 +509,7 @@ def test_a_late_policy_is_read(tmp_path: Path) -> None:
     assert late is not None
     assert late.due is not None
     assert late.due.isoformat() == "2026-11-20T23:59:00+01:00"
-    assert (late.grace_minutes, late.percent_per_day, late.floor_percent) == (0, Decimal("10.5"), 0)
+    assert [late.grace_minutes, late.percent_per_day, late.floor_percent] == [Decimal(0), Decimal("10.5"), Decimal(0)]
     assert loaded(tmp_path, worth("1")).late is None
 
 

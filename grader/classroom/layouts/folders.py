@@ -47,8 +47,14 @@ class FolderShelf:
     def student(self, index: int) -> Student:
         """Who has handed in, as the name says."""
         name = self._names[index]
-        key = self._key(name)
-        return Student(key, login=key if self._stem(name) != name.removesuffix(self._ending(name)) else "")
+        key, plain = self._key(name), self._plain(name)
+        return Student(
+            key,
+            name=""
+            if plain.isprintable() or not _is_text(plain)
+            else plain,  # as a roster has it: the key is spelt out
+            login=key if self._stem(name) != name.removesuffix(self._ending(name)) else "",
+        )
 
     def hand_in(self, index: int) -> HandIn:
         """What was handed in; a folder is looked into for attempts."""
@@ -124,6 +130,15 @@ class FolderShelf:
     def _key(self, name: str) -> str:
         special = self._special.get(name)
         return special.key if special is not None else self._stem(name)
+
+
+def _is_text(name: str) -> bool:
+    """Whether a name is in UTF-8."""
+    try:
+        name.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 def shelve(

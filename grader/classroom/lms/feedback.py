@@ -56,7 +56,9 @@ def is_our_feedback(text: str) -> bool:
 
 
 def _item(remark: Remark) -> str:
-    points = f"{exact_words(remark.points)} of {exact_words(remark.out_of)}"
+    points = exact_words(remark.points)
+    if remark.points >= 0:  # less is what being late costs: that is of nothing
+        points += f" of {exact_words(remark.out_of)}"
     message = _escaped(remark.message)
     return f"<li>{_escaped(remark.title)}: {points}.{' ' if message else ''}{message}</li>"
 

@@ -17,8 +17,9 @@ def behaves(robot: Configuration) -> Outcome:
             while True:
                 time.sleep(0.01)
         case "hangs_in_c":
-            "a" * 40 + "b" in ("a" * 10**8) * 30  # noqa: B015  the interpreter gets no turn for a long time
-            time.sleep(3600)
+            ctypes.PyDLL(None).sleep(3600)  # with the interpreter's lock held: no thread and no handler gets a turn
+        case "stops":
+            os.kill(os.getpid(), signal.SIGSTOP)
         case "dies":
             os.kill(os.getpid(), signal.SIGKILL)
         case "leaves":

@@ -1,0 +1,176 @@
+"""Runs of the command line over whole classes, as a user does: in processes of their own."""
+
+import io
+import os
+import shutil
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager, redirect_stderr, redirect_stdout, suppress
+from pathlib import Path
+from typing import Any
+
+from grader.cli.app import run as run_here
+from tests.samples import ROOT
+
+sys.path.insert(0, str(ROOT / "benchmarks"))  # a folder of scripts
+import class_generator as made_up
+
+GRADER = (sys.executable, "-W", "error", "-m", "grader")
+HOSTILE = Path(__file__).parent / "hostile"
+WITH_HOSTILE = {"PYTHONPATH": str(HOSTILE)}
+HOSTILE_RUBRIC = str(HOSTILE / "hostile.toml")
+PATIENCE = 120.0  # seconds that one command may take on the slowest machine
+
+Done = subprocess.CompletedProcess[str]
+_SKIPPED = ("latin-name", "links-out", "deep-folders")  # what a zip holds otherwise than a folder does
+
+
+def grader(*arguments: str | Path, cwd: Path | None = None, **variables: str) -> Done:
+    """Run the command line; its standard output and standard error."""
+    return subprocess.run(
+        [*GRADER, *map(str, arguments)],
+        cwd=cwd,
+        env=environment(**variables),
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=PATIENCE,
+    )
+
+
+def environment(**variables: str) -> dict[str, str]:
+    """The environment of a command, 80 columns wide."""
+    return {**os.environ, "COLUMNS": "80", "PYTHONIOENCODING": "utf-8", **variables}
+
+
+@contextmanager
+def started(*arguments: str | Path, **variables: str) -> Iterator[subprocess.Popen[str]]:
+    """A command that runs, in a session of its own; whatever is left of it is ended."""
+    process = subprocess.Popen(
+        [*GRADER, *map(str, arguments)],
+        env=environment(**variables),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    with process:
+        try:
+            yield process
+        finally:
+            for each in session_of(process):
+                with suppress(ProcessLookupError):
+                    os.kill(each, signal.SIGKILL)
+
+
+def session_of(process: "subprocess.Popen[str]") -> list[int]:
+    """The processes that a command has started, itself among them; those that have ended and wait for their parent are left out."""
+    found = []
+    for each in Path("/proc").glob("[0-9]*"):
+        try:
+            state = (each / "stat").read_text().rpartition(")")[2].split()[0]
+            if os.getsid(int(each.name)) == process.pid and state != "Z":
+                found.append(int(each.name))
+        except OSError:
+            continue
+    return found
+
+
+def eventually(condition: Callable[[], Any], seconds: float = 20.0) -> bool:
+    """Whether a condition comes true in time."""
+    end = time.monotonic() + seconds
+    while not condition():
+        if time.monotonic() > end:
+            return False
+        time.sleep(0.005)
+    return True
+
+
+def rows(gradebook: Path, query: str, *values: Any) -> list[tuple[Any, ...]]:
+    """What a query of a gradebook gives; nothing as long as there is no such table."""
+    try:
+        with closing(sqlite3.connect(f"file:{gradebook}?mode=ro", uri=True, timeout=30)) as connection:
+            return connection.execute(query, values).fetchall()
+    except sqlite3.OperationalError:
+        return []
+
+
+def verdicts(gradebook: Path) -> dict[str, str]:
+    """The verdict on everyone."""
+    return {str(key): str(verdict) for key, verdict in rows(gradebook, "SELECT key, verdict FROM grade")}
+
+
+def reasons(gradebook: Path) -> dict[str, str]:
+    """Why those who are not graded are not."""
+    return {
+        str(key): str(reason) for key, reason in rows(gradebook, "SELECT key, reason FROM grade WHERE reason <> ''")
+    }
+
+
+def doubled(gradebook: Path) -> list[tuple[Any, ...]]:
+    """Results that are there more than once."""
+    return rows(gradebook, "SELECT student FROM result GROUP BY student, digest, rubric, version HAVING count(*) > 1")
+
+
+def is_sound(gradebook: Path) -> bool:
+    """Whether SQLite finds nothing wrong with a gradebook."""
+    with closing(sqlite3.connect(gradebook)) as connection:
+        sound: bool = connection.execute("PRAGMA integrity_check").fetchone()[0] == "ok"
+        return sound and not connection.execute("PRAGMA foreign_key_check").fetchall()
+
+
+def counted(done: Done) -> str:
+    """What a run said of how many it has graded."""
+    (line,) = (line for line in done.stderr.splitlines() if " unchanged since they were" in line)
+    return line.removeprefix("grader: ").removesuffix(" since they were")
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    """All files of a folder by name."""
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
+
+
+def report_here(path: Path, to: Path) -> tuple[int, bytes | str]:
+    """What `grader grade PATH --format json` exits with and reports, run in this process; what it complains of if there is no report."""
+    said = io.StringIO()
+    to.unlink(missing_ok=True)
+    with redirect_stdout(io.StringIO()), redirect_stderr(said):
+        code = run_here(["grade", "--save", f"json={to}", "--format", "json", "--", str(path)])
+    return code, to.read_bytes() if to.exists() else said.getvalue()
+
+
+def urdf_class(folder: Path, count: int, seed: int = 1) -> Path:
+    """A class of single URDFs."""
+    for _ in made_up.make_class(folder, count, seed):
+        pass
+    return folder
+
+
+def mixed_class(folder: Path, count: int, layout: str = "folders", seed: int = 1, *, for_zip: bool = False) -> Path:
+    """A class of all kinds; `for_zip` leaves out what a zip does not hold as a folder does."""
+    for each in made_up.make_class(folder, count, seed, "mixed", layout):
+        if for_zip and (each.kind in _SKIPPED or not each.person.name.isprintable()):
+            for path in each.paths:
+                place = folder / path
+                shutil.rmtree(place) if place.is_dir() else place.unlink(missing_ok=True)
+    return folder
+
+
+def class_with_roster(folder: Path, roster: Path, count: int) -> tuple[list[str], int]:
+    """A class of all kinds, and its roster: the keys of those who are not in it, and how many of it have handed in nothing."""
+    written = list(made_up.make_class(folder, count, 1, "mixed"))
+    made_up.write_beside(written, count, "folders", None, roster, None)
+    return [each.person.key for each in written[count:]], sum(not each.paths for each in written[:count])
+
+
+def hostile_class(folder: Path, *names: str) -> Path:
+    """A class whose robots are called so, each of a student of that name."""
+    folder.mkdir()
+    for name in names:
+        robot = name.partition("-")[0]
+        (folder / f"{name}.urdf").write_text(f'<robot name="{robot}"><link name="a"/></robot>')
+    return folder

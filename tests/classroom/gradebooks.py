@@ -1,0 +1,162 @@
+"""A small lab, gradebooks in which its hand-ins came out as asked, and a class of it on the disk."""
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterable
+from decimal import Decimal
+from pathlib import Path
+
+from grader.checks.outcome import Outcome
+from grader.classroom.gradebook import Gradebook
+from grader.classroom.students import HandIn, Student
+from grader.classroom.work import NOT_GRADED, SIGNS, Graded, Task, Verdict, _of
+from grader.grading.report import Report, Result
+from grader.grading.rubric import Rubric, read_rubric
+from grader.submission.files import sha256_of
+from tests.samples import ROOT
+
+POINTS = {"loads": "3", "box": "2.5", "tall": "0.5", "essay": "4", "picture": "1"}
+PENDING = ("essay", "picture")
+_TOLERANCE = "tolerance = 0.001"
+_CRITERIA = {
+    "loads": 'part = "robot"\ncheck = "urdf_loads"',
+    "box": f'part = "robot"\ncheck = "shows_box"\nwith = {{ link = "base", size = [1, 1, 1], {_TOLERANCE} }}',
+    "tall": 'part = "robot"\nrequires = ["box"]\ncheck = "bottom_at_height"\n'
+    f'with = {{ link = "base", relative_to = "base", height = -0.5, {_TOLERANCE} }}',
+    "essay": 'part = "report"\ncheck = "answered"\n'
+    'with = { question = "Why?", answer = "Because of the roots.", places = ["step 1"] }',
+    "picture": 'part = "report"\ncheck = "evidence_shown"\nwith = { names = ["screen"] }',
+}
+_STATUSES = {sign: status for status, sign in SIGNS.items()}
+ENVIRONMENT = {**os.environ, "COLUMNS": "80", "PYTHONIOENCODING": "utf-8"}
+HOSTILE = ROOT / "tests" / "classroom" / "hostile"
+
+
+def lab_text(late: str = "", **points: str) -> str:
+    """The lab as TOML: `points` are those of criteria that differ, `late` is the table of the late policy."""
+    worth = {name: points.get(name, POINTS.get(name, "1")) for name in (*POINTS, *points)}
+    rows = [
+        f'[[criterion]]\nid = "{name}"\ntitle = "About {name}"\npoints = {value}\n{_CRITERIA.get(name, _CRITERIA["loads"])}'
+        for name, value in worth.items()
+    ]
+    parts = '[[part]]\nid = "robot"\ntitle = "Robot"\n\n[[part]]\nid = "report"\ntitle = "Report"\nneeds = "files"'
+    policy = f"[late]\n{late}" if late else ""
+    return "\n\n".join(['id = "small"\ntitle = "A small lab"\nurdf = "robot.urdf"', parts, *rows, policy])
+
+
+def lab(late: str = "", **points: str) -> Rubric:
+    """The lab as a rubric."""
+    return read_rubric(lab_text(late, **points).encode(), Path("small.toml"))
+
+
+def came_out(rubric: Rubric, key: str, signs: str, digest: str = "a", reason: str = "") -> Graded:
+    """A hand-in whose criteria came out as these signs say; one that has a reason could not be read."""
+    results = tuple(
+        Result(criterion, Outcome(_STATUSES[sign], f"what was found of {criterion.id}"))
+        for criterion, sign in zip(rubric.criteria, signs, strict=True)
+        if sign != NOT_GRADED
+    )
+    verdict: Verdict = "unreadable" if reason else "errored" if "!" in signs else "graded"
+    from grader.grading.record import Kept
+
+    report = Report(Kept(key), rubric, tuple(part.id for part in rubric.parts), results)
+    return _of(report, Task(key, (key,)), verdict, reason, sha256_of(digest.encode()), "")
+
+
+def graded_into(book: Gradebook, rubric: Rubric, found: Iterable[Graded], submitted: str = "") -> int:
+    """Keep what came out as one run; its number."""
+    run = book.begin("class", "folders", rubric)
+    with book.transaction():
+        for each in found:
+            who = Student(each.key)
+            student = book.keep_student(who, None)
+            result = book.keep(student, rubric.sha256, each)
+            book.see(student, run, result, HandIn(who, (each.key,), submitted=submitted), "")
+    book.finish(run)
+    return run
+
+
+def units(points: str | Decimal) -> int:
+    """Points in ten-thousandths."""
+    return int(Decimal(points) * 10_000)
+
+
+# --- The command line, and a class on the disk ------------------------------------------------------------------------
+
+
+def grader(*arguments: object, stdin: str | bytes = "", **variables: str) -> subprocess.CompletedProcess[str]:
+    """Run the command line as a user does, from the project's root."""
+    given = stdin if isinstance(stdin, bytes) else stdin.encode()
+    done = subprocess.run(
+        [sys.executable, "-m", "grader", *(each if isinstance(each, bytes) else str(each) for each in arguments)],
+        cwd=ROOT,
+        env={**ENVIRONMENT, **variables},
+        input=given,
+        capture_output=True,
+        check=False,
+        timeout=120,
+    )
+    out, err = done.stdout.decode(), done.stderr.decode()
+    return subprocess.CompletedProcess(done.args, done.returncode, out, err)
+
+
+def refusal(done: subprocess.CompletedProcess[str]) -> str:
+    """The one plain line in which a command was refused."""
+    assert done.returncode == 2, done
+    assert done.stdout == "", done
+    assert done.stderr.startswith("grader: "), done
+    assert done.stderr.count("\n") == 1, done
+    assert done.stderr[:-1].isprintable(), done
+    return done.stderr.removeprefix("grader: ").rstrip("\n")
+
+
+def urdf(size: str = "1 1 1") -> str:
+    """A robot of one box."""
+    return (
+        f'<robot name="r"><link name="base"><visual><geometry><box size="{size}"/></geometry></visual></link></robot>'
+    )
+
+
+PNG = bytes.fromhex(
+    "89504e470d0a1a0a0000000d49484452000000010000000108060000001f15c4890000000d49444154789c6360000002000001e221bc330000"
+    "000049454e44ae426082"
+)
+
+
+def hand_in(folder: Path, size: str = "1 1 1", answer: str = "The roots.") -> None:
+    """A hand-in with all that the lab asks for."""
+    folder.mkdir(parents=True)
+    (folder / "robot.urdf").write_text(urdf(size))
+    (folder / "answers.md").write_text(f"# Step 1\n\n{answer}\n")
+    (folder / "screen.png").write_bytes(PNG)
+
+
+ROSTER = """\
+id,name,email,login,canvas id
+anna,Anna Ek,anna@example.org,ae1,101
+ben,Ben Oh,ben@example.org,bo2,102
+cleo,Cleo Ray,cleo@example.org,cr3,103
+dora,Dora Fi,dora@example.org,df4,104
+emil,Ben Oh,emil@example.org,eo5,105
+"""
+
+
+def make_class(top: Path, late: str = "") -> Path:
+    """A class: anna's is right, ben's is a URDF alone, cleo's no zip, dora has none, emil's box is wrong; the path of the lab."""
+    folder = top / "class"
+    hand_in(folder / "anna")
+    (folder / "ben.urdf").write_text(urdf())
+    (folder / "cleo.zip").write_bytes(b"PK\x03\x04 broken")
+    hand_in(folder / "emil", "1 1 2", "[bold]\x1b[31mRed\x1b[0m roots[/bold] \u202eturned")
+    (top / "roster.csv").write_text(ROSTER)
+    (top / "small.toml").write_text(lab_text(late))
+    return top / "small.toml"
+
+
+def batch(top: Path, *more: object, rubric: object = None) -> subprocess.CompletedProcess[str]:
+    """Grade the class into book.db."""
+    return grader(
+        "batch", top / "class", "--gradebook", top / "book.db", "--rubric", rubric or top / "small.toml",
+        "--roster", top / "roster.csv", "--jobs", 2, *more,
+    )  # fmt: skip

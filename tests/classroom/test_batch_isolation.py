@@ -1,0 +1,131 @@
+"""A hand-in that hangs, dies or breaks the grader costs nobody else anything, and no process outlives the command."""
+
+import os
+import re
+import signal
+import time
+from pathlib import Path
+
+import pytest
+
+from tests.classroom.class_runs import (
+    HOSTILE_RUBRIC,
+    PATIENCE,
+    WITH_HOSTILE,
+    counted,
+    eventually,
+    grader,
+    hostile_class,
+    is_sound,
+    reasons,
+    rows,
+    session_of,
+    started,
+    urdf_class,
+    verdicts,
+)
+
+GOOD = tuple(f"fine-{number}" for number in range(150))
+SLOW = r"grading it took longer than 4 s, and was stopped"
+REASONS = {
+    "hangs": SLOW,
+    "hangs_in_c": SLOW,
+    "stops": SLOW,
+    "dies": "the process that graded it was ended by signal 9",
+    "crashes": "the process that graded it was ended by signal 11",
+    "leaves": "the process that graded it ended in the midst of it",
+    "leaves_loudly": "the process that graded it ended with exit code 7",
+    "exits": "the grader itself failed: SystemExit: out",
+    "eats": r".*(MemoryError|more memory than a worker may have).*",
+    "raises": r".*\(RuntimeError\); please report it",
+}
+# Where a process ends before anybody has heard that it had begun, its task is missed only when its time is over; and memory is
+# not eaten up at once everywhere.
+ENDED = ("dies", "crashes", "leaves", "leaves_loudly", "eats")
+RUBRIC = ("--rubric", HOSTILE_RUBRIC)
+
+
+def test_each_misdeed_costs_one_submission(tmp_path: Path) -> None:
+    """All of them at once among many others: each is errored with its reason, and only these are tried again."""
+    folder = hostile_class(tmp_path / "class", *REASONS, *GOOD)
+    book = tmp_path / "lab.db"
+    command = ("batch", folder, "--gradebook", book, *RUBRIC, "--timeout", "4", "--jobs", "4")
+    began = time.monotonic()
+    done = grader(*command, **WITH_HOSTILE)
+    assert done.returncode == 0, done.stderr
+    assert time.monotonic() - began < PATIENCE / 2
+    assert counted(done) == f"{len(REASONS) + len(GOOD)} graded, {len(REASONS)} of them errored, 0 unchanged"
+    assert "Traceback" not in done.stderr
+    assert verdicts(book) == {**dict.fromkeys(REASONS, "errored"), **dict.fromkeys(GOOD, "graded")}
+    found = reasons(book)
+    for key, reason in REASONS.items():
+        allowed = f"{reason}|{SLOW}" if key in ENDED else reason
+        assert re.fullmatch(allowed, found[key]), (key, found[key])
+    marks = rows(book, "SELECT DISTINCT score FROM grade WHERE verdict = 'graded'")
+    assert marks == [(30_000,)]
+
+    for name in REASONS:  # as their students hand in something else
+        (folder / f"{name}.urdf").write_text('<robot name="fine"><link name="a"/></robot>')
+    (folder / "dies.urdf").write_text('<robot name="dies"><link name="a"/></robot>')
+    assert counted(grader(*command, **WITH_HOSTILE)) == (
+        f"{len(REASONS)} graded, 1 of them errored, {len(GOOD)} unchanged"
+    )
+    assert counted(grader(*command, **WITH_HOSTILE)) == (
+        f"1 graded, 1 of them errored, {len(GOOD) + len(REASONS) - 1} unchanged"
+    )
+    assert is_sound(book)
+
+
+def test_a_class_of_nothing_but_misdeeds_comes_to_an_end(tmp_path: Path) -> None:
+    """Where every worker is ended again and again, each submission still has its reason."""
+    names = [f"{name}-{number}" for name in ("dies", "leaves", "crashes") for number in range(8)]
+    folder, book = hostile_class(tmp_path / "class", *names), tmp_path / "lab.db"
+    done = grader("batch", folder, "--gradebook", book, *RUBRIC, "--timeout", "6", "--jobs", "2", **WITH_HOSTILE)
+    assert (done.returncode, counted(done)) == (0, "24 graded, 24 of them errored, 0 unchanged")
+    assert set(verdicts(book)) == set(names)
+
+
+def test_no_process_is_left_behind(tmp_path: Path) -> None:
+    """When the command is done, all that it has started has ended or is about to."""
+    folder = urdf_class(tmp_path / "class", 20)
+    with started("batch", folder, "--gradebook", tmp_path / "lab.db", "--jobs", "3") as process:
+        assert process.wait(PATIENCE) == 0
+        assert eventually(lambda: not session_of(process))
+
+
+HANGING = ("hangs", "hangs-2", "hangs_in_c", "fine")
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGKILL, -9), (signal.SIGTERM, -15)])
+def test_no_process_outlives_a_command_that_is_ended(number: signal.Signals, code: int, tmp_path: Path) -> None:
+    """Not even those that hang in the midst of a submission, where the interpreter gets no turn."""
+    folder, book = hostile_class(tmp_path / "class", *HANGING), tmp_path / "lab.db"
+    command = ("batch", folder, "--gradebook", book, *RUBRIC, "--timeout", "60", "--jobs", "4")
+    with started(*command, **WITH_HOSTILE) as process:
+        assert eventually(lambda: "fine" in verdicts(book), PATIENCE)
+        assert eventually(lambda: len(session_of(process)) >= 1 + 2 + 4)  # beside the workers two that serve them
+        if number is signal.SIGINT:
+            os.killpg(process.pid, number)  # as a terminal does
+        else:
+            process.send_signal(number)
+        assert process.wait(20) == code
+        assert eventually(lambda: not session_of(process), 10)
+    assert verdicts(book) == {"fine": "graded"}
+
+
+def test_workers_that_somebody_ends_are_replaced(tmp_path: Path) -> None:
+    """As the kernel does where memory is short: nobody is left without a result, and most are graded at once."""
+    folder, book = urdf_class(tmp_path / "class", 1_000), tmp_path / "lab.db"
+    with started("batch", folder, "--gradebook", book, "--jobs", "3") as process:
+        for count in (30, 200, 350, 500, 700):
+            assert eventually(lambda at=count: rows(book, "SELECT 1 FROM result LIMIT 1 OFFSET ?", at), PATIENCE)  # type: ignore[misc]
+            workers = [each for each in session_of(process) if each > process.pid][2:]
+            if workers:
+                os.kill(workers[-1], signal.SIGKILL)
+        assert process.wait(PATIENCE) == 0
+    found = list(verdicts(book).values())
+    assert len(found) == 1_000
+    assert found.count("errored") <= 5
+    done = grader("batch", folder, "--gradebook", book)
+    assert done.returncode == 0
+    assert set(verdicts(book).values()) == {"graded"}

@@ -1,0 +1,241 @@
+"""Whatever ends a run, what was graded is kept, and the same command goes on to what an undisturbed run gives."""
+
+import os
+import resource
+import shutil
+import signal
+import sqlite3
+import subprocess
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from random import Random
+
+import pytest
+
+from tests.classroom.class_runs import (
+    GRADER,
+    PATIENCE,
+    Done,
+    contents,
+    counted,
+    doubled,
+    environment,
+    eventually,
+    grader,
+    is_sound,
+    rows,
+    session_of,
+    started,
+    urdf_class,
+    verdicts,
+)
+
+KILLS, SIZE = 30, 700
+JSON = ("--report-format", "json")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A class that takes some seconds with its reports."""
+    return urdf_class(tmp_path_factory.mktemp("large") / "class", SIZE)
+
+
+@pytest.fixture(scope="module")
+def undisturbed(folder: Path) -> tuple[dict[str, bytes], float]:
+    """The reports of a run that nothing happens to, and how long it takes."""
+    began = time.monotonic()
+    done = grader(*_command(folder, folder.parent / "undisturbed"))
+    seconds = time.monotonic() - began
+    assert done.returncode == 0
+    return contents(folder.parent / "undisturbed"), seconds
+
+
+def _command(folder: Path, out: Path) -> tuple[str | Path, ...]:
+    return "batch", folder, "--gradebook", out.with_suffix(".db"), "--reports", out, *JSON, "--jobs", "2"
+
+
+def _visible(folder: Path) -> dict[str, bytes]:
+    """The files of a folder, but for those that were being written."""
+    return {name: data for name, data in contents(folder).items() if not name.startswith(".")}
+
+
+def test_killed_thirty_times(folder: Path, undisturbed: tuple[dict[str, bytes], float], tmp_path: Path) -> None:
+    """With kill -9 at any moment: every result is there once, and the reports are those of a run at one go."""
+    reports, seconds = undisturbed
+    out, dice = tmp_path / "out", Random(7)
+    moments = [dice.uniform(0, seconds / 3 if number % 2 else seconds) for number in range(KILLS)]
+    kept = [0]
+    for moment in moments:
+        with started(*_command(folder, out)) as process:
+            try:
+                process.wait(moment)
+            except subprocess.TimeoutExpired:
+                process.kill()
+            process.wait()
+            assert eventually(lambda: not session_of(process))
+        kept.append(len(verdicts(out.with_suffix(".db"))))
+    assert kept == sorted(kept)
+    assert any(0 < count < SIZE for count in kept)
+    assert grader(*_command(folder, out)).returncode == 0
+    book = out.with_suffix(".db")
+    assert _visible(out) == reports
+    assert rows(book, "SELECT count(*), count(DISTINCT student), count(DISTINCT digest) FROM result") == [(SIZE,) * 3]
+    assert (doubled(book), is_sound(book)) == ([], True)
+    assert set(verdicts(book).values()) == {"graded"}
+
+
+def test_interrupted(folder: Path, undisturbed: tuple[dict[str, bytes], float], tmp_path: Path) -> None:
+    """Ctrl-C says in a line how many are kept, which they are; then it goes on."""
+    out = tmp_path / "out"
+    book = out.with_suffix(".db")
+    with started(*_command(folder, out)) as process:
+        assert eventually(lambda: len(verdicts(book)) > 20, PATIENCE)
+        os.killpg(process.pid, signal.SIGINT)
+        _, said = process.communicate(timeout=20)
+        assert process.returncode == 130
+    first, stopped, last = said.splitlines()
+    assert first == f"grader: {SIZE} hand-ins, laid out as folders"
+    assert last == "grader: interrupted"
+    count = int(stopped.removeprefix("grader: stopped: ").partition(" ")[0])
+    assert stopped == f"grader: stopped: {count} of {SIZE} have a result, which is kept; the same command goes on"
+    kept = len(verdicts(book))
+    assert 20 < count <= kept < SIZE
+    assert is_sound(book)
+    done = grader(*_command(folder, out))
+    assert counted(done) == f"{SIZE - kept} graded, {kept} unchanged"
+    assert _visible(out) == undisturbed[0]
+
+
+@pytest.mark.parametrize("moment", [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6])
+def test_interrupted_while_it_starts(folder: Path, moment: float, tmp_path: Path) -> None:
+    """Whenever Ctrl-C comes once the command has begun, there is no traceback, of a worker neither."""
+    out = tmp_path / "out"
+    with started(*_command(folder, out)) as process:
+        assert process.stderr is not None
+        process.stderr.readline()  # the class is taken in
+        time.sleep(moment)
+        os.killpg(process.pid, signal.SIGINT)
+        _, said = process.communicate(timeout=20)
+        assert (process.returncode, said.splitlines()[-1]) == (130, "grader: interrupted")
+        assert all(line.startswith("grader: ") for line in said.splitlines())
+        assert eventually(lambda: not session_of(process))
+
+
+def _with_small_files(limit: int) -> None:
+    resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
+
+
+def _limited(limit: int, *arguments: str | Path) -> Done:
+    """Run the command line where no file may be larger than so many bytes."""
+    return subprocess.run(
+        [*GRADER, *map(str, arguments)],
+        env=environment(),
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=PATIENCE,
+        preexec_fn=lambda: _with_small_files(limit),
+    )
+
+
+def _is_one_complaint(done: Done) -> bool:
+    """Whether there is no more on standard error than plain lines, the last of them the reason."""
+    return all(line.startswith("grader: ") and "Traceback" not in line for line in done.stderr.splitlines())
+
+
+@pytest.mark.parametrize("limit", [0, 50_000, 400_000])
+def test_where_nothing_more_can_be_written(limit: int, folder: Path, tmp_path: Path) -> None:
+    """What was committed stays, the reason is a plain line, and the run goes on when there is room again."""
+    book = tmp_path / "lab6.db"
+    command = ("batch", folder, "--gradebook", book, "--jobs", "2")
+    done = _limited(limit, *command)
+    assert done.returncode == 2
+    assert _is_one_complaint(done)
+    assert done.stderr.splitlines()[-1].startswith(f"grader: the gradebook {book}: ")
+    kept = len(verdicts(book))
+    assert kept < SIZE
+    assert (kept > 0) == (limit > 100_000)
+    again = grader(*command)
+    assert counted(again) == f"{SIZE - kept} graded, {kept} unchanged"
+    assert (is_sound(book), len(verdicts(book)), doubled(book)) == (True, SIZE, [])
+
+
+def test_on_a_full_disk(folder: Path, tmp_path: Path) -> None:
+    """On a file system of two megabytes, which is then enlarged."""
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    mounted = shutil.which("mount") and subprocess.run(
+        ["mount", "-t", "tmpfs", "-o", "size=300k", "none", disk], check=False, capture_output=True
+    )
+    if not mounted or mounted.returncode:
+        pytest.skip("nothing may be mounted here")
+    try:
+        book = disk / "lab6.db"
+        done = grader("batch", folder, "--gradebook", book)
+        assert (done.returncode, _is_one_complaint(done)) == (2, True)
+        assert done.stderr.splitlines()[-1] == f"grader: the gradebook {book}: database or disk is full"
+        assert 0 < len(verdicts(book)) < SIZE
+        subprocess.run(["mount", "-o", "remount,size=100m", disk], check=True)
+        again = grader("batch", folder, "--gradebook", book)
+        assert (again.returncode, len(verdicts(book)), doubled(book), is_sound(book)) == (0, SIZE, [], True)
+    finally:
+        subprocess.run(["umount", disk], check=True)
+
+
+def test_reports_that_cannot_be_written(
+    folder: Path, undisturbed: tuple[dict[str, bytes], float], tmp_path: Path
+) -> None:
+    """No room for reports is one line; the grades are kept, and the reports come with the next run."""
+    out = tmp_path / "out"
+    command = _command(folder, out)
+    assert grader(*command[:4]).returncode == 0
+    done = _limited(100, *command)
+    assert (done.returncode, _is_one_complaint(done)) == (2, True)
+    assert "cannot write" in done.stderr.splitlines()[-1] or "the gradebook" in done.stderr.splitlines()[-1]
+    done = grader(*command)
+    assert (done.returncode, counted(done)) == (0, f"0 graded, {SIZE} unchanged")
+    assert _visible(out) == undisturbed[0]
+
+
+@pytest.mark.parametrize("rounds", range(2))
+def test_two_at_once_on_the_same_class(folder: Path, rounds: int, tmp_path: Path) -> None:
+    """Both succeed; each result is there once, whoever was first."""
+    book = tmp_path / "lab6.db"
+    command = ("batch", folder, "--gradebook", book, "--jobs", "1")
+    with ThreadPoolExecutor(3) as threads:
+        for done in threads.map(lambda _: grader(*command), range(3)):
+            assert done.returncode == 0, done.stderr
+    assert rows(book, "SELECT count(*), count(DISTINCT student) FROM result") == [(SIZE, SIZE)]
+    assert rows(book, "SELECT count(*) FROM run WHERE finished IS NOT NULL") == [(3,)]
+    assert is_sound(book)
+    assert counted(grader(*command)) == f"0 graded, {SIZE} unchanged"
+
+
+def test_two_at_once_on_different_classes(tmp_path: Path) -> None:
+    """Two groups of a course into one gradebook: nothing of either is lost."""
+    groups = [urdf_class(tmp_path / f"group{seed}", 200, seed) for seed in (1, 2)]
+    keys = {path.stem for group in groups for path in group.iterdir()}
+    book = tmp_path / "lab6.db"
+    with ThreadPoolExecutor(2) as threads:
+        done = list(threads.map(lambda group: grader("batch", group, "--gradebook", book, "--jobs", "1"), groups))
+    assert [each.returncode for each in done] == [0, 0], [each.stderr for each in done]
+    assert verdicts(book) == dict.fromkeys(keys, "graded")
+    assert (doubled(book), is_sound(book)) == ([], True)
+    for group in groups:
+        assert counted(grader("batch", group, "--gradebook", book)) == "0 graded, 200 unchanged"
+
+
+def test_one_that_is_locked_for_long_is_told(folder: Path, tmp_path: Path) -> None:
+    """While another program writes to the gradebook the run waits, and goes on when it is done."""
+    book = tmp_path / "lab6.db"
+    assert grader("batch", folder, "--gradebook", book).returncode == 0
+    other = sqlite3.connect(book, isolation_level=None)
+    other.execute("BEGIN IMMEDIATE")
+    with started("batch", folder, "--gradebook", book, "--force") as process:
+        with pytest.raises(subprocess.TimeoutExpired):
+            process.wait(2)
+        other.execute("ROLLBACK")
+        other.close()
+        assert process.wait(PATIENCE) == 0
+    assert rows(book, "SELECT count(*) FROM result") == [(SIZE,)]

@@ -1,0 +1,410 @@
+"""grader export: the current grades in a CSV, as JSON, in a gradebook of Canvas and in a worksheet of Moodle."""
+
+import csv
+import io
+import json
+import re
+import shutil
+import sys
+import zipfile
+from collections.abc import Iterator
+from decimal import Decimal
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import jsonschema
+import pytest
+
+from grader.classroom.gradebook import Gradebook
+from grader.classroom.intake import take_in
+from grader.classroom.marking import criterion_of
+from grader.classroom.marking import mark as add_mark
+from grader.classroom.roster_file import read_roster
+from grader.classroom.standings import Standings
+from grader.classroom.students import HandIn
+from grader.errors import InputError
+from grader.grading.grade import grade
+from tests.classroom.gradebooks import batch, came_out, graded_into, grader, hand_in, lab, lab_text, make_class, refusal
+from tests.samples import LAB6, ROOT, opened
+
+sys.path.insert(0, str(ROOT / "benchmarks"))  # a folder of scripts
+import class_generator as made_up
+
+BROKEN = "it could not be graded: cleo.zip cannot be read as an archive: File is not a zip file"
+HEADER = "id,name,email,login,sis,status,score,max_score,pending,late_days,late_points,total,not_final_because"
+
+
+def export(top: Path, target: str, *more: object) -> Any:
+    """Export from the class's gradebook."""
+    return grader("export", target, "--gradebook", top / "book.db", *more)
+
+
+def table(text: str) -> dict[str, dict[str, str]]:
+    """The rows of a CSV by what stands in their first cell."""
+    return {next(iter(row.values())): row for row in csv.DictReader(io.StringIO(text))}
+
+
+def mark(top: Path, key: str, **points: str) -> None:
+    """Mark criteria by hand."""
+    with Gradebook(top / "book.db") as book:
+        standings = Standings(book)
+        standing = standings.find(key)
+        for name, each in points.items():
+            add_mark(book, standing, criterion_of(standings.rubric(standing.rubric), name), Decimal(each), "me", "")
+
+
+# --- For a spreadsheet, and for programs ------------------------------------------------------------------------------
+
+
+def test_csv(top: Path) -> None:
+    """A row for everyone, cells of what nobody has decided are empty, and whoever is not final says why."""
+    mark(top, "anna", essay="3.5", picture="1")
+    mark(top, "emil", box="1.25")
+    done = export(top, "csv")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.splitlines() == [
+        f"{HEADER},loads,box,tall,essay,picture",
+        "anna,Anna Ek,anna@example.org,ae1,anna,graded,10.5,11,0,0,0,10.5,,3,2.5,0.5,3.5,1",
+        "ben,Ben Oh,ben@example.org,bo2,ben,graded,6,6,0,0,0,6,,3,2.5,0.5,,",
+        f"cleo,Cleo Ray,cleo@example.org,cr3,cleo,unreadable,0,11,11,0,0,0,{BROKEN},,,,,",
+        "dora,Dora Fi,dora@example.org,df4,dora,missing,,,,,,,nothing was handed in,,,,,",
+        "emil,Ben Oh,emil@example.org,eo5,emil,graded,4.25,11,5,0,0,4.25,5 points wait for a person,3,1.25,0,,",
+    ]
+    again = export(top, "csv", "--output", top / "grades.csv")
+    assert (again.returncode, again.stdout, again.stderr) == (0, "", "")
+    assert (top / "grades.csv").read_bytes().decode().replace("\r\n", "\n") == done.stdout.replace("\r\n", "\n")
+    assert batch(top, "--csv", top / "same.csv").returncode == 0
+    assert (top / "same.csv").read_bytes() == (top / "grades.csv").read_bytes()
+
+
+def test_the_view_the_csv_and_the_json_say_the_same(top: Path) -> None:
+    """SELECT * FROM grade is what the command line says, for everyone."""
+    mark(top, "anna", essay="1.2345", loads="0")
+    mark(top, "cleo", box="2.5")
+    mark(top, "ben", picture="1")
+    rows = table(export(top, "csv").stdout)
+    data = json.loads(export(top, "json").stdout)
+    jsonschema.validate(data, json.loads(grader("schema", "class").stdout))
+    told = {each["id"]: each for each in data["students"]}
+    with Gradebook(top / "book.db") as book:
+        view = {row[0]: row[1:] for row in book.rows("SELECT key, verdict, score, out_of, pending FROM grade")}
+    assert view.keys() == rows.keys() == told.keys()
+    for key, (verdict, *numbers) in view.items():
+        assert verdict == rows[key]["status"] == told[key]["status"]
+        for name, number in zip(("score", "max_score", "pending"), numbers, strict=True):
+            exact = None if number is None else Decimal(number) / 10_000
+            assert exact == (Decimal(rows[key][name]) if rows[key][name] else None)
+            assert exact == (None if told[key][name] is None else Decimal(str(told[key][name])))
+        cells = [Decimal(rows[key][each] or 0) for each in ("loads", "box", "tall", "essay", "picture")]
+        assert sum(cells) == Decimal(rows[key]["score"] or 0)
+
+
+AWKWARD = {
+    "=1+1": "'=1+1",
+    "+49 170": "'+49 170",
+    "-2": "'-2",
+    "@sum(a1)": "'@sum(a1)",
+    "\uff1d1": "'\uff1d1",
+    '=HYPERLINK("http://x","y")': '\'=HYPERLINK("http://x","y")',
+    'O\'Neil, "Bo"': 'O\'Neil, "Bo"',
+    "a;=1": "a;'=1",
+    "Zo\u00eb \u674e": "Zo\u00eb \u674e",
+    "\u202eevil": "\\x202eevil",
+    "x\x1b[31m[red]": "x\\x1b[31m[red]",
+}
+
+
+def test_no_spreadsheet_runs_what_students_call_themselves(tmp_path: Path) -> None:
+    """Formulas get an apostrophe, what turns or colours is spelt out, all other names stay."""
+    hand_in(tmp_path / "class" / "anna")
+    lines = io.StringIO(newline="")
+    csv.writer(lines).writerows([("id", "name"), *((f"s{number}", name) for number, name in enumerate(AWKWARD))])
+    (tmp_path / "roster.csv").write_bytes(lines.getvalue().encode())
+    (tmp_path / "small.toml").write_text(lab_text())
+    assert batch(tmp_path).returncode == 0
+    assert export(tmp_path, "csv", "--output", tmp_path / "grades.csv").returncode == 0
+    rows = table((tmp_path / "grades.csv").read_bytes().decode())
+    assert [rows[f"s{number}"]["name"] for number in range(len(AWKWARD))] == list(AWKWARD.values())
+
+
+# --- What being late costs --------------------------------------------------------------------------------------------
+
+LATE_ROSTER = """\
+id,name,due,extension,submitted,late,canvas id
+anna,Anna Ek,,,2026-09-12T10:00:00Z,,101
+ben,Ben Oh,,1,2026-09-12T10:00:00Z,,102
+cleo,Cleo Ray,2026-09-12,,2026-09-12T18:00:00,,103
+dora,Dora Fi,,,,yes,104
+emil,Emil So,,,,5 days,105
+"""
+POLICY = "due = 2026-09-10T12:00:00Z\ngrace_minutes = 60\npercent_per_day = 10\nfloor_percent = 40"
+
+
+def test_lateness_is_a_line_of_its_own(tmp_path: Path) -> None:
+    """In CSV, JSON, the student's report and the LMS; no criterion's points change by it."""
+    for key in ("anna", "ben", "cleo", "dora", "emil"):
+        hand_in(tmp_path / "class" / key)
+    (tmp_path / "roster.csv").write_text(LATE_ROSTER)
+    (tmp_path / "small.toml").write_text(lab_text(POLICY))
+    formats = ("--report-format", "json", "--report-format", "terminal")
+    assert batch(tmp_path, "--reports", tmp_path / "reports", *formats).returncode == 0
+    for key in ("anna", "ben", "cleo", "dora", "emil"):
+        mark(tmp_path, key, essay="4", picture="1")
+    rows = table(export(tmp_path, "csv").stdout)
+    late = {key: (row["score"], row["late_days"], row["late_points"], row["total"]) for key, row in rows.items()}
+    assert late == {
+        "anna": ("11", "2", "-2.2", "8.8"),
+        "ben": ("11", "1", "-1.1", "9.9"),
+        "cleo": ("11", "0", "0", "11"),
+        "dora": ("11", "1", "-1.1", "9.9"),  # nobody knows when
+        "emil": ("11", "5", "-5.5", "5.5"),
+    }
+    assert {tuple(row[name] for name in ("loads", "box", "tall", "essay", "picture")) for row in rows.values()} == {
+        ("3", "2.5", "0.5", "4", "1")
+    }
+    told = {each["id"]: each for each in json.loads(export(tmp_path, "json").stdout)["students"]}
+    words = "2 days late: handed in 2026-09-12T10:00:00Z, due 2026-09-10T12:00+00:00"
+    assert told["anna"]["late"] == {"days": 2, "points": -2.2, "because": words}
+    assert (told["anna"]["score"], told["anna"]["total"]) == (11, 8.8)
+    report = json.loads((tmp_path / "reports" / "anna.json").read_text())
+    jsonschema.validate(report, json.loads(grader("schema", "report").stdout))
+    assert report["score"] == 6
+    assert report["notes"] == [f"{words}: 1.6 points are taken off, which leaves 4.4"]  # no deeper than the floor
+    assert f"Note: {report['notes'][0]}" in " ".join((tmp_path / "reports" / "anna.txt").read_text().split())
+    later = table(export(tmp_path, "csv", "--due", "2026-09-11T12:00:00Z").stdout)
+    assert {key: row["late_days"] for key, row in later.items()} == {
+        "anna": "1", "ben": "0", "cleo": "0", "dora": "1", "emil": "5",
+    }  # fmt: skip
+    (tmp_path / "canvas.csv").write_text(canvas(anna="101", emil="105"))
+    done = export(tmp_path, "canvas", "--into", tmp_path / "canvas.csv")
+    assert [row[-1] for row in csv.reader(done.stdout.splitlines()[2:])] == ["8.80", "5.50"]
+    assert "is no time" in refusal(export(tmp_path, "csv", "--due", "soon"))
+
+
+# --- For Canvas and Moodle --------------------------------------------------------------------------------------------
+
+
+def canvas(points: str = "11", **numbers: str) -> str:
+    """A gradebook of Canvas with these students."""
+    rows = "".join(f'"{key.title()}, X",{number},,{key},S1,\n' for key, number in numbers.items())
+    return f"Student,ID,SIS User ID,SIS Login ID,Section,A small lab (77)\n    Points Possible,,,,,{points}\n{rows}"
+
+
+EVERYONE = {"anna": "101", "ben": "102", "cleo": "103", "dora": "104", "emil": "105"}
+
+
+def test_who_gets_a_grade_in_canvas(top: Path) -> None:
+    """What waits, could not be read or was not handed in is left out, and the reason is told."""
+    mark(top, "anna", essay="3.5", picture="1")
+    (top / "canvas.csv").write_text(canvas(**EVERYONE))
+    done = export(top, "canvas", "--into", top / "canvas.csv", "--strict")
+    assert done.returncode == 0
+    head, points = canvas().splitlines()
+    assert done.stdout == f'{head}\n{points}\n"Anna, X",101,,anna,S1,10.50\n"Ben, X",102,,ben,S1,6.00\n'
+    assert done.stderr.splitlines() == [
+        "grader: column 'A small lab (77)': 2 filled, 0 the same already",
+        f"grader: without a grade: row 5, Cleo, X: {BROKEN}",
+        "grader: without a grade: row 6, Dora, X: nothing was handed in",
+        "grader: without a grade: row 7, Emil, X: 5 points wait for a person",
+    ]
+    zero = export(top, "canvas", "--into", top / "canvas.csv", "--pending-as-zero")
+    assert zero.stdout == done.stdout + '"Emil, X",105,,emil,S1,3.00\n'
+
+
+def test_strict_writes_nothing(top: Path) -> None:
+    """Where a row has no student or a student no row; without it the rest is written."""
+    mark(top, "anna", essay="3.5", picture="1")
+    (top / "canvas.csv").write_text(canvas(anna="101", zoe="999"))
+    (top / "out.csv").write_text("as it was")
+    arguments = ("canvas", "--into", top / "canvas.csv", "--output", top / "out.csv")
+    strict = export(top, *arguments, "--strict")
+    assert (strict.returncode, strict.stdout, (top / "out.csv").read_text()) == (1, "", "as it was")
+    assert "in the file, but not in the gradebook: row 4, Zoe, X: nobody of ours" in strict.stderr
+    assert "in the gradebook, but not in the file: Ben Oh: has a grade, but no row in the file" in strict.stderr
+    assert strict.stderr.endswith("grader: nothing was written: --strict, and not everything has a match\n")
+    assert export(top, *arguments).returncode == 0
+    assert (top / "out.csv").read_text().endswith("anna,S1,10.50\n")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "why"),
+    [
+        (("canvas",), "export canvas fills a file that the LMS has exported: name it with --into"),
+        (("moodle",), "export moodle fills a file that the LMS has exported: name it with --into"),
+        (("csv", "--into", "small.toml"), "export csv fills no file: leave --into out"),
+        (("json", "--into", "small.toml"), "export json fills no file: leave --into out"),
+        (("canvas", "--into", "none.csv"), "cannot read none.csv: No such file or directory"),
+        (("canvas", "--into", "README.md"), "README.md is not a gradebook exported from Canvas"),
+        (("moodle", "--into", "README.md"), "README.md is not a grading worksheet of Moodle"),
+        (("csv", "--output", "/nowhere/grades.csv"), "cannot write /nowhere/grades.csv: No such file or directory"),
+    ],
+)
+def test_what_is_refused(arguments: tuple[str, ...], why: str, graded_class: Path) -> None:
+    """In one plain line."""
+    assert refusal(export(graded_class, *arguments)).startswith(why)
+
+
+def test_almost_all_points_are_not_all(tmp_path: Path) -> None:
+    """99.996 of 100 is 99.99 where there are two decimals, and itself everywhere else."""
+    rubric = lab(loads="95.996", box="0.004", tall="0", essay="0", picture="4")
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        graded_into(book, rubric, [came_out(rubric, "anna", "pfppp")])
+    (tmp_path / "canvas.csv").write_text(canvas("100", anna="101"))
+    head = "Identifier,Full name,Username,Grade,Maximum grade,Last modified (grade),Feedback comments"
+    (tmp_path / "moodle.csv").write_text(f"{head}\nParticipant 1,Anna,anna,,100.00,-,\n")
+    done = export(tmp_path, "canvas", "--into", tmp_path / "canvas.csv")
+    assert done.stdout.endswith("anna,S1,99.99\n")
+    moodle = table(export(tmp_path, "moodle", "--into", tmp_path / "moodle.csv").stdout)["Participant 1"]
+    assert moodle["Grade"] == "99.99"
+    assert moodle["Feedback comments"].startswith("<p>Graded automatically: 99.99 of 100 points.</p>")
+    assert table(export(tmp_path, "csv").stdout)["anna"]["total"] == "99.996"
+    assert json.loads(export(tmp_path, "json").stdout)["students"][0]["total"] == 99.996
+    text = grader("stats", "--gradebook", tmp_path / "book.db").stdout
+    assert "mean 99.9, deviation 0.0, lowest 99.996, median 99.996, highest 99.996" in " ".join(text.split())
+
+
+def test_what_a_student_reads_in_moodle(tmp_path: Path) -> None:
+    """What is missing and why, what a person said of it, and what being late costs; harmless in a web page."""
+    make_class(tmp_path, POLICY)
+    (tmp_path / "roster.csv").write_text("id,name,late\nemil,Ben Oh,2 days\n")
+    assert batch(tmp_path).returncode == 0
+    book = ("--gradebook", tmp_path / "book.db")
+    grader("mark", "emil", "essay", "2", "--comment", "<b>Why</b> not\x1b[31m & =1;=2 \u202eso", *book)
+    grader("mark", "emil", "picture", "1", "--comment", "nice", *book)
+    (tmp_path / "moodle.csv").write_bytes(
+        b"\xef\xbb\xbfIdentifier,Full name,Email address,Status,Grade,Maximum grade,Grade can be changed,"
+        b"Last modified (submission),Last modified (grade),Feedback comments\r\n"
+        b'Participant 7,"Ben Oh",b@x.org,"Submitted, for grading",,11.00,Yes,"Friday, 1 May",-,\r\n'
+    )
+    done = export(tmp_path, "moodle", "--into", tmp_path / "moodle.csv", "--output", tmp_path / "out.csv")
+    assert done.returncode == 0, done.stderr
+    filled, given = (tmp_path / "out.csv").read_bytes(), (tmp_path / "moodle.csv").read_bytes()
+    assert filled.startswith(given.replace(b",,11.00", b",4.40,11.00").removesuffix(b"\r\n"))
+    feedback = next(csv.reader(filled.decode().splitlines()[1:]))[-1]
+    items = re.findall(r"<li>(.*?)</li>", feedback)
+    assert items[0].startswith("About box: 0 of 2.5. &#x27;base&#x27; shows a box 1 1 2 m")
+    assert items[2].startswith("About essay: 2 of 4. &lt;b&gt;Why&lt;/b&gt; not\\x1b[31m".replace("\\", "&#92;"))
+    assert items[3] == "About picture: 1 of 1. nice"
+    assert items[4] == "Handed in late: -1.6. 2 days late, by the roster"
+    assert not set(feedback) & set("\x1b\u202e")
+    assert feedback.startswith("<p>Graded automatically: 4.4 of 11 points.</p>")
+
+
+# --- There and back: what an LMS hands out, graded, in the LMS's own file ---------------------------------------------
+
+SIZE = 40
+
+
+class Trip(NamedTuple):
+    """A class as an LMS hands it out, unpacked and as a zip, with its roster and the LMS's file."""
+
+    layout: str
+    top: Path
+
+    def export(self, folder: str) -> Any:
+        """Grade the class that is in `folder`, and fill the LMS's file."""
+        book = ("--gradebook", self.top / f"{folder}.db")
+        done = grader("batch", self.top / folder, *book, "--roster", self.top / "roster.csv", "--jobs", 2)
+        assert done.returncode == 0, done.stderr
+        assert f"laid out as {self.layout}" in done.stderr
+        lms = ("--into", self.top / "lms.csv", "--pending-as-zero", "--output", self.top / f"{folder}.csv")
+        done = grader("export", self.layout, *book, *lms)
+        assert done.returncode == 0, done.stderr
+        return done
+
+    def hand_ins(self) -> Iterator[HandIn]:
+        """Whoever is on the roster and has handed something in."""
+        intake = take_in(self.top / "class", read_roster(self.top / "roster.csv"))
+        return (each for each in intake.hand_ins() if each.student.key not in intake.strangers)
+
+
+@pytest.fixture(scope="module", params=["canvas", "moodle"])
+def trip(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Trip:
+    """A made-up class of all kinds of hand-ins."""
+    top = tmp_path_factory.mktemp(request.param)
+    written = list(made_up.make_class(top / "class", SIZE, 5, "mixed", request.param))
+    made_up.write_beside(written, SIZE, request.param, None, top / "roster.csv", top / "lms.csv")
+    with zipfile.ZipFile(top / "class.zip", "w") as archive:
+        for path in sorted((top / "class").rglob("*")):
+            if not path.is_symlink():
+                archive.write(path, path.relative_to(top / "class"))
+    return Trip(request.param, top)
+
+
+def by_itself(trip: Trip, each: HandIn, scratch: Path) -> Decimal | None:
+    """The points of `grader grade` on what one student has handed in; None where it is refused."""
+    path = trip.top / "class" / each.paths[0]
+    if len(each.paths) > 1:
+        path = scratch / each.student.key
+        path.mkdir()
+        for name, file in zip(each.names, each.paths, strict=True):
+            shutil.copy(trip.top / "class" / file, path / name)
+    try:
+        return grade(LAB6, opened(path)).score
+    except InputError:
+        return None
+
+
+def test_everyone_has_the_points_of_grader_grade(trip: Trip, tmp_path: Path) -> None:
+    """Each graded student, in the LMS's own file, and nobody else; the same from a zip."""
+    done = trip.export("class")
+    filled = cells(trip, "class.csv")
+    given = cells(trip, "lms.csv")
+    wanted = {}
+    for each in trip.hand_ins():
+        points = by_itself(trip, each, tmp_path)
+        if points is not None:
+            wanted[number_of(trip, each)] = f"{points:.2f}"
+    assert {number: row[grade_column(trip)] for number, row in filled.items()} == wanted
+    assert len(wanted) > SIZE // 2
+    left_out = re.findall(r"without a grade: row \d+", done.stderr)
+    assert len(left_out) == len(given) - len(filled)
+    for number, row in filled.items():
+        same = [index for index in range(len(row)) if index not in (grade_column(trip), 9)]
+        assert [row[index] for index in same] == [given[number][index] for index in same]
+    trip.export("class.zip")
+    assert cells(trip, "class.zip.csv") == filled
+
+
+def grade_column(trip: Trip) -> int:
+    """Which cell the grade is in."""
+    return 5 if trip.layout == "canvas" else 4
+
+
+def number_of(trip: Trip, each: HandIn) -> str:
+    """What the LMS's file has for a student."""
+    return each.student.canvas if trip.layout == "canvas" else f"Participant {each.student.moodle}"
+
+
+def cells(trip: Trip, name: str) -> dict[str, list[str]]:
+    """The students' rows of a file, by the LMS's number."""
+    rows = list(csv.reader(io.StringIO((trip.top / name).read_bytes().decode("utf-8-sig"), newline="")))
+    if trip.layout == "moodle":
+        return {row[0]: row for row in rows[1:]}
+    return {row[1]: row for row in rows[2:]}
+
+
+def test_only_cells_of_grades_change(trip: Trip) -> None:
+    """Byte for byte: every line that is left is the line that was there, with points in it."""
+    if not (trip.top / "class.csv").exists():
+        trip.export("class")
+    given, filled = ((trip.top / name).read_bytes() for name in ("lms.csv", "class.csv"))
+    if trip.layout == "moodle":
+        filled = re.sub(rb',(?:"<p>|<p>).*-->"?$', b",", filled, flags=re.MULTILINE)
+        plain = re.sub(rb",\d+\.\d\d,100\.00,", b",,100.00,", filled)
+    else:
+        plain = re.sub(rb",\d+\.\d\d$", b",", filled, flags=re.MULTILINE).replace(
+            b"Possible,,,,,", b"Possible,,,,,100.00"
+        )
+    before = given.splitlines(keepends=True)
+    assert [line for line in before if line in set(plain.splitlines(keepends=True))] == plain.splitlines(keepends=True)
+
+
+def test_a_second_import_changes_nothing(trip: Trip, tmp_path: Path) -> None:
+    """Filled once, all rows are the same already."""
+    if not (trip.top / "class.csv").exists():
+        trip.export("class")
+    book = ("--gradebook", trip.top / "class.db", "--pending-as-zero")
+    done = grader("export", trip.layout, *book, "--into", trip.top / "class.csv", "--output", tmp_path / "again.csv")
+    assert ": 0 filled, " in done.stderr
+    assert (tmp_path / "again.csv").read_bytes() == (trip.top / "class.csv").read_bytes()

@@ -1,0 +1,227 @@
+"""grader mark: a person's word on one criterion stays, whatever is graded again."""
+
+import json
+import subprocess
+import sys
+import threading
+from decimal import Decimal
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+
+from grader.classroom.gradebook import Gradebook
+from grader.classroom.standings import Standings
+from grader.cli.class_text import class_text
+from grader.cli.options import ClassFormat
+from grader.report.schemas import REPORT_SCHEMA
+from tests.classroom.gradebooks import ENVIRONMENT, HOSTILE, batch, grader, hand_in, lab_text, refusal, urdf
+from tests.samples import ROOT
+
+GRADE = ("score", "max_score", "pending")
+
+
+def mark(top: Path, *arguments: object, **more: Any) -> subprocess.CompletedProcess[str]:
+    """Mark in the class's gradebook."""
+    return grader("mark", *arguments, "--gradebook", top / "book.db", **more)
+
+
+def student(top: Path, key: str) -> dict[str, Any]:
+    """A student's grade, as `grader export json` has it, which is what the view has."""
+    with Gradebook(top / "book.db") as book:
+        data = json.loads(class_text(Standings(book), ClassFormat.JSON))
+        (found,) = [each for each in data["students"] if each["id"] == key]
+        ((score, out_of, pending, marks),) = book.rows(
+            "SELECT score, out_of, pending, marks FROM grade WHERE key = ?", key
+        )
+    numbers = [None if found[name] is None else Decimal(str(found[name])) * 10_000 for name in GRADE]
+    assert [score, out_of, pending, marks] == [*numbers, found["marks_by_hand"]]
+    return dict(found)
+
+
+def marks(top: Path) -> list[tuple[Any, ...]]:
+    """All marks that were ever given."""
+    with Gradebook(top / "book.db") as book:
+        return list(book.rows("SELECT criterion, points, comment, author, at, result FROM mark ORDER BY id"))
+
+
+@pytest.mark.parametrize("name", ["anna", "ae1", "anna@example.org", "101", "Anna Ek"])
+def test_whoever_is_meant(name: str, top: Path) -> None:
+    """By key, login, address, number and name; one line says where they stand now."""
+    done = mark(top, name, "essay", "3,5", "--comment", "the roots are missing", "--by", "Kim")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout == "anna: 9.5 of 11 points; waiting for a person: 1\n"
+    ((criterion, points, comment, author, at, _),) = marks(top)
+    assert (criterion, points, comment, author) == ("essay", 35_000, "the roots are missing", "Kim")
+    assert at.startswith("20")
+    assert at.endswith("+00:00")
+
+
+@pytest.mark.parametrize(
+    ("who", "what", "points", "why"),
+    [
+        ("Ben Oh", "essay", "1", "'Ben Oh' may be any of 'ben', 'emil': name one by this key"),
+        ("ana", "essay", "1", "there is no 'ana' in the gradebook; did you mean 'anna'?"),
+        ("\x1b[31m", "essay", "1", r"there is no '\x1b[31m' in the gradebook"),
+        (b"\xff", "essay", "1", r"there is no '\\udcff' in the gradebook"),
+        ("dora", "essay", "1", "dora has handed in nothing that could be marked"),
+        ("anna", "esay", "1", "the rubric small has no criterion 'esay'; did you mean 'essay'?"),
+        ("anna", "essay", "4.5", "essay is worth 0 to 4 points, not 4.5"),
+        ("anna", "essay", "nan", "points are a number from 0 to 4, with at most 4 decimals, not 'nan'"),
+        ("anna", "essay", "1.00001", "points are a number from 0 to 4, with at most 4 decimals, not '1.00001'"),
+        ("anna", "essay", "-1", "No such option: -1 (grader mark --help shows the usage)"),
+        ("anna", "essay", "1e400", "essay is worth 0 to 4 points, not 1e400"),
+    ],
+)
+def test_what_is_refused(who: str, what: str, points: str, why: str, graded_class: Path) -> None:
+    """In one plain line, and nothing is kept."""
+    assert refusal(mark(graded_class, who, what, points)) == why
+    assert marks(graded_class) == []
+
+
+def test_a_later_mark_goes_before_an_earlier_one(top: Path) -> None:
+    """And both are kept; - takes it back, and so does a second -, which changes nothing."""
+    before = student(top, "anna")
+    for points, score in (("3", 9), ("0", 6), ("4", 10), ("-", 6), ("-", 6), ("1", 7)):
+        assert mark(top, "anna", "essay", points).returncode == 0
+        assert student(top, "anna")["score"] == score
+    assert [row[1] for row in marks(top)] == [30_000, 0, 40_000, None, None, 10_000]
+    mark(top, "anna", "essay", "-")
+    assert student(top, "anna") == before
+
+
+@pytest.mark.parametrize(
+    ("key", "criterion", "points", "score", "out_of", "pending"),
+    [
+        ("emil", "box", "1.25", 4.25, 11, 5),  # failed
+        ("emil", "tall", "0.5", 3.5, 11, 5),  # skipped
+        ("anna", "loads", "0", 3, 11, 5),  # passed
+        ("anna", "picture", "1", 7, 11, 4),  # pending
+        ("ben", "essay", "4", 10, 10, 0),  # not asked of a URDF alone
+        ("cleo", "box", "2.5", 2.5, 11, 8.5),  # nothing could be read
+    ],
+)
+def test_whatever_the_check_says(
+    key: str, criterion: str, points: str, score: float, out_of: float, pending: float, top: Path
+) -> None:
+    """A person's word counts in its place, and is told beside it."""
+    assert mark(top, key, criterion, points, "--comment", "seen").returncode == 0
+    found = student(top, key)
+    assert (found["score"], found["max_score"], found["pending"]) == (score, out_of, pending)
+    assert (found["marks_by_hand"], found["total"]) == (1, score)
+
+
+def test_a_mark_where_the_grader_failed(tmp_path: Path) -> None:
+    """A person can give what a check that broke could not; the grade is final then."""
+    (tmp_path / "class").mkdir()
+    text = urdf().replace('name="r"', 'name="raises"')
+    (tmp_path / "class" / "anna.urdf").write_text(text)
+    (tmp_path / "roster.csv").write_text("id\nanna\n")
+    where = {"PYTHONPATH": str(HOSTILE)}
+    arguments = ("--rubric", HOSTILE / "hostile.toml", "--gradebook", tmp_path / "book.db")
+    assert grader("batch", tmp_path / "class", *arguments, **where).returncode == 0
+    book = ("--gradebook", tmp_path / "book.db")
+
+    def status() -> tuple[Any, ...]:
+        (found,) = json.loads(grader("export", "json", *book, **where).stdout)["students"]
+        return found["status"], found["score"], found["is_final"]
+
+    assert status() == ("errored", 1, False)
+    assert "nothing waits for a person" in grader("review", *book, **where).stdout
+    done = grader("mark", "anna", "behaves", "1.5", *book, **where)
+    assert (done.returncode, done.stdout) == (0, "anna: 2.5 of 3 points\n")
+    assert status() == ("errored", 2.5, True)
+    assert "it could not be graded, and was marked by hand" in grader("stats", *book, **where).stdout
+
+
+def test_no_run_loses_a_mark(top: Path) -> None:
+    """Not the same again, not by force, not of another submission, not by another rubric, not after it is gone."""
+    mark(top, "anna", "essay", "3", "--comment", "good", "--by", "Kim")
+    mark(top, "anna", "box", "1", "--by", "Kim")
+    kept = marks(top)
+
+    def score_after(*more: object, rubric: object = None) -> float:
+        assert batch(top, *more, rubric=rubric).returncode == 0
+        assert marks(top) == kept
+        return float(student(top, "anna")["score"])
+
+    assert score_after() == 7.5
+    assert score_after("--force") == 7.5
+    (top / "class" / "anna" / "robot.urdf").write_text(urdf("2 2 2"))
+    assert score_after() == 7  # the check that needs the box is skipped now
+    listed = grader("stats", "--gradebook", top / "book.db").stdout
+    assert "2 marks by hand are from before the submission or the points changed" in " ".join(listed.split())
+    (top / "other.toml").write_text(lab_text(loads="2", extra="0.5"))
+    assert score_after(rubric=top / "other.toml") == 6.5
+    (top / "without.toml").write_text(lab_text().replace('"essay"', '"answer"'))
+    assert score_after(rubric=top / "without.toml") == 4  # nobody asks for an essay any more
+    assert score_after() == 7
+    hand_in(top / "elsewhere" / "zoe")
+    assert (
+        grader("batch", top / "elsewhere", "--gradebook", top / "book.db", "--rubric", top / "small.toml").returncode
+        == 0
+    )
+    assert (marks(top), student(top, "anna")["score"]) == (kept, 7)
+
+
+HARMFUL = "[bold]x[/bold] \x1b]0;gone\x07\x1b[2J\u202eabc\r\n=1+1\t</p><script>"
+
+
+def test_a_comment_is_text(top: Path) -> None:
+    """It is kept as it was typed, and runs, colours and turns nothing wherever it is shown."""
+    assert mark(top, "anna", "essay", "1", "--comment", HARMFUL, "--by", "[red]\x1b[31mme").returncode == 0
+    assert marks(top)[0][2:4] == (HARMFUL, "[red]\x1b[31mme")
+    done = batch(top, "--reports", top / "reports", "--report-format", "terminal", "--report-format", "json")
+    assert done.returncode == 0
+    text = (top / "reports" / "anna.txt").read_text()
+    assert r"Marked by [red]\x1b[31mme: [bold]x[/bold] \x1b]0;gone\x07\x1b[2J\u202eabc" in " ".join(text.split())
+    assert not set(text) & set("\x1b\x07\r\u202e")
+    report = json.loads((top / "reports" / "anna.json").read_text())
+    jsonschema.validate(report, REPORT_SCHEMA)
+    (essay,) = [each for each in report["results"] if each["id"] == "essay"]
+    assert essay["mark"] == {"points": 1, "by": "[red]\x1b[31mme", "comment": HARMFUL}
+
+
+def test_bytes_that_are_no_text(top: Path) -> None:
+    """A comment in another encoding is kept as far as it can be read."""
+    assert mark(top, "anna", "essay", "1", "--comment", b"gr\xfcn", "--by", b"\xff").returncode == 0
+    assert marks(top)[0][2:4] == ("gr\\udcfcn", "\\udcff")
+
+
+def test_who_marks_if_nobody_says(top: Path) -> None:
+    """It is whoever is logged in, as the system has it."""
+    assert mark(top, "anna", "essay", "1", LOGNAME="kim").returncode == 0
+    assert marks(top)[0][3] == "kim"
+
+
+def test_marks_at_the_same_time(top: Path) -> None:
+    """Several people, and a batch that grades all again meanwhile: nothing is lost."""
+    wanted = [(key, name) for key in ("anna", "emil") for name in ("essay", "picture", "box", "loads")]
+    command = [sys.executable, "-m", "grader"]
+    book = str(top / "book.db")
+    started = [
+        subprocess.Popen(
+            [*command, "mark", *each, "0.5", "--gradebook", book], cwd=ROOT, env=ENVIRONMENT, stdout=subprocess.DEVNULL
+        )
+        for each in wanted
+    ]
+    done = batch(top, "--force")
+    assert done.returncode == 0, done.stderr
+    assert [each.wait(60) for each in started] == [0] * len(wanted)
+    assert len(marks(top)) == len(wanted)
+    assert student(top, "anna")["score"] == 2.5
+    assert student(top, "emil")["score"] == 2
+
+
+def test_marks_of_several_threads_wait_for_each_other(top: Path) -> None:
+    """A write that takes its time does not break another one."""
+    with Gradebook(top / "book.db") as book:
+        with book.transaction():
+            other: list[int] = []
+            thread = threading.Thread(target=lambda: other.append(mark(top, "anna", "essay", "1").returncode))
+            thread.start()
+            thread.join(0.5)
+            assert other == []
+        thread.join()
+    assert other == [0]

@@ -1,0 +1,160 @@
+"""grader review: what is shown, what may be typed, and that it goes on later where it was stopped."""
+
+import os
+import pty
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from grader.classroom.gradebook import Gradebook
+from tests.classroom.gradebooks import ENVIRONMENT, grader
+from tests.samples import ROOT
+
+HELP = "points and a comment, or s to skip, q to stop (everything is kept), ? for this line"
+
+
+def review(top: Path, typed: str | bytes, *more: object, **variables: str) -> subprocess.CompletedProcess[str]:
+    """Answer with these lines."""
+    return grader("review", "--gradebook", top / "book.db", "--by", "Kim", *more, stdin=typed, **variables)
+
+
+def marks(top: Path) -> list[tuple[Any, ...]]:
+    """All marks that were given: whom, what, points, comment."""
+    query = "SELECT key, criterion, points / 10000.0, comment FROM mark JOIN student ON student = student.id ORDER BY mark.id"
+    with Gradebook(top / "book.db") as book:
+        return list(book.rows(query))
+
+
+def test_one_after_the_other(top: Path) -> None:
+    """All essays, then all pictures; a URDF alone and what could not be read are not asked about."""
+    done = review(top, "3.5 the roots are missing\n4\n0,5   too small to read  \n1\n")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.endswith("4 marked, 0 still wait\n")
+    assert marks(top) == [
+        ("anna", "essay", 3.5, "the roots are missing"),
+        ("emil", "essay", 4.0, ""),
+        ("anna", "picture", 0.5, "too small to read"),
+        ("emil", "picture", 1.0, ""),
+    ]
+    again = review(top, "")
+    assert (again.returncode, again.stdout) == (0, "nothing waits for a person\n")
+
+
+def test_what_is_shown(top: Path, graded_class: Path) -> None:
+    """Who and what it is, the answer, the model answer, where it stands, where the picture is; nothing that colours or turns."""
+    done = review(top, "s\ns\nq\n", COLUMNS="200")
+    first, second, third, last = done.stdout.split("points, 0 to ")
+    assert first == (
+        "\n1 of 4  Anna Ek (anna): About essay  4 points\n"
+        "Why? The answer in answers.md, from line 1, is for a person to mark\n"
+        "Found:\n  # Step 1\n  The roots.\n"
+        "Model answer:\n  Because of the roots.\n"
+        f"in {graded_class}/class/anna/answers.md, line 1\n"
+    )
+    assert "2 of 4  Ben Oh (emil): About essay  4 points\n" in second
+    assert r"[bold]\x1b[31mRed\x1b[0m roots[/bold] \u202eturned" in second
+    assert f"Look at:\n  {graded_class}/class/anna/screen.png\n" in third
+    assert last.endswith("0 marked, 4 still wait\n")
+    assert not set(done.stdout) & set("\x1b\u202e")
+
+
+def test_stopping_and_going_on(top: Path) -> None:
+    """What was given is kept; the next review goes on with the rest, also with what was skipped."""
+    assert review(top, "s\n2\nquit\n").stdout.endswith("1 marked, 3 still wait\n")
+    done = review(top, "1 now\n")
+    assert "1 of 3  Anna Ek (anna): About essay" in done.stdout
+    assert done.stdout.endswith("1 marked, 2 still wait\n")
+    assert marks(top) == [("emil", "essay", 2.0, ""), ("anna", "essay", 1.0, "now")]
+
+
+@pytest.mark.parametrize(
+    ("typed", "why"),
+    [
+        ("?", HELP),
+        ("-", HELP),
+        ("good", "points are a number from 0 to 4, with at most 4 decimals, not 'good'"),
+        ("4.5 very good", "essay is worth 0 to 4 points, not 4.5"),
+        ("-1", "essay is worth 0 to 4 points, not -1"),
+        ("nan", "points are a number from 0 to 4, with at most 4 decimals, not 'nan'"),
+        ("\x1b[A", r"points are a number from 0 to 4, with at most 4 decimals, not '\x1b[A'"),
+    ],
+)
+def test_what_is_no_answer_is_asked_again(typed: str, why: str, top: Path) -> None:
+    """And marks nothing."""
+    done = review(top, f"{typed}\n2 fine\n")
+    assert done.stderr == f"grader: {why}\n"
+    assert done.stdout.endswith("1 marked, 3 still wait\n")
+    assert marks(top) == [("anna", "essay", 2.0, "fine")]
+
+
+@pytest.mark.parametrize("typed", ["", "\n\n", "S\n", "Q\n", "skip\nQUIT\n", "???"])
+def test_nothing_is_marked_by_chance(typed: str, graded_class: Path) -> None:
+    """The end of what is typed, empty lines, and words for going on and stopping, large or small."""
+    done = review(graded_class, typed)
+    assert done.returncode == 0
+    assert done.stdout.endswith("0 marked, 4 still wait\n")
+    assert marks(graded_class) == []
+
+
+def test_bytes_that_are_no_text(top: Path) -> None:
+    """A comment in another encoding is kept as far as it can be read."""
+    assert review(top, b"2 gr\xfcn \x00 [red]\n").stdout.endswith("1 marked, 3 still wait\n")
+    assert marks(top) == [("anna", "essay", 2.0, r"gr\xfcn " + "\0 [red]")]
+
+
+def test_one_criterion_only(top: Path) -> None:
+    """The others are left for later; one that there is not is refused."""
+    done = review(top, "1\n1\n", "--criterion", "picture")
+    assert done.stdout.endswith("2 marked, 0 still wait\n")
+    assert [row[:2] for row in marks(top)] == [("anna", "picture"), ("emil", "picture")]
+    assert "did you mean 'picture'" in review(top, "", "--criterion", "pictur").stderr
+
+
+def test_without_standard_input(graded_class: Path) -> None:
+    """It stops at the first question."""
+    command = [sys.executable, "-m", "grader", "review", "--gradebook", str(graded_class / "book.db")]
+    closed = ["sh", "-c", 'exec "$@" <&-', "sh", *command]
+    done = subprocess.run(closed, cwd=ROOT, env=ENVIRONMENT, capture_output=True, check=False, timeout=60)
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert done.stdout.endswith(b"0 marked, 4 still wait\n")
+
+
+def test_two_people_at_once(top: Path) -> None:
+    """What one has decided while the other was thinking is not asked of the other."""
+    command = [sys.executable, "-u", "-m", "grader", "review", "--gradebook", str(top / "book.db")]
+    with subprocess.Popen(
+        command, cwd=ROOT, env=ENVIRONMENT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as slow:  # fmt: skip
+        assert slow.stdin is not None
+        assert slow.stdout is not None
+        while "in " not in (line := slow.stdout.readline()):  # the last line before the first question
+            assert line
+        review(top, "s\n4\n1\nq\n")
+        out, _ = slow.communicate("2\ns\n", timeout=60)
+    assert "Anna Ek (anna): About picture" not in out
+    assert "Ben Oh (emil): About picture" in out
+    assert out.endswith("1 marked, 1 still wait\n")
+    assert marks(top) == [("emil", "essay", 4.0, ""), ("anna", "picture", 1.0, ""), ("anna", "essay", 2.0, "")]
+
+
+def test_ctrl_c_keeps_what_was_given(top: Path) -> None:
+    """At a terminal, in the middle of a question."""
+    ours, theirs = pty.openpty()
+    command = [sys.executable, "-m", "grader", "review", "--gradebook", str(top / "book.db")]
+    with subprocess.Popen(
+        command, cwd=ROOT, env=ENVIRONMENT, stdin=theirs, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        start_new_session=True,
+    ) as asked:  # fmt: skip
+        os.write(ours, b"3 good\n")
+        assert asked.stdout is not None
+        text = b""
+        while text.count(b"points, 0 to 4") < 2:
+            text += os.read(asked.stdout.fileno(), 4096)
+        asked.send_signal(2)
+        assert asked.wait(60) == 130
+    os.close(ours)
+    os.close(theirs)
+    assert marks(top) == [("anna", "essay", 3.0, "good")]

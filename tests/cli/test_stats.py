@@ -1,0 +1,126 @@
+"""grader stats: a class at a glance, for a person at any terminal and for programs."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+
+from grader.classroom.gradebook import Gradebook
+from tests.classroom.gradebooks import batch, came_out, graded_into, grader, hand_in, lab, refusal
+
+
+def stats(path: Path, *more: object, **variables: str) -> str:
+    """What it says of a gradebook."""
+    done = grader("stats", "--gradebook", path, *more, **variables)
+    assert (done.returncode, done.stderr) == (0, "")
+    return done.stdout
+
+
+def as_json(path: Path) -> dict[str, Any]:
+    """The same as JSON, which the schema knows."""
+    data = json.loads(stats(path, "--format", "json"))
+    jsonschema.validate(data, json.loads(grader("schema", "class").stdout))
+    return dict(data)
+
+
+def test_at_a_glance(top: Path) -> None:
+    """Marks, criteria, failures, and who needs a look."""
+    for key in ("anna", "emil"):
+        grader("mark", key, "essay", "1.5", "--gradebook", top / "book.db")
+    text = stats(top / "book.db")
+    assert text.startswith(
+        "A small lab\n3 graded, 1 could not be graded, 1 handed in nothing\n\n"
+        "Marks of 11: mean 6.0, deviation 1.2, lowest 4.5, median 6, highest 7.5; 2 still\nwait for a person\n"
+    )
+    assert "criterion  points  passed  by hand  of  share  tells\n" in text
+    assert "box           2.5       2        0   3    67%  -0.19\n" in text
+    assert "essay           4       0        2   2    38%       \n" in text
+    assert "     1  About box: 'base' shows a box 1 1 2 m, expected 1 1 1 m (x, y, z)\n" in text
+    assert "Who needs a look\n  cleo: it could not be graded: " in text
+    assert "  dora: nothing was handed in\n" in text
+
+
+def test_as_json(top: Path) -> None:
+    """Batch, stats and export say the same."""
+    done = batch(top, "--format", "json")
+    told = json.loads(done.stdout)
+    jsonschema.validate(told, json.loads(grader("schema", "class").stdout))
+    run = told.pop("run")
+    assert (run["total"], run["graded"] + run["unchanged"], run["errored"]) == (4, 4, 0)
+    assert (
+        told == as_json(top / "book.db") == json.loads(grader("export", "json", "--gradebook", top / "book.db").stdout)
+    )
+    assert told["needs_a_look"] == 2
+
+
+@pytest.mark.parametrize(
+    "variables",
+    [{"COLUMNS": "40"}, {"COLUMNS": "1"}, {"COLUMNS": "9999"}, {"NO_COLOR": "1"}, {"PYTHONIOENCODING": "ascii"}],
+)
+def test_any_terminal(variables: dict[str, str], graded_class: Path) -> None:
+    """No line is longer than asked for, and a pipe gets no colour."""
+    text = stats(graded_class / "book.db", **variables)
+    width = min(500, max(40, int(variables.get("COLUMNS", "80"))))
+    assert max(map(len, text.splitlines())) <= width
+    assert "\x1b" not in text
+    assert "loads" in text
+
+
+def test_an_empty_gradebook(tmp_path: Path) -> None:
+    """One that nothing was graded into is told of in a line."""
+    Gradebook(tmp_path / "book.db", create=True).close()
+    assert (
+        refusal(grader("stats", "--gradebook", tmp_path / "book.db"))
+        == "nothing has been graded into this gradebook yet"
+    )
+
+
+@pytest.mark.parametrize("signs", [{}, {"anna": "pps?f"}, {"anna": "?!p!?"}])
+def test_few_or_none(signs: dict[str, str], tmp_path: Path) -> None:
+    """A run without hand-ins, of one student, and one in which nobody could be graded."""
+    rubric = lab()
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        graded_into(book, rubric, [came_out(rubric, key, each) for key, each in signs.items()])
+    text = stats(tmp_path / "book.db")
+    data = as_json(tmp_path / "book.db")
+    assert len(data["students"]) == len(signs)
+    assert ("Marks of 11: mean 5.5, deviation 0.0" in text) == ("pps?f" in signs.values())
+    assert ("nobody yet" in text) == (not signs)
+    assert grader("export", "csv", "--gradebook", tmp_path / "book.db").stdout.count("\n") == 1 + len(signs)
+
+
+def test_almost_all_is_not_all(tmp_path: Path) -> None:
+    """A mean just below full marks is not rounded up to them, nor is a share up to all or down to nothing."""
+    rubric = lab()
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        found = [came_out(rubric, f"s{number}", "ppppp" if number else "ppppf") for number in range(300)]
+        graded_into(book, rubric, found)
+    text = stats(tmp_path / "book.db")
+    assert "Marks of 11: mean 10.9, deviation 0.1" in text
+    assert "picture         1     299  300    99%" in text
+    assert "essay           4     300  300   100%" in text
+
+
+def test_who_is_left_behind_by_a_new_rubric(tmp_path: Path) -> None:
+    """What does not count is said."""
+    old, new = lab(), lab(loads="1")
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        graded_into(book, old, [came_out(old, key, "ppppp") for key in ("anna", "ben")])
+        graded_into(book, new, [came_out(new, "anna", "ppppp")])
+    text = stats(tmp_path / "book.db")
+    assert "2 graded\n1 of the graded by an earlier rubric only: not in what follows\n" in text
+    assert "  ben: graded by an earlier rubric only\n" in text
+
+
+def test_names_are_harmless(top: Path) -> None:
+    """Nothing that students call themselves or their files colours, turns or ends the terminal's text."""
+    hand_in(top / "class" / "x[red]\x1b[31m\u202ey")
+    (top / "class" / "[bold]\x1b]0;z\x07.zip").write_bytes(b"no zip")
+    (top / "roster.csv").write_bytes("id,name\nanna,\u202eA\x1b[31mn[red]\n".encode())
+    done = batch(top)
+    assert done.returncode == 0
+    for text in (done.stdout, done.stderr, stats(top / "book.db")):
+        assert not set(text) & set("\x1b\x07\u202e\r")
+    assert "[red]" in done.stdout
