@@ -69,6 +69,7 @@ class Batch:
         listener: Callable[[Progress], None] = lambda _: None,
     ) -> None:
         self._book, self._rubric, self._settings, self._listener = book, rubric, settings, listener
+        self._sha256 = rubric.sha256
         self._template = _template(rubric)
         common = Class(settings.root, rubric.data, str(rubric.path), self._template)
         self._queue = Queue(executor, settings.workers, common, rubric)
@@ -110,7 +111,7 @@ class Batch:
         while self._next is not None and self._next.key < key:  # both come in the order of the keys
             self._next = next(self._before, None)
         known = self._next if self._next is not None and self._next.key == key else None
-        if known is None or (known.rubric, known.version) != (self._rubric.sha256, __version__):
+        if known is None or (known.rubric, known.version) != (self._sha256, __version__):
             return None
         return None if known.verdict == "errored" or self._settings.force else known
 
@@ -142,7 +143,7 @@ class Batch:
         if graded.verdict == "unchanged" and known is not None:
             result = known.result
         else:
-            result = self._book.keep(student, self._rubric.sha256, graded)
+            result = self._book.keep(student, self._sha256, graded)
         self._book.see(student, self._run, result, hand_in, graded.fingerprint)
 
     def _keep_student(self, hand_in: HandIn) -> int:

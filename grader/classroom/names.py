@@ -4,6 +4,7 @@ import re
 import unicodedata
 from collections.abc import Iterator
 from datetime import UTC, datetime
+from functools import lru_cache
 
 # What one student's work comes as. Where two names differ in their ending only, the earlier ending here counts.
 ENDINGS = (
@@ -21,6 +22,7 @@ _UNWRITTEN = str.maketrans("", "", "&<>\"`|':\\/")
 _MOST_WORDS = 8
 
 
+@lru_cache(maxsize=64)  # each name is asked for several times in a row
 def ending_of(name: str) -> str:
     """The ending for which a file is taken for a submission, as it is written; empty where it has none of these."""
     dot = name.rfind(".")
