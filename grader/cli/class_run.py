@@ -1,8 +1,10 @@
 """A run over a class: taken in, graded, told; reports and grades written."""
 
+import gc
 from collections.abc import Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
+from math import isfinite
 from pathlib import Path
 from typing import NamedTuple
 
@@ -21,6 +23,7 @@ from grader.cli.formats import Format
 from grader.cli.options import ClassFormat
 from grader.cli.output import complain, emit, save
 from grader.cli.progress import ProgressDisplay
+from grader.errors import InputError
 from grader.grading.rubric import Rubric, load_rubric
 from grader.report.text import printable
 from grader.submission.files import printable_path
@@ -54,6 +57,9 @@ def grade_class(
     cluster: str | None,
 ) -> None:
     """Grade a class into a gradebook, and write what is wanted of it. Raises InputError and RubricError."""
+    gc.enable()  # unlike other commands this one may run for long
+    if not isfinite(timeout):
+        raise InputError(f"--timeout takes a number of seconds, not {timeout}")
     rules = load_rubric(rubric)
     deadline = read_time(due) if due else None
     known = read_roster(roster) if roster is not None else None

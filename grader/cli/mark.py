@@ -1,6 +1,5 @@
 """grader mark: what a person says of one criterion of one submission."""
 
-import getpass
 from typing import Annotated
 
 import typer
@@ -51,6 +50,8 @@ def mark(
 
 def author() -> str:
     """Who is at the keyboard, as the system knows them."""
+    import getpass
+
     try:
         return getpass.getuser()
     except (OSError, KeyError, ImportError):  # nobody, as in a container without accounts
