@@ -17,7 +17,7 @@ from grader.errors import GraderError
 MEMORY = 2 * 1024**3  # bytes that one worker may have
 _WATCHED = 0.5  # seconds between two looks at whether the pool still lives
 _TRIES = 3  # to have work taken by a pool, which may break at any moment
-_SPEAKING = 3.0  # seconds that a worker may wait for its turn to speak; one that was ended while it spoke keeps the turn
+_SPEAKING = 3.0  # seconds that a worker waits for its turn to speak, which one that was ended in its own turn keeps
 _MUTE = 1  # the exit code of a worker that had to wait longer
 _LEFT = 70  # the exit code of a worker that was ended in the midst of its work as if all were well
 

@@ -1,6 +1,9 @@
 """A zip with the hand-ins of a whole class, as an LMS gives it: each is read from where it is."""
 
 import io
+import weakref
+from contextlib import AbstractContextManager
+from functools import partial
 from pathlib import Path
 from typing import IO
 
@@ -30,8 +33,9 @@ class Bulk:
         self._shown = printable_path(path)
         self._members: dict[str, Member] = {}
         try:
-            self._file: IO[bytes] = path.open("rb")
-            for member in zip_members(self._file):
+            file = path.open("rb")
+            weakref.finalize(self, file.close)
+            for member in zip_members(file):
                 self._members[inside(member.path) or ""] = member
                 if len(self._members) > _MOST_MEMBERS:
                     raise InputError(f"{self._shown} holds more than {_MOST_MEMBERS} files")
@@ -42,7 +46,7 @@ class Bulk:
         """The files below a folder."""
         start = f"{path}/"
         below = [
-            member._replace(path=name.removeprefix(start))
+            self._named(member, name.removeprefix(start))
             for name, member in self._members.items()
             if name.startswith(start)
         ]
@@ -50,7 +54,7 @@ class Bulk:
 
     def files(self, named: dict[str, str], name: str) -> Tree:
         """Some files as one tree, each under the name that it is given there."""
-        chosen = [self._member(path)._replace(path=given) for path, given in named.items()]
+        chosen = [self._named(self._member(path), given) for path, given in named.items()]
         return self._tree(chosen, name)
 
     def is_folder(self, path: str) -> bool:
@@ -82,6 +86,13 @@ class Bulk:
         if member is None:
             raise InputError(f"{path} is not in {self._shown}")
         return member
+
+    def _named(self, member: Member, path: str) -> Member:
+        """A member as it is called in a tree, which keeps the zip open."""
+        return member._replace(path=path, open=partial(self._open, member))
+
+    def _open(self, member: Member) -> AbstractContextManager[IO[bytes]]:
+        return member.open()
 
     def _tree(self, members: list[Member], name: str) -> Tree:
         try:

@@ -19,6 +19,8 @@ from tests.samples import ROOT
 sys.path.insert(0, str(ROOT / "benchmarks"))  # a folder of scripts
 import class_generator as made_up
 
+bomb, tarred, Item = made_up.bomb, made_up.tarred, made_up.Item
+
 GRADER = (sys.executable, "-W", "error", "-m", "grader")
 HOSTILE = Path(__file__).parent / "hostile"
 WITH_HOSTILE = {"PYTHONPATH": str(HOSTILE)}
@@ -29,7 +31,7 @@ Done = subprocess.CompletedProcess[str]
 _SKIPPED = ("latin-name", "links-out", "deep-folders")  # what a zip holds otherwise than a folder does
 
 
-def grader(*arguments: str | Path, cwd: Path | None = None, **variables: str) -> Done:
+def grader(*arguments: str | Path, cwd: str = ".", **variables: str) -> Done:
     """Run the command line; its standard output and standard error."""
     return subprocess.run(
         [*GRADER, *map(str, arguments)],

@@ -344,7 +344,7 @@ def test_nothing_of_a_class_is_imported(tmp_path: Path) -> None:
     mark = tmp_path / "ran"
     for name in MODULES:
         (folder / f"{name}.py").write_text(f"open({str(mark)!r}, 'w').close()\nraise SystemExit\n")
-    done = grader("batch", ".", "--gradebook", "../lab6.db", "--reports", "../reports", cwd=folder)
+    done = grader("batch", ".", "--gradebook", "../lab6.db", "--reports", "../reports", cwd=str(folder))
     assert (done.returncode, counted(done)) == (0, "5 graded, 0 unchanged")
     assert not mark.exists()
     assert GRADER[-2:] == ("-m", "grader")

@@ -1,0 +1,288 @@
+"""On a Dask cluster a class gets the same marks, whatever happens to its workers; what it cannot use is one plain line."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from tests.classroom.class_runs import (
+    HOSTILE_RUBRIC,
+    PATIENCE,
+    WITH_HOSTILE,
+    contents,
+    counted,
+    doubled,
+    environment,
+    eventually,
+    grader,
+    hostile_class,
+    is_sound,
+    mixed_class,
+    reasons,
+    rows,
+    started,
+    urdf_class,
+    verdicts,
+)
+from tests.samples import ROOT
+
+pytest.importorskip("distributed")
+
+DASK = (sys.executable, "-m", "dask")
+JSON = ("--report-format", "json")
+
+
+@contextmanager
+def service(log: Path, *arguments: str) -> Iterator[subprocess.Popen[bytes]]:
+    """A program of Dask's that runs, in a session of its own; all that it has started ends with it."""
+    with log.open("wb") as out:
+        process = subprocess.Popen(
+            [*DASK, *arguments], env=environment(**WITH_HOSTILE), stdout=out, stderr=out, start_new_session=True
+        )
+        with process:
+            try:
+                yield process
+            finally:
+                process.terminate()
+                try:
+                    process.wait(10)
+                except subprocess.TimeoutExpired:
+                    process.kill()
+
+
+class Cluster:
+    """A scheduler and what is known of it."""
+
+    def __init__(self, place: Path) -> None:
+        self._place = place
+        self.process = 0
+
+    @property
+    def file(self) -> Path:
+        """Where the scheduler says how it is reached."""
+        return self._place / "scheduler.json"
+
+    @property
+    def address(self) -> str:
+        """The scheduler's address."""
+        return str(json.loads(self.file.read_text())["address"])
+
+    @property
+    def log(self) -> str:
+        """What the workers have said."""
+        return (self._place / "worker.log").read_text()
+
+    def workers(self) -> list[int]:
+        """The process ids of the workers, in which tasks run."""
+        from distributed import Client
+
+        with Client(self.address, timeout=20, set_as_default=False) as client:  # type: ignore[no-untyped-call]
+            return list(client.run(os.getpid).values())
+
+    @contextmanager
+    def with_workers(self, count: int, threads: int = 1) -> Iterator["Cluster"]:
+        """Workers for it, each with a nanny that starts it anew."""
+        shape = ("--nworkers", str(count), "--nthreads", str(threads), "--host", "127.0.0.1")
+        place = ("--scheduler-file", str(self.file), "--local-directory", str(self._place))
+        with service(self._place / "worker.log", "worker", *place, *shape, "--no-dashboard"):
+            assert eventually(lambda: self.log.count("Registered to:") >= count, PATIENCE), self.log
+            yield self
+
+
+@contextmanager
+def scheduler(place: Path) -> Iterator[Cluster]:
+    """A scheduler without workers."""
+    cluster = Cluster(place)
+    arguments = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(cluster.file))
+    with service(place / "scheduler.log", "scheduler", *arguments) as process:
+        cluster.process = process.pid
+        assert eventually(lambda: cluster.file.exists() and cluster.file.read_text().endswith("}"), PATIENCE)
+        yield cluster
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
+    """A scheduler and two workers, one of them for two tasks at once."""
+    with scheduler(tmp_path_factory.mktemp("cluster")) as found, found.with_workers(2, threads=2):
+        yield found
+
+
+def refused(*arguments: str | Path, **variables: str) -> str:
+    """The one line with which a command is refused, behind the one that says what was taken in."""
+    done = grader(*arguments, **variables)
+    assert (done.returncode, done.stdout) == (2, "")
+    lines = done.stderr.splitlines()
+    assert len(lines) == 2, done.stderr
+    assert lines[0].endswith("laid out as folders")
+    return lines[1].removeprefix("grader: ")
+
+
+@pytest.mark.parametrize("kind", ["mixed", "samples", "zip"])
+def test_a_cluster_gives_the_same_marks(kind: str, cluster: Cluster, tmp_path: Path) -> None:
+    """The reports are those of the processes of this machine, byte for byte; a second run grades nothing; stderr is quiet."""
+    if kind == "samples":
+        folder = tmp_path / "class"
+        for name in sorted(path.name for path in (ROOT / "submissions").iterdir())[::4]:
+            shutil.copytree(ROOT / "submissions" / name, folder / name)
+    else:
+        folder = mixed_class(tmp_path / "class", 100, for_zip=kind == "zip")
+    if kind == "zip":
+        folder = Path(shutil.make_archive(str(tmp_path / "packed"), "zip", folder))
+    here, there = tmp_path / "here", tmp_path / "there"
+    one = grader("batch", folder, "--gradebook", tmp_path / "here.db", "--reports", here, *JSON)
+    command = ("batch", folder, "--gradebook", tmp_path / "there.db", "--cluster", cluster.address)
+    other = grader(*command, "--reports", there, *JSON)
+    assert (other.returncode, other.stdout) == (0, one.stdout)
+    assert other.stderr == one.stderr.replace(str(here), str(there))
+    assert contents(here) == contents(there)
+    assert counted(grader(*command)).startswith("0 graded, ")
+
+
+def test_misdeeds_end_no_worker(cluster: Cluster, tmp_path: Path) -> None:
+    """Each costs one submission, for the reason that it would have here; the cluster's workers live on, and log nothing."""
+    names = ("hangs", "hangs_in_c", "dies", "crashes", "leaves", "leaves_loudly", "exits", "raises", "fine", "fine-2")
+    folder = hostile_class(tmp_path / "class", *names)
+    before = sorted(cluster.workers())
+    logged = len(cluster.log)
+    command = ("batch", folder, "--rubric", HOSTILE_RUBRIC, "--timeout", "4")
+    for book in ("here.db", "there.db"):
+        where = ("--cluster", cluster.address) if book == "there.db" else ()
+        done = grader(*command, "--gradebook", tmp_path / book, *where, **WITH_HOSTILE)
+        assert (done.returncode, counted(done)) == (0, "10 graded, 8 of them errored, 0 unchanged")
+    here, there = (reasons(tmp_path / book) for book in ("here.db", "there.db"))
+    slow = "grading it took longer than 4 s, and was stopped"
+    assert set(here) == set(there) == set(names[:8])
+    assert all(here[key] == there[key] or slow in (here[key], there[key]) for key in here)
+    assert here["hangs"] == there["hangs"] == slow
+    assert sorted(cluster.workers()) == before
+    assert "ERROR" not in cluster.log[logged:]
+
+
+def test_two_batches_at_once(cluster: Cluster, tmp_path: Path) -> None:
+    """Two people may use a cluster at the same time, each with a time of their own for a submission."""
+    folders = [urdf_class(tmp_path / f"class{seed}", 150, seed) for seed in (1, 2)]
+
+    def run(number: int) -> int:
+        where = ("--gradebook", tmp_path / f"{number}.db", "--cluster", cluster.address, "--timeout", str(20 + number))
+        return grader("batch", folders[number], *where).returncode
+
+    with ThreadPoolExecutor(2) as threads:
+        assert list(threads.map(run, range(2))) == [0, 0]
+    for number in range(2):
+        assert list(verdicts(tmp_path / f"{number}.db").values()) == ["graded"] * 150
+
+
+def test_a_worker_that_is_killed(cluster: Cluster, tmp_path: Path) -> None:
+    """Its tasks go to the others, and it is started anew: no result is lost, none is there twice."""
+    folder, book = urdf_class(tmp_path / "class", 600), tmp_path / "lab6.db"
+    victims = cluster.workers()
+    with started("batch", folder, "--gradebook", book, "--cluster", cluster.address) as process:
+        for count, victim in zip((50, 250), victims, strict=True):
+            assert eventually(lambda at=count: len(verdicts(book)) > at, PATIENCE)  # type: ignore[misc]
+            os.kill(victim, signal.SIGKILL)
+        _, said = process.communicate(timeout=PATIENCE)
+        assert process.returncode == 0, said
+    assert verdicts(book) == dict.fromkeys((path.stem for path in folder.iterdir()), "graded")
+    assert (doubled(book), is_sound(book)) == ([], True)
+    assert eventually(lambda: len(cluster.workers()) == 2, PATIENCE)
+
+
+def test_ctrl_c_leaves_the_cluster_alone(cluster: Cluster, tmp_path: Path) -> None:
+    """The run ends at once and says what is kept; the workers are there for the next one."""
+    folder, book = urdf_class(tmp_path / "class", 600), tmp_path / "lab6.db"
+    command = ("batch", folder, "--gradebook", book, "--cluster", cluster.address)
+    with started(*command) as process:
+        assert eventually(lambda: len(verdicts(book)) > 20, PATIENCE)
+        os.killpg(process.pid, signal.SIGINT)
+        _, said = process.communicate(timeout=30)
+        assert process.returncode == 130
+    first, stopped, last = said.splitlines()
+    assert (first, last) == ("grader: 600 hand-ins, laid out as folders", "grader: interrupted")
+    assert stopped.startswith("grader: stopped: ")
+    kept = len(verdicts(book))
+    assert counted(grader(*command)) == f"{600 - kept} graded, {kept} unchanged"
+
+
+def test_a_scheduler_that_is_lost(tmp_path: Path) -> None:
+    """The run ends with a line, nobody is called errored for it, and it goes on elsewhere."""
+    folder, book = urdf_class(tmp_path / "class", 1_000), tmp_path / "lab6.db"
+    with scheduler(tmp_path) as found, found.with_workers(1):
+        address = found.address
+        with started("batch", folder, "--gradebook", book, "--cluster", address) as process:
+            assert eventually(lambda: len(verdicts(book)) > 20, PATIENCE)
+            os.kill(found.process, signal.SIGKILL)
+            _, said = process.communicate(timeout=PATIENCE)
+            assert process.returncode == 2, said
+    *_, stopped, last = said.splitlines()
+    assert stopped.startswith("grader: stopped: ")
+    assert last == f"grader: the Dask scheduler at {address} is there no longer"
+    assert set(verdicts(book).values()) == {"graded"}
+    assert grader("batch", folder, "--gradebook", book).returncode == 0
+    assert (len(verdicts(book)), doubled(book)) == (1_000, [])
+
+
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "foo", "", "http://127.0.0.1:1", "tls://127.0.0.1:1"])
+def test_no_scheduler(address: str, tmp_path: Path) -> None:
+    """Whatever address is written where there is none."""
+    folder = urdf_class(tmp_path / "class", 2)
+    began = time.monotonic()
+    line = refused("batch", folder, "--gradebook", tmp_path / "lab6.db", "--cluster", address)
+    assert line.startswith(f"there is no Dask scheduler at {address or repr('')}: ")
+    assert time.monotonic() - began < 30
+
+
+def test_no_workers(tmp_path: Path) -> None:
+    """A scheduler alone grades nothing; the line says how to start a worker."""
+    folder = urdf_class(tmp_path / "class", 2)
+    with scheduler(tmp_path) as found:
+        line = refused("batch", folder, "--gradebook", tmp_path / "lab6.db", "--cluster", found.address)
+        assert line == f"the Dask cluster at {found.address} has no workers yet: dask worker {found.address}"
+
+
+_BLIND = """
+import pathlib
+exists = pathlib.Path.exists
+pathlib.Path.exists = lambda self, **named: self.name != "class" and exists(self, **named)
+"""
+_OTHER = "import grader\ngrader.__version__ = '0.0.1'\n"
+_WITHOUT = "import sys\nsys.modules['grader'] = None\n"
+
+
+@pytest.mark.parametrize(
+    ("start", "said"),
+    [
+        (_BLIND, r"does not see {folder}: share that folder with it"),
+        (_OTHER, "has grader 0.0.1, and this is "),
+        (_WITHOUT, "cannot grade: "),
+    ],
+)
+def test_a_worker_that_cannot_grade_this_class(start: str, said: str, tmp_path: Path) -> None:
+    """One that does not see the folder, has another grader or none is found out before anything is graded."""
+    folder = urdf_class(tmp_path / "class", 2)
+    (tmp_path / "start.py").write_text(start)
+    with scheduler(tmp_path) as found:
+        arguments = ("--scheduler-file", str(found.file), "--host", "127.0.0.1", "--no-dashboard", "--no-nanny")
+        with service(tmp_path / "worker.log", "worker", *arguments, "--preload", str(tmp_path / "start.py")):
+            assert eventually(lambda: "Registered to:" in found.log, PATIENCE)
+            line = refused("batch", folder, "--gradebook", tmp_path / "lab6.db", "--cluster", found.address)
+    assert said.format(folder=folder) in line
+    assert rows(tmp_path / "lab6.db", "SELECT * FROM run") == []
+
+
+def test_the_extra_is_not_installed(tmp_path: Path) -> None:
+    """The line says what to install."""
+    folder = urdf_class(tmp_path / "class", 2)
+    (tmp_path / "distributed.py").write_text("raise ImportError('no such module')\n")
+    line = refused(
+        "batch", folder, "--gradebook", tmp_path / "lab6.db", "--cluster", "tcp://127.0.0.1:1", PYTHONPATH=str(tmp_path)
+    )
+    assert line == "--cluster needs Dask: pip install 'grader[cluster]'"

@@ -1,0 +1,278 @@
+"""A hand-in of a class opened: what its digest and its fingerprint tell, and what is refused."""
+
+import os
+import shutil
+import time
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grader.classroom.opening import fingerprint, is_bulk, open_hand_in
+from grader.classroom.quoting import Origin, Quoting
+from grader.errors import InputError
+from tests.samples import LAB6, ROOT
+
+URDF = b"<robot name='a'><link name='b'/></robot>"
+
+
+def later() -> int:
+    """A time at which what has just changed has settled."""
+    return time.time_ns() + 10**9
+
+
+def digest(top: Path, *paths: str, names: tuple[str, ...] = (), key: str = "ann") -> str:
+    """The digest of a hand-in."""
+    return open_hand_in(str(top), paths, names, key).digest
+
+
+def mark(top: Path, *paths: str) -> str:
+    """The fingerprint of a hand-in, once it has settled."""
+    return fingerprint(str(top), paths, later())
+
+
+def package(top: Path) -> Path:
+    """A hand-in that is a folder."""
+    folder = top / "ann"
+    (folder / "urdf").mkdir(parents=True)
+    (folder / "urdf/my_robot.urdf").write_bytes(URDF)
+    (folder / "notes.txt").write_text("notes")
+    (folder / "link.txt").symlink_to("notes.txt")
+    return folder
+
+
+def _byte(folder: Path) -> None:
+    (folder / "urdf/my_robot.urdf").write_bytes(URDF.replace(b"'b'", b"'c'"))
+
+
+def _name(folder: Path) -> None:
+    (folder / "notes.txt").rename(folder / "notes.md")
+
+
+def _moved(folder: Path) -> None:
+    (folder / "urdf/my_robot.urdf").rename(folder / "my_robot.urdf")
+
+
+def _more(folder: Path) -> None:
+    (folder / "more.txt").touch()
+
+
+def _less(folder: Path) -> None:
+    (folder / "link.txt").unlink()
+
+
+def _empty_folder(folder: Path) -> None:
+    (folder / "empty").mkdir()
+
+
+def _other_target(folder: Path) -> None:
+    (folder / "link.txt").unlink()
+    (folder / "link.txt").symlink_to("urdf/my_robot.urdf")
+
+
+def _link_out(folder: Path) -> None:
+    (folder / "out").symlink_to("/etc")
+
+
+def _link_nowhere(folder: Path) -> None:
+    (folder / "out").symlink_to("nowhere")
+
+
+def _built(folder: Path) -> None:
+    (folder / "build").mkdir()
+
+
+CHANGES = [_byte, _name, _moved, _more, _less, _empty_folder, _other_target, _link_out, _link_nowhere, _built]
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_any_change_shows(change: Callable[[Path], None], tmp_path: Path) -> None:
+    """In the digest of a folder, and in its fingerprint."""
+    folder = package(tmp_path)
+    before = digest(tmp_path, "ann"), mark(tmp_path, "ann")
+    change(folder)
+    after = digest(tmp_path, "ann"), mark(tmp_path, "ann")
+    assert before[0] != after[0]
+    assert before[1] != after[1]
+
+
+def test_a_copy_has_the_same_digest(tmp_path: Path) -> None:
+    """Wherever it stands, and however old it is; the fingerprint is another one."""
+    for place in ("one", "other"):
+        (tmp_path / place).mkdir()
+    package(tmp_path / "one")
+    shutil.copytree(tmp_path / "one/ann", tmp_path / "other/ann", symlinks=True)
+    for path in (tmp_path / "other").rglob("*.txt"):
+        os.utime(path, (1, 1), follow_symlinks=False)
+    assert digest(tmp_path / "one", "ann") == digest(tmp_path / "other", "ann")
+    assert mark(tmp_path / "one", "ann") != mark(tmp_path / "other", "ann")
+
+
+@pytest.mark.parametrize("name", ["ann.urdf", "ann.zip", "ann"])
+def test_the_name_is_in_the_digest(name: str, tmp_path: Path) -> None:
+    """It stands in the report."""
+    if name.endswith(".zip"):
+        with zipfile.ZipFile(tmp_path / name, "w") as archive:
+            archive.writestr("a.urdf", URDF)
+    elif name == "ann":
+        package(tmp_path)
+    else:
+        (tmp_path / name).write_bytes(URDF)
+    before = digest(tmp_path, name)
+    renamed = name.replace("ann", "bea")
+    (tmp_path / name).rename(tmp_path / renamed)
+    assert digest(tmp_path, renamed) != before
+
+
+@given(st.binary(max_size=200), st.binary(max_size=200))
+def test_digests_are_equal_for_equal_bytes_only(one: bytes, other: bytes) -> None:
+    """As far as anybody can find out."""
+    import tempfile
+
+    with tempfile.TemporaryDirectory() as place:
+        digests = []
+        for number, data in enumerate((one, other)):
+            top = Path(place, str(number))
+            top.mkdir()
+            (top / "ann.urdf").write_bytes(data)
+            digests.append(digest(top, "ann.urdf"))
+    assert (digests[0] == digests[1]) == (one == other)
+
+
+def test_a_fingerprint_tells_of_times_and_links(tmp_path: Path) -> None:
+    """The same size, bytes and time of change are not enough: the inode's own time counts. What a link leads to counts as well."""
+    place = tmp_path / "ann.urdf"
+    place.write_bytes(URDF)
+    (tmp_path / "bea.urdf").symlink_to("ann.urdf")
+    (tmp_path / "cal").symlink_to("dan")
+    (tmp_path / "dan").mkdir()
+    (tmp_path / "dan/a.urdf").write_bytes(URDF)
+    before = [mark(tmp_path, name) for name in ("ann.urdf", "bea.urdf", "cal")]
+    assert before == [mark(tmp_path, name) for name in ("ann.urdf", "bea.urdf", "cal")]
+    assert all(before)
+    for path in (place, tmp_path / "dan/a.urdf"):
+        status = path.stat()
+        path.write_bytes(URDF.replace(b"'b'", b"'c'"))
+        os.utime(path, ns=(status.st_atime_ns, status.st_mtime_ns))
+    for name, was in zip(("ann.urdf", "bea.urdf", "cal"), before, strict=True):
+        assert mark(tmp_path, name) != was
+
+
+@pytest.mark.parametrize("kind", ["file", "folder", "several", "zip"])
+def test_nobody_knows_just_after_a_change(kind: str, tmp_path: Path) -> None:
+    """A file system may not tell two changes of one moment apart: then there is no fingerprint."""
+    top = tmp_path / "class"
+    paths: tuple[str, ...] = ("ann.urdf",)
+    top.mkdir()
+    if kind == "folder":
+        package(top)
+        paths = ("ann",)
+    else:
+        (top / "ann.urdf").write_bytes(URDF)
+        (top / "bea.urdf").write_bytes(URDF)
+    if kind == "several":
+        paths = ("ann.urdf", "bea.urdf")
+    if kind == "zip":
+        top = Path(shutil.make_archive(str(tmp_path / "packed"), "zip", top))
+    now = time.time_ns()
+    assert fingerprint(str(top), paths, now) == ""
+    assert fingerprint(str(top), paths, now + 10**9) != ""
+    assert fingerprint(str(top), ("missing",), now + 10**9) == "" or kind == "zip"
+    assert fingerprint(str(tmp_path / "missing"), paths, now + 10**9) == ""
+
+
+def test_several_files_are_one_hand_in(tmp_path: Path) -> None:
+    """They stand side by side under the names that their student gave them; these, and the student's, are in the digest."""
+    for name in ("ann_1_my_robot.urdf", "ann_2_notes.txt"):
+        (tmp_path / name).write_bytes(URDF)
+    paths = ("ann_1_my_robot.urdf", "ann_2_notes.txt")
+    opened = open_hand_in(str(tmp_path), paths, ("my_robot.urdf", "notes.txt"), "ann")
+    assert opened.tree is not None
+    assert set(opened.tree.files) == {"my_robot.urdf", "notes.txt"}
+    submission = opened.submission(LAB6)
+    assert (submission.id, submission.path) == ("ann", "my_robot.urdf")
+    unnamed = open_hand_in(str(tmp_path), paths, (), "ann")
+    assert unnamed.tree is not None
+    assert set(unnamed.tree.files) == set(paths)
+    digests = {
+        opened.digest,
+        unnamed.digest,
+        digest(tmp_path, *paths, names=("my_robot.urdf", "other.txt")),
+        digest(tmp_path, *paths, names=("my_robot.urdf", "notes.txt"), key="bea"),
+    }
+    assert len(digests) == 4
+
+
+def test_links_among_several_files_are_refused(tmp_path: Path) -> None:
+    """One that leads out of the class, or to another student's file."""
+    (tmp_path / "a.urdf").write_bytes(URDF)
+    for target in ("/etc/passwd", "a.urdf"):
+        (tmp_path / "b.txt").unlink(missing_ok=True)
+        (tmp_path / "b.txt").symlink_to(target)
+        with pytest.raises(InputError, match=r"b\.txt is a link, and was not followed"):
+            open_hand_in(str(tmp_path), ("a.urdf", "b.txt"), (), "ann")
+
+
+def _fifo(top: Path) -> None:
+    os.mkfifo(top / "ann.urdf")
+
+
+def _missing(top: Path) -> None:
+    pass
+
+
+def _large(top: Path) -> None:
+    (top / "ann.urdf").write_bytes(b" " * (1024 * 1024 + 1))
+
+
+def _circle(top: Path) -> None:
+    (top / "ann.urdf").symlink_to("ann.urdf")
+
+
+@pytest.mark.parametrize("make", [_fifo, _missing, _large, _circle])
+def test_what_cannot_be_opened_is_one_line(make: Callable[[Path], None], tmp_path: Path) -> None:
+    """It is an InputError, for a class as for one alone."""
+    make(tmp_path)
+    with pytest.raises(InputError) as caught:
+        open_hand_in(str(tmp_path), ("ann.urdf",), (), "ann")
+    assert "\n" not in str(caught.value)
+
+
+def test_neither_a_urdf_nor_a_folder_or_archive(tmp_path: Path) -> None:
+    """Such as a text file that somebody has called so."""
+    (tmp_path / "ann.txt").write_text("text")
+    with pytest.raises(InputError, match=r"ann\.txt is neither a URDF nor a folder or archive"):
+        open_hand_in(str(tmp_path), ("ann.txt",), (), "ann")
+
+
+def test_a_zip_that_was_replaced_is_read_anew(tmp_path: Path) -> None:
+    """Although it stays open from one hand-in to the next."""
+    place = tmp_path / "class.zip"
+    seen = []
+    for name in ("one", "other"):
+        place.unlink(missing_ok=True)
+        with zipfile.ZipFile(place, "w") as archive:
+            archive.writestr("ann.urdf", URDF.replace(b"'a'", f"'{name}'".encode()))
+        assert is_bulk(str(place))
+        seen.append(open_hand_in(str(place), ("ann.urdf",), (), "ann").data)
+    assert [b"one" in seen[0], b"other" in seen[1]] == [True, True]  # type: ignore[operator]
+
+
+def test_quoted_as_long_as_it_is_the_same(tmp_path: Path) -> None:
+    """The text of a file is at hand until the file is another, or gone, or nobody knows what it was."""
+    shutil.copytree(ROOT / "submissions/lidar-buried", tmp_path / "ann")
+    while not (now := fingerprint(str(tmp_path), ("ann",), time.time_ns())):
+        pass  # until it has settled
+    origin = Origin(str(tmp_path), ("ann",), (), "ann", now)
+    source = Quoting(origin, LAB6)("my_robot.urdf")
+    assert source is not None
+    assert Quoting(origin, LAB6)("missing.urdf") is None
+    assert Quoting(origin._replace(fingerprint=""), LAB6)("my_robot.urdf") is None
+    with (tmp_path / "ann/my_robot.urdf").open("a") as file:
+        file.write("\n")
+    assert Quoting(origin, LAB6)("my_robot.urdf") is None
+    shutil.rmtree(tmp_path / "ann")
+    assert Quoting(origin, LAB6)("my_robot.urdf") is None
