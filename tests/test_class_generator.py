@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.intake import take_in
-from grader.classroom.roster_file import read_roster
+from grader.classroom.intake.roster_file import read_roster
+from grader.classroom.intake.taking import take_in
 from grader.classroom.work import Class, Graded, Task, grade_all
 from grader.grading.grade import grade
 from grader.submission.submission import read_submission

@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 from grader import __version__
 from grader.classroom.gradebook import Gradebook, Known, Standing
+from grader.classroom.intake.roster import Roster
 from grader.classroom.opening import fingerprint
 from grader.classroom.queue import Queue
-from grader.classroom.roster import Roster
 from grader.classroom.students import HandIn, Student
 from grader.classroom.work import Class, Graded, Task
 from grader.errors import InputError

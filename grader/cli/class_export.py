@@ -10,8 +10,8 @@ from grader.classroom.lms.feedback import Remark, feedback_html
 from grader.classroom.lms.grades import Grade
 from grader.classroom.lms.moodle import fill_worksheet
 from grader.classroom.lms.preflight import Filled, Preflight
+from grader.classroom.lms.spreadsheet import write_table
 from grader.classroom.lms.tables import SIZE_LIMIT
-from grader.classroom.spreadsheet import write_table
 from grader.classroom.standings import Standing, Standings
 from grader.grading.report import Ruling
 from grader.grading.rubric import Rubric

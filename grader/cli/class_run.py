@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 from grader.classroom.batch import Batch, Progress, Settings
 from grader.classroom.gradebook import Gradebook
-from grader.classroom.intake import Intake, take_in
+from grader.classroom.intake.roster_file import read_roster
+from grader.classroom.intake.taking import Intake, take_in
 from grader.classroom.lateness import read_time
 from grader.classroom.pool import Processes, processors
-from grader.classroom.roster_file import read_roster
 from grader.classroom.standings import Standings
 from grader.classroom.work import PRELOAD, prepare
 from grader.cli.class_export import grades_csv

@@ -12,9 +12,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.intake import LAYOUTS, take_in
-from grader.classroom.layouts.shelf import MOST_LINES
-from grader.classroom.roster import Entry, Roster
+from grader.classroom.intake.layouts.shelf import MOST_LINES
+from grader.classroom.intake.roster import Entry, Roster
+from grader.classroom.intake.taking import LAYOUTS, take_in
 from grader.classroom.students import Student
 from grader.errors import InputError
 from tests.classroom.class_folders import lay_out, pack, taken
@@ -117,7 +117,7 @@ def test_one_folder_around_everything_is_stepped_into(tmp_path: Path) -> None:
 
 def test_a_zip_of_too_many_members_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The number of members is bounded."""
-    monkeypatch.setattr("grader.classroom.zip_listing.MOST_MEMBERS", 3)
+    monkeypatch.setattr("grader.classroom.intake.zip_listing.MOST_MEMBERS", 3)
     assert len(take_in(pack(tmp_path / "a.zip", ["a.zip", "b.zip", "c.zip"]))) == 3
     with pytest.raises(InputError, match="holds more than 3 files"):
         take_in(pack(tmp_path / "b.zip", ["a.zip", "b.zip", "c.zip", "d.zip"]))

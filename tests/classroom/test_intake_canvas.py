@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.intake import take_in
-from grader.classroom.names import canvas_name
-from grader.classroom.roster import Entry, Roster
+from grader.classroom.intake.names import canvas_name
+from grader.classroom.intake.roster import Entry, Roster
+from grader.classroom.intake.taking import take_in
 from grader.classroom.students import HandIn, Student
 from grader.errors import InputError
 from tests.classroom.class_folders import lay_out, pack, taken

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.intake import take_in
-from grader.classroom.layouts.teams import lab_folder
-from grader.classroom.roster import Entry, Roster
+from grader.classroom.intake.layouts.teams import lab_folder
+from grader.classroom.intake.roster import Entry, Roster
+from grader.classroom.intake.taking import take_in
 from grader.classroom.students import HandIn, Student
 from grader.errors import InputError
 from tests.classroom.class_folders import lay_out, pack, taken

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.intake import take_in
-from grader.classroom.layouts.prefix import class_prefix
-from grader.classroom.names import ENDINGS, ending_of, without_copy
-from grader.classroom.roster import Entry, Roster
+from grader.classroom.intake.layouts.prefix import class_prefix
+from grader.classroom.intake.names import ENDINGS, ending_of, without_copy
+from grader.classroom.intake.roster import Entry, Roster
+from grader.classroom.intake.taking import take_in
 from grader.classroom.students import HandIn, Student
 from grader.submission.opening import ARCHIVES
 from tests.classroom.class_folders import lay_out, taken

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.intake import take_in
-from grader.classroom.roster import Entry, Roster
+from grader.classroom.intake.roster import Entry, Roster
+from grader.classroom.intake.taking import take_in
 from grader.classroom.students import Student
 from tests.classroom.class_folders import lay_out, pack, taken
 
@@ -67,7 +67,7 @@ def test_empty_folders_and_too_many_files(tmp_path: Path, monkeypatch: pytest.Mo
     top, text = f"Jane Doe_12_{FOLDER}", "Jane Doe_12_assignsubmission_onlinetext"
     (empty,) = take_in(lay_out(tmp_path, f"{top}/", f"{text}/")).hand_ins()
     assert (empty.paths, empty.names) == ((top,), ())
-    monkeypatch.setattr("grader.classroom.layouts.moodle._MOST_FILES", 2)
+    monkeypatch.setattr("grader.classroom.intake.layouts.moodle._MOST_FILES", 2)
     intake = take_in(lay_out(tmp_path, *(f"{top}/{name}" for name in "abc")))
     assert taken(intake) == {"Jane Doe_12": (top,)}
     assert intake.left_out == (f"{top} has more than 2 files: what stands beside it was not read",)

@@ -15,8 +15,8 @@ from grader.classroom.lms.feedback import LIMIT, Remark, feedback_html, is_our_f
 from grader.classroom.lms.grades import Grade
 from grader.classroom.lms.moodle import fill_worksheet
 from grader.classroom.lms.preflight import Conflict, Filled, Left
+from grader.classroom.lms.spreadsheet import neutral
 from grader.classroom.lms.tables import read_table
-from grader.classroom.spreadsheet import neutral
 from grader.classroom.students import Student
 from grader.errors import InputError
 

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.names import canvas_name, canvas_names, iso_time, plain_name, surname
-from grader.classroom.roster import Entry, Match, Roster
-from grader.classroom.roster_file import read_roster
+from grader.classroom.intake.names import canvas_name, canvas_names, iso_time, plain_name, surname
+from grader.classroom.intake.roster import Entry, Match, Roster
+from grader.classroom.intake.roster_file import read_roster
 from grader.classroom.students import Student
 from grader.errors import InputError
 
@@ -145,7 +145,7 @@ def test_a_file_that_cannot_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     """A missing file and a huge one are errors of one line."""
     with pytest.raises(InputError, match="cannot read"):
         read_roster(tmp_path / "none.csv")
-    monkeypatch.setattr("grader.classroom.roster_file._LIMIT", 10)
+    monkeypatch.setattr("grader.classroom.intake.roster_file._LIMIT", 10)
     with pytest.raises(InputError, match=r"larger than 10 bytes, the limit$"):
         read(tmp_path, PLAIN)
 

@@ -16,10 +16,10 @@ import jsonschema
 import pytest
 
 from grader.classroom.gradebook import Gradebook
-from grader.classroom.intake import take_in
+from grader.classroom.intake.roster_file import read_roster
+from grader.classroom.intake.taking import take_in
 from grader.classroom.marking import criterion_of
 from grader.classroom.marking import mark as add_mark
-from grader.classroom.roster_file import read_roster
 from grader.classroom.standings import Standings
 from grader.classroom.students import HandIn
 from grader.errors import InputError

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from decimal import Decimal
 
 from grader.classroom.lms.grades import cut, exact_words
-from grader.classroom.spreadsheet import FORMULA_BEHIND_SEMICOLON, spelt_out
+from grader.classroom.lms.spreadsheet import FORMULA_BEHIND_SEMICOLON, spelt_out
 from grader.submission.files import sha256_of
 
 LIMIT = 4_000  # characters

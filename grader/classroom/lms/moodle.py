@@ -18,8 +18,8 @@ from grader.classroom.lms.matching import Keys, Person, full_names, join, spelli
 from grader.classroom.lms.moodle_columns import MoodleColumns, find_columns, people_rows
 from grader.classroom.lms.moodle_words import NO
 from grader.classroom.lms.preflight import Filled
+from grader.classroom.lms.spreadsheet import neutral
 from grader.classroom.lms.tables import Row, Table, read_table
-from grader.classroom.spreadsheet import neutral
 from grader.classroom.students import Student
 
 _TAG = re.compile(r"<[^>]*+>")  # gradingtable.php puts the name of a suspended student into a span, with a picture

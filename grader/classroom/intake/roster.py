@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from grader.classroom.names import canvas_name, canvas_names, plain_name, plain_word, surname
+from grader.classroom.intake.names import canvas_name, canvas_names, plain_name, plain_word, surname
 from grader.classroom.students import HandIn, Student
 from grader.submission.files import printable_path
 

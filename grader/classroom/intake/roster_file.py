@@ -3,9 +3,9 @@
 import re
 from pathlib import Path
 
-from grader.classroom.names import iso_time
-from grader.classroom.roster import Entry, Roster
-from grader.classroom.roster_cells import Row, rows_of, text_of
+from grader.classroom.intake.names import iso_time
+from grader.classroom.intake.roster import Entry, Roster
+from grader.classroom.intake.roster_cells import Row, rows_of, text_of
 from grader.classroom.students import Student
 from grader.errors import InputError
 from grader.submission.files import printable_path, read_capped

@@ -9,11 +9,11 @@ from collections.abc import Callable, Iterable
 from itertools import groupby
 from typing import NamedTuple
 
-from grader.classroom.layouts.attempts import attempts_in, last_copy
-from grader.classroom.layouts.prefix import class_prefix, has_prefix
-from grader.classroom.layouts.shelf import LeftOut, unique
-from grader.classroom.listing import Children, Listing
-from grader.classroom.names import ending_of, without_copy
+from grader.classroom.intake.layouts.attempts import attempts_in, last_copy
+from grader.classroom.intake.layouts.prefix import class_prefix, has_prefix
+from grader.classroom.intake.layouts.shelf import LeftOut, unique
+from grader.classroom.intake.listing import Children, Listing
+from grader.classroom.intake.names import ending_of, without_copy
 from grader.classroom.students import HandIn, Student
 from grader.submission.files import printable_path
 from grader.submission.tree import BUILT

@@ -10,9 +10,9 @@ from collections import defaultdict
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from grader.classroom.layouts.shelf import LeftOut, Listed, listed
-from grader.classroom.listing import Children
-from grader.classroom.names import ending_of, is_word
+from grader.classroom.intake.layouts.shelf import LeftOut, Listed, listed
+from grader.classroom.intake.listing import Children
+from grader.classroom.intake.names import ending_of, is_word
 from grader.classroom.students import HandIn, Student
 
 _NAME = re.compile(

@@ -5,9 +5,9 @@ nbgrader writes that time as `%Y-%m-%d %H:%M:%S.%f %Z`, in UTC unless it is conf
 
 from collections import defaultdict
 
-from grader.classroom.layouts.shelf import LeftOut, Listed, listed
-from grader.classroom.listing import Children, Listing
-from grader.classroom.names import utc_time
+from grader.classroom.intake.layouts.shelf import LeftOut, Listed, listed
+from grader.classroom.intake.listing import Children, Listing
+from grader.classroom.intake.names import utc_time
 from grader.classroom.students import HandIn, Student
 from grader.errors import InputError
 from grader.submission.files import printable_path

@@ -9,10 +9,10 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
 
-from grader.classroom.layouts.folders import shelve as shelve_folders
-from grader.classroom.layouts.shelf import LeftOut, Listed, listed
-from grader.classroom.listing import Children, Listing
-from grader.classroom.names import ending_of
+from grader.classroom.intake.layouts.folders import shelve as shelve_folders
+from grader.classroom.intake.layouts.shelf import LeftOut, Listed, listed
+from grader.classroom.intake.listing import Children, Listing
+from grader.classroom.intake.names import ending_of
 from grader.classroom.students import HandIn
 
 _MOST_TEAMS = 10_000  # beyond which nobody looks for teams unasked

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from pathlib import Path
 
-from grader.classroom.listing import Children, is_silent
+from grader.classroom.intake.listing import Children, is_silent
 from grader.errors import InputError
 from grader.submission.archive import DAMAGED, inside, words_of, zip_members
 from grader.submission.files import printable_path

@@ -4,14 +4,14 @@ import os
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from grader.classroom.layouts import canvas, folders, moodle, nbgrader, teams
-from grader.classroom.layouts.shelf import LeftOut, Shelf
-from grader.classroom.listing import Children, FolderListing, Listing
-from grader.classroom.names import ending_of
-from grader.classroom.placing import Placement, place
-from grader.classroom.roster import Roster
+from grader.classroom.intake.layouts import canvas, folders, moodle, nbgrader, teams
+from grader.classroom.intake.layouts.shelf import LeftOut, Shelf
+from grader.classroom.intake.listing import Children, FolderListing, Listing
+from grader.classroom.intake.names import ending_of
+from grader.classroom.intake.placing import Placement, place
+from grader.classroom.intake.roster import Roster
+from grader.classroom.intake.zip_listing import ZipListing
 from grader.classroom.students import HandIn, Student
-from grader.classroom.zip_listing import ZipListing
 from grader.errors import InputError
 from grader.submission.files import printable_path, read_start
 from grader.submission.opening import archive_kind

@@ -4,9 +4,9 @@ import re
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
-from grader.classroom.layouts.shelf import LeftOut
-from grader.classroom.listing import Listing
-from grader.classroom.names import ENDINGS, ending_of
+from grader.classroom.intake.layouts.shelf import LeftOut
+from grader.classroom.intake.listing import Listing
+from grader.classroom.intake.names import ENDINGS, ending_of
 from grader.submission.files import printable_path
 
 _ATTEMPT = re.compile(r"(?:attempt|submission|try|versuch|abgabe)[ _-]?([0-9]{1,6})", re.IGNORECASE)

@@ -4,8 +4,8 @@ from array import array
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from grader.classroom.layouts.shelf import Shelf, unique
-from grader.classroom.roster import Roster
+from grader.classroom.intake.layouts.shelf import Shelf, unique
+from grader.classroom.intake.roster import Roster
 from grader.classroom.students import HandIn, Student
 
 _NOBODY = -1
