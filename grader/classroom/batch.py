@@ -7,8 +7,10 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from grader import __version__
-from grader.classroom.gradebook import Gradebook, Known, Standing
-from grader.classroom.intake.roster import Roster
+from grader.classroom.gradebook import Gradebook
+from grader.classroom.identity import Identities
+from grader.classroom.intake.roster import Entry, Roster
+from grader.classroom.known import Enrolment, Known
 from grader.classroom.opening import fingerprint
 from grader.classroom.queue import Queue
 from grader.classroom.students import HandIn, Student
@@ -55,6 +57,7 @@ class Settings(NamedTuple):
     workers: int
     force: bool = False
     roster: Roster | None = None
+    due: str = ""
 
 
 class Batch:
@@ -74,10 +77,20 @@ class Batch:
         common = Class(settings.root, rubric.data, str(rubric.path), self._template)
         self._queue = Queue(executor, settings.workers, common, rubric)
         self._waiting: dict[str, tuple[HandIn, Known | None]] = {}
+        self._identities: Identities | None = None
+        self._passed: list[Known] = []  # of this class folder, and not met yet
+        self._renamed: set[int] = set()
+        self.notes: list[str] = []
         self._before: Iterator[Known] = iter(())
         self._next: Known | None = None
+        self._has_others = False
         self._progress = Progress(settings.total)
         self._run = 0
+
+    @property
+    def has_begun(self) -> bool:
+        """Whether the gradebook has taken the run in."""
+        return self._run > 0
 
     @property
     def progress(self) -> Progress:
@@ -86,9 +99,12 @@ class Batch:
 
     def grade(self, hand_ins: Iterable[HandIn], absent: Sequence[Student] = ()) -> Progress:
         """Grade all hand-ins that are new or changed. `absent` are students of whom there is none."""
-        self._run = self._book.begin(self._settings.root, self._settings.layout, self._rubric, self._template)
+        self._run = self._book.begin(
+            self._settings.root, self._settings.layout, self._rubric, self._template, self._settings.due
+        )
         self._before = self._book.all_known()
         self._next = next(self._before, None)
+        self._has_others = self._next is not None
         for hand_in in hand_ins:
             known = self._known(hand_in)
             if known is not None and self._is_unchanged(hand_in, known):
@@ -99,18 +115,49 @@ class Batch:
                 self._take(all_in=False)
         while len(self._queue):
             self._take(all_in=True)
+        self._pass_to(None)
         with self._book.transaction():
+            for known in self._passed:
+                if known.student not in self._renamed:
+                    self._book.see_gone(known, self._run)
             for student in absent:
-                self._book.keep_student(student, self._standing(student))
+                self._book.keep_student(student, self._enrolment(student))
         self._book.finish(self._run)
         return self._progress
+
+    def _pass_to(self, key: str | None) -> None:
+        """Go on in the gradebook to a key, or to its end; who is passed over is not in the class folder any more."""
+        while self._next is not None and (key is None or self._next.key < key):  # both come in the order of the keys
+            if self._next.source == self._settings.root and not self._next.is_gone:
+                self._passed.append(self._next)
+            self._next = next(self._before, None)
+
+    def _same_person(self, hand_in: HandIn) -> Known | None:
+        """Who has this hand-in under another key, and gets this one now."""
+        if self._identities is None:
+            self._identities = Identities(self._book, self._settings.root)
+        known = self._identities.of(hand_in)
+        key = hand_in.student.key
+        if known is None or known.student in self._renamed or known.key == key:
+            return None
+        if not self._book.rename(known.student, key):
+            self.notes.append(
+                f"{known.key} and {key} seem to be the same, but both have results: their marks stay apart"
+            )
+            return None
+        self._renamed.add(known.student)
+        self.notes.append(f"{known.key} is {key} now, with all marks by hand")
+        return known
 
     def _known(self, hand_in: HandIn) -> Known | None:
         """The result of this student that may still hold: of the same rubric and grader, and no failure of ours."""
         key = hand_in.student.key
-        while self._next is not None and self._next.key < key:  # both come in the order of the keys
-            self._next = next(self._before, None)
+        self._pass_to(key)
         known = self._next if self._next is not None and self._next.key == key else None
+        if known is not None:
+            self._next = next(self._before, None)
+        elif self._has_others:
+            known = self._same_person(hand_in)
         if known is None or (known.rubric, known.version) != (self._sha256, __version__):
             return None
         return None if known.verdict == "errored" or self._settings.force else known
@@ -119,7 +166,7 @@ class Batch:
         """Whether the file system and the roster say what they said before."""
         return (
             known.fingerprint != ""
-            and known.is_same(hand_in, self._standing(hand_in.student))
+            and known.is_same(hand_in, self._enrolment(hand_in.student))
             and fingerprint(self._settings.root, hand_in.paths, time.time_ns()) == known.fingerprint
         )
 
@@ -147,13 +194,13 @@ class Batch:
         self._book.see(student, self._run, result, hand_in, graded.fingerprint)
 
     def _keep_student(self, hand_in: HandIn) -> int:
-        return self._book.keep_student(hand_in.student, self._standing(hand_in.student))
+        return self._book.keep_student(hand_in.student, self._enrolment(hand_in.student))
 
-    def _standing(self, student: Student) -> Standing | None:
+    def _enrolment(self, student: Student) -> Enrolment | None:
         if self._settings.roster is None:
             return None
         entry = self._settings.roster.entry(student.key)
-        return Standing(0) if entry is None else Standing(1, entry.due, entry.extension_days, entry.days_late)
+        return _enrolment_of(entry)
 
     def _tell(self, verdicts: Iterable[str]) -> None:
         for verdict in verdicts:
@@ -167,3 +214,11 @@ def _template(rubric: Rubric) -> str:
         return to_record(grade_reference(rubric)) if rubric.reference else ""
     except InputError:
         return ""
+
+
+def _enrolment_of(entry: Entry | None) -> Enrolment:
+    """What the roster says of one; not late is not late, whatever a time says."""
+    if entry is None:
+        return Enrolment(0)
+    days_late = 0.0 if entry.is_late is False and entry.days_late is None else entry.days_late
+    return Enrolment(1, entry.due, entry.extension_days, days_late)

@@ -1,6 +1,5 @@
 """The gradebook: one SQLite file with what the checks have found and what people have decided, which no re-run changes."""
 
-import json
 import sqlite3
 import time
 import zlib
@@ -11,6 +10,20 @@ from pathlib import Path
 from typing import Any, NamedTuple, Self
 
 from grader import __version__
+from grader.classroom.known import (
+    ADD_STUDENT,
+    CHANGE_STUDENT,
+    FIND_STUDENT,
+    KNOWN,
+    UNKNOWN,
+    Enrolment,
+    Known,
+    known_of,
+    place_of,
+    storable,
+    told_of,
+    values_of,
+)
 from grader.classroom.schema import APPLICATION_ID, STEPS
 from grader.classroom.students import HandIn, Student
 from grader.classroom.work import UNITS, Graded
@@ -19,62 +32,6 @@ from grader.grading.rubric import Rubric, read_rubric
 from grader.submission.files import printable_path, sha256_of
 
 _PATIENCE = 60.0  # seconds in which another process may finish its transaction
-_STUDENT = ("key", "name", "email", "login", "sis", "canvas", "moodle")
-
-
-class Standing(NamedTuple):
-    """What the roster says of a student: whether they are in it, when it is due for them, and how late they were."""
-
-    expected: int | None  # 1 on the roster, 0 not on it, None while there is none
-    due: str = ""
-    extension: float = 0.0
-    days_late: float | None = None
-
-
-_COLUMNS = (*_STUDENT, *Standing._fields)
-_FIND_STUDENT = f"SELECT id, {', '.join(_COLUMNS)} FROM student WHERE key = ?"
-_ADD_STUDENT = f"INSERT INTO student ({', '.join(_COLUMNS)}) VALUES (?{', ?' * (len(_COLUMNS) - 1)})"
-_CHANGE_STUDENT = f"UPDATE student SET {', '.join(f'{name} = ?' for name in _COLUMNS)} WHERE id = ?"
-_UNKNOWN = Standing(None)
-
-
-class Known(NamedTuple):
-    """What the gradebook has of a student: the newest result, what it was made from, and what was told of the student."""
-
-    student: int
-    result: int
-    rubric: str
-    version: str
-    digest: str
-    verdict: str
-    fingerprint: str
-    place: str
-    is_late: int
-    submitted: str
-    told: tuple[Any, ...]
-
-    @property
-    def key(self) -> str:
-        """The student's key."""
-        return str(self.told[0])
-
-    def is_same(self, hand_in: HandIn, standing: Standing | None) -> bool:
-        """Whether nothing new is said of the student and the hand-in, whatever is in it."""
-        return (
-            self.place == place_of(hand_in)
-            and self.is_late == hand_in.is_late
-            and self.submitted == hand_in.submitted
-            and _told(self.told, hand_in.student, standing) == self.told
-        )
-
-
-_KNOWN = f"""
-SELECT student.id, seen.result, result.rubric, result.version, result.digest, result.verdict, seen.fingerprint,
-    seen.place, seen.is_late, seen.submitted, {", ".join(f"student.{name}" for name in _COLUMNS)}
-FROM student JOIN seen ON seen.student = student.id AND seen.run =
-    (SELECT max(run) FROM seen AS newer WHERE newer.student = student.id)
-JOIN result ON result.id = seen.result
-"""
 
 
 class Run(NamedTuple):
@@ -180,17 +137,21 @@ class Gradebook:
 
     # --- what a batch writes -------------------------------------------------------------------------------------------
 
-    def begin(self, source: str, layout: str, rubric: Rubric, template: str = "") -> int:
-        """Begin a run; its number. Its results' records are kept beside the template."""
+    def begin(self, source: str, layout: str, rubric: Rubric, template: str = "", due: str = "") -> int:
+        """Begin a run; its number. Its results' records are kept beside the template. Raises InputError for another lab's rubric."""
         self._template = sha256_of(template.encode()) if template else None
         with self.transaction():
+            other = "SELECT rubric.id FROM run JOIN rubric ON rubric.sha256 = run.rubric WHERE rubric.id <> ? LIMIT 1"
+            for (name,) in self.connection.execute(other, (rubric.id,)).fetchall():
+                raise InputError(f"{self._shown} is the gradebook of {name}: name another file for {rubric.id}")
             self._keep_rubric(rubric)
             if template:
                 self.connection.execute("INSERT OR IGNORE INTO template VALUES (?, ?)", (self._template, template))
             last_mark = self.connection.execute("SELECT coalesce(max(id), 0) FROM mark").fetchone()[0]
-            row = (_now(), storable(source), layout, rubric.sha256, __version__, last_mark)
+            row = (_now(), storable(source), layout, rubric.sha256, __version__, last_mark, due)
             found = self.connection.execute(
-                "INSERT INTO run (started, source, layout, rubric, version, last_mark) VALUES (?, ?, ?, ?, ?, ?)", row
+                "INSERT INTO run (started, source, layout, rubric, version, last_mark, due) VALUES (?, ?, ?, ?, ?, ?, ?)",
+                row,
             )
             return int(found.lastrowid or 0)
 
@@ -212,25 +173,25 @@ class Gradebook:
 
     def known(self, key: str) -> Known | None:
         """What there is of a student."""
-        row = self.connection.execute(f"{_KNOWN} WHERE student.key = ?", (key,)).fetchone()
-        return _known(row) if row is not None else None
+        row = self.connection.execute(f"{KNOWN} WHERE student.key = ?", (key,)).fetchone()
+        return known_of(row) if row is not None else None
 
     def all_known(self) -> Iterator[Known]:
         """What there is of everyone, in the order of their keys, as it was when this began, whatever is written meanwhile."""
         with self.complaining(), closing(sqlite3.connect(self.path, timeout=_PATIENCE)) as beside:
-            for row in beside.execute(f"{_KNOWN} ORDER BY student.key"):
-                yield _known(row)
+            for row in beside.execute(f"{KNOWN} ORDER BY student.key"):
+                yield known_of(row)
 
-    def keep_student(self, student: Student, standing: Standing | None) -> int:
-        """Take in what is known of a student; what was known before and is not said now stays. `standing` is the roster's word."""
-        found = self.connection.execute(_FIND_STUDENT, (student.key,)).fetchone()
+    def keep_student(self, student: Student, enrolment: Enrolment | None) -> int:
+        """Take in what is known of a student; what was known before and is not said now stays. `enrolment` is the roster's word."""
+        found = self.connection.execute(FIND_STUDENT, (student.key,)).fetchone()
         if found is None:
-            added = self.connection.execute(_ADD_STUDENT, (*_values(student), *(standing or _UNKNOWN)))
+            added = self.connection.execute(ADD_STUDENT, (*values_of(student), *(enrolment or UNKNOWN)))
             return int(added.lastrowid or 0)
         identity, *before = found
-        told = _told(tuple(before), student, standing)
+        told = told_of(tuple(before), student, enrolment)
         if told != tuple(before):
-            self.connection.execute(_CHANGE_STUDENT, (*told, identity))
+            self.connection.execute(CHANGE_STUDENT, (*told, identity))
         return int(identity)
 
     def keep(self, student: int, rubric: str, graded: Graded) -> int:
@@ -256,9 +217,32 @@ class Gradebook:
     def see(self, student: int, run: int, result: int, hand_in: HandIn, fingerprint: str) -> None:
         """Note that a run has seen this of a student, and which result it has."""
         row = (student, run, result, place_of(hand_in), fingerprint, int(hand_in.is_late), hand_in.submitted)
-        self.connection.execute("INSERT INTO seen VALUES (?, ?, ?, ?, ?, ?, ?)", row)
+        self.connection.execute("INSERT INTO seen VALUES (?, ?, ?, ?, ?, ?, ?, 0)", row)
+
+    def see_gone(self, known: Known, run: int) -> None:
+        """Note that a hand-in is not there any more where the run before has seen it, unless this run has seen it after all."""
+        row = (known.student, run, known.result, known.place, "", known.is_late, known.submitted, 1)
+        self.connection.execute("INSERT INTO seen VALUES (?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING", row)
+
+    def rename(self, student: int, key: str) -> bool:
+        """Give a student another key, with all that there is of them; False where it is that of another who has something."""
+        with self.transaction():
+            taken = self.connection.execute("SELECT id FROM student WHERE key = ?", (key,)).fetchone()
+            if taken is not None:
+                query = "SELECT 1 FROM result WHERE student = ? UNION ALL SELECT 1 FROM mark WHERE student = ? LIMIT 1"
+                if self.connection.execute(query, (taken[0], taken[0])).fetchone() is not None:
+                    return False
+                self.connection.execute("DELETE FROM student WHERE id = ?", taken)  # nothing was handed in, till now
+            self.connection.execute("UPDATE student SET key = ? WHERE id = ?", (key, student))
+        return True
 
     # --- what others read ----------------------------------------------------------------------------------------------
+
+    def due(self) -> str:
+        """When the newest run was told that it was due, as ISO 8601; empty where it was not told."""
+        for (due,) in list(self.rows("SELECT due FROM run ORDER BY id DESC LIMIT 1")):
+            return str(due)
+        return ""
 
     def runs(self) -> list[Run]:
         """All runs, the oldest first."""
@@ -295,32 +279,3 @@ def _statements(script: str) -> Iterator[str]:
 
 def _now() -> str:
     return datetime.now(UTC).isoformat(timespec="seconds")
-
-
-def storable(text: str) -> str:
-    """Text as a gradebook can hold it: what is no Unicode is spelt out."""
-    return text.encode("utf-8", "backslashreplace").decode()
-
-
-def place_of(hand_in: HandIn) -> str:
-    """Where a hand-in is, as JSON: paths, names, attempt, paths of earlier attempts."""
-    return json.dumps((hand_in.paths, hand_in.names, hand_in.attempt, hand_in.earlier))
-
-
-def _known(row: tuple[Any, ...]) -> Known:
-    identity, result, rubric, version, digest, verdict, fingerprint, place, is_late, submitted, *told = row
-    return Known(
-        identity, result, rubric, version, digest, verdict, fingerprint, place, is_late, submitted, tuple(told)
-    )
-
-
-def _values(student: Student) -> tuple[str, ...]:
-    told = (student.key, student.name, student.email, student.login, student.sis, student.canvas, student.moodle)
-    return told if "".join(told).isascii() else tuple(map(storable, told))
-
-
-def _told(before: tuple[Any, ...], student: Student, standing: Standing | None) -> tuple[Any, ...]:
-    """What is known of a student after something more was said."""
-    count = len(_STUDENT)
-    values = tuple(new or old for new, old in zip(_values(student), before[:count], strict=True))
-    return values + (before[count:] if standing is None else tuple(standing))

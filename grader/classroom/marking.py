@@ -5,7 +5,8 @@ from datetime import UTC, datetime
 from decimal import Decimal, InvalidOperation
 from typing import NamedTuple
 
-from grader.classroom.gradebook import Gradebook, storable
+from grader.classroom.gradebook import Gradebook
+from grader.classroom.known import storable
 from grader.classroom.standings import Standing, Standings
 from grader.classroom.work import UNITS
 from grader.errors import InputError

@@ -47,7 +47,8 @@ CREATE TABLE run (
     layout TEXT NOT NULL,
     rubric TEXT NOT NULL REFERENCES rubric,
     version TEXT NOT NULL,
-    last_mark INTEGER NOT NULL     -- the newest mark by hand when it began
+    last_mark INTEGER NOT NULL,    -- the newest mark by hand when it began
+    due TEXT NOT NULL              -- as the command was told, ISO 8601
 );
 
 CREATE TABLE result (
@@ -77,6 +78,7 @@ CREATE TABLE seen (
     fingerprint TEXT NOT NULL,
     is_late INTEGER NOT NULL,
     submitted TEXT NOT NULL,
+    is_gone INTEGER NOT NULL,      -- 1 where the run before had found it, and this one did not
     PRIMARY KEY (student, run)
 ) WITHOUT ROWID;
 
@@ -120,7 +122,7 @@ SELECT ruling.student,
     sum(iif(sign = '-', criterion_points, 0)) AS out_of,
     sum(iif(sign = '?', criterion_points, 0)) AS pending,
     sum(sign = '!') AS faults,
-    sum(is_older) AS older
+    sum(is_older) AS older, sum(ruling.points > criterion_points) AS over
 FROM (
     SELECT ruling.student, ruling.points, criterion.points AS criterion_points,
         substr(result.signs, criterion.position + 1, 1) AS sign,
@@ -145,7 +147,8 @@ SELECT student.*, seen.run, seen.result, result.rubric, result.version, result.d
     result.out_of + coalesce(ruled.out_of, 0) AS out_of,
     result.pending - coalesce(ruled.pending, 0) AS pending,
     length(signs) - length(replace(signs, '!', '')) - coalesce(ruled.faults, 0) AS faults,
-    coalesce(ruled.marks, 0) AS marks, coalesce(ruled.older, 0) AS older_marks,
+    coalesce(ruled.marks, 0) AS marks, coalesce(ruled.older, 0) AS older_marks, coalesce(ruled.over, 0) AS over_marks,
+    coalesce(seen.is_gone, 0) AS is_gone,
     result.signs, coalesce(result.misses, '[]') AS misses, coalesce(seen.place, '[[], [], 0, []]') AS place,
     seen.fingerprint, coalesce(seen.is_late, 0) AS is_late, coalesce(seen.submitted, '') AS submitted,
     run.source

@@ -9,8 +9,9 @@ from functools import cache
 from typing import Any, NamedTuple
 
 from grader.checks.outcome import Outcome
-from grader.classroom.gradebook import Gradebook, storable
-from grader.classroom.lateness import Lateness, Times, lateness
+from grader.classroom.gradebook import Gradebook
+from grader.classroom.known import storable
+from grader.classroom.lateness import Lateness, Times, lateness, read_time
 from grader.classroom.quoting import Origin, Quoting
 from grader.classroom.students import Student
 from grader.classroom.work import UNITS
@@ -22,7 +23,7 @@ from grader.robot.names import did_you_mean
 
 _QUERY = (
     "SELECT id, key, name, email, login, sis, canvas, moodle, due, extension, days_late, expected, run, result, rubric,"
-    " digest, verdict, reason, score, out_of, pending, faults, marks, older_marks, signs, place, is_late, submitted,"
+    " digest, verdict, reason, score, out_of, pending, faults, marks, older_marks, over_marks, is_gone, signs, place, is_late, submitted,"
     " source, fingerprint FROM grade"
 )
 
@@ -32,7 +33,8 @@ class Standing:
     """One student's current grade. Without a hand-in `verdict` is `missing`, and there are no points.
 
     `score` has the marks by hand in it, but not what being late costs. `faults` counts criteria on which the grader failed;
-    `older_marks` those marks that were given on an earlier hand-in or result.
+    `older_marks` those marks that were given on an earlier hand-in or result, `over_marks` those that are more than their criterion is worth
+    by now. `is_gone` tells that the newest run did not find the hand-in where it was, `is_outdated` that the rubric has changed since.
     """
 
     id: int
@@ -50,6 +52,9 @@ class Standing:
     faults: int
     marks: int
     older_marks: int
+    over_marks: int
+    is_gone: bool
+    is_outdated: bool
     signs: str
     origin: Origin
     attempt: int
@@ -72,6 +77,12 @@ class Standing:
             return f"the grader failed: {self.reason}" if self.reason else "the grader failed on a criterion"
         if self.verdict == "unreadable" and self.pending:
             return f"it could not be graded: {self.reason}"
+        if self.is_gone:
+            return "it is not in the class folder any more"
+        if self.is_outdated:
+            return "it was graded by an earlier rubric only: run grader batch again"
+        if self.over_marks:
+            return "a mark by hand is more than its criterion is worth by now"
         if self.pending:
             words = "1 point waits" if self.pending == 1 else f"{format(self.pending.normalize(), 'f')} points wait"
             return f"{words} for a person"
@@ -97,9 +108,18 @@ class Standings:
 
     def __init__(self, book: Gradebook, due: datetime | None = None) -> None:
         self.book = book
-        self._due = due
+        told = book.due() if due is None else ""
+        self._due = read_time(told) if told else due
         self.rubric = cache(book.rubric)
+        self._newest_rubric: str | None = None
         self._templates: dict[tuple[str, str], Template] = {}
+
+    def _newest(self) -> str:
+        """The hash of the newest run's rubric."""
+        if self._newest_rubric is None:
+            rows = list(self.book.rows("SELECT rubric FROM run ORDER BY id DESC LIMIT 1"))
+            self._newest_rubric = str(rows[0][0]) if rows else ""
+        return self._newest_rubric
 
     def newest_rubric(self) -> Rubric:
         """The rubric of the newest run; raises InputError where there was none."""
@@ -135,7 +155,9 @@ class Standings:
     def looks(self, most: int) -> Looks:
         """Who needs a look: nothing or nothing readable was handed in, the grader failed, a grade or mark may be out of date."""
         newest = self.newest_rubric().sha256
-        where = "WHERE verdict <> 'graded' OR faults OR older_marks OR expected = 0 OR rubric <> ?"
+        where = (
+            "WHERE verdict <> 'graded' OR faults OR older_marks OR over_marks OR is_gone OR expected = 0 OR rubric <> ?"
+        )
         ((count,),) = self.book.rows(f"SELECT count(*) FROM grade {where}", newest)
         found = (self._standing(row) for row in self.book.rows(f"{_QUERY} {where} ORDER BY key LIMIT ?", newest, most))
         return Looks(tuple(Look(each.student.key, _why(each, newest)) for each in found), count)
@@ -179,7 +201,7 @@ class Standings:
     def _standing(self, row: tuple[Any, ...]) -> Standing:
         (
             identity, *known, due, extension, days_late, expected, run, result, rubric, digest, verdict, reason, score,
-            out_of, pending, faults, marks, older, signs, place, is_late, submitted,
+            out_of, pending, faults, marks, older, over, is_gone, signs, place, is_late, submitted,
             source, mark,
         ) = row  # fmt: skip
         earned, most, waiting = (Decimal(each or 0) / UNITS for each in (score, out_of, pending))
@@ -188,7 +210,7 @@ class Standings:
         late = lateness(self.rubric(rubric), times, earned, self._due) if rubric else Lateness()
         return Standing(
             identity, Student(*known), None if expected is None else bool(expected), verdict, reason, run, result,
-            rubric or "", digest or "", earned, most, waiting, faults or 0, marks, older, signs or "",
+            rubric or "", digest or "", earned, most, waiting, faults or 0, marks, older, over, bool(is_gone), bool(rubric) and rubric != self._newest(), signs or "",
             Origin(source or "", tuple(paths), tuple(names), known[0], mark or ""), attempt, tuple(earlier), late, bool(is_late), submitted,
         )  # fmt: skip
 
@@ -197,8 +219,12 @@ def _why(standing: Standing, newest: str) -> str:
     reasons = []
     if standing.verdict != "graded" or standing.faults:
         reasons.append(standing.why_not_final or "it could not be graded, and was marked by hand")
+    if standing.is_gone:
+        reasons.append("not in the class folder any more")
     if standing.rubric and standing.rubric != newest:
         reasons.append("graded by an earlier rubric only")
+    if standing.over_marks:
+        reasons.append("a mark by hand is more than its criterion is worth by now")
     if standing.is_expected is False:
         reasons.append("not on the roster")
     if standing.older_marks:

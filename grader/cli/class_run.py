@@ -1,7 +1,7 @@
 """A run over a class: taken in, graded, told; reports and grades written."""
 
 import gc
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from math import isfinite
@@ -63,12 +63,14 @@ def grade_class(
     rules = load_rubric(rubric)
     deadline = read_time(due) if due else None
     known = read_roster(roster) if roster is not None else None
+    root = path.resolve()
+    _check(wanted, gradebook, root)
     intake = take_in(path, known, layout, assignment, rules.id)
     _tell(intake)
-    root = path.resolve()
     with Gradebook(gradebook, create=True) as book:
         with _executor(cluster, jobs, timeout, root) as (executor, workers):
-            settings = Settings(str(root), intake.layout, len(intake), workers, force, known)
+            told = deadline.isoformat() if deadline is not None else ""
+            settings = Settings(str(root), intake.layout, len(intake), workers, force, known, told)
             done = _run(book, rules, intake, settings, executor)
         if wanted.reports is not None:
             with _processes(jobs, _REPORTING) as local:
@@ -105,10 +107,11 @@ def _run(
         try:
             done = run.grade(intake.hand_ins(), intake.absent)
         except BaseException:
-            complain(
-                f"stopped: {run.progress.done} of {len(intake)} have a result, which is kept; the same command goes on"
-            )
+            if run.has_begun:
+                done_so_far = f"{run.progress.done} of {len(intake)} have a result, which is kept"
+                complain(f"stopped: {done_so_far}; the same command goes on")
             raise
+    _tell_lines(run.notes)
     lost = f", {done.errored} of them errored" if done.errored else ""
     complain(f"{done.graded} graded{lost}, {done.unchanged} unchanged since they were")
     return done
@@ -116,10 +119,27 @@ def _run(
 
 def _tell(intake: "Intake") -> None:
     """Say how the class was taken in, and what was left out."""
-    complain(f"{len(intake)} hand-ins, laid out as {intake.layout}")
+    complain(f"{len(intake)} hand-in{'' if len(intake) == 1 else 's'}, laid out as {intake.layout}")
     strangers = [f"{key} is not on the roster" for key in intake.strangers]
     for lines in (intake.notes, strangers, [f"left out: {line}" for line in intake.left_out]):
-        for line in lines[:_MOST_TOLD]:
-            complain(printable(line))
-        if len(lines) > _MOST_TOLD:
-            complain(f"... and {len(lines) - _MOST_TOLD} more")
+        _tell_lines(lines)
+
+
+def _tell_lines(lines: Sequence[str]) -> None:
+    for line in lines[:_MOST_TOLD]:
+        complain(printable(line))
+    if len(lines) > _MOST_TOLD:
+        complain(f"... and {len(lines) - _MOST_TOLD} more")
+
+
+def _check(wanted: Wanted, gradebook: Path, root: Path) -> None:
+    """Refuse what could not be written in the end, or would be taken for a hand-in the next time; raises InputError."""
+    reports, csv = wanted.reports, wanted.csv
+    if reports is not None and reports.exists() and not reports.is_dir():
+        raise InputError(f"{printable_path(reports)} is no folder that reports could be written to")
+    if reports is not None and (reports.resolve() == root or root in reports.resolve().parents):
+        raise InputError(f"{printable_path(reports)} is in the class folder, where it would be taken for a hand-in")
+    if csv is not None and not csv.resolve().parent.is_dir():
+        raise InputError(f"cannot write {printable_path(csv)}: there is no such folder")
+    if csv is not None and csv.resolve() == gradebook.resolve():
+        raise InputError(f"{printable_path(csv)} is the gradebook itself: name another file for the CSV")

@@ -192,11 +192,11 @@ def is_decided(result: Any) -> bool:
 
 def test_a_student_without_a_hand_in_has_no_points(book: Gradebook) -> None:
     """Whoever is only on the roster is missing, with nothing to add up."""
-    from grader.classroom.gradebook import Standing
+    from grader.classroom.known import Enrolment
     from grader.classroom.students import Student
 
     with book.transaction():
-        book.keep_student(Student("dora"), Standing(1))
+        book.keep_student(Student("dora"), Enrolment(1))
     ((score, verdict, faults),) = book.rows("SELECT score, verdict, faults FROM grade WHERE key = 'dora'")
     assert (score, verdict, faults or 0) == (None, "missing", 0)
     assert Standings(book).find("dora").why_not_final == "nothing was handed in"

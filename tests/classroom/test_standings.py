@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.gradebook import Gradebook, Standing
+from grader.classroom.gradebook import Gradebook
+from grader.classroom.known import Enrolment
 from grader.classroom.marking import criterion_of, mark
 from grader.classroom.standings import Standings
 from grader.classroom.students import HandIn, Student
@@ -82,8 +83,8 @@ def test_who_needs_a_look(tmp_path: Path) -> None:
         graded_into(book, LAB, [came_out(LAB, key, each) for key, each in signs.items()])
         graded_into(book, LAB, [came_out(LAB, "cleo", "?????", reason="no zip")])
         with book.transaction():
-            book.keep_student(Student("dora"), Standing(1))
-            book.keep_student(Student("fay"), Standing(0))
+            book.keep_student(Student("dora"), Enrolment(1))
+            book.keep_student(Student("fay"), Enrolment(0))
         assert looks(book) == {
             "ben": "the grader failed on a criterion",
             "cleo": "it could not be graded: no zip",

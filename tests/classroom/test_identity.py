@@ -1,0 +1,164 @@
+"""The same people under other keys: a roster that comes later, is corrected or left out; and who is not there any more."""
+
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.classroom.class_runs import Done, grader
+from tests.samples import ROOT
+
+BOTH = "id,login,name\n101,alice,Alice Ash\n102,bob,Bob Birch\n"
+
+
+@pytest.fixture
+def top(tmp_path: Path) -> Path:
+    """A class of two that was graded without a roster; a mark was given to one of them."""
+    shutil.copytree(ROOT / "submissions" / "reference", tmp_path / "class" / "alice")
+    shutil.copytree(ROOT / "submissions" / "lidar-buried", tmp_path / "class" / "bob")
+    assert batch(tmp_path).returncode == 0
+    assert grader("mark", "alice", "answer-floating-link", "3.5", "--gradebook", tmp_path / "g.db").returncode == 0
+    return tmp_path
+
+
+def batch(top: Path, *more: str | Path, roster: str = "") -> Done:
+    """Grade the class, with a roster if one is given."""
+    if roster:
+        (top / "r.csv").write_text(roster, encoding="utf-8")
+        more = (*more, "--roster", top / "r.csv")
+    return grader("batch", top / "class", "--gradebook", top / "g.db", *more)
+
+
+def students(top: Path, *more: str) -> dict[str, dict[str, Any]]:
+    """Everyone's current grade, by key."""
+    done = grader("export", "json", "--gradebook", top / "g.db", *more)
+    return {each["id"]: each for each in json.loads(done.stdout)["students"]}
+
+
+def test_a_roster_may_come_later(top: Path) -> None:
+    """Those who were known by their folders are known by the roster's ids then, with all marks, and nobody is there twice."""
+    done = batch(top, roster=BOTH)
+    assert "alice is 101 now, with all marks by hand" in done.stderr
+    assert "0 graded, 2 unchanged" in done.stderr
+    assert {key: (each["score"], each["marks_by_hand"]) for key, each in students(top).items()} == {
+        "101": (93.5, 1),
+        "102": (62, 0),
+    }
+
+
+def test_a_roster_may_be_left_out_and_come_again(top: Path) -> None:
+    """Whatever they are called in between, the marks are theirs."""
+    for roster in (BOTH, "", BOTH, BOTH):
+        assert batch(top, roster=roster).returncode == 0
+    assert students(top)["101"]["marks_by_hand"] == 1
+    assert len(students(top)) == 2
+
+
+def test_who_is_enrolled_late_was_a_stranger_first(top: Path) -> None:
+    """A stranger who comes on the roster, or a place on it that was empty, takes the results along."""
+    batch(top, roster="id,login,name\n102,bob,Bob Birch\n")
+    assert set(students(top)) == {"alice", "102"}
+    batch(top, roster=BOTH)
+    assert set(students(top)) == {"101", "102"}
+    assert students(top)["101"]["score"] == 93.5
+
+
+def test_a_number_of_the_lms_is_stronger_than_a_place(tmp_path: Path) -> None:
+    """A new download has other file names; the user's id is the same, and the roster comes late."""
+    first, second = tmp_path / "class" / "ashalice_7_1_my_robot.urdf", tmp_path / "class" / "ashalice_7_2_my_robot.urdf"
+    first.parent.mkdir()
+    shutil.copy(ROOT / "submissions" / "lidar-buried" / "my_robot.urdf", first)
+    batch(tmp_path, "--layout", "canvas")
+    assert grader("mark", "ashalice_7", "lidar-frame", "6", "--gradebook", tmp_path / "g.db").returncode == 0
+    first.rename(second)
+    done = batch(tmp_path, "--layout", "canvas", roster="id,name,canvas id\n101,Alice Ash,7\n")
+    assert "ashalice_7 is 101 now" in done.stderr
+    assert {key: each["marks_by_hand"] for key, each in students(tmp_path).items()} == {"101": 1}
+
+
+def test_two_who_both_have_results_stay_apart(top: Path) -> None:
+    """Where both keys have something of their own nothing is thrown together, and it is said."""
+    shutil.copytree(ROOT / "submissions" / "wheels-black", top / "class" / "101")
+    batch(top)
+    shutil.rmtree(top / "class" / "101")
+    done = batch(top, roster=BOTH)
+    assert "alice and 101 seem to be the same" in done.stderr or students(top)["alice"]["marks_by_hand"] == 1
+    assert sum(each["marks_by_hand"] for each in students(top).values()) == 1
+
+
+def test_who_is_not_there_any_more_gets_no_grade(top: Path) -> None:
+    """A hand-in that was taken away is listed and not handed on; when it comes back all is as it was."""
+    for name in ("answer-floating-link", "answer-launch-nodes", "evidence-webcam"):
+        assert grader("mark", "alice", name, "2", "--gradebook", top / "g.db").returncode == 0
+    assert students(top)["alice"]["is_final"]
+    (top / "class" / "alice").rename(top / "away")
+    done = batch(top)
+    assert "alice: not in the class folder any more" in done.stdout
+    assert not students(top)["alice"]["is_final"]
+    assert batch(top).stdout == done.stdout
+    (top / "away").rename(top / "class" / "alice")
+    assert "alice" not in batch(top).stdout
+    assert students(top)["alice"]["is_final"]
+    assert students(top)["alice"]["marks_by_hand"] == 3
+
+
+def test_another_class_folder_takes_nobody_away(top: Path) -> None:
+    """A run over a folder with one late hand-in says nothing of the others."""
+    shutil.copytree(ROOT / "submissions" / "wheels-black", top / "late" / "carol")
+    done = grader("batch", top / "late", "--gradebook", top / "g.db")
+    assert "any more" not in done.stdout
+    assert set(students(top)) == {"alice", "bob", "carol"}
+
+
+def test_another_lab_is_refused(top: Path) -> None:
+    """Marks of one lab never count in another."""
+    text = (ROOT / "rubrics" / "lab6.toml").read_text(encoding="utf-8")
+    other = text.replace('id = "lab6"', 'id = "lab7"', 1).replace('reference = "lab6/my_robot"', "", 1)
+    (top / "lab7.toml").write_text(other, encoding="utf-8")
+    done = batch(top, "--rubric", top / "lab7.toml")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.splitlines()[-1].endswith("g.db is the gradebook of lab6: name another file for lab7")
+
+
+def test_a_newer_rubric_leaves_the_others_without_a_grade(top: Path) -> None:
+    """Who was not graded by the newest rubric has no grade to be handed on."""
+    text = (ROOT / "rubrics" / "lab6.toml").read_text(encoding="utf-8")
+    (top / "lab6.toml").write_text(text.replace('reference = "lab6/my_robot"', "", 1) + "\n# newer\n", encoding="utf-8")
+    shutil.copytree(ROOT / "submissions" / "wheels-black", top / "late" / "carol")
+    assert grader("batch", top / "late", "--gradebook", top / "g.db", "--rubric", top / "lab6.toml").returncode == 0
+    done = grader("export", "csv", "--gradebook", top / "g.db")
+    assert done.stdout.count("it was graded by an earlier rubric only") == 2
+
+
+def test_when_it_was_due_is_remembered(tmp_path: Path) -> None:
+    """What batch was told of the due time holds for the exports that follow, and can be told anew."""
+    text = (ROOT / "rubrics" / "lab6.toml").read_text(encoding="utf-8")
+    policy = text.replace('reference = "lab6/my_robot"', "", 1) + "\n[late]\npercent_per_day = 10\n"
+    (tmp_path / "lab6.toml").write_text(policy, encoding="utf-8")
+    shutil.copytree(ROOT / "submissions" / "lidar-buried", tmp_path / "class" / "bob")
+    roster = "id,login,submitted\n102,bob,2026-11-21T10:00+01:00\n"
+    done = batch(tmp_path, "--rubric", tmp_path / "lab6.toml", "--due", "2026-11-20T23:59+01:00", roster=roster)
+    assert done.returncode == 0, done.stderr
+    assert students(tmp_path)["102"]["total"] == 52
+    assert students(tmp_path, "--due", "2026-11-22T00:00+01:00")["102"]["total"] == 62
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "words"),
+    [
+        ("--reports", "class/reports", "in the class folder"),
+        ("--reports", "class", "in the class folder"),
+        ("--reports", "g.db", "is no folder"),
+        ("--csv", "g.db", "is the gradebook itself"),
+        ("--csv", "nowhere/grades.csv", "there is no such folder"),
+    ],
+)
+def test_what_could_not_be_written_is_refused_first(top: Path, option: str, value: str, words: str) -> None:
+    """Nothing is graded before it is clear where everything goes, and the gradebook is never written over."""
+    before = (top / "g.db").read_bytes()
+    done = batch(top, option, top / value)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert words in done.stderr
+    assert (top / "g.db").read_bytes() == before
