@@ -138,7 +138,7 @@ def test_every_mixed_hand_in_is_opened(layout: str, tmp_path: Path) -> None:
         made = by_path[path].made
         assert made is None or (each.verdict, _lost(each)) == ("graded", set(made.lost)), (by_path[path].kind, made)
     refused = {by_path[path].kind for path, each in graded.items() if each.verdict == "unreadable"}
-    assert layout == "moodle" or refused >= {"broken-zip", "garbage-zip", "zip-bomb"}  # Moodle's are in a folder each
+    assert layout == "moodle" or refused >= {"broken-zip", "garbage-zip", "zip-bomb"}
 
 
 def _graded(folder: Path) -> Iterable[tuple[str, Graded]]:

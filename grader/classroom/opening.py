@@ -11,12 +11,14 @@ from typing import NamedTuple
 from grader.errors import InputError
 from grader.grading.rubric import Rubric
 from grader.submission.bulk import Bulk
-from grader.submission.files import URDF_LIMIT, printable_path, read_capped
+from grader.submission.files import URDF_LIMIT, capped, printable_path, read_start
 from grader.submission.folder import file_at
-from grader.submission.opening import ARCHIVES, outer_tree, tree_name, with_inner, without_endings
+from grader.submission.opening import outer_tree, tree_name, with_inner, without_endings
 from grader.submission.submission import Submission, read_submission, submission_of
-from grader.submission.tree import Tree, make_tree
+from grader.submission.tree import Tree, clean, ignored_folder, is_generated, is_ignored, make_tree
 
+_ROBOTS = (".urdf", ".xacro")
+_NEITHER = "is neither a URDF nor a folder or archive"
 _WHOLE = 64 * 1024 * 1024  # bytes of a file that its digest is made of; of a larger one the size is
 _CHUNK = 1024 * 1024
 _MOST_ENTRIES = 100_000
@@ -24,7 +26,10 @@ _SETTLED = 50_000_000  # nanoseconds in which a file system may not tell two cha
 
 
 class Opened(NamedTuple):
-    """A hand-in before it is graded: its digest, and either the bytes of a URDF on its own or all of its files."""
+    """A hand-in before it is graded: its digest, and either the bytes of a URDF on its own or all of its files.
+
+    The digest is the same whether the class comes as a folder or as one zip.
+    """
 
     name: str
     shown: str
@@ -60,15 +65,15 @@ def is_bulk(root: str) -> bool:
 
 
 def _on_disk(path: str) -> Opened:
-    stem, _, ending = path.rpartition("/")[2].rpartition(".")
-    if ending.lower() in ("urdf", "xacro"):
-        data, name = read_capped(path), printable_path(stem)
-        shown = f"{name}.{ending}"
-        return Opened(name, shown, _digest_of(shown, data), data, None)
+    last = path.rpartition("/")[2]
+    if last.lower().endswith(_ROBOTS):
+        shown = printable_path(last)
+        data = capped(read_start(path, URDF_LIMIT + 1, shown), URDF_LIMIT, shown)
+        return Opened(shown.rpartition(".")[0], shown, _digest_of(shown, data), data, None)
     place = Path(path)
     tree = outer_tree(place)
     if tree is None:
-        raise InputError(f"{printable_path(place.name)} is neither a URDF nor a folder or archive")
+        raise InputError(f"{printable_path(place.name)} {_NEITHER}")
     name = tree_name(place)
     digest = _digest_of_tree(name, tree) if place.is_dir() else _digest_of_file(name, place)
     return Opened(name, printable_path(place), digest, None, tree)
@@ -80,12 +85,15 @@ def _in_bulk(root: str, path: str) -> Opened:
     if bulk.is_folder(path):
         tree = bulk.folder(path)
         return Opened(last, path, _digest_of_tree(last, tree), None, tree)
-    if last.lower().endswith(ARCHIVES):
-        tree = bulk.archive(path)
-        name = without_endings(last)
-        return Opened(name, path, _digest_of_tree(name, tree), None, tree)
-    data = bulk.read(path, URDF_LIMIT)
-    return Opened(PurePosixPath(last).stem, last, _digest_of(last, data), data, None)
+    if last.lower().endswith(_ROBOTS):
+        data = bulk.read(path, URDF_LIMIT)
+        return Opened(last.rpartition(".")[0], last, _digest_of(last, data), data, None)
+    archive = None if last.lower().endswith(".xml") else bulk.archive(path)
+    if archive is None:
+        raise InputError(f"{last} {_NEITHER}")
+    data, tree = archive
+    name = without_endings(last)
+    return Opened(name, path, _digest_of(name, data), None, tree)
 
 
 @lru_cache(maxsize=2)
@@ -96,7 +104,13 @@ def _bulk(root: str, stamp: str) -> Bulk:
 
 
 def _side_by_side(root: str, named: dict[str, str], name: str) -> Tree:
-    return make_tree(name, [file_at(Path(root, path), given) for path, given in named.items()], ())
+    """Some files on disk as one tree. What is not looked at in a folder or archive is not looked at here."""
+    given = {clean(each): path for path, each in named.items()}
+    ignored = {each for each in given if is_ignored(each)}
+    files = [file_at(Path(root, path), each) for each, path in given.items() if each not in ignored]
+    generated = sorted(each for each in ignored if is_generated(each))
+    unseen = [folder for each in ignored if (folder := ignored_folder(each)) is not None]
+    return make_tree(name, files, (), generated=generated, unseen=unseen)
 
 
 def _digest_of(name: str, data: bytes) -> str:
@@ -116,8 +130,11 @@ def _digest_of_file(name: str, path: Path) -> str:
 
 
 def _digest_of_tree(name: str, tree: Tree) -> str:
-    """The hash of all that a submission is read from: its name, its files with their paths, and what was left out."""
-    digest = sha256(repr((name, sorted(tree.folders), tree.left_out, tree.generated, sorted(tree.unseen))).encode())
+    """The hash of all that a submission is read from: its name, its files with their paths, and what was left out.
+
+    Folders of builds are unseen on disk; in a zip they are folders like others if they have an entry of their own.
+    """
+    digest = sha256(repr((name, sorted(tree.folders | tree.unseen), tree.left_out, tree.generated)).encode())
     for path, file in tree.files.items():
         digest.update(repr((path, file.size)).encode())
         try:

@@ -19,11 +19,14 @@ from grader.grading.grade import grade
 from grader.grading.record import Kept, Template, to_record
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric, read_rubric
+from grader.submission.opening import ARCHIVES
+from grader.submission.submission import Submission
 
 Verdict = Literal["graded", "unreadable", "errored", "unchanged"]
 UNITS = 10_000  # points are kept as whole numbers of ten-thousandths
 SIGNS: dict[Status, str] = {"passed": "p", "failed": "f", "skipped": "s", "pending": "?", "errored": "!"}
 NOT_GRADED = "-"
+_OF_GRADE = " (--max-size raises it)"
 # What a process is to have loaded before it forks, late imports included.
 PRELOAD = ("grader.classroom.work", "grader.robot.rims", "grader.submission.find", "grader.submission.remarks")
 
@@ -90,10 +93,10 @@ def _grade_one(common: Class, task: Task) -> Graded:
         digest = opened.digest
         if digest == task.graded:
             return Graded(task.key, "unchanged", digest, mark)
-        report = grade(rubric, opened.submission(rubric))
+        submission = opened.submission(rubric)
+        report = grade(rubric, submission)
     except InputError as error:
-        reason = str(error).replace(f"{common.root}{os.sep}", "")
-        return failed(rubric, task, "unreadable", reason, digest, mark)
+        return failed(rubric, task, "unreadable", _of_class(str(error), common), digest, mark)
     except MemoryError:
         return failed(rubric, task, "errored", "grading it needs more memory than a worker may have", digest, mark)
     except (Exception, SystemExit) as error:  # noqa: BLE001  a fault of ours must cost nobody else anything
@@ -101,7 +104,35 @@ def _grade_one(common: Class, task: Task) -> Graded:
             rubric, task, "errored", f"the grader itself failed: {type(error).__name__}: {error}", digest, mark
         )
     faulty = next((each.outcome.message for each in report.results if each.outcome.status == "errored"), "")
-    return _of(report, task, "errored" if faulty else "graded", faulty, digest, mark, template)
+    if faulty:
+        return _of(report, task, "errored", faulty, digest, mark, template)
+    reason = _of_class(_nothing_readable(submission), common)
+    return _of(report, task, "unreadable" if reason else "graded", reason, digest, mark, template)
+
+
+def _nothing_readable(submission: Submission) -> str:
+    """Why what is to be graded of a hand-in could not be read, although its folder could; empty where it was read.
+
+    As on its own, an archive that is damaged or empty is unreadable where nothing else that could be graded lies beside it.
+    """
+    if submission.unread:
+        return submission.unread
+    if submission.path is not None or submission.packages:
+        return ""
+    tree, closed = submission.tree, submission.unopened
+    if closed:
+        because = next((line for line in tree.left_out if line.startswith(closed[0])), f"{closed[0]} cannot be opened")
+        more = f" (nor could {len(closed) - 1} more be opened)" if len(closed) > 1 else ""
+        return f"nothing to grade was found: {because}{more}"
+    if not tree.generated and all(file.suffix in ARCHIVES for file in tree.files.values()):
+        because = tree.left_out[0] if tree.left_out else f"{next(iter(tree.files))} is empty"
+        return f"nothing to grade was found: {because}"
+    return ""
+
+
+def _of_class(reason: str, common: Class) -> str:
+    """A reason as a class is told it: with paths in the class, and without advice to use an option of `grader grade`."""
+    return reason.replace(f"{common.root}{os.sep}", "").replace(_OF_GRADE, "")
 
 
 def failed(rubric: Rubric, task: Task, verdict: Verdict, reason: str, digest: str = "", mark: str = "") -> Graded:

@@ -1,5 +1,6 @@
 """The `grader` command and its subcommands."""
 
+import re
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -14,6 +15,9 @@ FAULT_OF_USE, FAULT_OF_OURS, INTERRUPTED = 2, 3, 130
 
 # In the order of the help. Each is the function of its name, or the group of commands, in the module of that name.
 COMMANDS = ("grade", "inspect", "batch", "mark", "review", "export", "diff", "stats", "explain", "schema", "rubric")
+
+_BELOW_ZERO = re.compile(r"-[.,]?[0-9]")
+_AWAITS_VALUE = re.compile(r"--[^=]+")  # --comment, behind which -1 is the comment
 
 
 def _app(names: Sequence[str]) -> typer.Typer:
@@ -49,7 +53,7 @@ def run(arguments: Sequence[str]) -> int:
     """Run one command; the exit code. Whatever goes wrong is one clear line on standard error."""
     try:
         named = [each for each in arguments[:1] if each in COMMANDS]
-        result = _app(named or COMMANDS)(list(arguments), standalone_mode=False, prog_name="grader")
+        result = _app(named or COMMANDS)(_numbers_last(arguments), standalone_mode=False, prog_name="grader")
     except RubricError as error:
         for line in error.complaints:
             complain(line)
@@ -76,7 +80,21 @@ def _other(error: Exception) -> int:
         if type(error).__name__ == "NoArgsIsHelpError":
             print(usage(), file=sys.stderr)
         else:
-            complain(f"{usage()} ({command} --help shows the usage)".replace("\n", " "))
+            complain(_one_line(f"{usage()} ({command} --help shows the usage)"))
         return FAULT_OF_USE
-    complain(f"a fault of the grader itself, please report it: {type(error).__name__}: {error}".replace("\n", " "))
+    complain(_one_line(f"a fault of the grader itself, please report it: {type(error).__name__}: {error}"))
     return FAULT_OF_OURS
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())
+
+
+def _numbers_last(arguments: Sequence[str]) -> list[str]:
+    """What is typed, but for `mark a b -1`, which is `mark a b -- -1`: points below 0 are refused as points, not as an option."""
+    typed = list(arguments)
+    if typed[:1] == ["mark"] and "--" not in typed:
+        for index in reversed(range(1, len(typed))):
+            if _BELOW_ZERO.match(typed[index]) and not _AWAITS_VALUE.fullmatch(typed[index - 1]):
+                return [*typed[:index], *typed[index + 1 :], "--", typed[index]]
+    return typed

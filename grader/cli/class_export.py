@@ -1,6 +1,7 @@
 """Everyone's current grades as other programs take them: plain CSV, Canvas' gradebook, Moodle's worksheet."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from decimal import Decimal
 from pathlib import Path
 from typing import NamedTuple
@@ -9,16 +10,17 @@ from grader.classroom.lms.canvas import fill_gradebook
 from grader.classroom.lms.feedback import Remark, feedback_html
 from grader.classroom.lms.grades import Grade
 from grader.classroom.lms.moodle import fill_worksheet
-from grader.classroom.lms.preflight import Filled, Preflight
+from grader.classroom.lms.preflight import Filled, Left, Preflight
+from grader.classroom.lms.remarks import remarks_on
 from grader.classroom.lms.spreadsheet import write_table
 from grader.classroom.lms.tables import SIZE_LIMIT
 from grader.classroom.standings import Standing, Standings
-from grader.grading.report import Ruling
 from grader.grading.rubric import Rubric
 from grader.report.text import printable
 from grader.submission.files import printable_path, read_capped
 
 _ABOUT = ("id", "name", "email", "login", "sis", "status", "score", "max_score", "pending", "late_days", "late_points")
+_MOST_NAMED, _MOST_LINES = 3, 50
 Cell = str | int | Decimal | None
 
 
@@ -43,7 +45,9 @@ def lms_grades(standings: Standings, *, feedback: bool, pending_as_zero: bool) -
     """Everyone's grade for an LMS. One that is not final has no total, unless what still waits counts as nothing."""
     for standing in standings.all():
         reason = standing.why_not_final
-        waits_only = standing.verdict in ("graded", "errored") and not standing.faults and standing.pending > 0
+        waits_only = (
+            standing.verdict in ("graded", "errored") and not replace(standing, pending=Decimal(0)).why_not_final
+        )
         if reason and not (waits_only and pending_as_zero):
             yield Grade(standing.student, None, "", reason)
             continue
@@ -58,6 +62,7 @@ class Filling(NamedTuple):
     column: str
     feedback_column: str
     pending_as_zero: bool
+    any_maximum: bool
 
 
 def fill(is_moodle: bool, standings: Standings, filling: Filling) -> Filled:
@@ -65,42 +70,65 @@ def fill(is_moodle: bool, standings: Standings, filling: Filling) -> Filled:
     data = read_capped(filling.file, SIZE_LIMIT, advice="")
     shown, rubric = printable_path(filling.file), standings.newest_rubric()
     grades = list(lms_grades(standings, feedback=is_moodle, pending_as_zero=filling.pending_as_zero))
+    out_of, column, any_maximum = rubric.points, filling.column, filling.any_maximum
     if is_moodle:
-        columns = {"column": filling.column, "feedback_column": filling.feedback_column}
-        return fill_worksheet(data, grades, out_of=rubric.points, shown=shown, **columns)
+        return fill_worksheet(
+            data,
+            grades,
+            out_of=out_of,
+            column=column,
+            feedback_column=filling.feedback_column,
+            any_maximum=any_maximum,
+            shown=shown,
+        )
     wanted = (rubric.id, rubric.title)
-    return fill_gradebook(data, grades, out_of=rubric.points, wanted=wanted, column=filling.column, shown=shown)
+    return fill_gradebook(
+        data, grades, out_of=out_of, wanted=wanted, column=column, any_maximum=any_maximum, shown=shown
+    )
 
 
 def _feedback(standings: Standings, standing: Standing) -> str:
     report = standings.report(standing)
-    remarks = [
-        Remark(each.criterion.title, each.points, each.criterion.points, _said(each.outcome.message, each.ruling))
-        for each in report.results
-        if each.points < each.criterion.points or (each.ruling is not None and each.ruling.comment)
-    ]
+    remarks = list(remarks_on(report.results))
     if standing.late.points:
         remarks.append(Remark("Handed in late", standing.late.points, Decimal(0), standing.late.words))
     return feedback_html(standing.total, report.max_score, remarks)
 
 
-def _said(message: str, ruling: Ruling | None) -> str:
-    return message if ruling is None else ruling.comment
-
-
 def preflight_lines(found: Preflight) -> Iterator[str]:
-    """What filling an LMS file does, in lines for a person."""
+    """What filling an LMS file does, in lines for a person; no kind of them floods the screen."""
     yield f"column {found.column!r}: {found.filled} filled, {found.unchanged} the same already"
-    for conflict in found.conflicts:
-        yield printable(f"row {conflict.row}, {conflict.who}: was {conflict.was}, becomes {conflict.becomes}")
+    yield from _capped(
+        "grades that were others",
+        [f"row {each.row}, {each.who}: was {each.was}, becomes {each.becomes}" for each in found.conflicts],
+    )
+    yield from _capped("without a grade", _by_reason("without a grade", found.ungraded))
     for what, left in (
-        ("without a grade", found.ungraded),
         ("in the file, but not in the gradebook", found.unknown),
         ("in the gradebook, but not in the file", found.missing),
         ("could be several", found.ambiguous),
         ("comment of a person, kept", found.kept_feedback),
     ):
-        for each in left:
-            row = f"row {each.row}, " if each.row else ""
-            yield printable(f"{what}: {row}{each.who}: {each.why}")
+        rows = [f"row {each.row}, " if each.row else "" for each in left]
+        yield from _capped(what, [f"{what}: {row}{each.who}: {each.why}" for row, each in zip(rows, left, strict=True)])
     yield from map(printable, found.warnings)
+
+
+def _by_reason(what: str, left: Sequence[Left]) -> list[str]:
+    """A line for each reason, in the order of the rows, with how many it holds for and the first of them."""
+    names: dict[str, list[str]] = {}
+    for each in left:
+        names.setdefault(each.why, []).append(each.who)
+    return [f"{what}, {why}: {len(whose)} ({_listed(whose)})" for why, whose in names.items()]
+
+
+def _listed(names: Sequence[str]) -> str:
+    shown = list(names[:_MOST_NAMED])
+    more = [f"... and {len(names) - len(shown)} more"] if len(names) > len(shown) else []
+    return ("; " if any("," in name for name in shown) else ", ").join([*shown, *more])
+
+
+def _capped(what: str, lines: Sequence[str]) -> Iterator[str]:
+    yield from map(printable, lines[:_MOST_LINES])
+    if len(lines) > _MOST_LINES:
+        yield f"{what}: and {len(lines) - _MOST_LINES} more"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from grader.cli.options import DueOption, GradebookOption
-from grader.cli.output import complain, emit, save_bytes
+from grader.cli.output import complain, emit, not_over, save_bytes
 from grader.errors import GraderError
 
 if TYPE_CHECKING:
@@ -41,11 +41,16 @@ def export(
     pending_as_zero: Annotated[
         bool, typer.Option("--pending-as-zero", help="Also give grades of which points still wait for a person.")
     ] = False,
+    any_maximum: Annotated[
+        bool,
+        typer.Option("--any-maximum", help="Write the points as they are, though the LMS counts to another maximum."),
+    ] = False,
 ) -> int:
     """Write everyone's current grade: the checks' points with the marks by hand, less what being late costs.
 
     For Canvas and Moodle fill a file that the LMS has exported: only the cells of the grade (and Moodle's feedback) change,
-    and rows without a grade are left out, so that no grade that is there is lost. Exits 1 if --strict finds no match.
+    and rows without a grade are left out, so that no grade that is there is lost. The maximum there has to be the rubric's.
+    Exits 1 if --strict finds no match.
 
     Examples:
 
@@ -63,6 +68,8 @@ def export(
             if into is None
             else f"export {target.value} fills no file: leave --into out"
         )
+    if output is not None:
+        not_over(output, gradebook)
     with Gradebook(gradebook) as book:
         standings = Standings(book, read_time(due) if due else None)
         if into is None:
@@ -70,7 +77,7 @@ def export(
         else:
             from grader.cli.class_export import Filling, fill, preflight_lines
 
-            filling = Filling(into, column, feedback_column, pending_as_zero)
+            filling = Filling(into, column, feedback_column, pending_as_zero, any_maximum)
             filled = fill(target is Target.MOODLE, standings, filling)
             for line in preflight_lines(filled.preflight):
                 complain(line)

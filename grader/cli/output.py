@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 _DEFAULT_WIDTH = 80
+_BESIDE = ("-wal", "-shm", "-journal")  # what has been written, but is not in the gradebook's own file yet
 
 
 def emit(text: str | bytes) -> None:
@@ -61,6 +62,21 @@ def draw(render: Callable[["Console"], None], *, to_file: bool = False) -> str:
     )
     render(console)
     return buffer.getvalue()
+
+
+def not_over(path: Path, gradebook: Path) -> None:
+    """Raises InputError where a file that is to be written is the gradebook, or one that SQLite keeps beside it."""
+    book = Path(os.path.realpath(gradebook))
+    for each in (book, *(book.with_name(book.name + ending) for ending in _BESIDE)):
+        if Path(os.path.realpath(path)) == each or _is_same(path, each):
+            raise InputError(f"cannot write {path}: it would replace the gradebook, and all marks by hand in it")
+
+
+def _is_same(path: Path, other: Path) -> bool:
+    try:
+        return path.samefile(other)
+    except OSError:  # one of them is not there
+        return False
 
 
 def save(path: Path, text: str) -> None:

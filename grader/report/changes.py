@@ -1,6 +1,6 @@
 """What changed between two runs or gradebooks, for a person and for programs."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from decimal import Decimal
 from typing import Any
 
@@ -14,6 +14,8 @@ from grader.report.plain import exact, to_json
 from grader.report.points import points_words
 from grader.report.text import printable
 
+_MOST_NAMED, _MOST_LINES = 3, 12
+
 
 def render_changes(changes: Sequence[Change], runs: tuple[Run, Run], console: Console) -> None:
     """Print which runs are compared, who changed, by how much, in which criteria, and why."""
@@ -22,10 +24,10 @@ def render_changes(changes: Sequence[Change], runs: tuple[Run, Run], console: Co
     if not changes:
         wrapped(console, Text("nothing changed"), 0)
     for change in changes:
-        wrapped(console, Text(printable(f"{change.key}: {_span(change.before, change.after)}"), style="bold"), 0)
+        wrapped(console, Text(printable(f"{change.key}: {_score(change)}"), style="bold"), 0)
         wrapped(console, Text(printable("; ".join(change.why) or "nobody knows why: please report it")), 2)
-        for step in change.steps:
-            wrapped(console, Text(printable(_step(step))), 4)
+        for line in _lines(change.steps):
+            wrapped(console, Text(printable(line)), 4)
 
 
 def render_changes_json(changes: Sequence[Change], runs: tuple[Run, Run]) -> str:
@@ -51,8 +53,27 @@ def _run(run: Run) -> dict[str, Any]:
     return {"run": run.id, "started": run.started, "grader": {"version": run.version}, "rubric": {"sha256": run.rubric}}
 
 
-def _step(step: Step) -> str:
-    return f"{step.criterion}: {_span(step.before, step.after)}"
+def _score(change: Change) -> str:
+    if change.steps or change.before is None or change.after is None:
+        return _span(change.before, change.after)
+    return f"{_words(change.after)} as before, only the verdict changed"
+
+
+def _lines(steps: Sequence[Step]) -> Iterator[str]:
+    """A line for each criterion, one for those that took the same step if they are many, and an end."""
+    alike: dict[tuple[Decimal | None, Decimal | None], list[str]] = {}
+    for step in steps:
+        alike.setdefault((step.before, step.after), []).append(step.criterion)
+    lines: list[tuple[str, int]] = []
+    for span, names in alike.items():
+        if len(names) <= _MOST_NAMED:
+            lines += [(f"{name}: {_span(*span)}", 1) for name in names]
+        else:
+            more = len(names) - _MOST_NAMED
+            lines.append((f"{', '.join(names[:_MOST_NAMED])} and {more} more: {_span(*span)} each", len(names)))
+    yield from (line for line, _ in lines[:_MOST_LINES])
+    if len(lines) > _MOST_LINES:
+        yield f"... and {sum(count for _, count in lines[_MOST_LINES:])} more"
 
 
 def _span(before: Decimal | None, after: Decimal | None) -> str:

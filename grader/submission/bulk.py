@@ -20,7 +20,7 @@ from grader.submission.archive import (
 )
 from grader.submission.files import printable_path
 from grader.submission.members import Member
-from grader.submission.opening import archive_kind
+from grader.submission.opening import ARCHIVES, archive_kind
 from grader.submission.tree import File, Tree
 
 _MOST_MEMBERS = 200_000
@@ -66,14 +66,16 @@ class Bulk:
         """The bytes of one file, of at most `limit` bytes; raises InputError."""
         return self._file_of(path).read(limit)
 
-    def archive(self, path: str) -> Tree:
-        """The files of an archive in it; raises InputError where it cannot be read."""
+    def archive(self, path: str) -> tuple[bytes, Tree] | None:
+        """The bytes and the files of an archive in it; None for a file that is none. Raises InputError where it cannot be read."""
         file = self._file_of(path)
-        data = file.read(ARCHIVE_LIMIT)
-        kind = archive_kind(data[:512])
+        kind = archive_kind(file.read(512, first=True))
         if kind is None:
-            raise InputError(f"{path} is no archive that can be read, for all its name: it is damaged or empty")
-        return read_archive(io.BytesIO(data), kind, path)
+            if path.lower().endswith(ARCHIVES):
+                raise InputError(f"{path} is no archive that can be read, for all its name: it is damaged or empty")
+            return None
+        data = file.read(ARCHIVE_LIMIT)
+        return data, read_archive(io.BytesIO(data), kind, path)
 
     def _file_of(self, path: str) -> File:
         tree = self.files({path: path.rpartition("/")[2]}, path)

@@ -28,8 +28,9 @@ def gradebook(*rows: str, header: str = HEADER, points: str = POINTS, end: str =
     return "".join(row + end for row in (header, points, *rows) if row).encode()
 
 
-def fill(data: bytes, *grades: Grade, column: str = "", out_of: str = "100") -> Filled:
-    return fill_gradebook(data, grades, out_of=Decimal(out_of), wanted=("lab6", "A wheeled base"), column=column)
+def fill(data: bytes, *grades: Grade, column: str = "", out_of: str = "100", any_maximum: bool = False) -> Filled:
+    wanted = ("lab6", "A wheeled base")
+    return fill_gradebook(data, grades, out_of=Decimal(out_of), wanted=wanted, column=column, any_maximum=any_maximum)
 
 
 def lines(filled: Filled) -> list[str]:
@@ -232,7 +233,9 @@ def test_semicolons_and_decimal_commas() -> None:
 
 def test_warnings() -> None:
     """Other points, no points, a column by elimination, other assignments, another encoding: each is said."""
-    assert "has 100.00 points possible in Canvas, and 70 here" in fill(gradebook(), out_of="70").preflight.warnings[0]
+    filled = fill(gradebook(), out_of="70", any_maximum=True)
+    assert "has 100.00 points possible in Canvas, and 70 here" in filled.preflight.warnings[0]
+    assert "has no points possible" in fill(gradebook(points="Points Possible,,,,,")).preflight.warnings[0]
     assert "no row Points Possible" in fill(gradebook(points="")).preflight.warnings[0]
     filled = fill(gradebook(header=HEADER.replace("Lab 6", "Quiz")))
     assert filled.preflight.warnings == (
@@ -243,6 +246,19 @@ def test_warnings() -> None:
     filled = fill(gradebook(header=HEADER.replace("Section", "Section,Section"), points="Points Possible,,,,,,100"))
     assert "more than one column Section" in filled.preflight.warnings[0]
     assert "another way" in fill(gradebook().decode().encode("utf-16")).preflight.warnings[0]
+
+
+@pytest.mark.parametrize(("possible", "said"), [("10.00", "10"), ("0", "0"), ('"1.000,00"', "1000")])
+def test_another_maximum_is_refused(possible: str, said: str) -> None:
+    """9.33 of 100 would be 9.33 of 10; whoever wants that says so."""
+    data = gradebook('"Doe, Jane",11,S11,jdoe,A,', points=f"Points Possible,,,,,{possible}")
+    with pytest.raises(InputError) as raised:
+        fill(data, graded("x", "9.33", canvas="11"))
+    assert str(raised.value) == (
+        f"Canvas' Points Possible of 'Lab 6 (98765)' is {said}, and the rubric's points are 100: change the maximum in the"
+        " LMS and export again, or write the points as they are with --any-maximum"
+    )
+    assert fill(data, graded("x", "9.33", canvas="11"), any_maximum=True).preflight.filled == 1
 
 
 def test_students_without_a_total_are_not_missed() -> None:

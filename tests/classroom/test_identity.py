@@ -151,7 +151,7 @@ def test_when_it_was_due_is_remembered(tmp_path: Path) -> None:
         ("--reports", "class/reports", "in the class folder"),
         ("--reports", "class", "in the class folder"),
         ("--reports", "g.db", "is no folder"),
-        ("--csv", "g.db", "is the gradebook itself"),
+        ("--csv", "g.db", "would replace the gradebook"),
         ("--csv", "nowhere/grades.csv", "there is no such folder"),
     ],
 )

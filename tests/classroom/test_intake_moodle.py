@@ -23,7 +23,7 @@ def test_a_download_is_recognised(tmp_path: Path, ending: str) -> None:
     for place in (lay_out(tmp_path / "class", *files), pack(tmp_path / "class.zip", files)):
         intake = take_in(place)
         assert intake.layout == "moodle"
-        assert sorted(each.paths[0] for each in intake.hand_ins()) == sorted(names)
+        assert sorted(each.paths[0] for each in intake.hand_ins()) == sorted(files)
         assert [each.student.name for each in intake.hand_ins()] == [
             "Jane Doe",
             "Jörg Müller",
@@ -36,7 +36,41 @@ def test_a_download_is_recognised(tmp_path: Path, ending: str) -> None:
 def test_one_participant_in_a_zip(tmp_path: Path) -> None:
     """A download of one folder is not gone into."""
     intake = take_in(pack(tmp_path / "class.zip", [f"Jane Doe_12_{FOLDER}/lab6.zip"]))
-    assert taken(intake) == {"Jane Doe_12": (f"Jane Doe_12_{FOLDER}",)}
+    assert taken(intake) == {"Jane Doe_12": (f"Jane Doe_12_{FOLDER}/lab6.zip",)}
+
+
+@pytest.mark.parametrize(
+    ("files", "path"),
+    [
+        (("a.urdf",), "a.urdf"),
+        (("lab6.TAR.GZ",), "lab6.TAR.GZ"),
+        (("lab6.zip", ".DS_Store"), "lab6.zip"),
+        (("notes.pdf",), ""),
+        (("step.png",), ""),
+        (("a.urdf", "step.png"), ""),
+        (("src/a.urdf",), ""),
+        (("a.urdf", "src/"), ""),
+        ((), ""),
+    ],
+)
+def test_a_lone_file_is_the_hand_in(tmp_path: Path, files: tuple[str, ...], path: str) -> None:
+    """An archive or URDF with nothing beside it is given without its folder, as Canvas gives it; anything else is a folder."""
+    top = f"Jane Doe_12_{FOLDER}"
+    wanted = f"{top}/{path}" if path else top
+    names = [f"{top}/", *(f"{top}/{name}" for name in files)]
+    for place in (lay_out(tmp_path / "class", *names), pack(tmp_path / "class.zip", names)):
+        (hand_in,) = take_in(place).hand_ins()
+        assert (hand_in.paths, hand_in.names, hand_in.student.key) == ((wanted,), (), "Jane Doe_12")
+
+
+def test_a_lone_link_is_not_the_hand_in(tmp_path: Path) -> None:
+    """One to another participant's file is left where it is, and is not followed there."""
+    lay_out(tmp_path, f"Jane Doe_12_{FOLDER}/a.urdf", f"Sam_13_{FOLDER}/")
+    (tmp_path / f"Sam_13_{FOLDER}/b.urdf").symlink_to(tmp_path / f"Jane Doe_12_{FOLDER}/a.urdf")
+    assert taken(take_in(tmp_path)) == {
+        "Jane Doe_12": (f"Jane Doe_12_{FOLDER}/a.urdf",),
+        "Sam_13": (f"Sam_13_{FOLDER}",),
+    }
 
 
 def test_files_side_by_side(tmp_path: Path) -> None:
@@ -62,13 +96,25 @@ def test_a_text_beside_the_files(tmp_path: Path) -> None:
     assert (alone.paths, alone.student.moodle) == ((text,), "12")
 
 
+def test_an_empty_text_is_no_part(tmp_path: Path) -> None:
+    """A lone file stays one beside it, and a lone picture stays a folder."""
+    text = "assignsubmission_onlinetext"
+    lay_out(tmp_path, f"Jane Doe_12_{FOLDER}/a.urdf", f"Jane Doe_12_{text}/")
+    lay_out(tmp_path, f"Sam_13_{FOLDER}/step.png", f"Sam_13_{text}/", f"Zoe_14_{FOLDER}/", f"Zoe_14_{text}/a.html")
+    assert taken(take_in(tmp_path)) == {
+        "Jane Doe_12": (f"Jane Doe_12_{FOLDER}/a.urdf",),
+        "Sam_13": (f"Sam_13_{FOLDER}",),
+        "Zoe_14": (f"Zoe_14_{text}",),
+    }
+
+
 def test_empty_folders_and_too_many_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """What cannot be put side by side leaves the folder of files as the hand-in."""
     top, text = f"Jane Doe_12_{FOLDER}", "Jane Doe_12_assignsubmission_onlinetext"
     (empty,) = take_in(lay_out(tmp_path, f"{top}/", f"{text}/")).hand_ins()
     assert (empty.paths, empty.names) == ((top,), ())
     monkeypatch.setattr("grader.classroom.intake.layouts.moodle._MOST_FILES", 2)
-    intake = take_in(lay_out(tmp_path, *(f"{top}/{name}" for name in "abc")))
+    intake = take_in(lay_out(tmp_path, *(f"{top}/{name}" for name in "abc"), f"{text}/onlinetext.html"))
     assert taken(intake) == {"Jane Doe_12": (top,)}
     assert intake.left_out == (f"{top} has more than 2 files: what stands beside it was not read",)
 

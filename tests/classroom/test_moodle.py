@@ -11,14 +11,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from grader.checks.outcome import Outcome
 from grader.classroom.lms.feedback import LIMIT, Remark, feedback_html, is_our_feedback
 from grader.classroom.lms.grades import Grade
 from grader.classroom.lms.moodle import fill_worksheet
 from grader.classroom.lms.preflight import Conflict, Filled, Left
+from grader.classroom.lms.remarks import remarks_on
 from grader.classroom.lms.spreadsheet import neutral
 from grader.classroom.lms.tables import read_table
 from grader.classroom.students import Student
 from grader.errors import InputError
+from grader.grading.report import Result, Ruling
+from tests.classroom.gradebooks import lab
 
 HEADER = (
     'Identifier,"Full name","Email address",Status,Grade,"Maximum Grade","Grade can be changed",'
@@ -49,8 +53,22 @@ def worksheet(*rows: str, header: str = HEADER, end: str = "\n") -> bytes:
     return "".join(each + end for each in (header, *rows)).encode()
 
 
-def fill(data: bytes, *grades: Grade, column: str = "", feedback_column: str = "", out_of: str = "100") -> Filled:
-    return fill_worksheet(data, grades, out_of=Decimal(out_of), column=column, feedback_column=feedback_column)
+def fill(
+    data: bytes,
+    *grades: Grade,
+    column: str = "",
+    feedback_column: str = "",
+    out_of: str = "100",
+    any_maximum: bool = False,
+) -> Filled:
+    return fill_worksheet(
+        data,
+        grades,
+        out_of=Decimal(out_of),
+        column=column,
+        feedback_column=feedback_column,
+        any_maximum=any_maximum,
+    )
 
 
 def cells(filled: Filled) -> list[list[str]]:
@@ -115,7 +133,7 @@ def test_rows_without_a_grade_are_left_out() -> None:
         graded("3", None, why_not="not handed in", moodle="3"),
         graded("4", moodle="4"),
     ]
-    filled = fill(worksheet(*rows), *grades)
+    filled = fill(worksheet(*rows), *grades, any_maximum=True)
     assert len(cells(filled)) == 1
     assert [left.why for left in filled.preflight.ungraded] == [
         "has a grade that is locked in Moodle",
@@ -256,11 +274,67 @@ def test_columns_that_are_not_there() -> None:
 
 def test_warnings() -> None:
     """Another maximum, and a file that has to be uploaded with other settings, are said."""
-    assert fill(worksheet(row(1)), out_of="70").preflight.warnings == (
+    assert fill(worksheet(row(1)), out_of="70", any_maximum=True).preflight.warnings == (
         "Moodle counts to 100.00 points, and the rubric to 70",
     )
     data = b"Identifier;Grade;Maximum grade;Last modified (grade)\nParticipant 1;;100,00;-\n"
     assert fill(data).preflight.warnings == ("choose semicolon and UTF-8 where the file is uploaded: so it is written",)
+
+
+def test_another_maximum_is_refused() -> None:
+    """9.33 of 100 would be 9.33 of 10, for anyone in the file; whoever wants that says so."""
+    data = worksheet(row(1), row(2, maximum="10.00"))
+    with pytest.raises(InputError) as raised:
+        fill(data, graded("1", "9.33", moodle="1"))
+    assert str(raised.value) == (
+        "Moodle's 'Maximum Grade' is 10, and the rubric's points are 100: change the maximum in the LMS and export again,"
+        " or write the points as they are with --any-maximum"
+    )
+    assert fill(data, graded("1", "9.33", moodle="1"), any_maximum=True).preflight.filled == 1
+
+
+RUBRIC = lab()
+
+
+def result(name: str, outcome: Outcome, because: str | None = None, ruling: Ruling | None = None) -> Result:
+    (criterion,) = [each for each in RUBRIC.criteria if each.id == name]
+    return Result(criterion, outcome, because, "", ruling)
+
+
+def skipped(name: str, because: str = "loads", ruling: Ruling | None = None) -> Result:
+    return result(name, Outcome("skipped", f"not decided, because {because} failed"), because, ruling)
+
+
+def test_what_has_one_cause_is_one_remark() -> None:
+    """Criteria that are skipped because another failed, or wait for the same reason, are told once; messages begin large."""
+    loads = result("loads", Outcome("failed", "the file has no root"))
+    text = feedback_html(Decimal(0), Decimal(11), list(remarks_on([loads, *map(skipped, ("box", "tall", "essay"))])))
+    assert re.findall("<li>(.*?)</li>", text) == [
+        "About loads: 0 of 3. The file has no root",
+        "3 criteria are not decided, because loads failed: 0 of 7.",
+    ]
+    waits = Outcome("pending", "nobody can tell; a person has to look")
+    assert list(remarks_on([result(name, waits) for name in ("box", "tall")])) == [
+        Remark("2 criteria wait for a person", Decimal(0), Decimal(3), "Nobody can tell; a person has to look")
+    ]
+
+
+def test_what_has_a_cause_of_its_own_stays() -> None:
+    """One skip, a question with its model answer, a person's word, and all that has its points."""
+    asks = Outcome("pending", "a person has to mark it", "this", "that")
+    found = [
+        result("loads", Outcome("passed", "fine")),
+        skipped("box", ruling=Ruling(Decimal(1), "me", "nice try")),
+        skipped("tall", "box"),
+        result("essay", asks),
+        result("picture", asks._replace(measured='xyz="0" is off', message='xyz="0" is off')),
+    ]
+    assert [(each.title, each.message) for each in remarks_on(found)] == [
+        ("About box", "nice try"),
+        ("About tall", "Not decided, because box failed"),
+        ("About essay", "A person has to mark it"),
+        ("About picture", 'xyz="0" is off'),
+    ]
 
 
 def test_feedback() -> None:

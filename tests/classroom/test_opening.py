@@ -1,5 +1,6 @@
 """A hand-in of a class opened: what its digest and its fingerprint tell, and what is refused."""
 
+import io
 import os
 import shutil
 import time
@@ -14,6 +15,7 @@ from hypothesis import strategies as st
 from grader.classroom.opening import fingerprint, is_bulk, open_hand_in
 from grader.classroom.quoting import Origin, Quoting
 from grader.errors import InputError
+from tests.classroom.class_runs import Item, tarred
 from tests.samples import LAB6, ROOT
 
 URDF = b"<robot name='a'><link name='b'/></robot>"
@@ -276,3 +278,85 @@ def test_quoted_as_long_as_it_is_the_same(tmp_path: Path) -> None:
     assert Quoting(origin, LAB6)("my_robot.urdf") is None
     shutil.rmtree(tmp_path / "ann")
     assert Quoting(origin, LAB6)("my_robot.urdf") is None
+
+
+# --- A class as a folder and as one zip -------------------------------------------------------------------------------
+
+
+def _zip(files: dict[str, bytes]) -> bytes:
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        for name, data in files.items():
+            archive.writestr(name, data)
+    return buffer.getvalue()
+
+
+def _both(top: Path, files: dict[str, bytes], *, entries: bool = False) -> tuple[Path, Path]:
+    """A class as a folder and as a zip, with `entries` for its folders or without."""
+    folder, packed = top / "class", top / "class.zip"
+    for name, data in files.items():
+        place = folder / name
+        place.parent.mkdir(parents=True, exist_ok=True)
+        place.write_bytes(data)
+    with zipfile.ZipFile(packed, "w") as archive:
+        for path in sorted(folder.rglob("*")):
+            if entries or path.is_file():
+                archive.write(path, path.relative_to(folder))
+    return folder, packed
+
+
+ROBOT = {"my_robot/urdf/my_robot.urdf": URDF, "my_robot/notes.txt": b"notes"}
+BUILT = {"build/my_robot/my_robot.urdf": URDF, "log/a.txt": b"", "__pycache__/a.pyc": b"", ".git/config": b""}
+
+
+@pytest.mark.parametrize("entries", [False, True])
+@pytest.mark.parametrize(
+    "files",
+    [
+        {"ann.urdf": URDF},
+        {"ann.URDF.xacro": URDF},
+        {"ann b.é.zip": _zip(ROBOT)},
+        {"ann.tar.gz": tarred([Item("my_robot/a.urdf", URDF)])},
+        {"ann.dat": _zip(ROBOT)},
+        {f"ann/{name}": data for name, data in {**ROBOT, **BUILT, "lab6.zip": _zip(ROBOT)}.items()},
+    ],
+    ids=["urdf", "xacro", "zip", "tar", "unnamed-zip", "folder"],
+)
+def test_a_zip_has_the_digests_of_its_folder(files: dict[str, bytes], entries: bool, tmp_path: Path) -> None:
+    """So that nothing is graded again where one comes in place of the other."""
+    name = next(iter(files)).partition("/")[0]
+    folder, packed = _both(tmp_path, files, entries=entries)
+    assert digest(folder, name) == digest(packed, name)
+
+
+def test_the_same_archive_packed_anew_is_another(tmp_path: Path) -> None:
+    """Its bytes are, and these are what the digest is made of in a folder and in a zip."""
+    seen = set()
+    for number, files in enumerate((ROBOT, dict(reversed(ROBOT.items())))):
+        for top in _both(tmp_path / str(number), {"ann.zip": _zip(files)}):
+            seen.add(digest(top, "ann.zip"))
+    assert len(seen) == 2
+
+
+def test_side_by_side_in_a_zip_as_in_a_folder(tmp_path: Path) -> None:
+    """The same digest and the same files: folders of builds and hidden files are passed over in both."""
+    files = {"1": URDF, "2": b"notes", "3": URDF, "4": b"hidden"}
+    names = ("my_robot.urdf", "onlinetext/notes.html", "build/my_robot.urdf", ".hidden")
+    opened = [open_hand_in(str(top), tuple(files), names, "ann") for top in _both(tmp_path, files)]
+    assert opened[0].digest == opened[1].digest
+    for each in opened:
+        assert each.tree is not None
+        assert set(each.tree.files) == {"my_robot.urdf", "onlinetext/notes.html"}
+        assert each.tree.generated == ("build/my_robot.urdf",)
+        assert each.tree.unseen == {"build"}
+
+
+@pytest.mark.parametrize("name", ["ann.pdf", "ann.xml", "ann.zip", "ann.7z"])
+def test_what_is_refused_in_a_folder_is_refused_in_a_zip(name: str, tmp_path: Path) -> None:
+    """In the same words, from the top of the class."""
+    said = set()
+    for top in _both(tmp_path, {f"lab/{name}": b"7z\xbc\xaf\x27\x1c" if name.endswith("7z") else b"text"}):
+        with pytest.raises(InputError) as caught:
+            open_hand_in(str(top), (f"lab/{name}",), (), "ann")
+        said.add(str(caught.value).replace(f"{top}/", ""))
+    assert len(said) == 1

@@ -8,7 +8,8 @@ from typing import Any
 
 import jsonschema
 
-from tests.classroom.gradebooks import batch, grader, hand_in, lab_text, refusal, urdf
+from grader.classroom.gradebook import Gradebook
+from tests.classroom.gradebooks import batch, came_out, graded_into, grader, hand_in, lab, lab_text, refusal, urdf
 
 
 def diff(top: Path, *more: object) -> str:
@@ -75,6 +76,42 @@ def test_two_gradebooks(top: Path, tmp_path: Path) -> None:
     both = refusal(grader("diff", top / "book.db", tmp_path / "before.db", "--from", 1))
     assert both == "--from and --to are runs of one gradebook: name one, or leave them out"
     assert "there is no gradebook" in refusal(grader("diff", top / "book.db", tmp_path / "none.db"))
+
+
+def test_one_damaged_zip_is_a_few_lines(tmp_path: Path) -> None:
+    """Many criteria that took the same step are one line, there are at most twelve, and a verdict alone is said to be."""
+    numbers = range(1, 31)
+    for name, rubric in (
+        ("few", lab(**{f"c{number}": "1" for number in numbers})),
+        ("many", lab(**{f"c{number}": str(number) for number in numbers})),
+    ):
+        with Gradebook(tmp_path / f"{name}.db", create=True) as book:
+            graded_into(book, rubric, [came_out(rubric, "anna", "ppp??" + "f" * 30)])
+            graded_into(book, rubric, [came_out(rubric, "anna", "fff??" + "?" * 15 + "p" * 15, "b")])
+    lines = grader("diff", tmp_path / "few.db").stdout.splitlines()
+    assert lines[3:] == [
+        "    loads: 3 to 0 (-3)",
+        "    box: 2.5 to 0 (-2.5)",
+        "    tall: 0.5 to 0 (-0.5)",
+        "    c1, c2, c3 and 12 more: 0 to none each",
+        "    c16, c17, c18 and 12 more: 0 to 1 (+1) each",
+    ]
+    lines = grader("diff", tmp_path / "many.db").stdout.splitlines()
+    assert len(lines) == 3 + 12 + 1
+    assert lines[-2:] == ["    c23: 0 to 23 (+23)", "    ... and 7 more"]
+    told = as_json(tmp_path / "many.db")["students"][0]["criteria"]
+    assert len(told) == 33
+
+
+def test_only_the_verdict_changed(tmp_path: Path) -> None:
+    """No step is made up where no criterion took one."""
+    rubric = lab()
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        graded_into(book, rubric, [came_out(rubric, "anna", "?????")])
+        graded_into(book, rubric, [came_out(rubric, "anna", "?????", "b", "it is no zip")])
+    assert diff(tmp_path) == (
+        "anna: 0 as before, only the verdict changed\n  the submission changed; it was graded, and is unreadable\n"
+    )
 
 
 def test_names_are_harmless(top: Path) -> None:

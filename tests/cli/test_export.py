@@ -18,12 +18,15 @@ import pytest
 from grader.classroom.gradebook import Gradebook
 from grader.classroom.intake.roster_file import read_roster
 from grader.classroom.intake.taking import take_in
+from grader.classroom.lms.preflight import Conflict, Left, Preflight
 from grader.classroom.marking import criterion_of
 from grader.classroom.marking import mark as add_mark
 from grader.classroom.standings import Standings
 from grader.classroom.students import HandIn
+from grader.cli.class_export import preflight_lines
 from grader.errors import InputError
 from grader.grading.grade import grade
+from grader.submission.opening import ARCHIVES
 from tests.classroom.gradebooks import batch, came_out, graded_into, grader, hand_in, lab, lab_text, make_class, refusal
 from tests.samples import LAB6, ROOT, opened
 
@@ -203,12 +206,23 @@ def test_who_gets_a_grade_in_canvas(top: Path) -> None:
     assert done.stdout == f'{head}\n{points}\n"Anna, X",101,,anna,S1,10.50\n"Ben, X",102,,ben,S1,6.00\n'
     assert done.stderr.splitlines() == [
         "grader: column 'A small lab (77)': 2 filled, 0 the same already",
-        f"grader: without a grade: row 5, Cleo, X: {BROKEN}",
-        "grader: without a grade: row 6, Dora, X: nothing was handed in",
-        "grader: without a grade: row 7, Emil, X: 5 points wait for a person",
+        f"grader: without a grade, {BROKEN}: 1 (Cleo, X)",
+        "grader: without a grade, nothing was handed in: 1 (Dora, X)",
+        "grader: without a grade, 5 points wait for a person: 1 (Emil, X)",
     ]
     zero = export(top, "canvas", "--into", top / "canvas.csv", "--pending-as-zero")
     assert zero.stdout == done.stdout + '"Emil, X",105,,emil,S1,3.00\n'
+
+
+def test_only_what_waits_is_taken_for_zero(top: Path) -> None:
+    """Whoever is not in the class folder any more, or was not graded by the newest rubric, gets no grade by it."""
+    (top / "canvas.csv").write_text(canvas(**EVERYONE))
+    assert batch(top).returncode == 0  # where the copy is
+    shutil.rmtree(top / "class" / "emil")
+    assert batch(top).returncode == 0
+    done = export(top, "canvas", "--into", top / "canvas.csv", "--pending-as-zero")
+    assert [row[3] for row in csv.reader(done.stdout.splitlines()[2:])] == ["anna", "ben"]
+    assert "without a grade, it is not in the class folder any more: 1 (Emil, X)\n" in done.stderr
 
 
 def test_strict_writes_nothing(top: Path) -> None:
@@ -242,6 +256,61 @@ def test_strict_writes_nothing(top: Path) -> None:
 def test_what_is_refused(arguments: tuple[str, ...], why: str, graded_class: Path) -> None:
     """In one plain line."""
     assert refusal(export(graded_class, *arguments)).startswith(why)
+
+
+def test_without_a_target(graded_class: Path) -> None:
+    """The choices are on one line, without the tabs that they come with."""
+    why = refusal(grader("export", "--gradebook", graded_class / "book.db"))
+    assert "Choose from: csv, canvas, moodle, json (grader export --help shows the usage)" in why
+
+
+@pytest.mark.parametrize("name", ["book.db", "../small/book.db", "link.db", "hard.db", "book.db-wal", "book.db-shm"])
+def test_the_gradebook_is_never_replaced(name: str, top: Path) -> None:
+    """Nor what SQLite keeps beside it, whatever it is called; all marks by hand are in there."""
+    mark(top, "anna", essay="3.5")
+    (top / "link.db").symlink_to("book.db")
+    (top / "hard.db").hardlink_to(top / "book.db")
+    before = {each.name: each.read_bytes() for each in top.iterdir() if each.is_file()}
+    why = "it would replace the gradebook, and all marks by hand in it"
+    assert refusal(export(top, "csv", "--output", top / name)) == f"cannot write {top / name}: {why}"
+    book = ("--gradebook", top / "link.db")
+    assert refusal(grader("export", "csv", *book, "--output", top / name)).endswith(why)
+    assert {each.name: each.read_bytes() for each in top.iterdir() if each.is_file()} == before
+
+
+def test_another_maximum_is_refused(top: Path) -> None:
+    """Nothing is written unless the points are wanted as they are; then the warning says what the LMS makes of them."""
+    (top / "canvas.csv").write_text(canvas("100", ben="102"))
+    arguments = ("canvas", "--into", top / "canvas.csv", "--output", top / "out.csv")
+    assert refusal(export(top, *arguments)) == (
+        "Canvas' Points Possible of 'A small lab (77)' is 100, and the rubric's points are 11: change the maximum in the LMS"
+        " and export again, or write the points as they are with --any-maximum"
+    )
+    assert not (top / "out.csv").exists()
+    done = export(top, *arguments, "--any-maximum")
+    assert done.returncode == 0
+    assert "has 100 points possible in Canvas, and 11 here" in done.stderr
+    assert (top / "out.csv").read_text().endswith("ben,S1,6.00\n")
+
+
+def test_a_large_class_does_not_flood_the_screen() -> None:
+    """Who has no grade is a line for each reason, and no kind of lines goes on for ever."""
+    waits = [Left(number, f"Student {number}", "10 points wait for a person") for number in range(3, 41)]
+    late = [Left(number, f"Doe, {number}", "nothing was handed in") for number in (41, 42)]
+    one = [Left(43, "Zoe", "has a grade that is locked in Moodle")]
+    unknown = tuple(Left(number, "x\x1b", "nobody") for number in range(50, 103))
+    conflicts = tuple(Conflict(number, "y", "1", "2") for number in range(50))
+    found = Preflight("Grade", 0, 0, conflicts, (*waits, *late, *one), unknown, (), (), (), ("warned",))
+    lines = list(preflight_lines(found))
+    assert lines[0] == "column 'Grade': 0 filled, 0 the same already"
+    assert lines[1:51] == [f"row {number}, y: was 1, becomes 2" for number in range(50)]
+    assert lines[51:54] == [
+        "without a grade, 10 points wait for a person: 38 (Student 3, Student 4, Student 5, ... and 35 more)",
+        "without a grade, nothing was handed in: 2 (Doe, 41; Doe, 42)",
+        "without a grade, has a grade that is locked in Moodle: 1 (Zoe)",
+    ]
+    assert lines[54] == "in the file, but not in the gradebook: row 50, x\\x1b: nobody"
+    assert lines[104:] == ["in the file, but not in the gradebook: and 3 more", "warned"]
 
 
 def test_almost_all_points_are_not_all(tmp_path: Path) -> None:
@@ -332,7 +401,7 @@ def trip(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
 
 
 def by_itself(trip: Trip, each: HandIn, scratch: Path) -> Decimal | None:
-    """The points of `grader grade` on what one student has handed in; None where it is refused."""
+    """The points of `grader grade` on what one student has handed in; None where it is refused, or nothing in it can be read."""
     path = trip.top / "class" / each.paths[0]
     if len(each.paths) > 1:
         path = scratch / each.student.key
@@ -340,9 +409,11 @@ def by_itself(trip: Trip, each: HandIn, scratch: Path) -> Decimal | None:
         for name, file in zip(each.names, each.paths, strict=True):
             shutil.copy(trip.top / "class" / file, path / name)
     try:
-        return grade(LAB6, opened(path)).score
+        submission = opened(path)
     except InputError:
         return None
+    files = [file for file in submission.tree.files.values() if file.suffix not in ARCHIVES]
+    return grade(LAB6, submission).score if submission.is_single or files else None
 
 
 def test_everyone_has_the_points_of_grader_grade(trip: Trip, tmp_path: Path) -> None:
@@ -357,8 +428,8 @@ def test_everyone_has_the_points_of_grader_grade(trip: Trip, tmp_path: Path) -> 
             wanted[number_of(trip, each)] = f"{points:.2f}"
     assert {number: row[grade_column(trip)] for number, row in filled.items()} == wanted
     assert len(wanted) > SIZE // 2
-    left_out = re.findall(r"without a grade: row \d+", done.stderr)
-    assert len(left_out) == len(given) - len(filled)
+    left_out = re.findall(r"without a grade, .*: (\d+) \(", done.stderr)
+    assert sum(map(int, left_out)) == len(given) - len(filled)
     for number, row in filled.items():
         same = [index for index in range(len(row)) if index not in (grade_column(trip), 9)]
         assert [row[index] for index in same] == [given[number][index] for index in same]

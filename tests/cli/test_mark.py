@@ -70,7 +70,10 @@ def test_whoever_is_meant(name: str, top: Path) -> None:
         ("anna", "essay", "4.5", "essay is worth 0 to 4 points, not 4.5"),
         ("anna", "essay", "nan", "points are a number from 0 to 4, with at most 4 decimals, not 'nan'"),
         ("anna", "essay", "1.00001", "points are a number from 0 to 4, with at most 4 decimals, not '1.00001'"),
-        ("anna", "essay", "-1", "No such option: -1 (grader mark --help shows the usage)"),
+        ("anna", "essay", "-1", "essay is worth 0 to 4 points, not -1"),
+        ("anna", "essay", "-,5", "essay is worth 0 to 4 points, not -,5"),
+        ("anna", "essay", "-x", "No such option: -x (grader mark --help shows the usage)"),
+        ("anna", "essay", "--1", "No such option: --1 (grader mark --help shows the usage)"),
         ("anna", "essay", "1e400", "essay is worth 0 to 4 points, not 1e400"),
     ],
 )
@@ -78,6 +81,15 @@ def test_what_is_refused(who: str, what: str, points: str, why: str, graded_clas
     """In one plain line, and nothing is kept."""
     assert refusal(mark(graded_class, who, what, points)) == why
     assert marks(graded_class) == []
+
+
+def test_a_number_below_zero_as_a_comment(top: Path) -> None:
+    """What follows an option is its own, and options may follow the points."""
+    assert mark(top, "anna", "essay", "1", "--comment", "-1", "--by", "-2").returncode == 0
+    assert marks(top)[0][1:4] == (10_000, "-1", "-2")
+    assert refusal(mark(top, "anna", "essay", "-3", "--comment", "-1")) == "essay is worth 0 to 4 points, not -3"
+    done = grader("mark", "--gradebook", top / "book.db", "--", "anna", "essay", "-3")
+    assert refusal(done) == "essay is worth 0 to 4 points, not -3"
 
 
 def test_a_later_mark_goes_before_an_earlier_one(top: Path) -> None:

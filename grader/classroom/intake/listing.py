@@ -30,6 +30,9 @@ class Listing(Protocol):
     def first(self, folder: str) -> str | None:
         """Some name in a folder; None where it holds nothing or cannot be opened."""
 
+    def is_link(self, path: str) -> bool:
+        """Whether a file that is listed is a link to another one."""
+
     def starts(self, paths: Iterable[str], count: int) -> dict[str, bytes]:
         """The first bytes of some files, of those that can be read."""
 
@@ -84,6 +87,10 @@ class FolderListing:
                 found.refused.append((entry.name, _NO_FILE))
         except OSError as error:  # such as a link to itself
             found.refused.append((entry.name, f"cannot be read: {error.strerror}"))
+
+    def is_link(self, path: str) -> bool:
+        """Whether a file is a link to another one in the class folder."""
+        return Path(self._top, path).is_symlink()
 
     def starts(self, paths: Iterable[str], count: int) -> dict[str, bytes]:
         """The first bytes of some files, of those that can be read and are no links."""

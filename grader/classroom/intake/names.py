@@ -65,6 +65,11 @@ def plain_name(name: str) -> str:
     return " ".join(f"{first} {last}".split()) if comma else " ".join(last.split())
 
 
+def plain_group(name: str) -> str:
+    """The name of a group or of its hand-in for comparison: case does not count, nor which of space, `_` and `-` stands between words."""
+    return " ".join(plain_word(name).replace("_", " ").replace("-", " ").split())
+
+
 def is_word(letter: str) -> bool:
     """Whether a character is one of words to Ruby, in which Canvas is written: a letter, mark, digit or connector."""
     return (letter.isascii() and letter.isalnum()) or unicodedata.category(letter) in _WORD

@@ -1,10 +1,10 @@
 """Who is in the class, and who of them has handed something in: by what is surely theirs, never by a guess."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from grader.classroom.intake.names import canvas_name, canvas_names, plain_name, plain_word, surname
+from grader.classroom.intake.names import canvas_name, canvas_names, plain_group, plain_name, plain_word, surname
 from grader.classroom.students import HandIn, Student
 from grader.submission.files import printable_path
 
@@ -15,6 +15,7 @@ _SEVERAL = -1
 class Entry:
     """One row of a roster. `due` and `submitted` are ISO 8601; what the roster does not say is empty or None.
 
+    `section` is the group or team that hands in together, or else the section: nobody tells the two apart but by a hand-in.
     `aliases` are further names that are as good as a login, such as one at GitHub beside one at the university.
     """
 
@@ -54,6 +55,7 @@ class Roster:
         self._canvas_names: dict[str, int] = {}
         self._names: dict[str, int] = {}
         self._surnames: dict[str, int] = {}
+        self._groups: dict[str, list[int]] = {}
         for index, entry in enumerate(self.entries):
             self._enter(index, entry)
 
@@ -79,6 +81,14 @@ class Roster:
     def knows_surname(self, name: str) -> bool:
         """Whether a name is that of somebody in the roster, or the surname of just one of them."""
         return self.match(Student(name), surnames=True).place is not None
+
+    def knows_hand_in(self, name: str) -> bool:
+        """Whether a name is that of somebody in the roster, or of a group."""
+        return self.knows(name) or bool(self.members(Student(name)))
+
+    def members(self, team: Student) -> Sequence[int]:
+        """The places of those whose group is called exactly like a hand-in, by its key or its name; none where there is no such group."""
+        return self._groups.get(plain_group(team.key)) or self._groups.get(plain_group(team.name)) or ()
 
     def match(self, student: Student, *, surnames: bool = False) -> Match:
         """Whom a hand-in belongs to, given what its name says of them.
@@ -128,6 +138,8 @@ class Roster:
 
     def _enter(self, index: int, entry: Entry) -> None:
         student = entry.student
+        if group := plain_group(entry.section):
+            self._groups.setdefault(group, []).append(index)
         local_part, at, _ = student.email.partition("@")
         words = (student.key, student.login, student.sis, student.email, *entry.aliases)
         for table, keys in (

@@ -58,7 +58,7 @@ def _entry(row: Row, shown: str, notes: list[str]) -> Entry:
         notes.append(f"line {row.line}: {row['submitted']!r} is no time such as 2026-09-01T10:00, and was passed over")
     return Entry(
         Student(printable_path(key), name, row["email"], login, sis, row["canvas"], moodle),
-        row["section"],
+        row["group"] or row["section"],
         *_due(row, shown),
         submitted,
         is_late,

@@ -17,6 +17,7 @@ from grader.submission.files import printable_path, read_start
 from grader.submission.opening import archive_kind
 
 LAYOUTS = ("folders", "canvas", "moodle", "teams", "nbgrader")
+_MOST_NAMES = 1_000  # in one folder
 Knows = Callable[[str], bool]
 
 
@@ -24,7 +25,8 @@ class Intake:
     """A class's hand-ins. `left_out` says in one line each what in the folder is no submission, and why.
 
     With a roster, `strangers` are the keys of hand-ins that are of nobody in it (they are graded all the same), `absent` are
-    those who have handed in nothing, and `notes` says where the roster left it open whose a hand-in is.
+    those who have handed in nothing, and `notes` says where the roster left it open whose a hand-in is. A hand-in that is called
+    like a group of the roster, and like nobody in it, counts once for each member of the group.
     """
 
     def __init__(
@@ -40,12 +42,12 @@ class Intake:
         self._placement = placement
 
     def __len__(self) -> int:
-        return len(self._shelf)
+        return len(self._placement.order)
 
     def hand_ins(self) -> Iterator[HandIn]:
         """The hand-ins in the order of their students' keys, made one by one; it may be called again."""
-        for index in self._placement.order:
-            yield self._placement.final(self._roster, index, self._shelf.hand_in(index))
+        for position, index in enumerate(self._placement.order):
+            yield self._placement.final(self._roster, position, self._shelf.hand_in(index))
 
 
 def take_in(
@@ -62,6 +64,11 @@ def take_in(
     if taking.is_empty:
         raise InputError(f"{printable_path(path)} is empty")
     chosen = taking.layout() if layout == "auto" else layout
+    if assignment and chosen != "nbgrader":
+        raise InputError(
+            f"--assignment goes with the layout nbgrader only, and {printable_path(path)} is taken as {chosen}: leave it out, "
+            "or say --layout nbgrader"
+        )
     if layout == "auto" and chosen == "folders" and "package.xml" in taking.children.files:
         raise InputError(f"{printable_path(path)} is one submission and no class: it holds a package.xml itself")
     left_out = LeftOut()
@@ -70,7 +77,8 @@ def take_in(
         lines = left_out.lines()
         example = f": {lines[0]}" if lines else ""
         raise InputError(f"nothing in {printable_path(path)} is a submission{example}")
-    return Intake(chosen, shelf, left_out, roster, place(shelf, roster, surnames=chosen == "teams"))
+    placement = place(shelf, roster, surnames=chosen == "teams", holds_students=taking.holds_students)
+    return Intake(chosen, shelf, left_out, roster, placement)
 
 
 class _Taking:
@@ -80,6 +88,7 @@ class _Taking:
         self._listing = listing
         self._top = top
         self._knows: Knows | None = roster.knows if roster else None
+        self._knows_hand_in: Knows | None = roster.knows_hand_in if roster else None
         self._knows_surname: Knows | None = roster.knows_surname if roster else None
         self._assignment = assignment
         self._rubric_id = rubric_id
@@ -114,9 +123,15 @@ class _Taking:
                 )
             case "teams":
                 labs = self._labs(is_told=is_told)
-                return teams.shelve(listing, children, start, left_out, self._rubric_id, self._knows, labs)
+                return teams.shelve(listing, children, start, left_out, self._rubric_id, self._knows_hand_in, labs)
             case _:
-                return folders.shelve(listing, children, start, left_out, self._rubric_id, self._knows)
+                return folders.shelve(listing, children, start, left_out, self._rubric_id, self._knows_hand_in)
+
+    def holds_students(self, path: str) -> bool:
+        """Whether a folder holds hand-ins of at least two students: then it is a section, and not what a team has handed in."""
+        inner = self._listing.children(path, _MOST_NAMES)
+        names = inner.folders + [name.removesuffix(ending_of(name)) for name in inner.files if ending_of(name)]
+        return self._knows is not None and sum(map(self._knows, names)) > 1
 
     def _step_in(self) -> None:
         """Go into the one folder in which everything in a zip lies, unless that is itself what one student has handed in."""

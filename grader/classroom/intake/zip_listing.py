@@ -67,6 +67,11 @@ class ZipListing:
         """Some name in a folder of the zip."""
         return next(iter(self._folders.get(folder, ())), None)
 
+    def is_link(self, path: str) -> bool:
+        """False: no link is listed as a file."""
+        del path
+        return False
+
     def starts(self, paths: Iterable[str], count: int) -> dict[str, bytes]:
         """The first bytes of some files, of those that can be read."""
         wanted = set(paths)

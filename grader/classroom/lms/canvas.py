@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from decimal import Decimal
 
 from grader.classroom.lms.canvas_columns import CanvasColumns, find_columns, is_student, names_rubric
-from grader.classroom.lms.filling import Filling
+from grader.classroom.lms.filling import Filling, same_maximum
 from grader.classroom.lms.grades import Grade, exact_words, has_decimal_comma, points_text, read_points
 from grader.classroom.lms.matching import Keys, Person, full_names, join, run_together, spellings
 from grader.classroom.lms.preflight import Filled
@@ -29,15 +29,20 @@ def fill_gradebook(
     out_of: Decimal,
     wanted: tuple[str, ...] = (),
     column: str = "",
+    any_maximum: bool = False,
     shown: str = "the gradebook",
 ) -> Filled:
     """An exported gradebook with our totals in one assignment's column, and what that changes.
 
     `wanted` are names of the rubric, by which the column is found; `column` names it outright, by title or number. Raises
-    InputError where the file is no gradebook, or where it is not plain which column is meant.
+    InputError where the file is no gradebook, where it is not plain which column is meant, and, unless `any_maximum`, where
+    its points possible are not `out_of`.
     """
     table = read_table(data, shown)
     columns = find_columns(table, column, wanted, shown)
+    if not any_maximum and columns.points_possible is not None:
+        possible = columns.points_possible.value(columns.grade)
+        same_maximum(f"Canvas' Points Possible of {columns.title!r}", [possible], out_of)
     people = {row.number: _person(row, columns) for row in table.rows if is_student(row)}
     filling = Filling(columns.title, join(list(people.values()), grades, _keys))
     comma = columns.points_possible is not None and has_decimal_comma(columns.points_possible.value(columns.grade))

@@ -2,11 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from decimal import Decimal
 
-from grader.classroom.lms.grades import Grade
+from grader.classroom.lms.grades import Grade, exact_words, read_points
 from grader.classroom.lms.matching import Join
 from grader.classroom.lms.preflight import Conflict, Filled, Left, Preflight
 from grader.classroom.lms.tables import Row, Table
+from grader.errors import InputError
 
 
 @dataclass(slots=True)
@@ -66,3 +68,14 @@ class Filling:
             warnings=tuple(self.warnings),
         )
         return Filled(replace(table, rows=tuple(rows)).encoded(), preflight)
+
+
+def same_maximum(what: str, stated: Sequence[str], out_of: Decimal) -> None:
+    """Raises InputError where a maximum in an LMS file is a number other than ours: 9.33 of 100 is not 9.33 of 10."""
+    for each in stated:
+        maximum = read_points(each)
+        if maximum is not None and maximum != out_of:
+            raise InputError(
+                f"{what} is {exact_words(maximum)}, and the rubric's points are {exact_words(out_of)}: change the maximum"
+                " in the LMS and export again, or write the points as they are with --any-maximum"
+            )

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from decimal import Decimal
 
 from grader.classroom.lms.feedback import is_our_feedback
-from grader.classroom.lms.filling import Filling
+from grader.classroom.lms.filling import Filling, same_maximum
 from grader.classroom.lms.grades import Grade, cut, exact_words, has_decimal_comma, points_text, read_points
 from grader.classroom.lms.matching import Keys, Person, full_names, join, spellings
 from grader.classroom.lms.moodle_columns import MoodleColumns, find_columns, people_rows
@@ -33,15 +33,19 @@ def fill_worksheet(
     out_of: Decimal,
     column: str = "",
     feedback_column: str = "",
+    any_maximum: bool = False,
     shown: str = "the worksheet",
 ) -> Filled:
     """A downloaded grading worksheet with our totals and comments, and what that changes.
 
     `column` and `feedback_column` name the two columns by their headers, where they cannot be told. A comment that is not ours
-    as it was made is a person's: it stays, and is reported. Raises InputError where the file is no worksheet with points.
+    as it was made is a person's: it stays, and is reported. Raises InputError where the file is no worksheet with points, and, unless
+    `any_maximum`, where its maximum grade is not `out_of`.
     """
     table = read_table(data, shown)
     columns = find_columns(table, column, feedback_column, shown)
+    if not any_maximum:
+        same_maximum(f"Moodle's {columns.titles[columns.maximum]!r}", sorted(_maxima(table, columns)), out_of)
     people = {row.number: _person(row, columns) for row in people_rows(table)}
     filling = Filling(columns.title, join(list(people.values()), grades, _keys))
     rows = []
@@ -119,9 +123,13 @@ def _keys(student: Student) -> Keys:
     )
 
 
+def _maxima(table: Table, columns: MoodleColumns) -> set[str]:
+    return {row.value(columns.maximum) for row in people_rows(table) if len(row.cells) == len(columns.titles)}
+
+
 def _warnings(table: Table, columns: MoodleColumns, out_of: Decimal, filling: Filling) -> list[str]:
     warnings = []
-    maxima = {row.value(columns.maximum) for row in people_rows(table) if len(row.cells) == len(columns.titles)}
+    maxima = _maxima(table, columns)
     if any(read_points(maximum) != out_of for maximum in maxima):
         warnings.append(f"Moodle counts to {', '.join(sorted(maxima))} points, and the rubric to {exact_words(out_of)}")
     if not columns.has_modified:

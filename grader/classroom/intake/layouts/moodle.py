@@ -3,6 +3,9 @@
 moodle, mod/assign/classes/downloader.php: `{full name}_{participant id}_assignsubmission_{plugin}/...`, in older versions with
 a `_` behind it, or `..._{plugin}_{file}` without folders. A team has its group's name and number, or no number. Where names are
 hidden, the same word stands for each name, in the language of the site.
+
+A folder with one archive or URDF in it, and nothing else, is no more than that file: Canvas and a student would give it without
+the folder, and it has to get the same points.
 """
 
 import re
@@ -72,18 +75,30 @@ def _files_first(saved: _Saved) -> tuple[bool, str]:
 def _hand_in(
     listing: Listing, saved: list[_Saved], start: str, folders: set[str], left_out: LeftOut, *, are_hidden: bool
 ) -> HandIn:
+    if len(saved) > 1:  # an empty folder is no part of a hand-in
+        saved = [each for each in saved if each.path not in folders or listing.first(start + each.path)] or saved[:1]
     who = saved[0]
     key = f"{who.name}_{who.participant}" if who.participant else who.name
     student = Student(key, "" if are_hidden else who.name, moodle=who.participant)
+    if len(saved) == 1 and who.path in folders:
+        return HandIn(student, (_lone_file(listing, start + who.path) or start + who.path,))
     named: dict[str, str] = {}
-    if len(saved) > 1 or who.path not in folders:
-        for each in saved:
-            named |= _side_by_side(listing, each, start, is_folder=each.path in folders)
+    for each in saved:
+        named |= _side_by_side(listing, each, start, is_folder=each.path in folders)
     if len(named) > _MOST_FILES:
         left_out.add(start + who.path, f"has more than {_MOST_FILES} files: what stands beside it was not read")
     if not named or len(named) > _MOST_FILES:
         return HandIn(student, (start + who.path,))
     return HandIn(student, tuple(named), names=tuple(named.values()))
+
+
+def _lone_file(listing: Listing, folder: str) -> str | None:
+    """The one archive or URDF in a folder that holds nothing else; a link is not taken for one."""
+    children = listing.children(folder, _MOST_FILES)
+    if children.folders or children.refused or len(children.files) != 1 or not ending_of(children.files[0]):
+        return None
+    path = f"{folder}/{children.files[0]}"
+    return None if listing.is_link(path) else path
 
 
 def _side_by_side(listing: Listing, saved: _Saved, start: str, *, is_folder: bool) -> dict[str, str]:

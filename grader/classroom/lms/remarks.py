@@ -1,0 +1,47 @@
+"""What a student reads of the criteria, in an LMS's comment: what was missed and why, each cause once."""
+
+from collections.abc import Iterable, Iterator
+from decimal import Decimal
+
+from grader.classroom.lms.feedback import Remark
+from grader.grading.report import Result
+
+
+def remarks_on(results: Iterable[Result]) -> Iterator[Remark]:
+    """A remark on each criterion that has not all its points, or a person's comment, in their order.
+
+    Those that are not decided because one and the same criterion failed, or that wait for the same reason, are one remark.
+    """
+    together: dict[tuple[str, str], list[Result]] = {}
+    for number, each in enumerate(results):
+        if each.points < each.criterion.points or (each.ruling is not None and each.ruling.comment):
+            together.setdefault(_cause(each) or ("", str(number)), []).append(each)
+    for (kind, cause), alike in together.items():
+        first = alike[0]
+        if len(alike) == 1:
+            yield Remark(first.criterion.title, first.points, first.criterion.points, _said(first))
+            continue
+        out_of = sum((each.criterion.points for each in alike), Decimal(0))
+        if kind == "skipped":
+            yield Remark(f"{len(alike)} criteria are not decided, because {cause} failed", Decimal(0), out_of)
+        else:
+            yield Remark(f"{len(alike)} criteria wait for a person", Decimal(0), out_of, _capitalised(cause))
+
+
+def _cause(result: Result) -> tuple[str, str] | None:
+    """What a criterion was skipped for, or waits for, where others may be for the same."""
+    if result.ruling is not None:
+        return None
+    if result.because is not None:
+        return "skipped", result.because
+    is_question = result.outcome.expected is not None  # with its own model answer
+    return ("pending", result.outcome.message) if result.is_open and not is_question else None
+
+
+def _said(result: Result) -> str:
+    return _capitalised(result.outcome.message) if result.ruling is None else result.ruling.comment
+
+
+def _capitalised(message: str) -> str:
+    """As the report in the terminal begins it: what is no word, such as an attribute of the file, stays as it is."""
+    return message[:1].upper() + message[1:] if message.partition(" ")[0].isalpha() else message
