@@ -220,7 +220,7 @@ def _each(
         try:
             found[link] = measure(link)
         except (MissingElement, UnknownShape) as error:
-            missing = missing or error
+            missing = missing or error.with_traceback(None)  # which would hold this very frame, and all that is in it
     return found, missing
 
 

@@ -81,7 +81,7 @@ def prepare(memory: int) -> None:
         resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
     gc.collect()
     gc.freeze()  # what is loaded now stays: it need not be looked through again
-    gc.set_threshold(20_000, 10, 20)
+    gc.set_threshold(10_000, 10, 20)
 
 
 def _grade_one(common: Class, task: Task) -> Graded:
