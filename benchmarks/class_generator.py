@@ -682,7 +682,7 @@ def hand_ins(count: int, seed: int, kind: str) -> Iterator[HandIn]:
     for index in range(count + is_mixed):
         name = card(seed, index) if is_mixed and index < count else "urdf"
         who = person(seed, index, with_awkward=is_mixed)
-        desk = Desk(Dice(f"{seed}/work/{index}"), who.login)
+        desk = Desk(Dice(f"{seed}/hand-in/{index}"), who.login)
         attempts = KINDS[name][1](desk)
         yield HandIn(who, name, attempts, desk.made)
 

@@ -73,9 +73,7 @@ class Batch:
     ) -> None:
         self._book, self._rubric, self._settings, self._listener = book, rubric, settings, listener
         self._sha256 = rubric.sha256
-        self._template = _template(rubric)
-        common = Class(settings.root, rubric.data, str(rubric.path), self._template)
-        self._queue = Queue(executor, settings.workers, common, rubric)
+        self._queue = Queue(executor, settings.workers, self._common, rubric)
         self._waiting: dict[str, tuple[HandIn, Known | None]] = {}
         self._identities: Identities | None = None
         self._passed: list[Known] = []  # of this class folder, and not met yet
@@ -86,6 +84,12 @@ class Batch:
         self._has_others = False
         self._progress = Progress(settings.total)
         self._run = 0
+
+    def _common(self) -> Class:
+        """What all tasks share: made when there is something to grade, for grading the reference takes longer than looking."""
+        template = _template(self._rubric)
+        self._book.keep_beside(template)
+        return Class(self._settings.root, self._rubric.data, str(self._rubric.path), template)
 
     @property
     def has_begun(self) -> bool:
@@ -99,9 +103,7 @@ class Batch:
 
     def grade(self, hand_ins: Iterable[HandIn], absent: Sequence[Student] = ()) -> Progress:
         """Grade all hand-ins that are new or changed. `absent` are students of whom there is none."""
-        self._run = self._book.begin(
-            self._settings.root, self._settings.layout, self._rubric, self._template, self._settings.due
-        )
+        self._run = self._book.begin(self._settings.root, self._settings.layout, self._rubric, self._settings.due)
         self._before = self._book.all_known()
         self._next = next(self._before, None)
         self._has_others = self._next is not None

@@ -1,7 +1,6 @@
 """The gradebook: one SQLite file with what the checks have found and what people have decided, which no re-run changes."""
 
 import sqlite3
-import time
 import zlib
 from collections.abc import Iterator
 from contextlib import closing, contextmanager, suppress
@@ -10,6 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple, Self
 
 from grader import __version__
+from grader.classroom.database import PATIENCE, prepare
 from grader.classroom.known import (
     ADD_STUDENT,
     CHANGE_STUDENT,
@@ -24,14 +24,11 @@ from grader.classroom.known import (
     told_of,
     values_of,
 )
-from grader.classroom.schema import APPLICATION_ID, STEPS
 from grader.classroom.students import HandIn, Student
 from grader.classroom.work import UNITS, Graded
 from grader.errors import GraderError, InputError
 from grader.grading.rubric import Rubric, read_rubric
 from grader.submission.files import printable_path, sha256_of
-
-_PATIENCE = 60.0  # seconds in which another process may finish its transaction
 
 
 class Run(NamedTuple):
@@ -59,9 +56,9 @@ class Gradebook:
                 f"there is no gradebook {self._shown}: grader batch PATH --gradebook {self._shown} makes one"
             )
         with self.complaining():
-            self.connection = sqlite3.connect(path, timeout=_PATIENCE, isolation_level=None)
+            self.connection = sqlite3.connect(path, timeout=PATIENCE, isolation_level=None)
             try:
-                self._prepare()
+                prepare(self.connection, self._shown)
             except BaseException:
                 self.connection.close()
                 raise
@@ -76,43 +73,6 @@ class Gradebook:
         """Close it; what was not committed is gone."""
         with suppress(sqlite3.Error):
             self.connection.close()
-
-    def _prepare(self) -> None:
-        self.connection.execute("BEGIN")  # another process may be making it just now: what is read is of one moment
-        queries = ("PRAGMA application_id", "PRAGMA user_version", "SELECT count(*) FROM sqlite_master")
-        kind, version, tables = (int(self.connection.execute(query).fetchone()[0]) for query in queries)
-        self.connection.execute("COMMIT")
-        if tables and kind != APPLICATION_ID:
-            raise InputError(f"{self._shown} is a database, but no gradebook")
-        if version > len(STEPS):
-            raise InputError(f"{self._shown} was made by a newer grader: install that one, or name another file")
-        self._log_ahead()
-        self.connection.execute("PRAGMA synchronous = NORMAL")
-        self.connection.execute("PRAGMA foreign_keys = ON")
-        if version < len(STEPS):
-            self._migrate()
-
-    def _log_ahead(self) -> None:
-        """Write ahead, so that readers and a writer do not wait for each other; for this SQLite itself has no patience."""
-        until = time.monotonic() + _PATIENCE
-        while True:
-            try:
-                self.connection.execute("PRAGMA journal_mode = WAL")
-            except sqlite3.OperationalError as error:
-                if "locked" not in str(error) or time.monotonic() > until:
-                    raise
-                time.sleep(0.01)
-            else:
-                return
-
-    def _migrate(self) -> None:
-        with self.transaction():  # another process may have done it meanwhile
-            version = int(self.connection.execute("PRAGMA user_version").fetchone()[0])
-            for step in STEPS[version:]:
-                for statement in _statements(step):
-                    self.connection.execute(statement)
-            self.connection.execute(f"PRAGMA user_version = {len(STEPS)}")
-            self.connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
 
     @contextmanager
     def complaining(self) -> Iterator[None]:
@@ -137,16 +97,13 @@ class Gradebook:
 
     # --- what a batch writes -------------------------------------------------------------------------------------------
 
-    def begin(self, source: str, layout: str, rubric: Rubric, template: str = "", due: str = "") -> int:
-        """Begin a run; its number. Its results' records are kept beside the template. Raises InputError for another lab's rubric."""
-        self._template = sha256_of(template.encode()) if template else None
+    def begin(self, source: str, layout: str, rubric: Rubric, due: str = "") -> int:
+        """Begin a run; its number. Raises InputError for another lab's rubric."""
         with self.transaction():
             other = "SELECT rubric.id FROM run JOIN rubric ON rubric.sha256 = run.rubric WHERE rubric.id <> ? LIMIT 1"
             for (name,) in self.connection.execute(other, (rubric.id,)).fetchall():
                 raise InputError(f"{self._shown} is the gradebook of {name}: name another file for {rubric.id}")
             self._keep_rubric(rubric)
-            if template:
-                self.connection.execute("INSERT OR IGNORE INTO template VALUES (?, ?)", (self._template, template))
             last_mark = self.connection.execute("SELECT coalesce(max(id), 0) FROM mark").fetchone()[0]
             row = (_now(), storable(source), layout, rubric.sha256, __version__, last_mark, due)
             found = self.connection.execute(
@@ -154,6 +111,13 @@ class Gradebook:
                 row,
             )
             return int(found.lastrowid or 0)
+
+    def keep_beside(self, template: str) -> None:
+        """Keep the records that follow beside a template; beside none, if it is empty."""
+        self._template = sha256_of(template.encode()) if template else None
+        if template:
+            with self.transaction():
+                self.connection.execute("INSERT OR IGNORE INTO template VALUES (?, ?)", (self._template, template))
 
     def finish(self, run: int) -> None:
         """Note that a run went through to its end."""
@@ -171,14 +135,9 @@ class Gradebook:
             ],
         )
 
-    def known(self, key: str) -> Known | None:
-        """What there is of a student."""
-        row = self.connection.execute(f"{KNOWN} WHERE student.key = ?", (key,)).fetchone()
-        return known_of(row) if row is not None else None
-
     def all_known(self) -> Iterator[Known]:
         """What there is of everyone, in the order of their keys, as it was when this began, whatever is written meanwhile."""
-        with self.complaining(), closing(sqlite3.connect(self.path, timeout=_PATIENCE)) as beside:
+        with self.complaining(), closing(sqlite3.connect(self.path, timeout=PATIENCE)) as beside:
             for row in beside.execute(f"{KNOWN} ORDER BY student.key"):
                 yield known_of(row)
 
@@ -265,16 +224,6 @@ class Gradebook:
         """What a query gives, row by row."""
         with self.complaining():
             yield from self.connection.execute(query, values)
-
-
-def _statements(script: str) -> Iterator[str]:
-    """The statements of a script one by one: executescript would commit before it begins."""
-    statement = ""
-    for line in script.splitlines(keepends=True):
-        statement += line
-        if sqlite3.complete_statement(statement):
-            yield statement
-            statement = ""
 
 
 def _now() -> str:

@@ -11,7 +11,6 @@ class Identities:
     """Those whom a gradebook knew when a run began, by all that is theirs alone."""
 
     def __init__(self, book: Gradebook, root: str) -> None:
-        self._root = root
         self._found: dict[tuple[str, str], Known | None] = {}
         for known in book.all_known():
             key, _, email, login, sis, canvas, moodle, *_ = known.told

@@ -2,9 +2,9 @@
 
 import time
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from functools import partial
+from functools import cache
 
 from grader.classroom.pool import Lost
 from grader.classroom.work import Class, Graded, Task, failed, grade_all
@@ -19,9 +19,9 @@ _TRIES = 3
 class Queue:
     """Hands tasks out and takes results in. A hand-in whose grading is lost is tried alone, and then is `errored`."""
 
-    def __init__(self, executor: Executor, workers: int, common: Class, rubric: Rubric) -> None:
+    def __init__(self, executor: Executor, workers: int, common: Callable[[], Class], rubric: Rubric) -> None:
         self._executor, self._workers, self._rubric = executor, workers, rubric
-        self._grade = partial(grade_all, common)
+        self._common = cache(common)
         self._waiting: deque[Task] = deque()
         self._alone: deque[tuple[Task, int]] = deque()
         self._out: dict[Future[list[Graded]], tuple[Sequence[Task], int]] = {}
@@ -80,7 +80,7 @@ class Queue:
             self._submit([self._waiting.popleft() for _ in range(min(count, len(self._waiting)))], 1)
 
     def _submit(self, tasks: Sequence[Task], tries: int) -> None:
-        self._out[self._executor.submit(self._grade, tasks)] = (tasks, tries)
+        self._out[self._executor.submit(grade_all, self._common(), tasks)] = (tasks, tries)
 
     def _results(self, future: "Future[list[Graded]]") -> list[Graded]:
         tasks, tries = self._out.pop(future)

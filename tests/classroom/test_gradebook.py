@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from grader.classroom import gradebook as module
+from grader.classroom import database as module
 from grader.classroom.gradebook import Gradebook
 from grader.classroom.marking import mark
 from grader.classroom.schema import APPLICATION_ID, STEPS
