@@ -1,17 +1,16 @@
 """The pieces that reports in the terminal are made of: source excerpts, lists of problems, lines that wrap."""
 
-import re
 from collections.abc import Callable
 
 from rich.console import Console
 from rich.text import Text
 
+from grader.report.places import excerpt
 from grader.report.text import printable
 from grader.robot.catalogue import Problem
 from grader.robot.source import Location, Source
 
 SEVERITY_STYLES = {"error": "bold red", "warning": "yellow", "note": "cyan"}
-_MEANT = re.compile(r"""[^\s=<>"'/]+\s*=\s*(?:"[^"]*"?|'[^']*'?)|<[^\s>]*[^>]*>?|[\w.]+""")
 _MOST_SHOWN = 30
 
 
@@ -25,30 +24,13 @@ def wrapped(console: Console, text: Text, indent: int, head: Text | None = None)
 
 def show_excerpt(console: Console, source: Source, where: Location, indent: int, style: str = "red") -> None:
     """Print the source line of a place, with what is meant underlined."""
-    line = source.line(where.line)
-    start = where.column - 1
-    found = _MEANT.match(line, start)
-    width = len(found[0].rstrip()) if found else 1
-    cut = len(line) - len(line.lstrip())
-    room = max(8, console.width - indent - len(str(where.line)) - 3)
-    if start + width - cut > room:
-        cut = max(0, min(start - 4, len(line)))
-    before, meant = printable(line[cut:start]), printable(line[start : start + width])
-    shown = (before + meant + printable(line[start + width :]))[:room].rstrip()
     number = str(where.line)
-    gutter = " " * len(number)
-    mark = "\u2500" if _unicode(console) else "-"
-    bar = "\u2502" if _unicode(console) else "|"
-    console.print(
-        Text(f"{' ' * indent}{number} {bar} ", style="dim") + Text(shown), overflow="ignore", no_wrap=True, crop=False
-    )
-    under = mark * max(1, min(len(meant), room - len(before)))
-    console.print(
-        Text(f"{' ' * indent}{gutter} {bar} ", style="dim") + Text(" " * len(before) + under, style=style),
-        overflow="ignore",
-        no_wrap=True,
-        crop=False,
-    )
+    quoted = excerpt(source, where, max(8, console.width - indent - len(number) - 3))
+    mark, bar = ("\u2500", "\u2502") if _unicode(console) else ("-", "|")
+    under = " " * quoted.start + mark * quoted.width
+    for gutter, text in ((number, Text(quoted.text)), (" " * len(number), Text(under, style=style))):
+        start = Text(f"{' ' * indent}{gutter} {bar} ", style="dim")
+        console.print(start + text, overflow="ignore", no_wrap=True, crop=False)
 
 
 def show_problems(
@@ -70,11 +52,6 @@ def show_problems(
             show_excerpt(console, source, where, min(len(head), console.width // 5))
     if len(problems) > _MOST_SHOWN:
         wrapped(console, Text(f"... and {len(problems) - _MOST_SHOWN} more"), 2)
-
-
-def place_words(where: Location) -> str:
-    """A place as editors take it: path:line:column."""
-    return f"{printable(where.path)}:{where.line}:{where.column}"
 
 
 def _unicode(console: Console) -> bool:

@@ -1,0 +1,69 @@
+"""Places in a student's files: what is meant there, the line that is quoted, and the path in the repository around it."""
+
+import re
+from typing import NamedTuple
+
+from grader.report.text import printable
+from grader.robot.source import Location, Source
+
+_MEANT = re.compile(r"""[^\s=<>"'/]+\s*=\s*(?:"[^"]*"?|'[^']*'?)|<[^\s>]*[^>]*>?|[\w.]+""")
+_MARGIN = 4  # characters that are shown before what is meant, where the line is cut
+
+
+class Excerpt(NamedTuple):
+    """A line of a file as far as there is room for it. What is meant begins at `start`, from 0, and is `width` long."""
+
+    text: str
+    start: int
+    width: int
+
+
+class Base(NamedTuple):
+    """Where a submission stands in a repository: the folder of its paths, which ends in a slash, or the archive that they are in."""
+
+    folder: str = ""
+    archive: str = ""
+
+
+class Place(NamedTuple):
+    """A place as seen from the repository's root, counted from 1; `end` is the column behind what is meant.
+
+    Without a line, the file as a whole is meant: it is an archive, or there is no better place.
+    """
+
+    path: str
+    line: int | None = None
+    column: int = 1
+    end: int = 1
+    text: str = ""
+
+
+def width_of(line: str, column: int) -> int:
+    """How many characters of a line are meant by a place in it: an attribute, a tag, a word; 1 where that cannot be told."""
+    found = _MEANT.match(line, column - 1)
+    return len(found[0].rstrip()) if found else 1
+
+
+def excerpt(source: Source, where: Location, room: int) -> Excerpt:
+    """The line of a place, cut to so many characters around what is meant."""
+    line = source.line(where.line)
+    start = where.column - 1
+    width = width_of(line, where.column)
+    cut = len(line) - len(line.lstrip())
+    if start + width - cut > room:
+        cut = max(0, min(start - _MARGIN, len(line)))
+    before, meant = printable(line[cut:start]), printable(line[start : start + width])
+    shown = (before + meant + printable(line[start + width :]))[:room].rstrip()
+    return Excerpt(shown, len(before), max(1, min(len(meant), room - len(before))))
+
+
+def placed(where: Location, source: Source | None, base: Base) -> Place:
+    """A place of a submission as seen from the repository's root."""
+    if base.archive:
+        return Place(base.archive)
+    if source is None:
+        return Place(base.folder + where.path, where.line, where.column, where.column)
+    line = source.line(where.line)
+    return Place(
+        base.folder + where.path, where.line, where.column, where.column + width_of(line, where.column), line.strip()
+    )

@@ -1,0 +1,160 @@
+"""What a report says, sentence by sentence, for every format to lay out in its own way. All of it is printable text."""
+
+from collections.abc import Iterator
+from decimal import Decimal
+from itertools import groupby
+from typing import NamedTuple
+
+from grader.grading.report import Exhibits, Report, Result
+from grader.report.points import points_words
+from grader.report.text import printable
+from grader.robot.catalogue import Problem
+from grader.robot.source import Location
+
+_VERDICTS = {
+    "clean": "ROS 2 loads the file",
+    "degraded": "ROS 2 loads the file, but drops some of it",
+    "rejected": "ROS 2 rejects the file",
+}
+_STATUSES = ("passed", "failed", "skipped", "pending", "errored", "marked by hand")
+
+
+class Answer(NamedTuple):
+    """A text that stands beside a criterion line by line: what was found, or the model answer."""
+
+    name: str
+    lines: tuple[str, ...]
+
+
+class Told(NamedTuple):
+    """What there is to say of a criterion beside its title and points. `place` is where to look, if it failed."""
+
+    sentences: tuple[str, ...]
+    answers: tuple[Answer, ...] = ()
+    place: Location | None = None
+    feedback: str = ""
+
+
+def score_words(report: Report) -> str:
+    """The score of all that can be earned: 58.5 / 70 points."""
+    return f"{points_words(report.score)} / {points_words(report.max_score)} points"
+
+
+def earned(results: tuple[Result, ...]) -> str:
+    """The points of some criteria together: 8/14."""
+    got = sum((result.points for result in results), Decimal(0))
+    most = sum((result.criterion.points for result in results), Decimal(0))
+    return f"{points_words(got)}/{points_words(most)}"
+
+
+def summary(report: Report) -> str:
+    """What ROS 2 makes of the URDF, and how many criteria passed, failed, and so on."""
+    submission = report.submission
+    path = printable(submission.path or "")
+    graded = f"{path}: not read" if submission.unread else "no URDF was submitted"
+    if submission.path is not None and submission.has_urdf:
+        verdict = _VERDICTS[submission.verdict] if submission.verdict else "xacro that a person has to expand"
+        graded = f"{path}: {verdict}"
+    decided = [each.outcome.status if each.ruling is None else "marked by hand" for each in report.results]
+    return f"{graded}; {', '.join(f'{decided.count(each)} {each}' for each in _STATUSES if each in decided)}"
+
+
+def package_words(report: Report) -> str:
+    """The package that is graded, and where it stands; empty where none is."""
+    package = report.submission.package
+    if package is None or not any(report.rubric.part(part).needs == "package" for part in report.parts):
+        return ""
+    return printable(f"package {package.name}{f' in {package.folder}' if package.folder else ''}")
+
+
+def pending_words(report: Report) -> str:
+    """How many points a person still has to give or refuse; empty where none wait."""
+    return f"{points_words(report.pending)} points wait for a person" if report.pending else ""
+
+
+def notes(report: Report) -> list[str]:
+    """What is worth knowing of how the submission was read."""
+    return [f"Note: {printable(note)}" for note in report.notes]
+
+
+def asides(report: Report) -> list[str]:
+    """What might have been graded and was not, and what was not read."""
+    passed_over = [f"Passed over {each.path}: {each.because}" for each in report.submission.passed_over]
+    return [printable(each) for each in (*passed_over, *(f"Left out: {each}" for each in report.submission.left_out))]
+
+
+def told(result: Result, report: Report) -> Told:
+    """What there is to say of one criterion, whatever became of it."""
+    outcome = result.outcome
+    if result.ruling is not None:
+        comment = f": {result.ruling.comment}" if result.ruling.comment else ""
+        by_hand = sentence(f"Marked by {result.ruling.by}{comment}")
+        if outcome.status == "pending":
+            return Told((by_hand,), _answers(result))
+        return Told((by_hand, sentence(f"The check: {outcome.status}. {outcome.message}")))
+    if outcome.status == "skipped":
+        return Told((f"Skipped, because {result.because} failed.",))
+    sentences = (sentence(outcome.message),)
+    if outcome.status == "pending":
+        return Told(sentences, _answers(result))
+    if outcome.status != "failed":
+        return Told(sentences)
+    is_there = report.submission.has_urdf or result.criterion.check.subject not in ("urdf", "robot")
+    return Told(sentences, (), outcome.location, printable(result.criterion.feedback) if is_there else "")
+
+
+def _answers(result: Result) -> tuple[Answer, ...]:
+    """What was answered, beside the model answer."""
+    if not isinstance(result.outcome.expected, str):
+        return ()
+    texts = (("Found", result.outcome.measured), ("Model answer", result.outcome.expected))
+    return tuple(
+        Answer(name, tuple(printable(line) for line in text.splitlines() if line.strip()))
+        for name, text in texts
+        if isinstance(text, str)
+    )
+
+
+def untold(report: Report) -> Iterator[Problem]:
+    """The problems that no failed criterion has told already."""
+    said = [(each.outcome.location, each.outcome.message) for each in report.results if each.outcome.status == "failed"]
+    for problem in report.problems:
+        if not any(where == problem.location and problem.message in message for where, message in said):
+            yield problem
+
+
+def evidence(report: Report) -> Iterator[tuple[str, list[tuple[str, bool]]]]:
+    """Part by part each piece of evidence with the files that were found, and whether there are any; then all other files."""
+    parts = {part.id: part.title for part in report.rubric.parts}
+    for part, asked in groupby(report.exhibits, key=lambda each: each.evidence.part):
+        yield printable(parts[part]), [(_exhibits(found), bool(found.files)) for found in asked]
+    if report.others:
+        yield "Other pictures and documents", [(printable(exhibit.words), True) for exhibit in report.others]
+
+
+def _exhibits(found: Exhibits) -> str:
+    listed = ", ".join(exhibit.words for exhibit in found.files)
+    return printable(f"{found.evidence.title}: {listed or 'missing'}")
+
+
+def sentence(message: str) -> str:
+    """A message as a printable sentence, with a capital and a full stop."""
+    text = printable(message)
+    if text.split(" ")[0].isalpha():  # an attribute of the file, as in xyz="0 0", stays as it is
+        text = text[:1].upper() + text[1:]
+    return text if text.endswith((".", "?")) else f"{text}."
+
+
+def place_words(where: Location) -> str:
+    """A place as editors take it: path:line:column."""
+    return f"{printable(where.path)}:{where.line}:{where.column}"
+
+
+def advice(report: Report) -> str:
+    """The command that says more; empty where nothing failed."""
+    first = next((each.criterion.id for each in report.results if each.outcome.status == "failed"), None)
+    if first is None:
+        return ""
+    rubric = "" if report.rubric.is_shipped else f" --rubric {printable(report.rubric.path.name)}"
+    whole = ", `grader inspect` shows the whole robot" if report.submission.has_urdf else ""
+    return f"`grader explain {first}{rubric}` says how it is decided{whole}."
