@@ -7,6 +7,7 @@ import typer
 
 from grader.cli.formats import Format
 from grader.cli.options import DEFAULT_RUBRIC, ClassFormat, DueOption, FormatOption, GradebookOption, Layout
+from grader.errors import GraderError
 
 
 def batch(
@@ -47,6 +48,8 @@ def batch(
     """
     from grader.cli.class_run import Wanted, grade_class  # what grades a class is loaded only for one
 
+    if Format.CLASSROOM50 in (report_format or ()):
+        raise GraderError("classroom50 is the result of one repository: `grader grade` writes it there")
     output = Wanted(reports, tuple(report_format or [Format.TERMINAL]), csv, output_format)
     grade_class(
         path,

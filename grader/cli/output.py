@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.errors import InputError
+from grader.report.text import without_commands
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -39,7 +40,7 @@ def complain(message: str) -> None:
     """Write one line to standard error, if there is one."""
     if sys.stderr is not None:
         with suppress(OSError):
-            print(f"grader: {message}", file=sys.stderr, flush=True)
+            print(without_commands(f"grader: {message}"), file=sys.stderr, flush=True)
 
 
 def draw(render: Callable[["Console"], None], *, to_file: bool = False) -> str:
@@ -61,7 +62,7 @@ def draw(render: Callable[["Console"], None], *, to_file: bool = False) -> str:
         no_color=True if os.environ.get("NO_COLOR") else None,
     )
     render(console)
-    return buffer.getvalue()
+    return without_commands(buffer.getvalue())
 
 
 def not_over(path: Path, gradebook: Path) -> None:

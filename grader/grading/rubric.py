@@ -123,7 +123,9 @@ def find_rubric(name: str) -> Path:
     path = Path(name)
     if not name:
         raise RubricError(("the name of the rubric is empty",))
-    if path.suffix == ".toml" or path.name != name or path.exists():
+    if (
+        path.suffix == ".toml" or path.name != name
+    ):  # a bare word is an id: no file of a submission's may take its place
         return path
     guess = did_you_mean(name, shipped) or f"; there are: {', '.join(shipped)} (or give the path of a .toml file)"
     raise RubricError((f"there is no rubric {name!r}{guess}",))

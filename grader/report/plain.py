@@ -1,7 +1,7 @@
 """Values as plain JSON data, the same bytes on every machine."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from decimal import Decimal
 from typing import Any
 
@@ -17,7 +17,18 @@ def to_json(data: Mapping[str, Any]) -> str:
     `indent` of the standard library would leave its C encoder aside and take three times as long.
     """
     lines = ",\n".join(f" {_ENCODER.encode(key)}: {_lines(value)}" for key, value in data.items())
-    return f"{{\n{lines}\n}}\n".encode("utf-8", "backslashreplace").decode()
+    return _harmless(f"{{\n{lines}\n}}\n")
+
+
+def to_json_list(data: Sequence[Mapping[str, Any]]) -> str:
+    """A list of objects as JSON text, a line for each."""
+    lines = ",\n".join(f" {_ENCODER.encode(each)}" for each in data)
+    return _harmless(f"[\n{lines}\n]\n" if lines else "[]\n")
+
+
+def _harmless(text: str) -> str:
+    """The same JSON without bytes that are no UTF-8, and without what GitHub's runner takes for a command in a log."""
+    return text.encode("utf-8", "backslashreplace").decode().replace("##[", "##\\u005b")
 
 
 def _lines(value: Any) -> str:

@@ -25,7 +25,7 @@ EFFECTS = {
 
 def rubric_text(rubric: Rubric) -> str:
     """A rubric part by part, a line for each criterion."""
-    lines = [f"{rubric.id}: {rubric.title} ({points_words(rubric.points)} points)"]
+    lines = [f"{rubric.id}: {rubric.title} ({points_words(rubric.points)} points)", f"sha256 {rubric.sha256}"]
     for part in rubric.parts:
         rows = [each for each in rubric.criteria if each.part == part.id]
         lines += ["", f"{part.id}: {part.title}"]

@@ -1,4 +1,10 @@
-"""Text from a submission, made harmless for a terminal."""
+"""Text from a submission, made harmless for a terminal and for the log of a CI job."""
+
+import re
+
+# The runner of GitHub Actions takes a line for a command that begins with `::`, whatever space is before it, or that holds
+# `##[` anywhere.
+_LINE_COMMAND = re.compile(r"^(\s*):(?=:)", re.MULTILINE)
 
 
 def printable(text: str) -> str:
@@ -9,6 +15,11 @@ def printable(text: str) -> str:
     if text.isprintable():
         return text
     return "".join(each if each.isprintable() else _spelt(each) for each in text)
+
+
+def without_commands(text: str) -> str:
+    """The text with a space put in wherever a CI system's runner would take a line of its log for a command."""
+    return _LINE_COMMAND.sub(r"\1: ", text).replace("##[", "## [")
 
 
 def _spelt(character: str) -> str:

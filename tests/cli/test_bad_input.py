@@ -160,7 +160,7 @@ def test_usage() -> None:
     refuse("grade", reference, "--fail-under", "many", words="--fail-under takes points or a percentage")
     refuse("grade", reference, "--format", "html", words="html")
     refuse("grade", reference, "--save", "json", words="--save takes FORMAT=FILE")
-    refuse("grade", reference, "--save", "html=x.html", words="terminal, json")
+    refuse("grade", reference, "--save", "html=x.html", words="terminal, markdown, json")
     refuse("grade", reference, "--save", "json=/nowhere/at/all.json", words="cannot write")
     refuse("grade", reference, "--hints", words="--hints")
     refuse("grade", words="PATH")

@@ -1,0 +1,95 @@
+"""What a CI job gets without being asked: places in the repository, and on GitHub Actions annotations and a job summary."""
+
+import os
+import sys
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.cli.output import complain
+
+if TYPE_CHECKING:
+    from grader.grading.report import Report
+    from grader.report.places import Base
+
+_SUMMARY_LIMIT = 1024 * 1024  # bytes that GitHub takes of a step's summary; it shows nothing of a longer one
+_CHECKOUTS = ("GITHUB_WORKSPACE", "CI_PROJECT_DIR")  # where GitHub and GitLab say that the repository is checked out
+
+
+def on_github() -> bool:
+    """Whether this runs in a job of GitHub Actions."""
+    return os.environ.get("GITHUB_ACTIONS") == "true"
+
+
+def tell_github(report: "Report", base: "Base", *, annotate: bool) -> None:
+    """Put findings on the lines that they are about, and the report into the job's summary.
+
+    Annotations go to standard error, which GitHub reads for commands as well: standard output is the report's alone.
+    """
+    from grader.report.github import render_github
+    from grader.report.markdown import cut_markdown
+
+    if annotate:
+        _annotate(render_github(report, base))
+    _add_to_summary(lambda room: cut_markdown(report, room))
+
+
+def tell_github_nothing(reason: str) -> None:
+    """Say where a student looks that nothing was graded, and why."""
+    from grader.report.github import command
+    from grader.report.markdown_text import escaped
+    from grader.report.text import printable
+
+    lines = [printable(line) for line in reason.splitlines()]
+    _annotate(command("error", None, "Nothing was graded", "\n".join(lines)))
+    text = "\n\n".join(("# Nothing was graded", *map(escaped, lines))) + "\n"
+    _add_to_summary(lambda room: text if len(text.encode()) <= room else "")
+
+
+def _annotate(commands: str) -> None:
+    if sys.stderr is not None:
+        with suppress(OSError):
+            sys.stderr.write(commands)
+            sys.stderr.flush()
+
+
+def _add_to_summary(text: Callable[[int], str]) -> None:
+    """Add a text, made for so many bytes, to what a step has in its summary already, as far as there is room."""
+    summary = os.environ.get("GITHUB_STEP_SUMMARY")
+    if not summary:
+        return
+    try:
+        with Path(summary).open("ab") as file:
+            taken = file.tell()
+            file.write(b"\n" * bool(taken) + text(_SUMMARY_LIMIT - taken - 1).encode("utf-8", "backslashreplace"))
+    except OSError as error:
+        complain(f"the job summary cannot be written: {error.strerror}")
+
+
+def base_of(path: str, *, is_single: bool) -> "Base":
+    """Where a submission stands in the repository around it, if there is one; a URDF on its own stands in its folder."""
+    from grader.report.places import Base
+
+    place = Path(path).resolve()
+    root = _repository(place)
+    if root is None or path == "-":
+        return Base()
+    if place.is_dir() or is_single:
+        folder = (place if place.is_dir() else place.parent).relative_to(root).as_posix()
+        return Base("" if folder == "." else f"{folder}/")
+    return Base(archive=place.relative_to(root).as_posix())
+
+
+def _repository(place: Path) -> Path | None:
+    """The root of the repository that a path is in: as the CI system says, by its `.git`, or else the current folder."""
+    around = [place, *place.parents]
+    for name in _CHECKOUTS:
+        checkout = Path(os.environ.get(name) or os.sep).resolve()
+        if checkout in around[:-1]:  # the last is the file system's root
+            return checkout
+    for folder in around:
+        if (folder / ".git").exists():
+            return folder
+    here = Path.cwd()
+    return here if here in around else None

@@ -1,0 +1,136 @@
+"""One submission, from what was typed to reports and an exit code."""
+
+import os
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from decimal import Decimal, InvalidOperation
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from grader.cli.ci import base_of, on_github, tell_github, tell_github_nothing
+from grader.cli.formats import Format, render
+from grader.cli.output import complain, emit, save
+from grader.errors import GraderError, InputError
+
+if TYPE_CHECKING:
+    from grader.grading.report import Report
+    from grader.grading.rubric import Rubric
+
+_SHA256 = re.compile(r"[0-9a-fA-F]{64}")
+
+
+@dataclass(frozen=True, slots=True)
+class Threshold:
+    """The score from which on a run counts as passed: points, or percent of what can be earned."""
+
+    value: Decimal
+    is_percent: bool
+
+    @classmethod
+    def read(cls, text: str) -> "Threshold":
+        """The threshold that `--fail-under` names, as 58.5 or 80%; raises GraderError."""
+        try:
+            value = Decimal(text.removesuffix("%"))
+        except InvalidOperation:
+            value = Decimal("NaN")
+        if not value.is_finite() or value < 0:
+            raise GraderError(f"--fail-under takes points or a percentage such as 80%, not {text!r}")
+        return cls(value, text.endswith("%"))
+
+    def reached(self, score: Decimal, most: Decimal) -> bool:
+        """Whether a score of so many points is enough."""
+        return score * 100 >= self.value * most if self.is_percent else score >= self.value
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What is to be graded and how it is reported."""
+
+    path: str
+    rubric: str
+    expected_rubric: str | None
+    parts: tuple[str, ...]
+    format: Format
+    saves: tuple[tuple[Format, Path], ...]
+    threshold: Threshold | None
+    max_size: int
+
+
+def read_saves(texts: Sequence[str]) -> tuple[tuple[Format, Path], ...]:
+    """What `--save` names: formats and files; raises GraderError."""
+    saves = tuple(map(_split_save, texts))
+    files = [os.path.realpath(file) for _, file in saves]
+    for _, file in saves:
+        if files.count(os.path.realpath(file)) > 1:
+            raise GraderError(f"--save names {file} twice, and one file cannot hold two reports")
+    return saves
+
+
+def _split_save(text: str) -> tuple[Format, Path]:
+    kind, equals, file = text.partition("=")
+    if kind not in list(Format) or not equals or file in ("", "-"):
+        raise GraderError(f"--save takes FORMAT=FILE with one of the formats {', '.join(Format)}, not {text!r}")
+    return Format(kind), Path(file)
+
+
+def grade_once(wanted: Wanted) -> tuple["Report", int]:
+    """Grade, save and print the reports that are wanted; the report and the exit code. Raises GraderError."""
+    try:
+        return _grade(wanted)
+    except GraderError as error:
+        if on_github():
+            tell_github_nothing(str(error))
+        raise
+
+
+def _grade(wanted: Wanted) -> tuple["Report", int]:
+    from grader.grading.grade import grade
+    from grader.report.text import printable
+    from grader.submission.submission import open_submission
+
+    if Format.CLASSROOM50 in (wanted.format, *(kind for kind, _ in wanted.saves)):
+        from grader.report.classroom50 import identity_from
+
+        identity_from(os.environ)  # refused before anything is graded
+    rules = _rubric(wanted)
+    submission = open_submission(wanted.path, wanted=rules.urdf, package=rules.package, limit=wanted.max_size)
+    report = grade(rules, submission, wanted.parts)
+    for result in report.results:
+        if result.traceback:
+            complain(printable(f"{result.criterion.id}: {result.traceback.strip().splitlines()[-1]}"))
+    base = base_of(wanted.path, is_single=submission.is_single)
+    for kind, file in wanted.saves:
+        save(file, render(report, kind, base))
+    text = render(report, wanted.format, base, to_file=False)
+    emit(text if wanted.format is Format.TERMINAL else text.encode("utf-8", "backslashreplace"))
+    if on_github():
+        tell_github(report, base, annotate=wanted.format is not Format.GITHUB)
+    return report, _exit_code(report, wanted.threshold)
+
+
+def _rubric(wanted: Wanted) -> "Rubric":
+    """The rubric, if it is the one that is expected and has the parts that are named."""
+    from grader.grading.rubric import load_rubric
+
+    expected = wanted.expected_rubric
+    if expected is not None and not _SHA256.fullmatch(expected):
+        raise GraderError(
+            f"--expect-rubric takes the 64 digits that `grader rubric show` prints as sha256, not {expected!r}"
+        )
+    rules = load_rubric(wanted.rubric)
+    if expected is not None and expected.lower() != rules.sha256:
+        raise InputError(
+            f"the rubric {rules.id} is not the one that is expected: its sha256 is {rules.sha256}, not {expected.lower()}"
+        )
+    for name in wanted.parts:
+        rules.part(name)
+    return rules
+
+
+def _exit_code(report: "Report", threshold: Threshold | None) -> int:
+    if report.counts("errored"):
+        return 3
+    if threshold is not None:
+        return 0 if threshold.reached(report.score, report.max_score) else 1
+    return 1 if report.counts("failed", "skipped") else 0

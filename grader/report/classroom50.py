@@ -1,0 +1,98 @@
+"""A report as Classroom 50's result.json, schema classroom50/result/v1. Its scores are whole numbers.
+
+Where points are none, all are given in tenths, hundredths and so on, so that nothing is rounded.
+https://github.com/foundation50/classroom50
+"""
+
+import re
+from collections.abc import Mapping
+from decimal import Decimal
+from typing import Any, NamedTuple
+
+from grader.errors import InputError
+from grader.grading.report import Report, Result
+from grader.report.findings import is_lost
+from grader.report.plain import to_json
+from grader.report.plain_text import criterion_lines
+from grader.report.text import printable
+
+_NEEDED = ("CLASSROOM", "ASSIGNMENT", "SUBMISSION_TAG", "USERNAME", "COMMIT_URL", "RELEASE_URL")
+_TAG = re.compile(r"submit/(\d{4}-\d\d-\d\d)T(\d\d)-(\d\d)-(\d\d)Z-.+")
+
+
+class Identity(NamedTuple):
+    """Whose result it is: what Classroom 50's runner says in environment variables."""
+
+    classroom: str
+    assignment: str
+    kind: str
+    owner: str
+    submission: str
+    commit: str
+    release: str
+    review: str
+    datetime: str
+
+
+def identity_from(environment: Mapping[str, str]) -> Identity:
+    """The identity that the runner's environment variables give; raises InputError, which names those that are missing."""
+    missing = [name for name in _NEEDED if not environment.get(name)]
+    if missing:
+        raise InputError(
+            f"classroom50 takes {', '.join(missing)} from the environment, where Classroom 50's runner sets them"
+        )
+    tag = environment["SUBMISSION_TAG"]
+    time = _TAG.fullmatch(tag)
+    if time is None:
+        raise InputError(f"SUBMISSION_TAG has to be as submit/2026-09-01T10-00-00Z-ab12cd3, not {printable(tag)!r}")
+    given = {name: printable(environment[name]) for name in _NEEDED}
+    return Identity(
+        given["CLASSROOM"],
+        given["ASSIGNMENT"],
+        printable(environment.get("ASSIGNMENT_TYPE") or "individual"),
+        given["USERNAME"],
+        given["SUBMISSION_TAG"],
+        given["COMMIT_URL"],
+        given["RELEASE_URL"],
+        printable(environment.get("REVIEW_URL") or environment["COMMIT_URL"]),
+        f"{time[1]}T{time[2]}:{time[3]}:{time[4]}Z",  # the runner puts the commit's own time in its place
+    )
+
+
+def render_classroom50(report: Report, who: Identity) -> str:
+    """The whole report. What a person still has to decide has not passed, and has no points yet."""
+    scale = _scale(report)
+    return to_json(
+        {
+            "schema": "classroom50/result/v1",
+            "classroom": who.classroom,
+            "assignment": who.assignment,
+            "assignment_type": who.kind,
+            "owner": who.owner,
+            "submission": who.submission,
+            "commit": who.commit,
+            "release": who.release,
+            "review": who.review,
+            "datetime": who.datetime,
+            "score": int(report.score * scale),
+            "max-score": int(report.max_score * scale),
+            "tests": [_test(each, report, scale) for each in report.results],
+        }
+    )
+
+
+def _scale(report: Report) -> int:
+    """By how much all points are multiplied to be whole: 1, 10, 100 and so on."""
+    points = [number for each in report.results for number in (each.points, each.criterion.points)]
+    digits = max((-int(each.normalize().as_tuple().exponent) for each in points), default=0)
+    return int(10 ** max(0, digits))
+
+
+def _test(result: Result, report: Report, scale: int) -> dict[str, Any]:
+    return {
+        "test-name": printable(f"{result.criterion.title} ({result.criterion.id})"),
+        "passed": not is_lost(result) and not result.is_open and result.points == result.criterion.points,
+        "score": int(Decimal(result.points) * scale),
+        "max-score": int(result.criterion.points * scale),
+        "message": "\n".join(criterion_lines(result, report)),
+    }

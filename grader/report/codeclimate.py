@@ -1,0 +1,32 @@
+"""A report as the part of Code Climate's JSON that GitLab shows beside a merge request: one issue for each finding.
+
+https://docs.gitlab.com/ci/testing/code_quality/#code-quality-report-format
+"""
+
+from grader.grading.report import Report
+from grader.report.findings import Level, findings, whole
+from grader.report.places import Base
+from grader.report.plain import to_json_list
+from grader.report.points import points_words
+from grader.report.text import printable
+
+_SEVERITIES: dict[Level, str] = {"error": "major", "warning": "minor", "note": "info"}
+
+
+def render_codeclimate(report: Report, base: Base) -> str:
+    """The findings of a report; an empty list where there is nothing to mend."""
+    issues = []
+    for each in findings(report, base):
+        place = each.place or whole(report, base)
+        cost = f" ({points_words(each.lost)} points)" if each.lost else ""
+        text = each.text.replace("\n", " ")
+        issues.append(
+            {
+                "description": f"{each.title}{cost}: {text}" if each.title else text,
+                "check_name": each.rule,
+                "fingerprint": each.fingerprint,
+                "severity": _SEVERITIES[each.level],
+                "location": {"path": printable(place.path), "lines": {"begin": place.line or 1}},
+            }
+        )
+    return to_json_list(issues)

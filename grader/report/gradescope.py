@@ -1,0 +1,60 @@
+"""A report as Gradescope's results.json: a test for each criterion, with the points that it earns.
+
+What a person still has to decide has no points here, because Gradescope would show them as lost; they are given there by hand.
+https://gradescope-autograders.readthedocs.io/en/latest/specs/#output-format
+"""
+
+from typing import Any
+
+from grader.grading.report import Report, Result
+from grader.report.findings import is_lost
+from grader.report.markdown import criterion_markdown, whole_markdown
+from grader.report.plain import exact, to_json
+from grader.report.points import points_words
+from grader.report.text import printable
+
+
+def render_gradescope(report: Report) -> str:
+    """The whole report. It is visible to the student at once, unless the assignment's settings hide it."""
+    return to_json(
+        {
+            "score": exact(report.score),
+            "output": whole_markdown(report),
+            "output_format": "md",
+            "test_output_format": "md",
+            "test_name_format": "text",
+            "visibility": "visible",
+            "stdout_visibility": "hidden",
+            "extra_data": {
+                "grader": report.version,
+                "rubric": printable(report.rubric.id),
+                "rubric_sha256": report.rubric.sha256,
+                "submission_sha256": report.submission.sha256,
+                "pending": exact(report.pending),
+            },
+            "tests": [_test(each, report) for each in report.results],
+        }
+    )
+
+
+def _test(result: Result, report: Report) -> dict[str, Any]:
+    criterion = result.criterion
+    parts = [part.id for part in report.rubric.parts]
+    of_part = [each.id for each in report.rubric.criteria if each.part == criterion.part]
+    number = f"{parts.index(criterion.part) + 1}.{of_part.index(criterion.id) + 1}"
+    decided = {
+        "score": exact(result.points),
+        "max_score": exact(criterion.points),
+        "status": "failed" if is_lost(result) or result.outcome.status == "skipped" else "passed",
+    }
+    most = f" (up to {points_words(criterion.points)} points, given by a person)" if result.is_open else ""
+    return {
+        **({} if result.is_open else decided),
+        "name": printable(criterion.title) + most,
+        "number": number,
+        "output": criterion_markdown(result, report),
+        "output_format": "md",
+        "tags": [criterion.id, criterion.part, result.outcome.status],
+        "visibility": "visible",
+        "extra_data": {"id": criterion.id, "status": result.outcome.status, "because": result.because},
+    }

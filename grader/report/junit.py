@@ -1,0 +1,93 @@
+"""A report as JUnit XML: a suite for each part, a test case for each criterion. Jenkins, GitLab and others show it.
+
+A failure is the student's, an error the grader's own; what a person still has to decide is skipped. Times are left out: the
+same submission gives the same report.
+"""
+
+from itertools import groupby
+from typing import Any
+
+from lxml import etree
+
+from grader.grading.report import Report, Result
+from grader.report.findings import is_lost
+from grader.report.places import Base
+from grader.report.plain_text import criterion_lines, headline, problem_line, provenance
+from grader.report.points import points_words
+from grader.report.text import printable
+from grader.report.words import score_words, told, untold
+
+
+def render_junit(report: Report, base: Base) -> str:
+    """The whole report; paths are those in the repository, `base` is where the submission stands in it."""
+    top = etree.Element("testsuites", {"name": printable(report.rubric.title), **_counts(report.results)})
+    titles = {part.id: part.title for part in report.rubric.parts}
+    said = [score_words(report), *headline(report), *map(problem_line, untold(report)), provenance(report)]
+    suites = [
+        (titles[part], tuple(some)) for part, some in groupby(report.results, key=lambda each: each.criterion.part)
+    ]
+    for number, (title, results) in enumerate(suites or [(report.rubric.title, ())]):
+        suite = etree.SubElement(top, "testsuite", {"name": printable(title), **_counts(results)})
+        if number == 0:  # what is said of the submission as a whole has no place of its own that every reader shows
+            _properties(suite, _whole(report))
+        for result in results:
+            _case(suite, result, report, base)
+        if number == 0:
+            etree.SubElement(suite, "system-out").text = "\n".join(said) + "\n"
+    etree.indent(top)
+    return etree.tostring(top, encoding="utf-8", xml_declaration=True).decode() + "\n"
+
+
+def _counts(results: tuple[Result, ...]) -> dict[str, str]:
+    kinds = [_kind(each) for each in results]
+    named = {"failures": "failure", "errors": "error", "skipped": "skipped"}
+    return {"tests": str(len(kinds)), **{key: str(kinds.count(kind)) for key, kind in named.items()}}
+
+
+def _kind(result: Result) -> str:
+    """The element that says what became of a criterion; empty where it has all points."""
+    if is_lost(result):
+        return "error" if result.outcome.status == "errored" and result.ruling is None else "failure"
+    return "skipped" if result.ruling is None and result.outcome.status in ("skipped", "pending") else ""
+
+
+def _whole(report: Report) -> dict[str, str]:
+    submission = report.submission
+    return {
+        "score": points_words(report.score),
+        "max_score": points_words(report.max_score),
+        "pending": points_words(report.pending),
+        "submission": printable(submission.id),
+        "submission_sha256": submission.sha256 or "",
+        "rubric": printable(report.rubric.id),
+        "rubric_sha256": report.rubric.sha256,
+        "grader": report.version,
+    }
+
+
+def _case(suite: Any, result: Result, report: Report, base: Base) -> None:
+    criterion = result.criterion
+    case = etree.SubElement(
+        suite,
+        "testcase",
+        name=printable(f"{criterion.title} ({criterion.id})"),
+        classname=f"{report.rubric.id}.{criterion.part}",
+    )
+    place = told(result, report).place
+    if place is not None and not base.archive:
+        case.set("file", printable(base.folder + place.path))
+        case.set("line", str(place.line))
+    _properties(case, {"points": f"{points_words(result.points)}/{points_words(criterion.points)}"})
+    lines = criterion_lines(result, report)
+    kind = _kind(result)
+    if not kind:
+        etree.SubElement(case, "system-out").text = "\n".join(lines) + "\n"
+        return
+    found = etree.SubElement(case, kind, type=result.outcome.status, message=lines[0])
+    found.text = "\n".join(lines) + "\n"
+
+
+def _properties(element: Any, values: dict[str, str]) -> None:
+    properties = etree.SubElement(element, "properties")
+    for name, value in values.items():
+        etree.SubElement(properties, "property", name=name, value=value)

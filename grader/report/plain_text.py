@@ -1,0 +1,50 @@
+"""A report's pieces as lines of plain text, for formats that hold text as it is. All of it is printable."""
+
+from collections.abc import Iterator
+
+from grader.grading.report import Report, Result
+from grader.report.places import excerpt
+from grader.report.text import printable
+from grader.report.words import asides, evidence, notes, package_words, pending_words, place_words, summary, told
+from grader.robot.catalogue import Problem
+from grader.robot.source import Location
+
+_ROOM = 120  # characters of a quoted line
+
+
+def headline(report: Report) -> list[str]:
+    """What is said of the submission as a whole, beside its score."""
+    said = [summary(report), package_words(report), pending_words(report), *notes(report), *asides(report)]
+    shown = [f"Evidence, {part}: {words}" for part, lines in evidence(report) for words, _ in lines]
+    return [*filter(None, said), *shown]
+
+
+def criterion_lines(result: Result, report: Report) -> list[str]:
+    """What is said of one criterion: what was found, where it stands, what was answered, how to mend it."""
+    what = told(result, report)
+    lines = list(what.sentences)
+    if what.place is not None:
+        lines += [place_words(what.place), *quoted_lines(what.place, report)]
+    for answer in what.answers:
+        lines += [f"{answer.name}:", *(f"  {line}" for line in answer.lines)]
+    return [*lines, what.feedback] if what.feedback else lines
+
+
+def quoted_lines(where: Location, report: Report) -> Iterator[str]:
+    """The line of a place with what is meant underlined, as far as the file is at hand."""
+    source = report.submission.source(where.path)
+    if source is not None:
+        quoted = excerpt(source, where, _ROOM)
+        number = str(where.line)
+        yield f"{number} | {quoted.text}"
+        yield f"{' ' * len(number)} | {' ' * quoted.start}{'-' * quoted.width}"
+
+
+def problem_line(problem: Problem) -> str:
+    """A problem with its code, its severity and its place."""
+    return f"{problem.code} {problem.severity} {place_words(problem.location)}: {printable(problem.message)}"
+
+
+def provenance(report: Report) -> str:
+    """Which grader has decided, and by which rubric: its hash shows whether it is the one that was meant."""
+    return f"grader {report.version}, rubric {printable(report.rubric.id)}, sha256 {report.rubric.sha256}"
