@@ -1,0 +1,42 @@
+"""pre-commit runs the check before a commit in a student's repository."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from tests.ci.conftest import ROOT, git, repository
+
+
+def test_a_commit_is_held_back(tmp_path: Path, published: Path) -> None:
+    """A robot with a mistake cannot be committed, a right one can; the arguments of the hook are the grader's."""
+    work = tmp_path / "work"
+    shutil.copytree(ROOT / "submissions" / "several-mistakes", work)
+    (work / ".pre-commit-config.yaml").write_text(
+        f"repos:\n  - repo: {published.as_uri()}/YOUR-ORG/grader\n    rev: v1\n    hooks:\n"
+        "      - id: grader\n        args: [--rubric, lab6, --part, task1]\n",
+        encoding="utf-8",
+    )
+    repository(work)
+    held = _commit(work, tmp_path / "home")
+    assert held.returncode == 1
+    assert "lidar-frame" in held.stdout
+    assert "42 / 70 points" in held.stdout
+    (work / "my_robot.urdf").write_bytes((ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf").read_bytes())
+    git(work, "add", "--all")
+    let_through = _commit(work, tmp_path / "home")
+    assert let_through.returncode == 0, let_through.stdout + let_through.stderr
+
+
+def _commit(work: Path, home: Path) -> subprocess.CompletedProcess[str]:
+    """What pre-commit does at a commit; what it installs is kept for the next time."""
+    return subprocess.run(
+        [sys.executable, "-m", "pre_commit", "run", "--all-files"],
+        cwd=work,
+        env={**os.environ, "PRE_COMMIT_HOME": str(home), "GIT_CONFIG_GLOBAL": os.devnull},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=300,
+    )

@@ -1,0 +1,240 @@
+"""The steps of the action and of the workflows, run as GitHub's runner runs them."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+import pytest
+
+from tests.ci.conftest import repository
+from tests.ci.runner import Done, Runner, composite, load
+
+ROOT = Path(__file__).parent.parent.parent
+WORKFLOWS = ROOT / "docs" / "ci"
+
+pytestmark = [
+    pytest.mark.xdist_group("steps"),  # what is installed once is used by all of them
+    pytest.mark.skipif(os.name == "nt" or shutil.which("bash") is None, reason="the action's steps are for bash"),
+]
+
+
+def instead_of_github(host: Path) -> dict[str, str]:
+    """What has git fetch from a folder what it is told to fetch from GitHub."""
+    key, value = f"url.{host.as_uri()}/.insteadOf", "https://github.com/"
+    return {"GIT_CONFIG_COUNT": "1", "GIT_CONFIG_KEY_0": key, "GIT_CONFIG_VALUE_0": value}
+
+
+def nothing(_runner: Runner, _given: Mapping[str, str]) -> Done:
+    """An action that has nothing to do here."""
+    return Done(0, "", "")
+
+
+@pytest.fixture(scope="session")
+def temp(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The temporary folder of a job, in which the action is installed once."""
+    temp = tmp_path_factory.mktemp("temp")
+    installing = Runner(temp, temp)
+    installing.contexts = {"github.action_path": str(ROOT), "github.action_repository": "", "inputs.version": ""}
+    done = installing.step(load(ROOT / "action.yml")["runs"]["steps"][0])
+    assert done.code == 0, done.stderr
+    return temp
+
+
+class Job:
+    """The second step of the action, in a student's repository."""
+
+    def __init__(self, workspace: Path, temp: Path) -> None:
+        self.runner = Runner(workspace, temp)
+        action = load(ROOT / "action.yml")
+        self.step = action["runs"]["steps"][1]
+        self.defaults = {f"inputs.{name}": about["default"] for name, about in action["inputs"].items()}
+
+    def grade(self, **inputs: str) -> Done:
+        """Run it with some inputs; `_` stands for `-` in their names."""
+        given = {f"inputs.{name.replace('_', '-')}": value for name, value in inputs.items()}
+        self.runner.contexts = {**self.defaults, **given}
+        self.runner.summary = ""
+        return self.runner.step(self.step)
+
+    def output(self, name: str) -> str:
+        """One of the outputs."""
+        return self.runner.value(f"${{{{ steps.grade.outputs.{name} }}}}")
+
+
+@pytest.fixture
+def job(tmp_path: Path, temp: Path) -> Job:
+    """A job in a repository with the reference in it."""
+    shutil.copytree(ROOT / "submissions" / "reference", tmp_path / "work")
+    return Job(tmp_path / "work", temp)
+
+
+def test_a_green_check(job: Job) -> None:
+    """A robot without mistakes ends with 0, and gives score, summary and reports."""
+    done = job.grade()
+    assert done.code == 0, done.stderr
+    assert (job.output("score"), job.output("max-score"), job.output("pending")) == ("90", "100", "10")
+    assert job.runner.summary.startswith("# 90 / 100 points")
+    for kind in ("json", "markdown", "junit", "sarif"):
+        assert Path(job.output(f"report-{kind}")).stat().st_size > 0, kind
+    assert json.loads(Path(job.output("report-json")).read_text(encoding="utf-8"))["score"] == 90
+    assert "::error" not in done.stderr + done.stdout
+
+
+def test_a_red_check(job: Job, tmp_path: Path) -> None:
+    """A mistake ends with 1, is annotated on its line, and gives outputs all the same."""
+    [urdf] = (tmp_path / "work").rglob("*.urdf")
+    urdf.write_bytes((ROOT / "submissions" / "several-mistakes" / "my_robot.urdf").read_bytes())
+    done = job.grade()
+    path = urdf.relative_to(tmp_path / "work").as_posix()
+    assert done.code == 1
+    assert f"::error file={path},line=39,endLine=39,col=15,endColumn=30,title=lidar-frame (6 points)::" in done.stderr
+    assert job.output("score") == "62"
+    assert "lidar-frame" in job.runner.summary
+
+
+def test_inputs(job: Job) -> None:
+    """Threshold, parts, path and rubric are those that are given."""
+    assert job.grade(fail_under="95").code == 1
+    assert job.grade(fail_under="90").code == 0
+    done = job.grade(part="task1 questions", path=".")
+    assert (done.code, job.output("max-score")) == (0, "78")
+    assert job.grade(rubric="no-such-lab").code == 2
+
+
+def test_nothing_graded(job: Job, tmp_path: Path) -> None:
+    """Where nothing can be graded the check is red, says why, and gives no score at all, not even an older one."""
+    assert job.grade().code == 0
+    shutil.rmtree(tmp_path / "work")
+    (tmp_path / "work").mkdir()
+    done = job.grade()
+    assert done.code == 2
+    assert "::error title=Nothing was graded::" in done.stderr
+    assert "Nothing was graded" in job.runner.summary
+    assert (job.output("score"), job.output("report-json")) == ("", "")
+
+
+def test_another_rubric_is_refused(job: Job) -> None:
+    """With the hash of another rubric nothing is graded."""
+    assert job.grade(expect_rubric="0" * 64).code == 2
+    right = json.loads(_report(job))["rubric"]["sha256"]
+    assert job.grade(expect_rubric=right).code == 0
+
+
+def _report(job: Job) -> str:
+    assert job.grade().code == 0
+    return Path(job.output("report-json")).read_text(encoding="utf-8")
+
+
+def test_inputs_are_no_commands(job: Job, tmp_path: Path) -> None:
+    """Nothing in an input is run, and none is taken for an option."""
+    for text in ("$(touch owned)", "; touch owned", "`touch owned`", '" && touch owned "', "--help"):
+        for name in ("path", "rubric", "part", "fail_under", "expect_rubric"):
+            assert job.grade(**{name: text}).code == 2, (name, text)
+    assert not list(tmp_path.rglob("owned"))
+
+
+def test_modules_in_the_repository_are_not_imported(job: Job, tmp_path: Path) -> None:
+    """Files that are named as Python's own modules, or as the grader, are a student's files and nothing else."""
+    for name in ("json.py", "sys.py", "grader.py", "typing.py", "sitecustomize.py", "venv.py", "pip.py"):
+        (tmp_path / "work" / name).write_text("raise SystemExit('imported')\n", encoding="utf-8")
+    shutil.copytree(ROOT / "rubrics", tmp_path / "work" / "rubrics")
+    done = job.grade()
+    assert (done.code, job.output("score")) == (0, "90"), done.stderr
+
+
+def test_the_student_workflow(tmp_path: Path, temp: Path) -> None:
+    """The template for student repositories runs from checkout to artifact, green and red."""
+    workflow = load(WORKFLOWS / "student-repository.yml")
+    kept: list[str] = []
+
+    def upload(runner: Runner, given: Mapping[str, str]) -> Done:
+        kept.extend(sorted(path.name for path in Path(given["path"]).iterdir()))
+        return Done(0, "", "")
+
+    for sample, code in (("reference", 0), ("missing-import-os", 1)):
+        shutil.copytree(ROOT / "submissions" / sample, tmp_path / sample)
+        runner = Runner(tmp_path / sample, temp)
+        runner.actions = {
+            "actions/checkout@v6": nothing,
+            "YOUR-ORG/grader@v1": composite(ROOT),
+            "actions/upload-artifact@v6": upload,
+        }
+        assert runner.job(workflow["jobs"]["grade"]["steps"]) == code, runner.done
+    assert kept == ["junit.xml", "report.json", "report.md", "report.sarif"] * 2
+
+
+def test_a_version_is_taken_from_the_repository(tmp_path: Path, published: Path) -> None:
+    """The input `version` installs that tag; what is no tag is refused before anything is installed."""
+    action = load(ROOT / "action.yml")
+    runner = Runner(tmp_path, tmp_path, instead_of_github(published))
+    for version, code in (("; touch owned", 2), ("--help", 2), ("v1", 0)):
+        path = f"/home/runner/work/_actions/YOUR-ORG/grader/{version}"  # the context is empty on some runners
+        runner.contexts = {
+            "github.action_path": path,
+            "github.action_repository": "",
+            "inputs.version": version,
+        }
+        assert runner.step(action["runs"]["steps"][0]).code == code
+    done = subprocess.run([tmp_path / "grader-venv/bin/grader", "--version"], capture_output=True, check=False)
+    assert done.stdout.startswith(b"grader ")
+    assert not (tmp_path / "owned").exists()
+
+
+def test_the_class_workflow(tmp_path: Path, published: Path) -> None:
+    """The template for a class organisation fetches every student's repository and grades it, whoever broke what."""
+    host = tmp_path / "host"
+    for name, sample in (("lab6-ada", "reference"), ("lab6-grace", "missing-import-os"), ("other", "reference")):
+        shutil.copytree(ROOT / "submissions" / sample, host / name)
+        repository(host / name)
+    bin_ = tmp_path / "bin"
+    bin_.mkdir()
+    (bin_ / "gh").write_text(
+        "#!/usr/bin/env bash\n"
+        f'if [ "$2" = list ]; then ls "{host}"; echo lab6-gone; exit; fi\n'
+        f'git clone --quiet "{host}/${{3#*/}}" "$4" "${{@:6}}"\n',
+        encoding="utf-8",
+    )
+    (bin_ / "gh").chmod(0o755)
+    workflow = load(WORKFLOWS / "class.yml")
+    runner = Runner(tmp_path / "instructors", tmp_path / "temp")
+    for folder in (runner.workspace, runner.temp):
+        folder.mkdir()
+    (runner.workspace / "roster.csv").write_text(
+        "login,name\nada,Ada L\ngrace,Grace H\nalan,Alan T\n", encoding="utf-8"
+    )
+    runner.variables = {"PATH": f"{bin_}{os.pathsep}{os.environ['PATH']}", **instead_of_github(published)}
+    runner.contexts = {"secrets.CLASS_TOKEN": "none"}
+    runner.actions = dict.fromkeys(
+        ("actions/checkout@v6", "actions/setup-python@v6", "actions/upload-artifact@v6"), nothing
+    )
+    assert runner.job(workflow["jobs"]["grade"]["steps"], workflow["env"]) == 0, runner.done
+    said = "".join(each.stdout for _, each in runner.done)
+    assert "::warning title=lab6-gone::" in said
+    grades = (runner.temp / "grades.csv").read_text(encoding="utf-8")
+    assert len(grades.splitlines()) == 4
+    assert {path.name for path in (runner.temp / "reports").iterdir()} == {"ada.md", "grace.md"}
+
+
+def test_the_classroom50_autograder(tmp_path: Path, published: Path) -> None:
+    """The autograder for Classroom 50 writes both files in the student's checkout, and ends well with a bad mark."""
+    work = tmp_path / "work"
+    shutil.copytree(ROOT / "submissions" / "missing-import-os", work)
+    urls = ("COMMIT_URL", "RELEASE_URL", "REVIEW_URL")
+    who = {"CLASSROOM": "robo", "ASSIGNMENT": "lab6", "USERNAME": "ada", **dict.fromkeys(urls, "https://example.org")}
+    variables = {**who, "SUBMISSION_TAG": "submit/2026-09-01T10-00-00Z-ab12cd3", **instead_of_github(published)}
+    done = subprocess.run(
+        [sys.executable, str(WORKFLOWS / "classroom50.py")],
+        cwd=work,
+        env={**os.environ, **variables},
+        capture_output=True,
+        check=False,
+        timeout=300,
+    )
+    assert done.returncode == 0, done.stderr
+    result = json.loads((work / "result.json").read_text(encoding="utf-8"))
+    assert (result["owner"], result["score"], result["max-score"]) == ("ada", 89, 90)
+    assert "setup-imports" in (work / "release-body.md").read_text(encoding="utf-8")
