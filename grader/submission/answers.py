@@ -26,7 +26,8 @@ _NUMBERED = re.compile(r"^\(?([1-9]\d)[.):]\s+")
 _NO_ANSWERS = frozenset(
     {"CMakeLists.txt", "requirements.txt", "LICENSE.txt", "LICENSE.md", "top_level.txt", "SOURCES.txt"}
 )
-_XML = re.compile(r"\s*<(?:\?xml|!--|robot|launch|package)")  # how a file of another kind begins
+# How a file begins that holds no answers: one of another kind, or a report of the grader, which repeats questions and answers.
+_OTHER = re.compile(r"\s*<(?:\?xml|!--|robot|launch|package)|(?:# )?[\d.]+ / [\d.]+ points(?:  |: )|::notice title=[\d.]+ / ")
 
 
 class Passage(NamedTuple):
@@ -78,7 +79,7 @@ def _documents(tree: Tree, files: Sequence[str], unread: list[str]) -> Iterator[
         except InputError as error:
             unread.append(str(error))
             continue
-        if not _XML.match(text):
+        if not _OTHER.match(text):
             yield file, text.splitlines()
 
 
