@@ -19,6 +19,7 @@ from pathlib import Path
 
 from lxml import etree
 
+from grader.cli.formats import Format
 from grader.grading.grade import grade
 from grader.grading.rubric import load_rubric
 from grader.report.as_json import render_json
@@ -33,6 +34,10 @@ URDF = PACKAGE / "urdf" / "my_robot.urdf"
 ZIPPED = ROOT / "submissions" / "equivalent-zipped-with-wrapper" / "lab6.zip"
 BARE = "import typer, lxml, numpy, rich"
 BARE_USED = "import typer, lxml.etree, numpy, rich.console"
+CLASSROOM = {
+    **dict.fromkeys(("CLASSROOM", "ASSIGNMENT", "USERNAME", "COMMIT_URL", "RELEASE_URL"), "lab6"),
+    "SUBMISSION_TAG": "submit/2026-09-01T10-00-00Z-ab12cd3",
+}
 CHAIN = (10, 100, 1_000, 10_000)
 
 
@@ -40,6 +45,7 @@ def main() -> None:
     """Print every figure of the page."""
     whole_process()
     whole_packages()
+    all_formats()
     warm_grading()
     warm_packages()
     inspecting()
@@ -68,6 +74,21 @@ def whole_packages(runs: int = 15) -> None:
     handed_in = {"the URDF alone": URDF, "package": PACKAGE, "workspace": WORKSPACE, "zip": ZIPPED}
     times = in_turn({name: process([*module, "grade", str(path)]) for name, path in handed_in.items()}, runs)
     table("Whole hand-ins as a whole process", times, "the URDF alone", "grade my_robot.urdf")
+
+
+def all_formats(runs: int = 25) -> None:
+    """One run that saves every format against the run that saves one, for a hand-in with mistakes and one without."""
+    for name in ("several-mistakes", "reference"):
+        command = [sys.executable, "-m", "grader", "grade", str(ROOT / "submissions" / name)]
+        with tempfile.TemporaryDirectory() as folder:
+            saves = {kind: f"{kind}={Path(folder, kind)}" for kind in Format}
+            commands = {
+                "one format": [*command, "--save", saves[Format.JSON]],
+                "all formats": [*command, *(word for save in saves.values() for word in ("--save", save))],
+            }
+            environment = {**process_environment(), **CLASSROOM}
+            times = in_turn({key: process(words, environment) for key, words in commands.items()}, runs)
+        table(f"All {len(saves)} formats of {name}", times, "one format", "--save json=FILE")
 
 
 def warm_packages(runs: int = 15) -> None:
@@ -175,14 +196,19 @@ def check_urdf() -> Path | None:
 
 def process(command: list[str], environment: dict[str, str] | None = None) -> Callable[[], float]:
     """A run of a whole process; what it takes in seconds."""
-    if environment is None:
-        environment = {**os.environ, "PYTHONPYCACHEPREFIX": str(Path(tempfile.gettempdir()) / "grader-benchmark")}
-        environment.pop("PYTHONDONTWRITEBYTECODE", None)  # an installed package has its bytecode
+    variables = process_environment() if environment is None else environment
 
     def run() -> float:
-        return once(lambda: subprocess.run(command, capture_output=True, env=environment, check=False))
+        return once(lambda: subprocess.run(command, capture_output=True, env=variables, check=False))
 
     return run
+
+
+def process_environment() -> dict[str, str]:
+    """The environment of a process that finds its bytecode ready, as an installed package does."""
+    environment = {**os.environ, "PYTHONPYCACHEPREFIX": str(Path(tempfile.gettempdir()) / "grader-benchmark")}
+    environment.pop("PYTHONDONTWRITEBYTECODE", None)
+    return environment
 
 
 def repeated(run: Callable[[], object], count: int) -> Callable[[], float]:
