@@ -18,7 +18,7 @@ def main() -> None:
 
 
 def _run(arguments: list[str]) -> int:
-    if arguments == ["--version"]:  # answered before anything is imported
+    if arguments in (["--version"], ["-V"]):  # answered before anything is imported
         from grader import __version__
 
         try:

@@ -15,6 +15,7 @@ FLOORS = {
     "grading": 4,
     "report": 6,
     "classroom": 5,
+    "bundle": 5,
     "cli": 7,
     "__main__": 8,
 }
@@ -29,10 +30,11 @@ ROOMS = {
     "docx": {"submission"},
     "pypdf": {"submission"},
     "numpy": {"robot"},
-    "tomllib": {"grading"},
+    "tomllib": {"grading", "bundle"},
     "sqlite3": {"classroom"},
     "pebble": {"classroom"},
     "distributed": {"classroom"},
+    "watchfiles": {"cli"},
     "csv": {"classroom"},
 }
 FILES = sorted(ROOT.rglob("*.py"))

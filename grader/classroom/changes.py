@@ -36,7 +36,7 @@ class Side(NamedTuple):
         """The run itself, or the newest one up to it; raises InputError where there is none."""
         runs = [run for run in self.book.runs() if run.id <= self.run]
         if not runs:
-            raise InputError(f"nothing has been graded into {printable_path(self.book.path)} yet")
+            raise self.book.nothing_graded()
         return runs[-1]
 
 
@@ -79,7 +79,8 @@ def last_two(book: Gradebook, before: int | None = None, after: int | None = Non
     """
     runs = {run.id: run for run in book.runs()}
     if len(runs) < 2:
-        raise InputError("there are no two runs to compare: grade again first, or name another gradebook")
+        again = f"grader batch PATH --gradebook {printable_path(book.path)}"
+        raise InputError(f"there are no two runs to compare: {again} makes one more, or name a second gradebook")
     for run in (before, after):
         if run is not None and run not in runs:
             raise InputError(f"there is no run {run}; there are: {', '.join(map(str, runs))}")

@@ -43,7 +43,9 @@ class Cluster(Executor):
             self._client = dask.Client(address, timeout=_PATIENCE, set_as_default=False)
         except Exception as error:  # noqa: BLE001  whatever a wrong address, another program or TLS brings about
             reason = str(error) or type(error).__name__
-            raise InputError(f"there is no Dask scheduler at {address or repr(address)}: {reason}") from None
+            raise InputError(
+                f"there is no Dask scheduler at {address or repr(address)}: {reason} (dask scheduler starts one)"
+            ) from None
         try:
             self.workers = self._checked(address, root)
         except BaseException:

@@ -17,7 +17,7 @@ def prepare(connection: sqlite3.Connection, shown: str) -> None:
     kind, version, tables = (int(connection.execute(query).fetchone()[0]) for query in queries)
     connection.execute("COMMIT")
     if tables and kind != APPLICATION_ID:
-        raise InputError(f"{shown} is a database, but no gradebook")
+        raise InputError(f"{shown} is a database, but no gradebook: name another file")
     if version > len(STEPS):
         raise InputError(f"{shown} was made by a newer grader: install that one, or name another file")
     _log_ahead(connection)

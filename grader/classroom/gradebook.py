@@ -55,6 +55,9 @@ class Gradebook:
             raise InputError(
                 f"there is no gradebook {self._shown}: grader batch PATH --gradebook {self._shown} makes one"
             )
+        if not path.parent.exists():
+            folder = printable_path(path.parent)
+            raise InputError(f"the gradebook {self._shown}: there is no folder {folder} (mkdir -p {folder} makes it)")
         with self.complaining():
             self.connection = sqlite3.connect(path, timeout=PATIENCE, isolation_level=None)
             try:
@@ -80,7 +83,14 @@ class Gradebook:
         try:
             yield
         except sqlite3.DatabaseError as error:
-            raise InputError(f"the gradebook {self._shown}: {error}") from None
+            is_another = error.sqlite_errorcode in (sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CANTOPEN)
+            advice = "; name another file" if is_another else ""
+            raise InputError(f"the gradebook {self._shown}: {error}{advice}") from None
+
+    def nothing_graded(self) -> InputError:
+        """What to say where there was no run yet."""
+        command = f"grader batch PATH --gradebook {self._shown}"
+        return InputError(f"nothing has been graded into {self._shown} yet: {command} does that")
 
     @contextmanager
     def transaction(self) -> Iterator[None]:

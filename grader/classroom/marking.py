@@ -53,7 +53,8 @@ def criterion_of(rubric: Rubric, name: str) -> Criterion:
     """The criterion of this id; raises InputError."""
     known = {criterion.id: criterion for criterion in rubric.criteria}
     if name not in known:
-        raise InputError(f"the rubric {rubric.id} has no criterion {name!r}{did_you_mean(name, known)}")
+        guess = did_you_mean(name, known)
+        raise InputError(f"the rubric {rubric.id} has no criterion {name!r}{guess} ({rubric.shown_by} lists them)")
     return known[name]
 
 

@@ -20,6 +20,7 @@ from grader.grading.record import Template, from_record
 from grader.grading.report import Report, Result, Ruling
 from grader.grading.rubric import Rubric
 from grader.robot.names import did_you_mean
+from grader.submission.files import printable_path
 
 _QUERY = (
     "SELECT id, key, name, email, login, sis, canvas, moodle, due, extension, days_late, expected, run, result, rubric,"
@@ -125,7 +126,7 @@ class Standings:
         """The rubric of the newest run; raises InputError where there was none."""
         runs = self.book.runs()
         if not runs:
-            raise InputError("nothing has been graded into this gradebook yet")
+            raise self.book.nothing_graded()
         return self.rubric(runs[-1].rubric)
 
     def points(self, standing: Standing) -> dict[str, Decimal]:
@@ -177,9 +178,9 @@ class Standings:
             listed = f"{', '.join(map(repr, keys[:5]))}{more}"
             raise InputError(f"{name!r} may be any of {listed}: name one by this key")
         rows = self.book.rows("SELECT key, login, name FROM student ORDER BY key LIMIT 5000")
-        raise InputError(
-            f"there is no {name!r} in the gradebook{did_you_mean(name, {each for row in rows for each in row})}"
-        )
+        guess = did_you_mean(name, {each for row in rows for each in row})
+        everyone = f"grader export csv --gradebook {printable_path(self.book.path)}"
+        raise InputError(f"there is no {name!r} in the gradebook{guess or f'; {everyone} lists everyone'}")
 
     def report(self, standing: Standing) -> Report:
         """The report on a student's newest hand-in, with the marks by hand in it; raises InputError where there is none."""

@@ -1,21 +1,37 @@
 """The `grader` command and its subcommands."""
 
+import os
 import re
 import sys
 from collections.abc import Sequence
 from importlib import import_module
-from typing import Annotated
 
 import typer
 
 from grader.cli.output import complain
 from grader.errors import GraderError, RubricError
+from grader.report.text import printable
 
 FAULT_OF_USE, FAULT_OF_OURS, INTERRUPTED = 2, 3, 130
 
 # In the order of the help. Each is the function of its name, or the group of commands, in the module of that name.
-COMMANDS = ("grade", "inspect", "batch", "mark", "review", "export", "diff", "stats", "explain", "schema", "rubric")
+COMMANDS = (
+    "grade",
+    "inspect",
+    "batch",
+    "mark",
+    "review",
+    "export",
+    "diff",
+    "stats",
+    "bundle",
+    "explain",
+    "schema",
+    "rubric",
+)
 
+COMPLETE = "_GRADER_COMPLETE"  # set by the shell when it asks for completions
+COMPLETION_OPTIONS = ("--show-completion", "--install-completion")
 _BELOW_ZERO = re.compile(r"-[.,]?[0-9]")
 _AWAITS_VALUE = re.compile(r"--[^=]+")  # --comment, behind which -1 is the comment
 
@@ -30,7 +46,12 @@ def _app(names: Sequence[str]) -> typer.Typer:
         pretty_exceptions_enable=False,
         context_settings={"help_option_names": ["-h", "--help"]},
     )
-    app.callback()(_main)
+    if len(names) > 1:
+        from grader.cli.root import root
+
+        app.callback()(root)
+    else:  # options of the grader itself stand before the command
+        app.callback()(_nothing)
     for name in names:
         command = getattr(import_module(f"grader.cli.{name}"), name)
         if isinstance(command, typer.Typer):
@@ -40,20 +61,24 @@ def _app(names: Sequence[str]) -> typer.Typer:
     return app
 
 
-def _main(
-    version: Annotated[bool, typer.Option("--version", help="Print the version and exit.")] = False,
-) -> None:
-    """Grade robotics lab submissions by what the robot does.
-
-    Start with: grader grade my_robot.urdf
-    """
+def _nothing() -> None:
+    """There is nothing to do before a command."""
 
 
 def run(arguments: Sequence[str]) -> int:
     """Run one command; the exit code. Whatever goes wrong is one clear line on standard error."""
     try:
-        named = [each for each in arguments[:1] if each in COMMANDS]
-        result = _app(named or COMMANDS)(_numbers_last(arguments), standalone_mode=False, prog_name="grader")
+        if os.environ.get(COMPLETE):  # the shell asks, and would show every error in the middle of what is typed
+            from grader.cli.completion import complete
+
+            return complete(_app, COMMANDS)
+        if arguments and arguments[0].partition("=")[0] in COMPLETION_OPTIONS:
+            from grader.cli.completion import set_up
+
+            return set_up(arguments)
+        result = _app(_named(arguments) or COMMANDS)(
+            _numbers_last(arguments), standalone_mode=False, prog_name="grader"
+        )
     except RubricError as error:
         for line in error.complaints:
             complain(line)
@@ -69,6 +94,16 @@ def run(arguments: Sequence[str]) -> int:
     except Exception as error:  # noqa: BLE001  no traceback ever reaches a user
         return _other(error)
     return result if isinstance(result, int) else 0
+
+
+def _named(arguments: Sequence[str]) -> list[str]:
+    """The command that is typed, if it is one; raises GraderError where the name of a file stands in its place."""
+    first = arguments[0] if arguments else "-"
+    if first in COMMANDS:
+        return [first]
+    if not first.startswith("-") and os.path.lexists(first):
+        raise GraderError(f"there is no command {first!r}: grader grade {printable(first)} grades it")
+    return []
 
 
 def _other(error: Exception) -> int:

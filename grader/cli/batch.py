@@ -6,7 +6,15 @@ from typing import Annotated
 import typer
 
 from grader.cli.formats import Format
-from grader.cli.options import DEFAULT_RUBRIC, ClassFormat, DueOption, FormatOption, GradebookOption, Layout
+from grader.cli.options import (
+    DEFAULT_RUBRIC,
+    ClassFormat,
+    DueOption,
+    FormatOption,
+    GradebookOption,
+    Layout,
+    RubricOption,
+)
 from grader.errors import GraderError
 
 
@@ -15,13 +23,15 @@ def batch(
         Path, typer.Argument(metavar="PATH", help="A folder with a child for each student, or an LMS's zip.")
     ],
     gradebook: GradebookOption,
-    rubric: Annotated[str, typer.Option(metavar="ID|FILE", help="The rubric: an id or a .toml file.")] = DEFAULT_RUBRIC,
+    rubric: RubricOption = DEFAULT_RUBRIC,
     jobs: Annotated[
         int | None, typer.Option(metavar="N", min=1, help="Worker processes; one a processor if not told.")
     ] = None,
     timeout: Annotated[float, typer.Option(metavar="SECONDS", min=0.1, help="The longest that one may take.")] = 60.0,
     roster: Annotated[Path | None, typer.Option(metavar="CSV", help="Who is in the class.")] = None,
-    layout: Annotated[Layout, typer.Option(help="How PATH is laid out.")] = Layout.AUTO,
+    layout: Annotated[
+        Layout, typer.Option(metavar="LAYOUT", help=f"How PATH is laid out: {', '.join(Layout)}.")
+    ] = Layout.AUTO,
     assignment: Annotated[str, typer.Option(metavar="NAME", help="The assignment, in nbgrader's layout.")] = "",
     reports: Annotated[Path | None, typer.Option(metavar="DIR", help="Write a report for each student here.")] = None,
     report_format: Annotated[
@@ -35,16 +45,16 @@ def batch(
     ] = None,
     output_format: FormatOption = ClassFormat.TERMINAL,
 ) -> int:
-    """Grade a class into a gradebook, many at a time; a second time only what is new or changed.
+    """Grade a whole class into a gradebook, many at a time.
 
-    Exits 0 when every submission has a result, whatever the marks. One that cannot be read, hangs or breaks the grader costs
+    A second time only what is new or changed is graded. Exits 0 when every submission has a result, whatever the marks. One that cannot be read, hangs or breaks the grader costs
     nobody else anything, and is listed.
 
     Examples:
 
-      grader batch submissions.zip --gradebook lab6.db --roster roster.csv --reports reports
+      grader batch submissions.zip --gradebook lab6.db --roster roster.csv
 
-      grader batch class/ --gradebook lab6.db --csv grades.csv
+      grader batch class/ --gradebook lab6.db --reports reports --csv grades.csv
     """
     from grader.cli.class_run import Wanted, grade_class  # what grades a class is loaded only for one
 

@@ -62,21 +62,28 @@ def _add_to_summary(text: Callable[[int], str]) -> None:
     try:
         with Path(summary).open("ab") as file:
             taken = file.tell()
-            file.write(b"\n" * bool(taken) + text(_SUMMARY_LIMIT - taken - 1).encode("utf-8", "backslashreplace"))
+            added = text(_SUMMARY_LIMIT - taken - 1).encode("utf-8", "backslashreplace")
+            if added:
+                file.write(b"\n" * bool(taken) + added)
     except OSError as error:
-        complain(f"the job summary cannot be written: {error.strerror}")
+        complain(f"the job summary cannot be written: {error.strerror or error}")
 
 
 def base_of(path: str, *, is_single: bool) -> "Base":
     """Where a submission stands in the repository around it, if there is one; a URDF on its own stands in its folder."""
     from grader.report.places import Base
 
-    place = Path(path).resolve()
-    root = _repository(place)
-    if root is None or path == "-":
+    if path == "-":
         return Base()
-    if place.is_dir() or is_single:
-        folder = (place if place.is_dir() else place.parent).relative_to(root).as_posix()
+    named = Path(path)
+    is_folder = named.is_dir()
+    # A file is called what it was named, whatever a link of that name leads to; of a folder the files count.
+    place = named.resolve() if is_folder else named.parent.resolve() / named.name
+    root = _repository(place)
+    if root is None:
+        return Base()
+    if is_folder or is_single:
+        folder = (place if is_folder else place.parent).relative_to(root).as_posix()
         return Base("" if folder == "." else f"{folder}/")
     return Base(archive=place.relative_to(root).as_posix())
 
@@ -91,5 +98,7 @@ def _repository(place: Path) -> Path | None:
     for folder in around:
         if (folder / ".git").exists():
             return folder
-    here = Path.cwd()
-    return here if here in around else None
+    with suppress(OSError):  # the current folder may be gone
+        here = Path.cwd()
+        return here if here in around else None
+    return None

@@ -21,7 +21,7 @@ from grader.cli.class_reports import write_reports
 from grader.cli.class_text import class_text
 from grader.cli.formats import Format
 from grader.cli.options import ClassFormat
-from grader.cli.output import complain, emit, not_over, save
+from grader.cli.output import complain, emit, no_folder, not_over, save
 from grader.cli.progress import ProgressDisplay
 from grader.errors import InputError
 from grader.grading.rubric import Rubric, load_rubric
@@ -140,6 +140,6 @@ def _check(wanted: Wanted, gradebook: Path, root: Path) -> None:
     if reports is not None and (reports.resolve() == root or root in reports.resolve().parents):
         raise InputError(f"{printable_path(reports)} is in the class folder, where it would be taken for a hand-in")
     if csv is not None and not csv.resolve().parent.is_dir():
-        raise InputError(f"cannot write {printable_path(csv)}: there is no such folder")
+        raise no_folder(csv)
     if csv is not None:
         not_over(csv, gradebook)

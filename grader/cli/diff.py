@@ -21,9 +21,9 @@ def diff(
     after: Annotated[int | None, typer.Option("--to", metavar="RUN", help="The number of the newer run.")] = None,
     output_format: FormatOption = ClassFormat.TERMINAL,
 ) -> int:
-    """Say who changed between two runs or two gradebooks, by how much, in which criteria, and why.
+    """Say whose grade changed between two runs, by how much, and why.
 
-    That is whether the submission, the rubric or the grader changed, or somebody marked by hand: since the older run began, and
+    The last two runs of a gradebook are compared, or two gradebooks. Why is whether the submission, the rubric or the grader changed, or somebody marked by hand: since the older run began, and
     until the run after the newer one did. What being late costs is not in it. Runs count from 1.
 
     Examples:

@@ -46,9 +46,9 @@ def export(
         typer.Option("--any-maximum", help="Write the points as they are, though the LMS counts to another maximum."),
     ] = False,
 ) -> int:
-    """Write everyone's current grade: the checks' points with the marks by hand, less what being late costs.
+    """Write everyone's grade, for a spreadsheet, Canvas or Moodle.
 
-    For Canvas and Moodle fill a file that the LMS has exported: only the cells of the grade (and Moodle's feedback) change,
+    That is the checks' points with the marks by hand, less what being late costs. For Canvas and Moodle fill a file that the LMS has exported: only the cells of the grade (and Moodle's feedback) change,
     and rows without a grade are left out, so that no grade that is there is lost. The maximum there has to be the rubric's.
     Exits 1 if --strict finds no match.
 
@@ -56,7 +56,7 @@ def export(
 
       grader export csv --gradebook lab6.db --output grades.csv
 
-      grader export canvas --gradebook lab6.db --into canvas.csv --output upload.csv
+      grader export canvas --gradebook lab6.db --into canvas.csv > upload.csv
     """
     from grader.classroom.gradebook import Gradebook
     from grader.classroom.lateness import read_time

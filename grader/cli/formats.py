@@ -5,7 +5,7 @@ from enum import StrEnum
 from functools import partial
 from typing import TYPE_CHECKING
 
-from grader.cli.output import draw
+from grader.cli.output import draw, in_ci
 
 if TYPE_CHECKING:
     from grader.grading.report import Report
@@ -54,7 +54,8 @@ def render(report: "Report", kind: Format, base: "Base | None" = None, *, to_fil
         case Format.TERMINAL:
             from grader.report.terminal import render_terminal
 
-            return draw(partial(render_terminal, report), to_file=to_file)
+            # A job's log is read by students; model answers are for the one who marks.
+            return draw(partial(render_terminal, report, models=to_file or not in_ci()), to_file=to_file)
         case Format.MARKDOWN:
             from grader.report.markdown import render_markdown
 

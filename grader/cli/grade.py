@@ -6,7 +6,8 @@ import typer
 
 from grader.cli.formats import Format
 from grader.cli.grade_run import Threshold, Wanted, grade_once, read_saves
-from grader.cli.options import DEFAULT_RUBRIC
+from grader.cli.options import DEFAULT_RUBRIC, RubricOption
+from grader.cli.suggestions import part_ids, save_formats
 from grader.submission.files import URDF_LIMIT
 
 
@@ -17,22 +18,36 @@ def grade(
             metavar="PATH", help="A .urdf file, a package, a workspace, a repository, a .zip or .tar.gz, or -."
         ),
     ],
-    rubric: Annotated[str, typer.Option(metavar="ID|FILE", help="The rubric: an id or a .toml file.")] = DEFAULT_RUBRIC,
+    rubric: RubricOption = DEFAULT_RUBRIC,
     expect_rubric: Annotated[
         str | None, typer.Option(metavar="SHA256", help="Refuse a rubric with another hash (see grader rubric show).")
     ] = None,
-    part: Annotated[list[str] | None, typer.Option(metavar="ID", help="Grade only this part; repeatable.")] = None,
-    output_format: Annotated[Format, typer.Option("--format", help="The format on standard output.")] = Format.TERMINAL,
+    part: Annotated[
+        list[str] | None,
+        typer.Option(metavar="ID", help="Grade only this part; repeatable.", autocompletion=part_ids),
+    ] = None,
+    output_format: Annotated[
+        Format,
+        typer.Option("--format", metavar="FORMAT", help=f"What is printed: {', '.join(Format)}."),
+    ] = Format.TERMINAL,
     save_as: Annotated[
         list[str] | None,
-        typer.Option("--save", metavar="FORMAT=FILE", help="Also write a report to a file; repeatable."),
+        typer.Option(
+            "--save",
+            metavar="FORMAT=FILE",
+            help="Also write a report to a file; repeatable.",
+            autocompletion=save_formats,
+        ),
     ] = None,
     fail_under: Annotated[
         str | None, typer.Option(metavar="N|N%", help="Exit 0 from this score on, in points or percent.")
     ] = None,
     max_size: Annotated[int, typer.Option(metavar="BYTES", min=1, help="The largest URDF that is read.")] = URDF_LIMIT,
+    is_watched: Annotated[
+        bool, typer.Option("--watch", help="Grade again whenever a file changes, until Ctrl-C.")
+    ] = False,
 ) -> int:
-    """Grade one submission and say what is wrong with it, where, and how to mend it.
+    """Grade one submission: what is wrong, where, and how to mend it.
 
     Exit codes: 0 every criterion that can be decided passed (or the score reaches --fail-under); 1 not so; 2 nothing was
     graded; 3 a fault of the grader itself.
@@ -40,6 +55,8 @@ def grade(
     Examples:
 
       grader grade my_robot.urdf
+
+      grader grade src/my_robot --watch
 
       grader grade . --format json --fail-under 80%
 
@@ -55,4 +72,8 @@ def grade(
         Threshold.read(fail_under) if fail_under is not None else None,
         max_size,
     )
+    if is_watched:
+        from grader.cli.watch import watch
+
+        return watch(wanted)
     return grade_once(wanted)[1]

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from grader.cli.ci import base_of, on_github, tell_github, tell_github_nothing
 from grader.cli.formats import Format, render
@@ -16,6 +16,7 @@ from grader.errors import GraderError, InputError
 if TYPE_CHECKING:
     from grader.grading.report import Report
     from grader.grading.rubric import Rubric
+    from grader.report.places import Base
 
 _SHA256 = re.compile(r"[0-9a-fA-F]{64}")
 
@@ -57,6 +58,14 @@ class Wanted:
     max_size: int
 
 
+class Graded(NamedTuple):
+    """A report, where its submission stands in a repository, and the exit code."""
+
+    report: "Report"
+    base: "Base"
+    code: int
+
+
 def read_saves(texts: Sequence[str]) -> tuple[tuple[Format, Path], ...]:
     """What `--save` names: formats and files; raises GraderError."""
     saves = tuple(map(_split_save, texts))
@@ -85,6 +94,17 @@ def grade_once(wanted: Wanted) -> tuple["Report", int]:
 
 
 def _grade(wanted: Wanted) -> tuple["Report", int]:
+    done = graded(wanted)
+    save_reports(wanted, done)
+    text = render(done.report, wanted.format, done.base, to_file=False)
+    emit(text if wanted.format is Format.TERMINAL else text.encode("utf-8", "backslashreplace"))
+    if on_github():
+        tell_github(done.report, done.base, annotate=wanted.format is not Format.GITHUB)
+    return done.report, done.code
+
+
+def graded(wanted: Wanted) -> Graded:
+    """Grade what is wanted, and report nothing but faults of ours. Raises GraderError."""
     from grader.grading.grade import grade
     from grader.report.text import printable
     from grader.submission.submission import open_submission
@@ -93,24 +113,24 @@ def _grade(wanted: Wanted) -> tuple["Report", int]:
         from grader.report.classroom50 import identity_from
 
         identity_from(os.environ)  # refused before anything is graded
-    rules = _rubric(wanted)
+    rules = wanted_rubric(wanted)
     submission = open_submission(wanted.path, wanted=rules.urdf, package=rules.package, limit=wanted.max_size)
     report = grade(rules, submission, wanted.parts)
     for result in report.results:
         if result.traceback:
             complain(printable(f"{result.criterion.id}: {result.traceback.strip().splitlines()[-1]}"))
     base = base_of(wanted.path, is_single=submission.is_single)
+    return Graded(report, base, _exit_code(report, wanted.threshold))
+
+
+def save_reports(wanted: Wanted, done: Graded) -> None:
+    """Write the reports that `--save` names; raises InputError."""
     for kind, file in wanted.saves:
-        save(file, render(report, kind, base))
-    text = render(report, wanted.format, base, to_file=False)
-    emit(text if wanted.format is Format.TERMINAL else text.encode("utf-8", "backslashreplace"))
-    if on_github():
-        tell_github(report, base, annotate=wanted.format is not Format.GITHUB)
-    return report, _exit_code(report, wanted.threshold)
+        save(file, render(done.report, kind, done.base))
 
 
-def _rubric(wanted: Wanted) -> "Rubric":
-    """The rubric, if it is the one that is expected and has the parts that are named."""
+def wanted_rubric(wanted: Wanted) -> "Rubric":
+    """The rubric, if it is the one that is expected and has the parts that are named; raises GraderError."""
     from grader.grading.rubric import load_rubric
 
     expected = wanted.expected_rubric

@@ -41,13 +41,17 @@ def inspect(
     ] = InspectFormat.TERMINAL,
     max_size: Annotated[int, typer.Option(metavar="BYTES", min=1, help="The largest URDF that is read.")] = URDF_LIMIT,
 ) -> int:
-    """Show a URDF as ROS 2 reads it: every problem, the tree, the joints, all poses.
+    """Show a URDF as ROS 2 reads it: problems, tree, joints, poses.
 
     Exits 1 if ROS 2 rejects the file. A planar joint takes x,y,angle and a floating one x,y,z,roll,pitch,yaw.
 
-    Example:
+    Examples:
 
-      grader inspect my_robot.urdf --joint base_left_wheel_joint=1.57 --relative-to base_link
+      grader inspect my_robot.urdf
+
+      grader inspect my_robot.urdf --relative-to base_link
+
+      grader inspect my_robot.urdf --joint base_left_wheel_joint=1.57
     """
     from grader.report.inspection import Inspection, inspection_json, inspection_terminal, main_root
     from grader.submission.submission import open_submission

@@ -18,13 +18,15 @@ def mark(
     comment: Annotated[str, typer.Option(metavar="TEXT", help="Why; the student reads it.")] = "",
     by: ByOption = "",
 ) -> int:
-    """Give a submission points for a criterion by hand: for what waits for a person, or in place of what the check says.
+    """Give points for one criterion of one submission by hand.
 
-    A mark stays, whatever is graded again; a later one goes before it, and all are kept.
+    That is for what waits for a person, or in place of what the check says. A mark stays, whatever is graded again; a later one goes before it, and all are kept.
 
     Examples:
 
-      grader mark alice answer-floating-link 3.5 --gradebook lab6.db --comment "the roots are missing"
+      grader mark alice answer-floating-link 3.5 --gradebook lab6.db
+
+      grader mark alice lidar-frame 6 --gradebook lab6.db --comment "mended it"
 
       grader mark alice lidar-frame - --gradebook lab6.db
     """

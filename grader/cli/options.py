@@ -6,6 +6,8 @@ from typing import Annotated
 
 import typer
 
+from grader.cli.suggestions import rubric_ids
+
 DEFAULT_RUBRIC = "lab6"
 
 
@@ -27,6 +29,9 @@ class Layout(StrEnum):
     NBGRADER = "nbgrader"
 
 
+RubricOption = Annotated[
+    str, typer.Option(metavar="ID|FILE", help="The rubric: an id or a .toml file.", autocompletion=rubric_ids)
+]
 GradebookOption = Annotated[Path, typer.Option("--gradebook", metavar="FILE", help="The gradebook, a SQLite file.")]
 DueOption = Annotated[
     str | None, typer.Option("--due", metavar="TIME", help="When it was due, as 2026-11-20T23:59+01:00.")

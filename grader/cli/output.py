@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.errors import InputError
-from grader.report.text import without_commands
+from grader.report.text import printable, without_commands
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -41,6 +41,11 @@ def complain(message: str) -> None:
     if sys.stderr is not None:
         with suppress(OSError):
             print(without_commands(f"grader: {message}"), file=sys.stderr, flush=True)
+
+
+def in_ci() -> bool:
+    """Whether a CI system runs this: GitHub, GitLab and nearly all others say so."""
+    return os.environ.get("CI", "").lower() in ("true", "1")
 
 
 def draw(render: Callable[["Console"], None], *, to_file: bool = False) -> str:
@@ -98,8 +103,16 @@ def save_bytes(path: Path, data: bytes) -> None:
             return
         _replace(target, data)
     except (OSError, ValueError) as error:
+        if isinstance(error, FileNotFoundError) and not path.parent.exists():
+            raise no_folder(path) from None
         reason = error.strerror if isinstance(error, OSError) else str(error)
         raise InputError(f"cannot write {path}: {reason}") from None
+
+
+def no_folder(path: Path) -> InputError:
+    """What to say of a file that cannot be written, because the folder that it names is not there."""
+    folder = printable(str(path.parent))
+    return InputError(f"cannot write {printable(str(path))}: there is no folder {folder} (mkdir -p {folder} makes it)")
 
 
 def _replace(target: Path, data: bytes) -> None:

@@ -23,12 +23,14 @@ def review(
     criterion: Annotated[str, typer.Option(metavar="ID", help="Only this criterion.")] = "",
     by: ByOption = "",
 ) -> int:
-    """Walk through what waits for a person: the answer that was found, the model answer, the pictures; give points and a comment.
+    """Walk through what waits for a person, and give it points.
 
-    Type the points and, behind them, a comment: 3.5 the roots are missing. Stop whenever you like: what is given is kept, and
+    The answer that was found is shown beside the model answer, and where the pictures are. Type the points and, behind them, a comment: 3.5 the roots are missing. Stop whenever you like: what is given is kept, and
     the next review goes on with the rest.
 
-    Example:
+    Examples:
+
+      grader review --gradebook lab6.db
 
       grader review --gradebook lab6.db --criterion answer-floating-link
     """

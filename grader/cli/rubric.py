@@ -5,14 +5,35 @@ from typing import Annotated
 import typer
 
 from grader.cli.output import emit
+from grader.cli.suggestions import rubric_ids
 from grader.errors import RubricError
 
-rubric = typer.Typer(help="List, show and check rubrics, and the checks that they can name.", no_args_is_help=True)
+_HELP = """List, show and check rubrics, and the checks that they can name.
+
+Examples:
+
+  grader rubric list
+
+  grader rubric show lab6
+
+  grader rubric check my_lab.toml
+"""
+rubric = typer.Typer(help=_HELP, no_args_is_help=True)
+
+RubricArgument = Annotated[
+    str,
+    typer.Argument(metavar="ID|FILE", help="The rubric: an id or a .toml file.", autocompletion=rubric_ids),
+]
 
 
 @rubric.command("list")
 def list_rubrics() -> int:
-    """List the rubrics that come with the grader."""
+    """List the rubrics that come with the grader.
+
+    Examples:
+
+      grader rubric list
+    """
     from grader.grading.rubric import load_rubric, shipped_rubrics
     from grader.report.points import points_words
 
@@ -24,9 +45,16 @@ def list_rubrics() -> int:
 
 @rubric.command("show")
 def show_rubric(
-    name: Annotated[str, typer.Argument(metavar="ID|FILE", help="The rubric: an id or a .toml file.")],
+    name: RubricArgument,
 ) -> int:
-    """Show a rubric: its parts and criteria with their points."""
+    """Show a rubric: its parts and criteria with their points.
+
+    Examples:
+
+      grader rubric show lab6
+
+      grader rubric show my_lab.toml
+    """
     from grader.grading.rubric import load_rubric
     from grader.report.rubrics import rubric_text
 
@@ -36,7 +64,14 @@ def show_rubric(
 
 @rubric.command("checks")
 def list_checks() -> int:
-    """List the checks that a rubric can name, with what they state and the arguments that they take."""
+    """List the checks that a rubric can name, with their arguments.
+
+    Of each it says what it states; grader explain says more of one.
+
+    Examples:
+
+      grader rubric checks
+    """
     from grader.report.rubrics import checks_text
 
     emit(checks_text())
@@ -45,9 +80,16 @@ def list_checks() -> int:
 
 @rubric.command("check")
 def check_rubric(
-    file: Annotated[str, typer.Argument(metavar="FILE", help="A .toml file, or the id of a rubric.")],
+    file: RubricArgument,
 ) -> int:
-    """Check a rubric and its reference solution: exits 2 and names every mistake, each with its line."""
+    """Check a rubric and its reference solution.
+
+    Exits 2 and names every mistake, each with its line.
+
+    Examples:
+
+      grader rubric check my_lab.toml
+    """
     from grader.grading.reference import grade_reference
     from grader.grading.rubric import load_rubric
     from grader.report.points import points_words

@@ -18,8 +18,19 @@ class SchemaName(StrEnum):
     DIFF = "diff"
 
 
-def schema(name: Annotated[SchemaName, typer.Argument(help="Which schema.")]) -> int:
-    """Print a JSON Schema: of a report, a rubric, an inspection, a class (batch, stats, export json), or of what a diff says."""
+def schema(
+    name: Annotated[SchemaName, typer.Argument(metavar="|".join(SchemaName), help="Which schema.")],
+) -> int:
+    """Print a JSON Schema of what the grader writes or reads.
+
+    That is of a report, a rubric, an inspection, a class (batch, stats, export json), or of what a diff says.
+
+    Examples:
+
+      grader schema report
+
+      grader schema rubric > rubric.schema.json
+    """
     from grader.report.plain import to_json
     from grader.report.schemas import CLASS_SCHEMA, DIFF_SCHEMA, INSPECT_SCHEMA, REPORT_SCHEMA, rubric_schema
 

@@ -5,13 +5,15 @@ from grader.cli.output import emit
 
 
 def stats(gradebook: GradebookOption, due: DueOption = None, output_format: FormatOption = ClassFormat.TERMINAL) -> int:
-    """Show how a class did: the marks, each criterion's difficulty and discrimination, what went wrong most often.
+    """Show how a class did, and what went wrong most often.
 
-    Marks by hand are in it; what being late costs is only in the students' totals of --format json.
+    That is the marks, and each criterion's difficulty and discrimination. Marks by hand are in it; what being late costs is only in the students' totals of --format json.
 
-    Example:
+    Examples:
 
       grader stats --gradebook lab6.db
+
+      grader stats --gradebook lab6.db --format json
     """
     from grader.classroom.gradebook import Gradebook
     from grader.classroom.lateness import read_time

@@ -95,6 +95,11 @@ class Rubric:
         """Whether it comes with the grader, so that its id names it."""
         return shipped_rubrics().get(self.id) == self.path
 
+    @property
+    def shown_by(self) -> str:
+        """The command that shows its parts and criteria."""
+        return f"grader rubric show {self.id if self.is_shipped else printable_path(self.path)}"
+
     def part(self, name: str) -> Part:
         """The part of this id; raises InputError, which names those that there are."""
         for part in self.parts:
@@ -102,7 +107,7 @@ class Rubric:
                 return part
         known = [part.id for part in self.parts]
         guess = did_you_mean(name, known) or f"; it has: {', '.join(known)}"
-        raise InputError(f"the rubric {self.id} has no part {name!r}{guess}")
+        raise InputError(f"the rubric {self.id} has no part {name!r}{guess} ({self.shown_by} says more)")
 
 
 def shipped_rubrics() -> dict[str, Path]:
@@ -122,13 +127,13 @@ def find_rubric(name: str) -> Path:
         return shipped[name]
     path = Path(name)
     if not name:
-        raise RubricError(("the name of the rubric is empty",))
+        raise RubricError(("the name of the rubric is empty (grader rubric list shows those that there are)",))
     if (
         path.suffix == ".toml" or path.name != name
     ):  # a bare word is an id: no file of a submission's may take its place
         return path
-    guess = did_you_mean(name, shipped) or f"; there are: {', '.join(shipped)} (or give the path of a .toml file)"
-    raise RubricError((f"there is no rubric {name!r}{guess}",))
+    guess = did_you_mean(name, shipped) or f"; a file is named as ./{printable_path(name)} or ends in .toml"
+    raise RubricError((f"there is no rubric {name!r}{guess} (grader rubric list shows those that there are)",))
 
 
 def load_rubric(name: str) -> Rubric:

@@ -17,7 +17,8 @@ from grader.report.plain_text import criterion_lines
 from grader.report.text import printable
 
 _NEEDED = ("CLASSROOM", "ASSIGNMENT", "SUBMISSION_TAG", "USERNAME", "COMMIT_URL", "RELEASE_URL")
-_TAG = re.compile(r"submit/(\d{4}-\d\d-\d\d)T(\d\d)-(\d\d)-(\d\d)Z-.+")
+_KINDS = ("individual", "group", "team")
+_TAG = re.compile(r"submit/([0-9]{4}-[01][0-9]-[0-3][0-9])T([01][0-9]|2[0-3])-([0-5][0-9])-([0-5][0-9])Z-[!-~]+")
 
 
 class Identity(NamedTuple):
@@ -45,11 +46,14 @@ def identity_from(environment: Mapping[str, str]) -> Identity:
     time = _TAG.fullmatch(tag)
     if time is None:
         raise InputError(f"SUBMISSION_TAG has to be as submit/2026-09-01T10-00-00Z-ab12cd3, not {printable(tag)!r}")
+    kind = environment.get("ASSIGNMENT_TYPE") or _KINDS[0]
+    if kind not in _KINDS:
+        raise InputError(f"ASSIGNMENT_TYPE has to be one of {', '.join(_KINDS)}, not {printable(kind)!r}")
     given = {name: printable(environment[name]) for name in _NEEDED}
     return Identity(
         given["CLASSROOM"],
         given["ASSIGNMENT"],
-        printable(environment.get("ASSIGNMENT_TYPE") or "individual"),
+        kind,
         given["USERNAME"],
         given["SUBMISSION_TAG"],
         given["COMMIT_URL"],
@@ -91,7 +95,7 @@ def _scale(report: Report) -> int:
 def _test(result: Result, report: Report, scale: int) -> dict[str, Any]:
     return {
         "test-name": printable(f"{result.criterion.title} ({result.criterion.id})"),
-        "passed": not is_lost(result) and not result.is_open and result.points == result.criterion.points,
+        "passed": not is_lost(result) and (result.ruling is not None or result.outcome.status == "passed"),
         "score": int(Decimal(result.points) * scale),
         "max-score": int(result.criterion.points * scale),
         "message": "\n".join(criterion_lines(result, report)),

@@ -7,7 +7,7 @@ from grader.grading.report import Report
 from grader.report.findings import Level, findings, whole
 from grader.report.places import Base
 from grader.report.plain import to_json_list
-from grader.report.points import points_words
+from grader.report.points import so_many_points
 from grader.report.text import printable
 
 _SEVERITIES: dict[Level, str] = {"error": "major", "warning": "minor", "note": "info"}
@@ -18,7 +18,7 @@ def render_codeclimate(report: Report, base: Base) -> str:
     issues = []
     for each in findings(report, base):
         place = each.place or whole(report, base)
-        cost = f" ({points_words(each.lost)} points)" if each.lost else ""
+        cost = f" ({so_many_points(each.lost)})" if each.lost else ""
         text = each.text.replace("\n", " ")
         issues.append(
             {

@@ -2,14 +2,16 @@
 
 import hashlib
 from collections import Counter
+from collections.abc import Callable
 from decimal import Decimal
+from functools import cache
 from typing import Literal, NamedTuple
 
 from grader.grading.report import Report, Result
 from grader.report.places import Base, Place, placed
 from grader.report.text import printable
 from grader.report.words import Told, place_words, told, untold
-from grader.robot.source import Location
+from grader.robot.source import Location, Source
 
 Level = Literal["error", "warning", "note"]
 _ORDER: tuple[Level, ...] = ("error", "warning", "note")
@@ -35,11 +37,12 @@ def findings(report: Report, base: Base) -> list[Finding]:
     """All there is to mend in a submission; `base` is where that stands in its repository."""
     lost = [each for each in report.results if is_lost(each)]
     lost.sort(key=lambda each: each.points - each.criterion.points)
-    found = [_of_criterion(each, told(each, report), report, base) for each in lost]
+    source_of = cache(report.submission.source)  # a file is read once, however much there is to say of it
+    found = [_of_criterion(each, told(each, report), source_of, base) for each in lost]
     problems = sorted(untold(report), key=lambda each: _ORDER.index(each.severity))
     for each in problems:
         text = _text((printable(each.message),), each.location, base)
-        place = _place(each.location, report, base)
+        place = placed(each.location, source_of(each.location.path), base)
         found.append(Finding(each.code, each.severity, "", text, Decimal(0), place, ""))
     seen: Counter[str] = Counter()
     return [each._replace(fingerprint=_fingerprint(each, seen)) for each in found]
@@ -61,10 +64,10 @@ def whole(report: Report, base: Base) -> Place:
     return Place(base.archive or (base.folder + path if path is not None else base.folder.rstrip("/")) or ".")
 
 
-def _of_criterion(result: Result, what: Told, report: Report, base: Base) -> Finding:
+def _of_criterion(result: Result, what: Told, source_of: Callable[[str], Source | None], base: Base) -> Finding:
     criterion = result.criterion
     text = _text((*what.sentences, *filter(None, [what.feedback])), what.place, base)
-    place = _place(what.place, report, base) if what.place is not None else None
+    place = placed(what.place, source_of(what.place.path), base) if what.place is not None else None
     lost = criterion.points - result.points
     return Finding(criterion.id, "error", printable(criterion.title), text, lost, place, "")
 
@@ -75,13 +78,9 @@ def _text(lines: tuple[str, ...], where: Location | None, base: Base) -> str:
     return "\n".join((*lines, *inside))
 
 
-def _place(where: Location, report: Report, base: Base) -> Place:
-    return placed(where, report.submission.source(where.path), base)
-
-
 def _fingerprint(finding: Finding, seen: Counter[str]) -> str:
     place = finding.place
     told_by = (finding.rule, place.path, place.text) if place is not None else (finding.rule, "", "")
-    digest = hashlib.sha256("\0".join(told_by).encode("utf-8", "surrogateescape")).hexdigest()[:16]
+    digest = hashlib.sha256("\0".join(told_by).encode("utf-8", "surrogatepass")).hexdigest()[:16]
     seen[digest] += 1
     return f"{digest}:{seen[digest]}"

@@ -11,7 +11,7 @@ from grader.grading.report import Report
 from grader.report.findings import Finding, Level, findings
 from grader.report.places import Base, Place
 from grader.report.plain_text import headline, provenance
-from grader.report.points import points_words
+from grader.report.points import so_many_points
 from grader.report.text import printable
 from grader.report.words import score_words
 
@@ -32,14 +32,14 @@ def render_github(report: Report, base: Base) -> str:
 def _annotations(level: Level, found: Sequence[Finding], room: int) -> Iterator[str]:
     shown = found if len(found) <= room else found[: room - 1]
     for each in shown:
-        cost = f" ({points_words(each.lost)} points)" if each.lost else ""
+        cost = f" ({so_many_points(each.lost)})" if each.lost else ""
         text = f"{each.title}: {each.text}" if each.title else each.text
         yield command(_COMMANDS[level], each.place, f"{each.rule}{cost}", text)
     rest = found[len(shown) :]
     if rest:
         names = ", ".join(dict.fromkeys(each.rule for each in rest))
         lost = sum((each.lost for each in rest), Decimal(0))
-        cost = f", {points_words(lost)} points" if lost else ""
+        cost = f", {so_many_points(lost)}" if lost else ""
         yield command(_COMMANDS[level], None, f"{len(rest)} more{cost}", f"The report tells of these, too: {names}")
 
 

@@ -103,9 +103,9 @@ def _details(result: Result, report: Report, shown: set[str]) -> Iterator[str]:
         quoted = list(quoted_lines(what.place, report))
         if quoted:
             yield fenced(quoted)
-    for answer in what.answers:
-        yield f"{answer.name}:"
-        yield fenced(list(answer.lines))
+    if what.found:
+        yield "Found:"
+        yield fenced(list(what.found))
     if what.feedback and what.feedback not in shown:
         shown.add(what.feedback)
         yield f"*{escaped(what.feedback)}*"

@@ -8,6 +8,7 @@ from grader.robot.source import Location, Source
 
 _MEANT = re.compile(r"""[^\s=<>"'/]+\s*=\s*(?:"[^"]*"?|'[^']*'?)|<[^\s>]*[^>]*>?|[\w.]+""")
 _MARGIN = 4  # characters that are shown before what is meant, where the line is cut
+_LONGEST = 500  # characters of a line that tell it from others: a whole file may stand in one
 
 
 class Excerpt(NamedTuple):
@@ -28,7 +29,8 @@ class Base(NamedTuple):
 class Place(NamedTuple):
     """A place as seen from the repository's root, counted from 1; `end` is the column behind what is meant.
 
-    Without a line, the file as a whole is meant: it is an archive, or there is no better place.
+    Without a line, the file as a whole is meant: it is an archive, or there is no better place. `text` is the line, `meant` the
+    part of it that is meant; empty where that is too long to be quoted.
     """
 
     path: str
@@ -36,6 +38,7 @@ class Place(NamedTuple):
     column: int = 1
     end: int = 1
     text: str = ""
+    meant: str = ""
 
 
 def width_of(line: str, column: int) -> int:
@@ -64,6 +67,7 @@ def placed(where: Location, source: Source | None, base: Base) -> Place:
     if source is None:
         return Place(base.folder + where.path, where.line, where.column, where.column)
     line = source.line(where.line)
-    return Place(
-        base.folder + where.path, where.line, where.column, where.column + width_of(line, where.column), line.strip()
-    )
+    start, width = where.column - 1, width_of(line, where.column)
+    meant = line[start : start + width] if width <= _LONGEST else ""
+    path = base.folder + where.path
+    return Place(path, where.line, where.column, where.column + width, line.strip()[:_LONGEST], meant)

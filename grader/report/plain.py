@@ -1,6 +1,7 @@
 """Values as plain JSON data, the same bytes on every machine."""
 
 import json
+import re
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
 from typing import Any
@@ -9,10 +10,11 @@ from grader.robot.catalogue import Problem
 from grader.robot.source import Location
 
 _ENCODER = json.JSONEncoder(ensure_ascii=False, allow_nan=False)
+_UNUSUAL = re.compile(r"[^\n -~]+")  # all but ASCII
 
 
 def to_json(data: Mapping[str, Any]) -> str:
-    """Data as JSON text: a line for each key, and for each entry of a list of objects. Invalid Unicode is escaped.
+    """Data as JSON text: a line for each key, and for each entry of a list of objects. What cannot be seen is escaped.
 
     `indent` of the standard library would leave its C encoder aside and take three times as long.
     """
@@ -27,8 +29,14 @@ def to_json_list(data: Sequence[Mapping[str, Any]]) -> str:
 
 
 def _harmless(text: str) -> str:
-    """The same JSON without bytes that are no UTF-8, and without what GitHub's runner takes for a command in a log."""
-    return text.encode("utf-8", "backslashreplace").decode().replace("##[", "##\\u005b")
+    """The same JSON with all escaped that no terminal should get, that is no Unicode, or that GitHub's runner takes for a command."""
+    if not text.isascii() or "\x7f" in text:
+        text = _UNUSUAL.sub(lambda found: "".join(map(_visible, found[0])), text)
+    return text.replace("##[", "##\\u005b")
+
+
+def _visible(character: str) -> str:
+    return character if character.isprintable() else json.dumps(character)[1:-1]
 
 
 def _lines(value: Any) -> str:

@@ -25,8 +25,8 @@ def criterion_lines(result: Result, report: Report) -> list[str]:
     lines = list(what.sentences)
     if what.place is not None:
         lines += [place_words(what.place), *quoted_lines(what.place, report)]
-    for answer in what.answers:
-        lines += [f"{answer.name}:", *(f"  {line}" for line in answer.lines)]
+    if what.found:
+        lines += ["Found:", *(f"  {line}" for line in what.found)]
     return [*lines, what.feedback] if what.feedback else lines
 
 

@@ -59,7 +59,8 @@ def explanation(name: str, rubric: Rubric) -> str:
     if check is not None:
         return _check_text(check)
     known = [kind.code for kind in EVERY_KIND] + [each.id for each in rubric.criteria] + check_names()
-    guess = did_you_mean(name, known) or "; a code (URDF051), a check (frame_at) or a criterion (lidar-frame) is wanted"
+    lists = f"; {rubric.shown_by} lists the criteria, grader rubric checks the checks, and reports name the codes"
+    guess = did_you_mean(name, known) or lists
     raise InputError(f"there is nothing to explain under {name!r}{guess}")
 
 

@@ -90,7 +90,7 @@ def _physical(place: Place) -> dict[str, Any]:
             "startColumn": place.column,
             "endLine": place.line,
             "endColumn": max(place.end, place.column),
-            **({"snippet": {"text": printable(place.text)}} if place.text else {}),
+            **({"snippet": {"text": printable(place.meant)}} if place.meant else {}),
         }
     return {"artifactLocation": {"uri": uri, "uriBaseId": "%SRCROOT%"}, "region": region}
 

@@ -1,6 +1,7 @@
 """A report for a person at a terminal: the score first, failures explained, the rest short."""
 
 from itertools import groupby
+from typing import NamedTuple
 
 from rich.console import Console
 from rich.text import Text
@@ -37,10 +38,19 @@ _INDENT = 10
 _MOST_LISTED = 12
 
 
-def render_terminal(report: Report, console: Console) -> None:
-    """Print a report. Nothing of the submission is taken for markup or control codes."""
+class _Page(NamedTuple):
+    """What is being printed, where, which feedback is printed already, and whether model answers are."""
+
+    report: Report
+    console: Console
+    shown: set[str]
+    models: bool
+
+
+def render_terminal(report: Report, console: Console, *, models: bool = True) -> None:
+    """Print a report, with model answers or without. Nothing of the submission is taken for markup or control codes."""
     _show_head(report, console)
-    shown: set[str] = set()
+    page = _Page(report, console, set(), models)
     titles = {part.id: part.title for part in report.rubric.parts}
     for part, of_part in groupby(report.results, key=lambda each: each.criterion.part):
         results = tuple(of_part)
@@ -49,7 +59,7 @@ def render_terminal(report: Report, console: Console) -> None:
             heading = f"{printable(titles[part])}  {earned(results)}"
             wrapped(console, Text(heading, style="bold underline"), 0)
         whole = None if len(report.parts) == 1 else titles[part]
-        _show_groups(results, titles[part], whole, report, console, shown)
+        _show_groups(results, titles[part], whole, page)
     _show_evidence(report, console)
     problems = tuple(untold(report))
     if problems:
@@ -81,9 +91,7 @@ def _show_lines(lines: list[str], console: Console) -> None:
         wrapped(console, Text(f"... and {len(lines) - _MOST_LISTED} more", style="dim"), 0)
 
 
-def _show_groups(
-    results: tuple[Result, ...], title: str, whole: str | None, report: Report, console: Console, shown: set[str]
-) -> None:
+def _show_groups(results: tuple[Result, ...], title: str, whole: str | None, page: _Page) -> None:
     """Print the criteria of a part, those about one thing under one heading; a heading like the part's is left out.
 
     Groups in a row that are skipped, or wait, for the same reason are one line.
@@ -95,12 +103,12 @@ def _show_groups(
         if reason is None or len(alike_results) == 1:
             for name, group in groups:
                 if name != whole:
-                    _show_heading(name, group, console)
+                    _show_heading(name, group, page.console)
                 for result in group:
-                    _show_result(result, report, console, shown)
+                    _show_result(result, page)
         else:
-            _show_heading(", ".join(name for name, _ in groups), alike_results, console)
-            _show_alike(alike_results, reason, console)
+            _show_heading(", ".join(name for name, _ in groups), alike_results, page.console)
+            _show_alike(alike_results, reason, page.console)
 
 
 def _shared(results: tuple[Result, ...]) -> str | None:
@@ -129,8 +137,8 @@ def _show_alike(results: tuple[Result, ...], reason: str, console: Console) -> N
     wrapped(console, Text(printable(f"{len(results)} criteria are {reason}"), style="dim"), _INDENT, head)
 
 
-def _show_result(result: Result, report: Report, console: Console, shown: set[str]) -> None:
-    criterion, status = result.criterion, result.outcome.status
+def _show_result(result: Result, page: _Page) -> None:
+    console, criterion, status = page.console, result.criterion, result.outcome.status
     points = f"{points_words(result.points)}/{points_words(criterion.points)}"
     head = Text.assemble("  ", (symbol(console, *_SYMBOLS[status]), _STYLES[status]), f" {points:<5} ")
     title = Text(printable(criterion.title))
@@ -139,7 +147,7 @@ def _show_result(result: Result, report: Report, console: Console, shown: set[st
         wrapped(console, title + Text(because, style="dim"), _INDENT, head)
         return
     wrapped(console, title + Text(f"  {criterion.id}", style="dim"), _INDENT, head)
-    _show_told(told(result, report), _sentence_styles(result), report, console, shown)
+    _show_told(told(result, page.report), _sentence_styles(result), page)
 
 
 def _sentence_styles(result: Result) -> tuple[str, ...]:
@@ -149,20 +157,22 @@ def _sentence_styles(result: Result) -> tuple[str, ...]:
     return (_STYLES["errored"] if result.outcome.status == "errored" else "",)
 
 
-def _show_told(what: Told, styles: tuple[str, ...], report: Report, console: Console, shown: set[str]) -> None:
+def _show_told(what: Told, styles: tuple[str, ...], page: _Page) -> None:
+    console = page.console
     for words, style in zip(what.sentences, styles, strict=False):
         wrapped(console, Text(words, style=style), _INDENT)
-    for answer in what.answers:
-        wrapped(console, Text(f"{answer.name}:", style="bold"), _INDENT)
-        for line in answer.lines:
+    for name, lines in (("Found", what.found), ("Model answer", what.model if page.models else ())):
+        if lines:
+            wrapped(console, Text(f"{name}:", style="bold"), _INDENT)
+        for line in lines:
             wrapped(console, Text(line), _INDENT + 2)
     if what.place is not None:
         wrapped(console, Text(place_words(what.place), style="dim"), _INDENT)
-        source = report.submission.source(what.place.path)
+        source = page.report.submission.source(what.place.path)
         if source is not None:
             show_excerpt(console, source, what.place, _INDENT)
-    if what.feedback and what.feedback not in shown:
-        shown.add(what.feedback)
+    if what.feedback and what.feedback not in page.shown:
+        page.shown.add(what.feedback)
         wrapped(console, Text(what.feedback, style="italic"), _INDENT)
 
 

@@ -6,7 +6,7 @@ from itertools import groupby
 from typing import NamedTuple
 
 from grader.grading.report import Exhibits, Report, Result
-from grader.report.points import points_words
+from grader.report.points import points_words, so_many_points
 from grader.report.text import printable
 from grader.robot.catalogue import Problem
 from grader.robot.source import Location
@@ -19,18 +19,16 @@ _VERDICTS = {
 _STATUSES = ("passed", "failed", "skipped", "pending", "errored", "marked by hand")
 
 
-class Answer(NamedTuple):
-    """A text that stands beside a criterion line by line: what was found, or the model answer."""
-
-    name: str
-    lines: tuple[str, ...]
-
-
 class Told(NamedTuple):
-    """What there is to say of a criterion beside its title and points. `place` is where to look, if it failed."""
+    """What there is to say of a criterion beside its title and points. `place` is where to look, if it failed.
+
+    `found` is what was answered to a question, line by line, and `model` the model answer. That is for the one who marks:
+    formats that are made for students leave it out.
+    """
 
     sentences: tuple[str, ...]
-    answers: tuple[Answer, ...] = ()
+    found: tuple[str, ...] = ()
+    model: tuple[str, ...] = ()
     place: Location | None = None
     feedback: str = ""
 
@@ -69,7 +67,9 @@ def package_words(report: Report) -> str:
 
 def pending_words(report: Report) -> str:
     """How many points a person still has to give or refuse; empty where none wait."""
-    return f"{points_words(report.pending)} points wait for a person" if report.pending else ""
+    if not report.pending:
+        return ""
+    return f"{so_many_points(report.pending)} {'waits' if report.pending == 1 else 'wait'} for a person"
 
 
 def notes(report: Report) -> list[str]:
@@ -87,32 +87,36 @@ def told(result: Result, report: Report) -> Told:
     """What there is to say of one criterion, whatever became of it."""
     outcome = result.outcome
     if result.ruling is not None:
-        comment = f": {result.ruling.comment}" if result.ruling.comment else ""
+        comment = f": {_line(result.ruling.comment)}" if result.ruling.comment else ""
         by_hand = sentence(f"Marked by {result.ruling.by}{comment}")
         if outcome.status == "pending":
-            return Told((by_hand,), _answers(result))
+            return Told((by_hand,), *_answers(result))
         return Told((by_hand, sentence(f"The check: {outcome.status}. {outcome.message}")))
     if outcome.status == "skipped":
         return Told((f"Skipped, because {result.because} failed.",))
     sentences = (sentence(outcome.message),)
     if outcome.status == "pending":
-        return Told(sentences, _answers(result))
+        return Told(sentences, *_answers(result))
     if outcome.status != "failed":
         return Told(sentences)
     is_there = report.submission.has_urdf or result.criterion.check.subject not in ("urdf", "robot")
-    return Told(sentences, (), outcome.location, printable(result.criterion.feedback) if is_there else "")
+    feedback = _line(result.criterion.feedback) if is_there else ""
+    return Told(sentences, place=outcome.location, feedback=feedback)
 
 
-def _answers(result: Result) -> tuple[Answer, ...]:
-    """What was answered, beside the model answer."""
-    if not isinstance(result.outcome.expected, str):
-        return ()
-    texts = (("Found", result.outcome.measured), ("Model answer", result.outcome.expected))
-    return tuple(
-        Answer(name, tuple(printable(line) for line in text.splitlines() if line.strip()))
-        for name, text in texts
-        if isinstance(text, str)
-    )
+def _line(text: str) -> str:
+    """A text of a rubric or of a person who marks in one printable line, however they have broken it."""
+    return printable(" ".join(text.split()))
+
+
+def _answers(result: Result) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """What was answered, and the model answer; nothing where no question was asked."""
+    model = result.outcome.expected
+    return (_lines(result.outcome.measured), _lines(model)) if isinstance(model, str) else ((), ())
+
+
+def _lines(text: object) -> tuple[str, ...]:
+    return tuple(printable(line) for line in text.splitlines() if line.strip()) if isinstance(text, str) else ()
 
 
 def untold(report: Report) -> Iterator[Problem]:

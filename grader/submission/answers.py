@@ -27,7 +27,9 @@ _NO_ANSWERS = frozenset(
     {"CMakeLists.txt", "requirements.txt", "LICENSE.txt", "LICENSE.md", "top_level.txt", "SOURCES.txt"}
 )
 # How a file begins that holds no answers: one of another kind, or a report of the grader, which repeats questions and answers.
-_OTHER = re.compile(r"\s*<(?:\?xml|!--|robot|launch|package)|(?:# )?[\d.]+ / [\d.]+ points(?:  |: )|::notice title=[\d.]+ / ")
+_OTHER = re.compile(
+    r"\s*<(?:\?xml|!--|robot|launch|package)|(?:# )?[\d.]+ / [\d.]+ points(?:  |: )|::notice title=[\d.]+ / "
+)
 
 
 class Passage(NamedTuple):

@@ -3,11 +3,13 @@
 import os
 import stat
 import sys
+from itertools import islice
 from pathlib import Path
 
 from grader.errors import InputError
 
 URDF_LIMIT = 1024 * 1024  # bytes
+_MOST_BESIDE = 1000  # names in a folder that are compared with one that is not there
 _ADVICE = " for a URDF (--max-size raises it)"
 
 
@@ -62,6 +64,27 @@ def sha256_of(data: bytes) -> str:
     from hashlib import sha256  # late: loading it takes longer than reading a URDF, and only some reports show it
 
     return sha256(data).hexdigest()
+
+
+def not_there(path: Path) -> InputError:
+    """What to say of a path that does not exist, with the name that may be meant where it begins to be wrong."""
+    from grader.robot.names import closest  # late: mostly the path is right
+
+    wrong = path
+    while wrong.name and not os.path.lexists(wrong.parent):
+        wrong = wrong.parent
+    try:
+        beside = [printable_path(each.name) for each in islice(wrong.parent.iterdir(), _MOST_BESIDE)]
+    except (OSError, ValueError):
+        beside = []
+    guess = closest(printable_path(wrong.name), beside)
+    if guess is None:
+        here = "" if path.is_absolute() else " (. stands for the folder that you are in)"
+        return InputError(f"{printable_path(path)} does not exist{here}")
+    right = wrong.parent / guess
+    whole = right / path.relative_to(wrong)
+    meant = printable_path(whole if os.path.lexists(whole) else right)
+    return InputError(f"{printable_path(path)} does not exist; did you mean {meant!r}?")
 
 
 def printable_path(path: Path | str) -> str:

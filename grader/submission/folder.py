@@ -19,6 +19,7 @@ from grader.submission.tree import (
     is_generated,
     is_ignored,
     make_tree,
+    parents,
     too_many,
 )
 
@@ -114,6 +115,14 @@ class _Walk:
                 raise InputError(f"cannot read {printable_path(self._folder)}: {error.strerror}") from None
             self.left_out.append(f"{clean(where)} is a folder that cannot be opened: {error.strerror}")
             return []
+
+
+def is_looked_at(folder: Path, path: str) -> bool:
+    """Whether `read_folder` takes in what stands at a path, relative to the folder, or would if something stood there."""
+    steps = path.split("/")
+    if not IGNORED.isdisjoint(steps) or is_ignored(clean(path)):
+        return False
+    return not any(os.path.lexists(folder / above / "pyvenv.cfg") for above in parents(path))
 
 
 def file_at(path: Path, name: str) -> File:

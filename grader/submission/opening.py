@@ -6,7 +6,7 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from grader.errors import InputError
-from grader.submission.files import printable_path, read_start
+from grader.submission.files import not_there, printable_path, read_start
 from grader.submission.tree import MOST_FILES, File, Tree, make_tree, too_many
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def outer_tree(path: Path) -> Tree | None:
     try:
         is_folder = path.is_dir()
         if not is_folder and not os.path.lexists(path):
-            raise InputError(f"{printable_path(path)} does not exist")
+            raise not_there(path)
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else str(error)
         raise InputError(f"cannot read {printable_path(path)}: {reason}") from None

@@ -141,7 +141,7 @@ def open_submission(path: str, *, wanted: str, package: str = "", limit: int = U
     if path == STANDARD_INPUT:
         return read_submission(read_standard_input(limit), identity="stdin", path="-")
     if not path:
-        raise InputError("the path is empty")
+        raise InputError("the path is empty: name a .urdf, or the folder or archive that was handed in")
     place = Path(path)
     tree = open_tree(place)
     if tree is None and place.suffix.lower() in _NO_URDFS:

@@ -62,7 +62,8 @@ def test_nobody(book: Gradebook, name: str, guess: str) -> None:
     """The message guesses who was meant."""
     with pytest.raises(InputError) as caught:
         Standings(book).find(name)
-    assert str(caught.value) == f"there is no {name!r} in the gradebook{guess}"
+    everyone = f"; grader export csv --gradebook {book.path} lists everyone"
+    assert str(caught.value) == f"there is no {name!r} in the gradebook{guess or everyone}"
 
 
 def looks(book: Gradebook) -> dict[str, str]:

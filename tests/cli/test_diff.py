@@ -30,8 +30,9 @@ def as_json(*arguments: object) -> dict[str, Any]:
 
 def test_one_run_is_not_enough(graded_class: Path) -> None:
     """One line says what to do."""
-    why = "there are no two runs to compare: grade again first, or name another gradebook"
-    assert refusal(grader("diff", graded_class / "book.db")) == why
+    book = graded_class / "book.db"
+    again = f"grader batch PATH --gradebook {book} makes one more, or name a second gradebook"
+    assert refusal(grader("diff", book)) == f"there are no two runs to compare: {again}"
 
 
 def test_all_reasons(top: Path) -> None:

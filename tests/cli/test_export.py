@@ -250,7 +250,10 @@ def test_strict_writes_nothing(top: Path) -> None:
         (("canvas", "--into", "none.csv"), "cannot read none.csv: No such file or directory"),
         (("canvas", "--into", "README.md"), "README.md is not a gradebook exported from Canvas"),
         (("moodle", "--into", "README.md"), "README.md is not a grading worksheet of Moodle"),
-        (("csv", "--output", "/nowhere/grades.csv"), "cannot write /nowhere/grades.csv: No such file or directory"),
+        (
+            ("csv", "--output", "/nowhere/grades.csv"),
+            "cannot write /nowhere/grades.csv: there is no folder /nowhere (mkdir -p /nowhere makes it)",
+        ),
     ],
 )
 def test_what_is_refused(arguments: tuple[str, ...], why: str, graded_class: Path) -> None:

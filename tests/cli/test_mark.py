@@ -20,6 +20,8 @@ from tests.classroom.gradebooks import ENVIRONMENT, HOSTILE, batch, grader, hand
 from tests.samples import ROOT
 
 GRADE = ("score", "max_score", "pending")
+EVERYONE = "; grader export csv --gradebook TOP/book.db lists everyone"
+CRITERIA = " (grader rubric show TOP/small.toml lists them)"
 
 
 def mark(top: Path, *arguments: object, **more: Any) -> subprocess.CompletedProcess[str]:
@@ -63,10 +65,10 @@ def test_whoever_is_meant(name: str, top: Path) -> None:
     [
         ("Ben Oh", "essay", "1", "'Ben Oh' may be any of 'ben', 'emil': name one by this key"),
         ("ana", "essay", "1", "there is no 'ana' in the gradebook; did you mean 'anna'?"),
-        ("\x1b[31m", "essay", "1", r"there is no '\x1b[31m' in the gradebook"),
-        (b"\xff", "essay", "1", r"there is no '\\udcff' in the gradebook"),
+        ("\x1b[31m", "essay", "1", rf"there is no '\x1b[31m' in the gradebook{EVERYONE}"),
+        (b"\xff", "essay", "1", rf"there is no '\\udcff' in the gradebook{EVERYONE}"),
         ("dora", "essay", "1", "dora has handed in nothing that could be marked"),
-        ("anna", "esay", "1", "the rubric small has no criterion 'esay'; did you mean 'essay'?"),
+        ("anna", "esay", "1", f"the rubric small has no criterion 'esay'; did you mean 'essay'?{CRITERIA}"),
         ("anna", "essay", "4.5", "essay is worth 0 to 4 points, not 4.5"),
         ("anna", "essay", "nan", "points are a number from 0 to 4, with at most 4 decimals, not 'nan'"),
         ("anna", "essay", "1.00001", "points are a number from 0 to 4, with at most 4 decimals, not '1.00001'"),
@@ -79,7 +81,7 @@ def test_whoever_is_meant(name: str, top: Path) -> None:
 )
 def test_what_is_refused(who: str, what: str, points: str, why: str, graded_class: Path) -> None:
     """In one plain line, and nothing is kept."""
-    assert refusal(mark(graded_class, who, what, points)) == why
+    assert refusal(mark(graded_class, who, what, points)) == why.replace("TOP", str(graded_class))
     assert marks(graded_class) == []
 
 

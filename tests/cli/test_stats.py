@@ -70,11 +70,10 @@ def test_any_terminal(variables: dict[str, str], graded_class: Path) -> None:
 
 def test_an_empty_gradebook(tmp_path: Path) -> None:
     """One that nothing was graded into is told of in a line."""
-    Gradebook(tmp_path / "book.db", create=True).close()
-    assert (
-        refusal(grader("stats", "--gradebook", tmp_path / "book.db"))
-        == "nothing has been graded into this gradebook yet"
-    )
+    book = tmp_path / "book.db"
+    Gradebook(book, create=True).close()
+    why = f"nothing has been graded into {book} yet: grader batch PATH --gradebook {book} does that"
+    assert refusal(grader("stats", "--gradebook", book)) == why
 
 
 @pytest.mark.parametrize("signs", [{}, {"anna": "pps?f"}, {"anna": "?!p!?"}])

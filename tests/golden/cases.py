@@ -3,7 +3,8 @@
 import os
 import subprocess
 import sys
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 HERE = Path(__file__).parent
@@ -12,16 +13,39 @@ ROOT = HERE.parent.parent
 
 @dataclass(frozen=True, slots=True)
 class Golden:
-    """One command with its exit code; standard output is kept in the file of its name."""
+    """One command with its exit code; standard output is kept in the file of its name. `variables` are set around it."""
 
     name: str
     arguments: tuple[str, ...]
     exit_code: int
+    variables: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def file(self) -> Path:
-        """Where the expected output stands."""
-        return HERE / f"{self.name}.{'json' if 'json' in self.arguments or 'schema' in self.arguments else 'txt'}"
+        """Where the expected output stands, under the ending that such files have."""
+        asked = self.arguments[self.arguments.index("--format") + 1] if "--format" in self.arguments else "terminal"
+        return HERE / f"{self.name}.{_ENDINGS.get(asked, 'json')}"
+
+
+_ENDINGS = {"terminal": "txt", "github": "txt", "markdown": "md", "junit": "xml", "sarif": "sarif"}
+# What the runner of Classroom 50 sets around an autograder.
+CLASSROOM50 = {
+    "CLASSROOM": "robotics",
+    "ASSIGNMENT": "lab6",
+    "ASSIGNMENT_TYPE": "individual",
+    "USERNAME": "alice",
+    "SUBMISSION_TAG": "submit/2026-11-20T18-30-05Z-ab12cd3",
+    "COMMIT_URL": "https://github.com/robotics/lab6-alice/commit/ab12cd3",
+    "RELEASE_URL": "https://github.com/robotics/lab6-alice/releases/tag/submit%2F2026-11-20T18-30-05Z-ab12cd3",
+    "REVIEW_URL": "https://github.com/robotics/lab6-alice/compare/0a1b2c3...ab12cd3",
+}
+
+
+def _in_every_format(name: str, path: str, exit_code: int) -> tuple[Golden, ...]:
+    """A case for each format that is made for a platform."""
+    formats = ("markdown", "junit", "sarif", "github", "gradescope", "classroom50", "codeclimate")
+    around = {"CI_PROJECT_DIR": str(ROOT), **CLASSROOM50}  # paths are ours, whatever repository this one stands in
+    return tuple(Golden(f"{name}-{each}", ("grade", path, "--format", each), exit_code, around) for each in formats)
 
 
 GOLDEN = (
@@ -50,6 +74,7 @@ GOLDEN = (
     Golden("explain-package-code", ("explain", "PKG014"), 0),
     Golden("explain-check", ("explain", "bottom_at_height"), 0),
     Golden("rubric-show", ("rubric", "show", "lab6"), 0),
+    *_in_every_format("several-mistakes", "submissions/several-mistakes/my_robot.urdf", 1),
 )
 
 

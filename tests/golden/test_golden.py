@@ -8,7 +8,7 @@ from tests.golden.cases import GOLDEN, Golden, run
 @pytest.mark.parametrize("case", GOLDEN, ids=lambda case: case.name)
 def test_a_command_prints_what_it_always_printed(case: Golden) -> None:
     """Output and exit code are those that were approved; standard error stays empty."""
-    done = run(case.arguments)
+    done = run(case.arguments, **case.variables)
     assert done.stdout.decode() == case.file.read_text(encoding="utf-8")
     assert (done.returncode, done.stderr) == (case.exit_code, b"")
 

@@ -9,7 +9,7 @@ from tests.golden.cases import GOLDEN, run
 
 if __name__ == "__main__":
     for case in GOLDEN:
-        done = run(case.arguments)
+        done = run(case.arguments, **case.variables)
         case.file.write_bytes(done.stdout)
         if done.returncode != case.exit_code:
             print(f"{case.name}: exit code {done.returncode}, not {case.exit_code}")

@@ -650,21 +650,24 @@ def test_a_file_without_end_is_refused(tmp_path: Path) -> None:
     ("name", "guess"), [("lab", "lab6"), ("lab66", "lab6"), ("LAB6", "lab6"), ("l6", None), ("zzz", None)]
 )
 def test_an_unknown_id_is_told_with_what_there_is(name: str, guess: str | None) -> None:
-    """A name that is no rubric is answered with the one that may be meant, or with all that there are."""
+    """A name that is no rubric is answered with the one that may be meant, and with the command that lists all."""
     with pytest.raises(RubricError) as caught:
         load_rubric(name)
     (line,) = caught.value.complaints
     assert line.startswith(f"there is no rubric {name!r}")
-    assert (f"did you mean {guess!r}?" in line) if guess else ("there are: " in line and "lab6" in line)
+    assert (f"did you mean {guess!r}?" if guess else f"a file is named as ./{name} or ends in .toml") in line
+    assert line.endswith(" (grader rubric list shows those that there are)")
 
 
 def test_a_file_is_found_by_its_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A path with a folder, an ending, or an existing file is a path; a shipped id comes first."""
+    """A path with a folder or an ending is a path; a bare word is an id, whatever files there are."""
     monkeypatch.chdir(tmp_path)
     Path("lab6").write_text(GOOD)
     Path("mine").write_text(GOOD)
     assert find_rubric("lab6") == shipped_rubrics()["lab6"]
-    assert find_rubric("mine") == Path("mine")
+    with pytest.raises(RubricError, match=r"a file is named as \./mine or ends in \.toml"):
+        find_rubric("mine")
+    assert find_rubric("./mine") == Path("mine")
     assert find_rubric("./lab6") == Path("lab6")
     assert find_rubric("gone.toml") == Path("gone.toml")
     assert load_rubric("./lab6").id == "lab0"

@@ -13,7 +13,7 @@ from grader.classroom.intake.roster import Roster
 from grader.classroom.intake.zip_listing import ZipListing
 from grader.classroom.students import HandIn, Student
 from grader.errors import InputError
-from grader.submission.files import printable_path, read_start
+from grader.submission.files import not_there, printable_path, read_start
 from grader.submission.opening import archive_kind
 
 LAYOUTS = ("folders", "canvas", "moodle", "teams", "nbgrader")
@@ -62,7 +62,7 @@ def take_in(
     listing = _listing(path)
     taking = _Taking(listing, _top_name(path), roster, assignment, rubric_id)
     if taking.is_empty:
-        raise InputError(f"{printable_path(path)} is empty")
+        raise InputError(f"{printable_path(path)} is empty: name the folder that holds the class's submissions")
     chosen = taking.layout() if layout == "auto" else layout
     if assignment and chosen != "nbgrader":
         raise InputError(
@@ -70,13 +70,17 @@ def take_in(
             "or say --layout nbgrader"
         )
     if layout == "auto" and chosen == "folders" and "package.xml" in taking.children.files:
-        raise InputError(f"{printable_path(path)} is one submission and no class: it holds a package.xml itself")
+        shown = printable_path(path)
+        raise InputError(
+            f"{shown} is one submission and no class: it holds a package.xml itself (grader grade {shown} grades it)"
+        )
     left_out = LeftOut()
     shelf = taking.shelve(chosen, left_out, is_told=layout != "auto")
     if not len(shelf):
         lines = left_out.lines()
         example = f": {lines[0]}" if lines else ""
-        raise InputError(f"nothing in {printable_path(path)} is a submission{example}")
+        advice = f" (without --layout {layout} it is found out)" if layout != "auto" else ""
+        raise InputError(f"nothing in {printable_path(path)} is a submission{example}{advice}")
     placement = place(shelf, roster, surnames=chosen == "teams", holds_students=taking.holds_students)
     return Intake(chosen, shelf, left_out, roster, placement)
 
@@ -178,7 +182,10 @@ def _listing(path: Path) -> Listing:
     except (OSError, ValueError) as error:
         raise InputError(f"cannot read {shown}: {error}") from None
     if not exists:
-        raise InputError(f"{shown} does not exist")
+        raise not_there(path)
     if archive_kind(read_start(path, 512)) != "zip":
-        raise InputError(f"{shown} is neither a folder nor a zip: name the folder that holds the class's submissions")
+        raise InputError(
+            f"{shown} is neither a folder nor a zip: name the folder that holds the class's submissions"
+            " (grader grade takes a single one)"
+        )
     return ZipListing(path)

@@ -111,9 +111,12 @@ def _only(titles: Sequence[str], open_ones: Sequence[int], wanted: tuple[str, ..
     candidates = same or alike or assignments
     if not candidates:
         raise InputError(
-            f"{shown} has no assignment's column, such as 'Lab 6 (98765)', but: {_list(titles, open_ones)}"
+            f"{shown} has no assignment's column, such as 'Lab 6 (98765)', but: {_list(titles, open_ones)};"
+            " make the assignment in Canvas, and export again"
         )
-    raise InputError(f"{shown} has several columns that may be meant, name one: {_list(titles, candidates)}")
+    raise InputError(
+        f"{shown} has several columns that may be meant, name one with --column: {_list(titles, candidates)}"
+    )
 
 
 def names_rubric(title: str, wanted: tuple[str, ...]) -> bool:

@@ -60,7 +60,9 @@ def find_columns(table: Table, column: str, feedback_column: str, shown: str) ->
         )
     grade = _named(titles, column, shown) if column else _grade(headers, rows, identifier)
     if grade is None:
-        raise InputError(f"nobody can tell which column of {shown} has the grades, name it; {_list(titles)}")
+        raise InputError(
+            f"nobody can tell which column of {shown} has the grades, name it with --column; {_list(titles)}"
+        )
     maximum = grade + 1
     if not rows or any(not _is_maximum(row.value(maximum)) for row in rows if len(row.cells) == len(titles)):
         raise InputError(

@@ -72,7 +72,7 @@ def _chosen(found: dict[str, list[str]], assignment: str, rubric_id: str) -> str
     for names in ([name for name in found if name == rubric_id], alike, list(found)):
         if len(names) == 1:
             return names[0]
-    raise InputError(f"it has to be said which assignment is to be graded; there are: {named}")
+    raise InputError(f"--assignment has to say which assignment is to be graded; there are: {named}")
 
 
 def _plain(name: str) -> str:

@@ -1,0 +1,284 @@
+"""What is in an autograder's zip, and when none is written."""
+
+import importlib.metadata
+import json
+import re
+import shutil
+import subprocess
+import sys
+import tomllib
+import zipfile
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from grader.bundle import installed
+from grader.bundle.gradescope import autograder_zip
+from grader.bundle.installed import package_files, requirements
+from grader.checks.outcome import Outcome
+from grader.checks.registry import describe
+from grader.cli import bundle as command
+from grader.errors import InputError
+from grader.grading.grade import grade
+from grader.grading.rubric import load_rubric
+from grader.robot.kinematics import Configuration
+from grader.submission.files import sha256_of
+from tests.bundle.platform import Autograder, environment_for, unpacked
+from tests.classroom.gradebooks import grader, hand_in, lab_text, refusal
+from tests.samples import LAB6, ROOT, opened
+
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+
+
+def members(path: Path) -> dict[str, zipfile.ZipInfo]:
+    """The entries of a zip by their names."""
+    with zipfile.ZipFile(path) as archive:
+        return {entry.filename: entry for entry in archive.infolist()}
+
+
+def test_the_files(bundle: Path) -> None:
+    """What Gradescope wants is in the root, the grader is complete, and there is nothing else."""
+    names = members(bundle)
+    there = {path.relative_to(ROOT).as_posix() for path in (ROOT / "grader").rglob("*.*") if path.suffix != ".pyc"}
+    assert {name for name in names if "/" not in name} == {
+        "setup.sh", "run_autograder", "autograder.py", "autograder.json", "requirements.txt",
+    }  # fmt: skip
+    ours = {name for name in names if name.startswith("grader/")}
+    assert ours == {*there, "grader/bundle/on_gradescope/run_autograder", "grader/rubrics/lab6.toml"}
+    assert [name for name in names if "rubrics/" in name] == ["grader/rubrics/lab6.toml"]
+    assert not [name for name in names if "__pycache__" in name or name.endswith(".pyc") or "tests" in name]
+    assert list(names) == sorted(names)
+
+
+def test_permissions_and_times(bundle: Path) -> None:
+    """The two scripts can be run, nothing else can, and no clock has left a trace."""
+    programs = {name for name, entry in members(bundle).items() if entry.external_attr >> 16 == 0o100755}
+    assert programs == {"setup.sh", "run_autograder"}
+    others = {entry.external_attr >> 16 for name, entry in members(bundle).items() if name not in programs}
+    assert others == {0o100644}
+    assert {(entry.date_time, entry.create_system) for entry in members(bundle).values()} == {
+        ((1980, 1, 1, 0, 0, 0), 3)
+    }
+
+
+def test_scripts_have_unix_lines(source: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where git has written them with the line ends of Windows; bash finds no fault with them."""
+    from grader.bundle import gradescope
+
+    for name in ("setup.sh", "run_autograder", "autograder.py"):
+        (tmp_path / name).write_bytes((source / name).read_bytes().replace(b"\n", b"\r\n"))
+    monkeypatch.setattr(gradescope, "_SCRIPTS", tmp_path)
+    (tmp_path / "out.zip").write_bytes(autograder_zip(LAB6))
+    other = unpacked(tmp_path / "out.zip", tmp_path / "other")
+    for name in ("setup.sh", "run_autograder", "autograder.py"):
+        assert (other / name).read_bytes() == (source / name).read_bytes()
+        assert b"\r" not in (source / name).read_bytes()
+    for name in ("setup.sh", "run_autograder"):
+        subprocess.run(["bash", "-n", other / name], check=True)
+
+
+def test_the_same_bytes_again(bundle: Path, tmp_path: Path) -> None:
+    """Another day, another folder, another name."""
+    (tmp_path / "Other.ZIP").write_bytes(b"of yesterday")
+    done = grader("bundle", "gradescope", tmp_path / "Other.ZIP", TZ="Asia/Tokyo")
+    assert done.returncode == 0
+    assert (tmp_path / "Other.ZIP").read_bytes() == bundle.read_bytes()
+    assert [path.name for path in tmp_path.iterdir()] == ["Other.ZIP"]
+
+
+def in_order(requirement: str) -> str:
+    """A requirement as hatchling writes it."""
+    name = re.split("[<>=]", requirement)[0]
+    return name + ",".join(sorted(requirement.removeprefix(name).split(",")))
+
+
+def as_wheel(into: Path) -> Path:
+    """The package as a wheel installs it: rubrics and their reference solutions inside, its metadata beside it."""
+    skipped = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(ROOT / "grader", into / "grader", ignore=skipped)
+    shutil.copytree(ROOT / "rubrics", into / "grader" / "rubrics", ignore=skipped)
+    lines = [f"Requires-Dist: {in_order(each)}" for each in PROJECT["dependencies"]]
+    for extra, wanted in PROJECT["optional-dependencies"].items():
+        lines += [
+            f"Provides-Extra: {extra}",
+            *(f"Requires-Dist: {in_order(each)}; extra == '{extra}'" for each in wanted),
+        ]
+    (into / "grader-9.9.dist-info").mkdir()
+    head = "Metadata-Version: 2.4\nName: grader\nVersion: 9.9\n"
+    (into / "grader-9.9.dist-info" / "METADATA").write_text(head + "\n".join(lines) + "\n")
+    return into
+
+
+def test_from_a_wheel(bundle: Path, tmp_path: Path) -> None:
+    """An installation gives the same bytes as a checkout."""
+    place = as_wheel(tmp_path / "packages")
+    out = tmp_path / "out.zip"
+    start = f"import sys; sys.path.insert(0, {str(place)!r}); from grader.__main__ import main; main()"
+    subprocess.run([sys.executable, "-I", "-c", start, "bundle", "gradescope", str(out)], cwd=tmp_path, check=True)
+    assert out.read_bytes() == bundle.read_bytes()
+
+
+def test_what_has_to_be_installed(bundle: Path) -> None:
+    """The grader's own requirements and those of the extra for documents, no others."""
+    with zipfile.ZipFile(bundle) as archive:
+        lines = archive.read("requirements.txt").decode().splitlines()
+    assert lines == sorted(map(in_order, PROJECT["dependencies"] + PROJECT["optional-dependencies"]["documents"]))
+
+
+def test_requirements_with_conditions(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Conditions on the machine stay, that on the extra goes."""
+    monkeypatch.setattr(installed, "_PACKAGE", tmp_path / "grader")
+    declared = [
+        "plain >=1, <2,!=1.5",
+        'old>=2; python_version < "3.12"',
+        "word[all] >= 3; extra == 'documents'",
+        'both>=4; python_version < "3.12" and extra == "documents"',
+        "other>=5 ; extra == 'test'",
+        'third>=6; sys_platform == "linux" and extra == "test"',
+    ]
+    monkeypatch.setattr(installed, "requires", {"grader": declared}.get)
+    assert requirements("documents") == [
+        'both>=4 ; python_version < "3.12"',
+        'old>=2 ; python_version < "3.12"',
+        "plain!=1.5,<2,>=1",
+        "word[all]>= 3",
+    ]
+    (tmp_path / "pyproject.toml").write_text('[project]\nname = "another"\n')
+    assert "word[all]>= 3" in requirements("documents")
+
+
+def test_a_package_that_is_nowhere_installed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """What the grader needs cannot be told then, and the command says so."""
+
+    def not_found(name: str) -> list[str]:
+        raise importlib.metadata.PackageNotFoundError(name)
+
+    monkeypatch.setattr(installed, "_PACKAGE", tmp_path / "grader")
+    monkeypatch.setattr(installed, "requires", not_found)
+    with pytest.raises(InputError, match="install it with pip"):
+        requirements("documents")
+
+
+def test_files_that_are_not_ours(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """What editors, Python and operating systems leave beside the code stays here."""
+    monkeypatch.setattr(installed, "_PACKAGE", tmp_path / "grader")
+    for name in (
+        "a.py",
+        "b/c.txt",
+        "b/.c.swp",
+        ".DS_Store",
+        "__pycache__/a.pyc",
+        "b/d.pyc",
+        ".git/x",
+        "rubrics/old.toml",
+    ):
+        (tmp_path / "grader" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "grader" / name).touch()
+    assert sorted(package_files()) == ["grader/a.py", "grader/b/c.txt", "grader/rubrics/lab6.toml"]
+
+
+# --- The rubric -------------------------------------------------------------------------------------------------------
+
+
+def test_a_rubric_of_ones_own(tmp_path: Path) -> None:
+    """Its file is in the bundle, byte for byte, and submissions are graded by it."""
+    own = tmp_path / "my lab.toml"
+    own.write_bytes(("\ufeff" + lab_text().replace("\n", "\r\n")).encode())
+    done = grader("bundle", "gradescope", tmp_path / "out.zip", "--rubric", own)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout == (
+        f"wrote {tmp_path}/out.zip: A small lab, 5 criteria, 11 points\n"
+        "next: upload it under Configure Autograder; autograder points: 6; points that a person gives: 5 for essay (4), picture (1)\n"
+    )
+    source = unpacked(tmp_path / "out.zip", tmp_path / "source")
+    assert (source / "rubric.toml").read_bytes() == own.read_bytes()
+    settings = json.loads((source / "autograder.json").read_text())
+    assert (settings["rubric"], settings["sha256"]) == ("source/rubric.toml", sha256_of(own.read_bytes()))
+    autograder = Autograder(tmp_path / "autograder", source, environment_for(source, tmp_path / "venv"))
+    autograder.submission.rmdir()
+    hand_in(autograder.submission)
+    results = autograder.run()
+    assert (results["score"], len(results["tests"])) == (6, 5)
+    (source / "rubric.toml").write_text(lab_text(loads="30"))
+    assert autograder.run()["score"] == 0
+
+
+def test_a_file_that_has_the_id_of_a_shipped_rubric(tmp_path: Path) -> None:
+    """The file is meant, not the rubric that comes with the grader."""
+    own = tmp_path / "lab6.toml"
+    own.write_bytes((ROOT / "rubrics/lab6.toml").read_bytes() + b"# changed\n")
+    assert grader("bundle", "gradescope", tmp_path / "out.zip", "--rubric", own).returncode == 0
+    with zipfile.ZipFile(tmp_path / "out.zip") as archive:
+        assert archive.read("rubric.toml") == own.read_bytes()
+        assert json.loads(archive.read("autograder.json"))["rubric"] == "source/rubric.toml"
+
+
+def test_a_rubric_that_needs_no_person(tmp_path: Path) -> None:
+    """Then there is nothing to give by hand."""
+    own = tmp_path / "lab.toml"
+    own.write_text(
+        "".join(f"{each}\n\n" for each in lab_text().split("\n\n") if '"essay"' not in each and '"picture"' not in each)
+    )
+    done = grader("bundle", "gradescope", tmp_path / "out.zip", "--rubric", own)
+    assert done.stdout.splitlines()[1] == "next: upload it under Configure Autograder; autograder points: 6"
+
+
+def test_what_the_command_says_a_person_gives_is_what_the_reference_lacks() -> None:
+    """The checks that are said to be a person's are those that are always pending."""
+    report = grade(LAB6, opened("submissions/reference"))
+    pending = [each.criterion for each in report.results if each.outcome.status == "pending"]
+    said = command._next_step(LAB6, Path("out.zip"))
+    assert (
+        f"{sum(each.points for each in pending)} for {', '.join(f'{each.id} ({each.points})' for each in pending)}\n"
+        in said
+    )
+
+
+def broken(folder: Path) -> tuple[object, ...]:
+    """A rubric with two mistakes."""
+    (folder / "lab.toml").write_text(
+        lab_text().replace('"urdf_loads"', '"urdf_lods"').replace("size = [1, 1, 1]", "size = [1]")
+    )
+    return (folder / "out.zip", "--rubric", folder / "lab.toml")
+
+
+REFUSALS: dict[str, tuple[Callable[[Path], tuple[object, ...]], str]] = {
+    "no zip": (lambda folder: (folder / "out.tar.gz",), "give a name that ends in .zip"),
+    "no name": (lambda folder: (folder,), "give a name that ends in .zip"),
+    "no rubric": (lambda folder: (folder / "out.zip", "--rubric", "lab66"), "there is no rubric 'lab66'"),
+    "no file": (lambda folder: (folder / "out.zip", "--rubric", folder / "no.toml"), "No such file"),
+    "no folder": (lambda folder: (folder / "no" / "out.zip",), "cannot write"),
+}
+
+
+@pytest.mark.parametrize("name", REFUSALS)
+def test_refusals(tmp_path: Path, name: str) -> None:
+    """One clear line, and nothing is written."""
+    arguments, words = REFUSALS[name]
+    assert words in refusal(grader("bundle", "gradescope", *arguments(tmp_path)))
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_broken_rubric(tmp_path: Path) -> None:
+    """Every mistake is named, as everywhere, and nothing is written."""
+    done = grader("bundle", "gradescope", *broken(tmp_path))
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.count("lab.toml:") >= 2
+    assert not (tmp_path / "out.zip").exists()
+    assert "another" in refusal(grader("bundle", "another", tmp_path / "out.zip"))
+
+
+def test_a_check_of_another_package() -> None:
+    """It would not be there on Gradescope, and everybody would get nothing."""
+
+    def strange(robot: Configuration) -> Outcome:
+        """Always so."""
+        raise NotImplementedError
+
+    strange.__module__ = "elsewhere.checks"
+    rubric = load_rubric("lab6")
+    first = replace(rubric.criteria[0], check=describe(strange))
+    with pytest.raises(InputError, match=r"urdf-loads is decided by a check of another package \(elsewhere\)"):
+        autograder_zip(replace(rubric, criteria=(first, *rubric.criteria[1:])))

@@ -1,0 +1,121 @@
+"""Where the grader crashes, hangs or says nonsense, results.json is there all the same, and says that nothing was graded."""
+
+import json
+import os
+import time
+import venv
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.bundle.platform import FALLBACK, Autograder
+
+Making = Callable[..., Autograder]
+FINE = json.dumps({"score": 1.5, "output": "fine", "tests": []})
+HANGS = """
+import subprocess, sys, time
+child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
+open({path!r}, "w").write(str(child.pid))
+time.sleep(600)
+"""
+
+
+@pytest.mark.parametrize("code", [0, 1, 3])
+def test_a_report_is_taken(with_grader: Making, code: int) -> None:
+    """Graded is graded, also where a check has failed through a fault of the grader's."""
+    assert with_grader(f"print({FINE!r}); raise SystemExit({code})").run() == json.loads(FINE)
+
+
+def test_half_a_character_is_none(with_grader: Making) -> None:
+    """What only Python takes for text does not reach Gradescope."""
+    output = with_grader('print(r\'{"score": 0, "output": "a\\udc80b \\u00e4"}\')').run()["output"]
+    assert output == "a?b \u00e4"
+
+
+@pytest.mark.parametrize(
+    "program",
+    [
+        "import os; os.abort()",
+        "raise RuntimeError('broken')",
+        "raise SystemExit(0)",
+        f"print({FINE!r}); raise SystemExit(4)",
+        f"print({FINE[:-5]!r})",
+        "print('[1]')",
+        "print('{}')",
+        "print('{\"score\": NaN}')",
+        'print(\'{"score": "1"}\')',
+        "print('[' * 100_000)",
+        'import sys; sys.stdout.buffer.write(b\'{"score": 1, "output": "\\xff"}\')',
+        f"print({FINE!r} + ' ' * (33 << 20) + 'x')",
+    ],
+    ids=lambda program: program[:40],
+)
+def test_no_report(with_grader: Making, program: str) -> None:
+    """A crash, or what is no report: nothing was graded, and the instructor reads why."""
+    autograder = with_grader(program)
+    results = autograder.run()
+    assert (results["score"], results["tests"], results["output_format"]) == (0, [], "text")
+    assert results["output"].startswith(FALLBACK)
+    assert "the grader ended with exit code" in autograder.ended().stdout
+
+
+def test_the_graders_words_are_harmless(with_grader: Making) -> None:
+    """Why nothing was graded reaches the student as plain text, however it looks."""
+    words = b"grader: <b>\x1b[31m\x00\xff\xe2\x80\xae `a` " + b"long " * 1000 + b"\ngrader: second\n"
+    results = with_grader(f"import sys; sys.stderr.buffer.write({words!r}); raise SystemExit(2)").run()
+    assert (results["score"], results["output_format"]) == (0, "text")
+    assert "\n<b>?[31m?\ufffd? `a` long long" in results["output"]
+    assert len(results["output"]) < 3000
+
+
+def test_a_grader_that_hangs(with_grader: Making, tmp_path: Path) -> None:
+    """It is ended with all that it has started, and the student reads that it took too long."""
+    autograder = with_grader(HANGS.format(path=str(tmp_path / "child")), seconds=1)
+    assert "longer than 1 seconds" in autograder.run()["output"]
+    child = int((tmp_path / "child").read_text())
+    for _ in range(100):
+        if not _runs(child):
+            return
+        time.sleep(0.05)
+    raise AssertionError(child)
+
+
+def _runs(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+@pytest.mark.parametrize(
+    "program",
+    ["", "nonsense", "#!/bin/sh\nexit 1", "#!/bin/sh\nsleep 600"],
+    ids=["missing", "nonsense", "fails", "hangs"],
+)
+def test_a_python_that_does_not_run(autograder: Autograder, tmp_path: Path, program: str) -> None:
+    """Before setup.sh has run, or after it has failed."""
+    (autograder.root / "venv").unlink()
+    (autograder.root / "venv").symlink_to(tmp_path)
+    if program:
+        (tmp_path / "bin").mkdir()
+        (tmp_path / "bin" / "python").write_text(program)
+        (tmp_path / "bin" / "python").chmod(0o755)
+    script = autograder.root / "run_autograder"
+    script.write_text(script.read_text().replace("--kill-after=10 420", "--kill-after=1 2"))
+    _is_explained(autograder)
+
+
+def test_an_environment_without_packages(autograder: Autograder, tmp_path: Path) -> None:
+    """Where setup.sh has stopped before it was done."""
+    (autograder.root / "venv").unlink()
+    venv.create(autograder.root / "venv", symlinks=True)
+    _is_explained(autograder)
+
+
+def _is_explained(autograder: Autograder) -> None:
+    results = autograder.run()
+    assert (results["score"], results["tests"]) == (0, [])
+    assert results["output"].startswith(FALLBACK)
+    assert "the grader did not finish" in autograder.ended().stdout

@@ -1,0 +1,101 @@
+"""setup.sh, as Gradescope runs it once for each autograder."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.bundle.platform import Autograder, unpacked
+
+WORD = "import docx, pypdf, sys; print(docx.__file__, pypdf.__file__)"
+# In a PATH of its own: what a base image has, with other Pythons than here.
+TOOLS = ("bash", "env", "dirname", "cat", "rm", "touch")
+
+
+def set_up(source: Path, start: Path, **variables: str) -> subprocess.CompletedProcess[str]:
+    """Run setup.sh from some folder."""
+    return subprocess.run(
+        [source / "setup.sh"],
+        cwd=start,
+        env={**os.environ, **variables},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        check=False,
+        timeout=600,
+    )
+
+
+def test_from_the_zip_to_a_grade(bundle: Path, tmp_path: Path) -> None:
+    """Everything is real but the folder: pip installs what is needed, and the reference gets its points."""
+    probe = [sys.executable, "-m", "pip", "download", "--quiet", "--no-deps", "--dest", str(tmp_path), "imagesize"]
+    if subprocess.run(probe, capture_output=True, check=False).returncode:
+        pytest.skip("pip cannot download packages here")
+    root = tmp_path / "auto grader"
+    source = unpacked(bundle, root / "source")
+    done = set_up(source, tmp_path)
+    assert done.returncode == 0, done.stdout
+    assert done.stdout.endswith("setup.sh: the grader is ready\n")
+    assert "lab6" in done.stdout
+    installed = subprocess.run([root / "venv/bin/python", "-I", "-c", WORD], capture_output=True, text=True, check=True)
+    assert installed.stdout.count(str(root / "venv")) == 2
+    (tmp_path / "again").mkdir()
+    autograder = Autograder(tmp_path / "again", source, root / "venv")
+    autograder.hand_in("reference")
+    assert autograder.run()["score"] == 90
+
+
+def image(folder: Path, **programs: str) -> str:
+    """The PATH of a machine that has these programs, scripts of a shell."""
+    place = folder / "bin"
+    place.mkdir()
+    for name in TOOLS:
+        (place / name).symlink_to(shutil.which(name) or name)
+    for name, script in programs.items():
+        path = place / name.replace("_", ".").replace("apt.get", "apt-get")
+        path.write_text(f"#!{shutil.which('bash')}\n{script}\n")
+        path.chmod(0o755)
+    return str(place)
+
+
+APT = 'echo "$*" >>"$LOG"; [ "$1" = update ] || touch "$LOG.done"'
+NEW = '[ -e "$LOG.done" ] || { case $* in *ensurepip*) exit 1 ;; esac; exit 0; }; echo it runs >>"$LOG"; exit 0'
+OLD = "exit 1"
+
+
+@pytest.mark.parametrize(
+    ("python3", "packages"), [(OLD, "python3.11 python3.11-venv"), (NEW, "python3-venv")], ids=["22.04", "24.04"]
+)
+def test_python_is_installed_where_it_lacks(source: Path, tmp_path: Path, python3: str, packages: str) -> None:
+    """Beside an old Python a newer one, for a new one what makes virtual environments; the system's own is not replaced."""
+    newer = {"python3_11": '[ -e "$LOG.done" ] && echo it runs >>"$LOG"'} if python3 == OLD else {}
+    path = image(tmp_path, python3=python3, apt_get=APT, **newer)
+    (tmp_path / "root").mkdir()
+    shutil.copytree(source, tmp_path / "root" / "source")
+    set_up(tmp_path / "root" / "source", tmp_path, PATH=path, LOG=str(tmp_path / "log"))
+    lines = (tmp_path / "log").read_text().splitlines()
+    assert lines[:2] == ["update --quiet", f"install --yes --quiet --no-install-recommends {packages}"]
+    assert "it runs" in lines[2:]
+
+
+@pytest.mark.parametrize("programs", [{}, {"apt_get": "exit 100", "python3": OLD}], ids=["nothing", "no network"])
+def test_without_a_python(source: Path, tmp_path: Path, programs: dict[str, str]) -> None:
+    """The build fails, and its last line says what to do."""
+    done = set_up(source, tmp_path, PATH=image(tmp_path, **programs))
+    assert done.returncode == 1
+    assert done.stdout.splitlines()[-1].startswith(
+        "setup.sh: there is still no Python 3.11 or newer. Choose a newer base image"
+    )
+
+
+def test_a_rubric_that_is_broken_after_all(bundle: Path, tmp_path: Path) -> None:
+    """What somebody has broken in the unpacked files is found when the image is built."""
+    source = unpacked(bundle, tmp_path / "source")
+    (source / "autograder.json").write_text('{"rubric": "source/rubric.toml", "sha256": "", "seconds": 1}')
+    (source / "rubric.toml").write_text("id = 1\n")
+    check = [sys.executable, "-I", "source/autograder.py", "--check"]
+    done = subprocess.run(check, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (2, "")

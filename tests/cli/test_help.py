@@ -1,0 +1,90 @@
+"""The help: every command is told in one whole line, and every example that it gives can be typed."""
+
+import re
+import shlex
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from typer.main import get_command
+
+from grader.cli.app import COMMANDS, _app
+from tests.golden.cases import ROOT, run
+
+PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
+
+
+def walk(command: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
+    """Every command below this one and itself, by what is typed."""
+    yield path, command
+    for name, each in getattr(command, "commands", {}).items():
+        yield from walk(each, (*path, name))
+
+
+PATHS = [path for path, _ in walk(get_command(_app(COMMANDS)))]
+
+
+def parse(line: str) -> None:
+    """Have a command line taken in without doing anything; fails where it is wrong usage."""
+    words = shlex.split(line, comments=True)
+    assert words[0] == "grader"
+    for sign in (">", "|"):
+        words = words[: words.index(sign)] if sign in words else words
+    grader: Any = get_command(_app(COMMANDS))
+    for _, command in walk(grader):
+        if not hasattr(command, "commands"):
+            command.callback = lambda **_: None
+    grader.main(words[1:], prog_name="grader", standalone_mode=False)
+
+
+@pytest.mark.parametrize("path", PATHS, ids=lambda path: " ".join(path) or "grader")
+def test_help_at_eighty_columns(path: tuple[str, ...]) -> None:
+    """Nothing is cut or too wide, and there are examples, each on a line of its own."""
+    done = run((*path, "--help"))
+    text = done.stdout.decode()
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert "..." not in text.replace("[OPTIONS] COMMAND [ARGS]...", "")
+    assert max(map(len, text.splitlines())) <= 80
+    examples = re.search(r"\n  Examples:\n\n((?:    .*\n|\n)+)", text)
+    assert examples is not None
+    lines = [each.strip() for each in examples[1].splitlines() if each.strip()]
+    assert lines
+    for line in lines:
+        assert line.startswith(" ".join(("grader", *path))), line
+        parse(line)
+
+
+@pytest.mark.parametrize("path", [path for path in PATHS if path], ids=" ".join)
+def test_the_summary_is_one_line(path: tuple[str, ...]) -> None:
+    """In the list of commands the whole first sentence stands beside the name."""
+    listed = run((*path[:-1], "--help")).stdout.decode().partition("\nCommands:\n")[2]
+    command = dict(walk(get_command(_app(COMMANDS))))[path]
+    summary = command.help.partition("\n")[0]
+    assert re.search(rf"^  {path[-1]} +{re.escape(summary)}$", listed, re.MULTILINE)
+    assert summary.endswith(".")
+
+
+@pytest.mark.parametrize("words", [(), ("rubric",)], ids=["grader", "rubric"])
+def test_without_a_command_the_help_is_shown(words: tuple[str, ...]) -> None:
+    """On standard error, because nothing was done."""
+    done = run(words)
+    assert (done.returncode, done.stdout) == (2, b"")
+    assert done.stderr.decode().split() == run((*words, "--help")).stdout.decode().split()
+
+
+@pytest.mark.parametrize("words", [("--version",), ("-V",), ("--version", "grade"), ("-V", "--help")])
+def test_the_version(words: tuple[str, ...]) -> None:
+    """Both spellings, whatever else is typed behind them."""
+    from grader import __version__
+
+    done = run(words)
+    assert (done.returncode, done.stdout, done.stderr) == (0, f"grader {__version__}\n".encode(), b"")
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_commands_of_the_documentation_can_be_typed(page: Any) -> None:
+    """Every line of shell that begins with our name."""
+    for block in re.findall(r"```sh\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL):
+        for line in block.replace("\\\n", " ").splitlines():
+            if line.startswith("grader "):
+                parse(line)

@@ -1,0 +1,90 @@
+"""Where there is a next step, the message says what to type."""
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from grader.cli.app import COMMANDS
+from tests.samples import ROOT
+
+SAMPLE = ROOT / "submissions/lidar-offset-in-visual/my_robot.urdf"
+PACKAGE = "submissions/reference/roscourse_sim_ws/src/my_robot"
+BATCH = "grader batch PATH --gradebook book.db"
+
+
+@pytest.fixture
+def place(tmp_path: Path) -> Path:
+    """A folder to type in: a URDF, a class of one, a text, a package."""
+    shutil.copy(SAMPLE, tmp_path / "my_robot.urdf")
+    (tmp_path / "class" / "anna").mkdir(parents=True)
+    shutil.copy(SAMPLE, tmp_path / "class" / "anna")
+    shutil.copytree(ROOT / PACKAGE, tmp_path / "package")
+    (tmp_path / "notes.txt").write_text("no gradebook, and long enough to be taken for something\n" * 20)
+    (tmp_path / "empty").mkdir()
+    return tmp_path
+
+
+def typed(line: str, place: Path) -> subprocess.CompletedProcess[bytes]:
+    """What comes of a line that is typed there."""
+    command = [sys.executable, "-m", "grader", *line.split()]
+    return subprocess.run(command, cwd=place, capture_output=True, check=False, timeout=60)
+
+
+def refused(line: str, place: Path) -> str:
+    """The last line of what a command says that does not do what it is asked."""
+    done = typed(line, place)
+    assert (done.returncode, done.stdout) == (2, b"")
+    message = done.stderr.decode().splitlines()[-1]
+    assert message.startswith("grader: ")
+    return message.removeprefix("grader: ")
+
+
+@pytest.mark.parametrize(
+    ("line", "why"),
+    [
+        ("my_robot.urdf", "there is no command 'my_robot.urdf': grader grade my_robot.urdf grades it"),
+        ("grade my_robt.urdf", "my_robt.urdf does not exist; did you mean 'my_robot.urdf'?"),
+        ("inspect clas/anna/my_robot.urdf", "did you mean 'class/anna/my_robot.urdf'?"),
+        ("grade clas/ben", "clas/ben does not exist; did you mean 'class'?"),
+        ("grade nowhere", "nowhere does not exist (. stands for the folder that you are in)"),
+        ("grade my_robot.urdf --rubric lab", "did you mean 'lab6'? (grader rubric list shows those that there are)"),
+        ("explain lidar-frame --rubric zzz", "a file is named as ./zzz or ends in .toml (grader rubric list shows"),
+        ("grade my_robot.urdf --part task", "did you mean 'task3'? (grader rubric show lab6 says more)"),
+        ("explain zzz", "grader rubric show lab6 lists the criteria, grader rubric checks the checks"),
+        ("grade my_robot.urdf --save json=out/a.json", "there is no folder out (mkdir -p out makes it)"),
+        ("grade my_robot.urdf --score", "(grader grade --help shows the usage)"),
+        ("rubric shov lab6", "(grader rubric --help shows the usage)"),
+        ("batch clas --gradebook book.db", "clas does not exist; did you mean 'class'?"),
+        ("batch my_robot.urdf --gradebook book.db", "(grader grade takes a single one)"),
+        ("batch package --gradebook book.db", "(grader grade package grades it)"),
+        ("batch empty --gradebook book.db", "name the folder that holds the class's submissions"),
+        ("batch class --layout canvas --gradebook book.db", "(without --layout canvas it is found out)"),
+        ("batch class --layout nbgrader --gradebook book.db", "--assignment has to say which assignment"),
+        ("batch class --gradebook book.db --csv out/a.csv", "there is no folder out (mkdir -p out makes it)"),
+        ("batch class --gradebook out/book.db", "there is no folder out (mkdir -p out makes it)"),
+        ("stats --gradebook notes.txt", "name another file"),
+        ("stats --gradebook book.db", f"there is no gradebook book.db: {BATCH} makes one"),
+        ("export canvas --gradebook book.db", "name it with --into"),
+    ],
+)
+def test_what_to_type_is_said(line: str, why: str, place: Path) -> None:
+    """In the same line that says what is wrong, and every command that it names is one of ours."""
+    message = refused(line, place)
+    assert why in message
+    assert set(re.findall(r"\bgrader ([a-z]+)", message)) <= set(COMMANDS)
+
+
+def test_what_to_type_with_a_gradebook(place: Path) -> None:
+    """Whom and what to name, and how to come to something to compare."""
+    assert typed("batch class --gradebook book.db", place).returncode == 0
+    for line, why in (
+        ("mark zoe lidar-frame 1 --gradebook book.db", "; grader export csv --gradebook book.db lists everyone"),
+        ("mark anna lidar 1 --gradebook book.db", "has no criterion 'lidar' (grader rubric show lab6 lists them)"),
+        ("diff book.db", f"{BATCH} makes one more, or name a second gradebook"),
+        ("export csv --gradebook book.db --output out/a.csv", "there is no folder out (mkdir -p out makes it)"),
+    ):
+        assert why in refused(line, place)

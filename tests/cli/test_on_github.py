@@ -1,0 +1,215 @@
+"""In a job of GitHub Actions: annotations on standard error, the report in the job's summary, and nothing else is another way."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.report.readers import read_as_github
+from tests.report.workflow_commands import commands
+from tests.samples import LAB6, ROOT
+
+MISTAKEN = ROOT / "submissions/several-mistakes/my_robot.urdf"
+REFERENCE = ROOT / "submissions/reference"
+LIMIT = 1024 * 1024  # bytes that GitHub takes of a summary
+
+
+class Job:
+    """A checkout with a submission in it, and the file that becomes the job's summary."""
+
+    def __init__(self, folder: Path) -> None:
+        self.checkout = folder / "checkout"
+        (self.checkout / ".git").mkdir(parents=True)
+        shutil.copy(MISTAKEN, self.checkout)
+        self.summary = folder / "summary.md"
+
+    def run(self, *arguments: str, start: Path | None = None, **variables: str) -> subprocess.CompletedProcess[bytes]:
+        """Run the command line in the checkout, as a step does."""
+        around = {
+            "GITHUB_ACTIONS": "true",
+            "GITHUB_WORKSPACE": str(self.checkout),
+            "GITHUB_STEP_SUMMARY": str(self.summary),
+        }
+        return subprocess.run(
+            [sys.executable, "-m", "grader", *arguments],
+            cwd=start or self.checkout,
+            env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1", **around, **variables},
+            capture_output=True,
+            check=False,
+            timeout=60,
+        )
+
+    def files(self, path: str, start: Path | None = None, **variables: str) -> set[str | None]:
+        """The files that a path's annotations are put on."""
+        done = self.run("grade", path, start=start, **variables)
+        assert done.returncode in (0, 1), done.stderr
+        return {each.get("file") for each in commands(done.stderr.decode())} - {None}
+
+
+@pytest.fixture
+def job(tmp_path: Path) -> Job:
+    """A job of its own."""
+    return Job(tmp_path)
+
+
+@pytest.mark.parametrize("form", ["terminal", "json", "markdown", "sarif"])
+def test_a_job_gets_annotations_and_a_summary(job: Job, form: str) -> None:
+    """Standard output is byte for byte what it is elsewhere; the annotations are those of their own format."""
+    done = job.run("grade", "my_robot.urdf", "--format", form)
+    elsewhere = job.run("grade", "my_robot.urdf", "--format", form, GITHUB_ACTIONS="")
+    assert (done.stdout, done.returncode) == (elsewhere.stdout, elsewhere.returncode)
+    assert elsewhere.stderr == b""
+    assert done.stderr == job.run("grade", "my_robot.urdf", "--format", "github", GITHUB_ACTIONS="").stdout
+    assert (
+        job.summary.read_bytes() == job.run("grade", "my_robot.urdf", "--format", "markdown", GITHUB_ACTIONS="").stdout
+    )
+    assert commands(done.stdout.decode()) == []
+
+
+def test_annotations_that_are_asked_for_come_once(job: Job) -> None:
+    """The format github is the annotations: standard error stays empty, and the summary is there all the same."""
+    done = job.run("grade", "my_robot.urdf", "--format", "github")
+    assert len(commands(done.stdout.decode())) == 8
+    assert done.stderr == b""
+    assert job.summary.read_text(encoding="utf-8").startswith("# 42 / 70 points")
+
+
+@pytest.mark.parametrize("variable", ["GITHUB_ACTIONS", "GITHUB_STEP_SUMMARY"])
+def test_elsewhere_there_is_nothing_of_it(job: Job, variable: str) -> None:
+    """Another system that sets some of the variables, and a runner that has no summaries."""
+    done = job.run("grade", "my_robot.urdf", **{variable: ""})
+    assert (done.stderr == b"") == (variable == "GITHUB_ACTIONS")
+    assert not job.summary.exists()
+
+
+def test_the_summary_is_added_to(job: Job) -> None:
+    """What another command of the step has written stays, and two reports stand one below the other."""
+    job.summary.write_text("# Built\n")
+    for _ in range(2):
+        job.run("grade", "my_robot.urdf")
+    root = read_as_github(job.summary.read_text(encoding="utf-8"))
+    assert [each.text_content() for each in root.iter("h1")] == [
+        "Built",
+        *["42 / 70 points: IRP Lab 6: a wheeled base"] * 2,
+    ]
+
+
+@pytest.mark.parametrize("room", [0, 1, 50, 200, 3000, 5806, 5807, 20_000])
+def test_the_summary_is_no_longer_than_github_takes(job: Job, room: int) -> None:
+    """Together with what is there already; where there is no room, nothing is added."""
+    whole = job.run("grade", "my_robot.urdf", "--format", "markdown", GITHUB_ACTIONS="").stdout
+    before = b"x" * (LIMIT - room - 1) + b"\n"
+    job.summary.write_bytes(before)
+    assert job.run("grade", "my_robot.urdf").returncode == 1
+    text = job.summary.read_bytes()
+    assert len(text) <= LIMIT
+    assert text.startswith(before)
+    added = text.removeprefix(before)
+    if room > len(whole):
+        assert added == b"\n" + whole
+    elif added:
+        assert b"The report is cut off here" in added
+        assert whole.startswith(added[1:].partition(b"**The report is cut")[0])
+    else:
+        assert room < 200
+
+
+@pytest.mark.parametrize("place", ["folder", "/dev/full", "nowhere/at/all.md"])
+def test_a_summary_that_cannot_be_written_changes_nothing_else(job: Job, place: str) -> None:
+    """One line says so; report, annotations and exit code are as always."""
+    (job.checkout / "folder").mkdir()
+    usual = job.run("grade", "my_robot.urdf")
+    done = job.run("grade", "my_robot.urdf", GITHUB_STEP_SUMMARY=place)
+    assert (done.stdout, done.returncode) == (usual.stdout, usual.returncode)
+    added = done.stderr.removeprefix(usual.stderr)
+    assert added.startswith(b"grader: the job summary cannot be written: ")
+    assert added.count(b"\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("nowhere.urdf",), "nowhere.urdf does not exist"),
+        (("my_robot.urdf", "--rubric", "nowhere.toml"), "cannot read nowhere.toml"),
+        (("my_robot.urdf", "--rubric", "lab7"), "there is no rubric 'lab7'"),
+        (("my_robot.urdf", "--part", "task2"), "name the folder or archive"),
+        (("my_robot.urdf", "--expect-rubric", "0" * 64), "is not the one that is expected"),
+        (("my_robot.urdf", "--save", "json=nowhere/a.json"), "cannot write nowhere/a.json"),
+    ],
+)
+def test_where_nothing_was_graded_the_job_says_why(job: Job, arguments: tuple[str, ...], words: str) -> None:
+    """As an annotation and in the summary, besides the line on standard error; exit code 2."""
+    done = job.run("grade", *arguments)
+    assert (done.returncode, done.stdout) == (2, b"")
+    (told,) = commands(done.stderr.decode())
+    assert (told.name, told.get("title"), told.get("file")) == ("error", "Nothing was graded", None)
+    assert words in told.data
+    assert done.stderr.decode().splitlines()[1] == f"grader: {told.data}"
+    root = read_as_github(job.summary.read_text(encoding="utf-8"))
+    assert [root.findtext("h1"), root.findtext("p")] == ["Nothing was graded", told.data]
+
+
+def test_every_mistake_of_a_rubric_is_in_the_annotation(job: Job) -> None:
+    """Line by line, as on standard error."""
+    (job.checkout / "bad.toml").write_text('id = "x"\ntitel = "y"\n')
+    done = job.run("grade", "my_robot.urdf", "--rubric", "bad.toml")
+    (told,) = commands(done.stderr.decode())
+    lines = told.data.splitlines()
+    assert len(lines) == 4
+    assert done.stderr.decode().splitlines()[1:] == [f"grader: {line}" for line in lines]
+
+
+@pytest.mark.parametrize(("threshold", "code"), [("42", 0), ("60%", 0), ("42.5", 1), ("100%", 1)])
+def test_the_threshold_decides_whether_the_step_fails(job: Job, threshold: str, code: int) -> None:
+    """Annotations of errors alone fail no step."""
+    done = job.run("grade", "my_robot.urdf", "--fail-under", threshold)
+    assert done.returncode == code
+    assert {each.name for each in commands(done.stderr.decode())} == {"notice", "error"}
+
+
+def test_help_is_plain_text_in_a_job(job: Job) -> None:
+    """Some libraries colour what they print there."""
+    for arguments in (("--help",), ("grade", "--help"), ("grade",), ("grad",)):
+        done = job.run(*arguments)
+        assert b"\x1b" not in done.stdout + done.stderr
+
+
+def test_the_rubric_is_the_courses(job: Job) -> None:
+    """Whatever a repository calls its files, an id means the rubric that comes with the grader; a path means the file."""
+    own = LAB6.data.replace(b"IRP Lab 6", b"My own")
+    for name in ("lab6", "lab6.toml", "rubrics/lab6.toml", "grader/rubrics/lab6.toml", ".toml/lab6"):
+        file = job.checkout / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_bytes(own)
+    for arguments in ((), ("--rubric", "lab6")):
+        done = job.run("grade", "my_robot.urdf", *arguments, "--expect-rubric", LAB6.sha256)
+        assert done.returncode == 1, done.stderr
+        assert b"My own" not in done.stdout
+    for name in ("lab6.toml", "./lab6", "rubrics/lab6.toml"):
+        assert b"My own" in job.run("grade", "my_robot.urdf", "--rubric", name).stdout
+        done = job.run("grade", "my_robot.urdf", "--rubric", name, "--expect-rubric", LAB6.sha256)
+        assert (done.returncode, done.stdout) == (2, b"")
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (LAB6.sha256, ""),
+        (LAB6.sha256.upper(), ""),
+        (LAB6.sha256[:-1] + ("0" if LAB6.sha256[-1] != "0" else "1"), f"its sha256 is {LAB6.sha256}, not "),
+        (LAB6.sha256[:-1], "--expect-rubric takes the 64 digits"),
+        (LAB6.sha256 + "\n", "--expect-rubric takes the 64 digits"),
+        ("\uff10" * 64, "--expect-rubric takes the 64 digits"),
+        ("", "--expect-rubric takes the 64 digits"),
+    ],
+)
+def test_expected_rubric(job: Job, given: str, words: str) -> None:
+    """Only the very bytes that are expected are graded by, in upper or lower case; what is no hash is refused."""
+    done = job.run("grade", "my_robot.urdf", "--expect-rubric", given, GITHUB_ACTIONS="")
+    assert done.returncode == (2 if words else 1)
+    assert words in done.stderr.decode()
+    assert done.stderr.count(b"\n") == bool(words)
+    assert (done.stdout == b"") == bool(words)

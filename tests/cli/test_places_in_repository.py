@@ -1,0 +1,126 @@
+"""Paths in a report for a repository are relative to its root, wherever the grader is started and whatever is named."""
+
+import json
+import shutil
+import subprocess
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from tests.cli.test_on_github import MISTAKEN, REFERENCE, Job
+
+URDF = "roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
+
+
+@pytest.fixture
+def job(tmp_path: Path) -> Job:
+    """A checkout with a whole hand-in in its root, which has one mistake, and a URDF in a folder."""
+    made = Job(tmp_path)
+    (made.checkout / "my_robot.urdf").unlink()
+    shutil.copytree(REFERENCE, made.checkout, dirs_exist_ok=True)
+    _mistake(made.checkout / URDF)
+    (made.checkout / "lab 6").mkdir()
+    shutil.copy(MISTAKEN, made.checkout / "lab 6")
+    return made
+
+
+def _mistake(file: Path) -> None:
+    file.write_text(file.read_text(encoding="utf-8").replace('"0 0.6 0 1"', '"0 1 0 1"'), encoding="utf-8")
+
+
+def test_the_root_of_the_repository(job: Job) -> None:
+    """The checkout itself, by any of its names."""
+    for path in (".", "./", str(job.checkout), "../checkout", "lab 6/.."):
+        assert job.files(path) == {URDF}
+
+
+def test_a_folder_in_it(job: Job) -> None:
+    """A package or workspace below the root, from the root or from beside it."""
+    assert job.files("roscourse_sim_ws") == {URDF}
+    assert job.files("src/my_robot", start=job.checkout / "roscourse_sim_ws") == {URDF}
+    assert job.files(".", start=job.checkout / "roscourse_sim_ws/src/my_robot") == {URDF}
+
+
+def test_a_urdf_in_it(job: Job) -> None:
+    """A file on its own stands in its folder; a link to it is called what it is called."""
+    (job.checkout / "linked.urdf").symlink_to("lab 6/my_robot.urdf")
+    assert job.files("lab 6/my_robot.urdf") == {"lab 6/my_robot.urdf"}
+    assert job.files("my_robot.urdf", start=job.checkout / "lab 6") == {"lab 6/my_robot.urdf"}
+    assert job.files("linked.urdf") == {"linked.urdf"}
+
+
+def test_an_archive_in_it(job: Job) -> None:
+    """What is in an archive has no place in the repository but the archive's."""
+    with zipfile.ZipFile(job.checkout / "lab 6" / "lab6.zip", "w") as archive:
+        archive.write(MISTAKEN, "my_robot.urdf")
+    assert job.files("lab 6/lab6.zip") == {"lab 6/lab6.zip"}
+
+
+def test_a_workspace_that_is_a_link(job: Job, tmp_path: Path) -> None:
+    """Named by the link or by where it leads."""
+    link = tmp_path / "link"
+    link.symlink_to(job.checkout)
+    for path in (str(link), str(job.checkout), str(link / "roscourse_sim_ws")):
+        assert job.files(path, GITHUB_WORKSPACE=str(link)) == {URDF}
+
+
+def test_outside_of_the_workspace(job: Job, tmp_path: Path) -> None:
+    """Neither an absolute path nor one that leads out: the submission stands for itself."""
+    (tmp_path / "other").mkdir()
+    shutil.copy(MISTAKEN, tmp_path / "other")
+    assert job.files("../other/my_robot.urdf") == {"my_robot.urdf"}
+    assert job.files(str(tmp_path / "other")) == {"my_robot.urdf"}
+
+
+def test_without_a_ci_system(job: Job) -> None:
+    """The nearest repository counts, a submodule's or worktree's too, and without any the current folder."""
+    alone = {"GITHUB_WORKSPACE": ""}
+    assert job.files("my_robot.urdf", start=job.checkout / "lab 6", **alone) == {"lab 6/my_robot.urdf"}
+    (job.checkout / "lab 6/.git").write_text("gitdir: ../.git/worktrees/lab\n")
+    assert job.files("lab 6/my_robot.urdf", **alone) == {"my_robot.urdf"}
+    for place in ("lab 6/.git", ".git"):
+        git = job.checkout / place
+        git.unlink() if git.is_file() else git.rmdir()
+    assert job.files("lab 6/my_robot.urdf", **alone) == {"lab 6/my_robot.urdf"}
+    assert job.files("my_robot.urdf", start=job.checkout / "lab 6", **alone) == {"my_robot.urdf"}
+
+
+def test_on_gitlab(job: Job) -> None:
+    """Its checkout is the root, though a repository is nearer."""
+    (job.checkout / "lab 6/.git").mkdir()
+    done = job.run(
+        *("grade", "lab 6/my_robot.urdf", "--format", "codeclimate"),
+        GITHUB_ACTIONS="",
+        GITHUB_WORKSPACE="",
+        CI_PROJECT_DIR=str(job.checkout),
+    )
+    assert {each["location"]["path"] for each in json.loads(done.stdout)} == {"lab 6/my_robot.urdf"}
+    assert done.stderr == b""
+
+
+def test_standard_input(job: Job) -> None:
+    """It has no file that an annotation could be put on but the one that everyone calls so."""
+    done = subprocess.run(
+        ["bash", "-c", 'python -m grader grade - --format sarif < "lab 6/my_robot.urdf"'],
+        cwd=job.checkout,
+        capture_output=True,
+        check=False,
+        timeout=60,
+    )
+    places = [each["locations"][0]["physicalLocation"] for each in json.loads(done.stdout)["runs"][0]["results"]]
+    assert {place["artifactLocation"]["uri"] for place in places} == {"-"}
+
+
+def test_a_folder_that_is_gone(tmp_path: Path) -> None:
+    """A report needs no current folder."""
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    done = subprocess.run(
+        ["bash", "-c", f"rmdir ../gone; python -m grader grade {MISTAKEN} --format github"],
+        cwd=gone,
+        capture_output=True,
+        check=False,
+        timeout=60,
+    )
+    assert (done.returncode, done.stderr) == (1, b"")

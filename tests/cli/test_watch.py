@@ -1,0 +1,382 @@
+"""grader grade --watch: what is graded again and when, what is said first, and how it ends."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from threading import Condition, Thread
+from types import TracebackType
+from typing import IO, Self
+
+import pytest
+
+from grader.cli.listening import Watched, _filter, _place, rounds
+from grader.errors import InputError
+from grader.submission.folder import is_looked_at, read_folder
+from tests.golden.cases import ROOT, run
+
+watchfiles = pytest.importorskip("watchfiles")
+REFERENCE = ROOT / "submissions/reference"
+URDF = REFERENCE / "roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"  # 70 of 70
+SHORT = ROOT / "submissions/lidar-offset-in-visual/my_robot.urdf"  # 64 of 70
+BETTER = "\n64 -> 70 of 70 points (+6)\nnow passed: lidar-frame (+6)\n\n70 / 70 points"
+WORSE = "\n70 -> 64 of 70 points (-6)\nnow failed: lidar-frame (-6)\n\n64 / 70 points"
+END = "shows the\nwhole robot.\n"  # of a report on a robot with a mistake
+FLAWLESS_END = "down to the ground, z = 0 of\n          base_footprint\n"
+FOLDER_END = "Task3_Step3.png (320 x 240\n    pixels, 584 bytes)\n"
+DEADLINE = 60.0  # seconds that anything may take on a busy machine
+
+
+class Reader:
+    """What a pipe has brought so far; waiting for words begins where the words before ended."""
+
+    def __init__(self, pipe: IO[bytes]) -> None:
+        self._pipe, self._text, self._read, self._is_over = pipe, "", 0, False
+        self._news = Condition()
+        self.thread = Thread(target=self._run, daemon=True)
+        self.thread.start()
+
+    def _run(self) -> None:
+        with self._pipe:
+            while data := os.read(self._pipe.fileno(), 65536):
+                with self._news:
+                    self._text += data.decode()
+                    self._news.notify_all()
+        with self._news:
+            self._is_over = True
+            self._news.notify_all()
+
+    def until(self, words: str) -> str:
+        """Everything up to these words, which have to come."""
+        with self._news:
+            self._news.wait_for(lambda: self._is_over or words in self._text[self._read :], DEADLINE)
+            found = self._text.find(words, self._read)
+            assert found >= 0, f"{words!r} is not in {self._text[self._read :]!r}"
+            start, self._read = self._read, found + len(words)
+            return self._text[start : self._read]
+
+    def rest(self) -> str:
+        """Everything that is still to come, up to the end."""
+        with self._news:
+            assert self._news.wait_for(lambda: self._is_over, DEADLINE)
+            return self._text[self._read :]
+
+
+class Watch:
+    """The command line, watching."""
+
+    def __init__(self, *arguments: object, stdout: int = subprocess.PIPE) -> None:
+        command = [sys.executable, "-m", "grader", "grade", "--watch", *map(str, arguments)]
+        environment = {**os.environ, "COLUMNS": "80", "PYTHONIOENCODING": "utf-8"}
+        self.process = subprocess.Popen(command, cwd=ROOT, env=environment, stdout=stdout, stderr=subprocess.PIPE)
+        assert self.process.stderr is not None
+        self.err = Reader(self.process.stderr)
+        self._out = Reader(self.process.stdout) if self.process.stdout is not None else None
+
+    @property
+    def out(self) -> Reader:
+        """What it prints, where no test reads that itself."""
+        assert self._out is not None
+        return self._out
+
+    def __enter__(self) -> Self:
+        self.err.until("Ctrl-C ends it\n")
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.process.kill()
+        self.process.wait(DEADLINE)
+        for reader in filter(None, (self._out, self.err)):
+            reader.thread.join(DEADLINE)
+
+    def interrupt(self) -> int:
+        """Press Ctrl-C: the exit code."""
+        self.process.send_signal(signal.SIGINT)
+        return self.process.wait(DEADLINE)
+
+
+@pytest.fixture
+def robot(tmp_path: Path) -> Path:
+    """A URDF with one mistake, in a folder of its own."""
+    (tmp_path / "work").mkdir()
+    shutil.copy(SHORT, tmp_path / "work" / "my_robot.urdf")
+    return tmp_path / "work" / "my_robot.urdf"
+
+
+def put(data: Path | str | bytes, target: Path) -> None:
+    """Replace a file as many editors do: by another one that takes its name, so that nobody can read half of it."""
+    beside = target.with_name(f".{target.name}.tmp")
+    if isinstance(data, Path):
+        shutil.copy(data, beside)
+    else:
+        beside.write_bytes(data if isinstance(data, bytes) else data.encode())
+    beside.replace(target)
+
+
+def test_each_round_says_first_what_has_changed(robot: Path) -> None:
+    """The first report is that of grade; then a blank line, the changes, and the whole report."""
+    with Watch(robot) as watch:
+        assert watch.out.until(END).encode() == run(("grade", str(robot))).stdout
+        put(URDF, robot)
+        assert watch.out.until(FLAWLESS_END).startswith(BETTER)
+        put(SHORT, robot)
+        assert watch.out.until(END).startswith(WORSE)
+        put(SHORT, robot)
+        assert watch.out.until("points\n") == "nothing has changed: 64 of 70 points\n"
+        put(b"\n" + SHORT.read_bytes(), robot)
+        assert watch.out.until("\n64 / 70").startswith(
+            "\n64 of 70 points, as before; only the rest of the report has changed\n\n64 / 70"
+        )
+
+
+def test_a_file_that_is_written_over(robot: Path) -> None:
+    """Whatever is seen on the way, the last report is on the whole file."""
+    with Watch(robot) as watch:
+        watch.out.until(END)
+        robot.write_bytes(URDF.read_bytes())
+        watch.out.until("70 / 70 points")
+
+
+@pytest.mark.parametrize(("source", "code"), [(SHORT, 1), (URDF, 0)])
+def test_ctrl_c_ends_it_with_the_last_exit_code(robot: Path, source: Path, code: int) -> None:
+    """Quietly: that of the last grading, not of the first."""
+    with Watch(robot) as watch:
+        watch.out.until(END)
+        put(URDF, robot)
+        watch.out.until(BETTER)
+        put(source, robot)
+        watch.out.until(WORSE if source == SHORT else "nothing has changed")
+        assert watch.interrupt() == code
+        assert watch.err.rest() == ""
+
+
+def test_what_cannot_be_read_is_waited_out(robot: Path) -> None:
+    """A file that is gone, too large, or there again, also with its folder: a line each, and the comparison goes on."""
+    with Watch(robot) as watch:
+        watch.out.until(END)
+        robot.unlink()
+        assert watch.err.until("\n") == f"grader: {robot} does not exist: it is graded as soon as it does\n"
+        shutil.rmtree(robot.parent)
+        robot.parent.mkdir()
+        put(b" " * 2_000_000, robot)
+        assert "is larger than 1048576 bytes" in watch.err.until("\n")
+        put(URDF, robot)
+        assert watch.out.until("70 / 70 points").startswith(BETTER)
+        robot.unlink()
+        watch.err.until("does not exist")
+        assert watch.interrupt() == 2
+
+
+def test_it_starts_before_there_is_anything(tmp_path: Path) -> None:
+    """Neither the file nor its folder has to be there."""
+    robot = tmp_path / "later" / "my_robot.urdf"
+    with Watch(robot) as watch:
+        watch.err.until("does not exist: it is graded as soon as it does\n")
+        robot.parent.mkdir()
+        put(SHORT, robot)
+        assert watch.out.until("64 / 70 points").startswith("64 / 70 points")
+
+
+def test_a_folder_with_saved_reports_in_it(tmp_path: Path) -> None:
+    """Whatever is graded counts; what the grader writes itself does not, or there would be no end to it."""
+    folder = tmp_path / "lab6"
+    shutil.copytree(REFERENCE, folder)
+    urdf = folder / URDF.relative_to(REFERENCE)
+    (folder / "out").mkdir()
+    (tmp_path / "link").symlink_to(folder / "out")
+    saves = [f"json={folder / 'report.json'}", f"markdown={tmp_path / 'link' / 'report.md'}"]
+    with Watch(folder, "--save", saves[0], "--save", saves[1]) as watch:
+        watch.out.until(FOLDER_END)
+        for source, news, end in ((SHORT, "now failed", END), (URDF, "now passed", FOLDER_END)) * 3:
+            put(source, urdf)
+            assert f"{news}: lidar-frame" in (said := watch.out.until(end))
+            assert "nothing has changed" not in said
+            assert '"lidar-frame"' in (folder / "report.json").read_text()
+        launch = urdf.parent.parent / "launch"
+        launch.rename(launch.with_name("nothing"))
+        said = watch.out.until("now failed: ")
+        assert "nothing has changed" not in said
+        assert "launch" in watch.out.until("\n")
+
+
+def test_a_folder_in_the_place_of_another(tmp_path: Path) -> None:
+    """A hand-in that is unpacked once more is watched from then on."""
+    folder = tmp_path / "lab6"
+    for name, source in (("lab6", SHORT), ("other", URDF)):
+        (tmp_path / name).mkdir()
+        shutil.copy(source, tmp_path / name / "my_robot.urdf")
+    with Watch(folder, "--part", "task1") as watch:
+        watch.out.until(END)
+        folder.rename(tmp_path / "old")
+        watch.err.until("does not exist")
+        (tmp_path / "other").rename(folder)
+        watch.out.until(BETTER)
+        put(SHORT, folder / "my_robot.urdf")
+        watch.out.until(WORSE)
+
+
+def test_a_rubric_in_a_file_is_watched(robot: Path, tmp_path: Path) -> None:
+    """Its mistakes are told line by line and waited out; the URDF is graded by what it says now."""
+    rubric = tmp_path / "rules" / "lab.toml"
+    rubric.parent.mkdir()
+    text = (ROOT / "rubrics" / "lab6.toml").read_text()
+    rubric.write_text(text)
+    with Watch(robot, "--rubric", rubric) as watch:
+        watch.out.until("says how it is decided")
+        put(text.replace("points = 6", "points = -6"), rubric)
+        assert "lab.toml:" in watch.err.until("\n")
+        put("id = [", rubric)
+        watch.err.until("not readable as TOML")
+        put(text.replace('id = "lidar-frame"', 'id = "lidar-place"'), rubric)
+        said = watch.out.until("64 / 70 points")
+        assert "now failed: lidar-place\nno longer asked: lidar-frame\n" in said
+
+
+def test_closed_standard_output(robot: Path) -> None:
+    """One line and exit code 2, as anywhere else: when there is something to print again."""
+    ours, theirs = os.pipe()
+    with Watch(robot, stdout=theirs) as watch:
+        os.close(theirs)
+        text = b""
+        while not text.endswith(END.encode()):
+            text += os.read(ours, 65536)
+        os.close(ours)
+        put(URDF, robot)
+        assert watch.process.wait(DEADLINE) == 2
+        assert watch.err.rest() == "grader: cannot write the report: standard output: Broken pipe\n"
+
+
+def refuse(words: str, *arguments: object) -> None:
+    """Nothing is watched: one line that holds the words, exit code 2."""
+    done = run(("grade", "--watch", *map(str, arguments)))
+    assert (done.returncode, done.stdout) == (2, b"")
+    message = done.stderr.decode()
+    assert message.count("\n") == 1, message
+    assert words in message
+
+
+def test_what_cannot_be_watched_is_refused(robot: Path, tmp_path: Path) -> None:
+    """Standard input, reports for programs, and what no change of a file would mend."""
+    refuse("--watch takes a file or folder", "-")
+    refuse("--watch takes a file or folder", "")
+    refuse("leave --format out, --save json=FILE writes one each time", robot, "--format", "json")
+    refuse("did you mean 'lab6'?", robot, "--rubric", "lab66")
+    refuse("has no part 'task9'", robot, "--part", "task9")
+    refuse("--fail-under takes", robot, "--fail-under", "all")
+    refuse("--save takes FORMAT=FILE", robot, "--save", "json")
+
+
+def test_a_report_that_cannot_be_saved_ends_it(robot: Path, tmp_path: Path) -> None:
+    """As it ends a single run."""
+    done = run(("grade", "--watch", str(robot), "--save", f"json={tmp_path / 'nowhere' / 'a.json'}"))
+    assert (done.returncode, done.stdout) == (2, b"")
+    assert done.stderr.splitlines()[-1].startswith(b"grader: cannot write")
+
+
+def test_without_the_extra(robot: Path) -> None:
+    """The command to type is said."""
+    code = "import sys; sys.modules['watchfiles'] = None; from grader.__main__ import main; main()"
+    command = [sys.executable, "-P", "-c", code, "grade", "--watch", str(robot)]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, check=False, timeout=DEADLINE)
+    assert (done.returncode, done.stdout) == (2, b"")
+    assert done.stderr == b"grader: --watch needs watchfiles: pip install 'grader[watch]'\n"
+
+
+def counts(path: Path, changed: Path, *own: Path, rubric: Path | None = None) -> bool:
+    """Whether a change there is one of what is graded at the path."""
+    watched = Watched(path, rubric, frozenset(map(os.path.realpath, own)))
+    return _filter(_place(path), watched)(watchfiles.Change.modified, str(changed))
+
+
+def test_which_changes_count_in_a_folder(tmp_path: Path) -> None:
+    """All but what the grader does not look at either, what it writes itself, and the rubric, which is looked at anyway."""
+    (tmp_path / "env").mkdir()
+    (tmp_path / "env" / "pyvenv.cfg").touch()
+    for name in ("my_robot.urdf", "a/b/c.txt", "new folder", "a/b~", "building/x", "env", "a/env/x", "report.txt"):
+        assert counts(tmp_path, tmp_path / name), name
+    for name in (
+        "build",
+        "ws/build/x.urdf",
+        "install/a",
+        "log",
+        ".git/index",
+        ".hidden",
+        "a/.b.swp",
+        "a/__pycache__/b.pyc",
+        "node_modules/a",
+        "env/lib/a.py",
+        "Thumbs.db",
+    ):
+        assert not counts(tmp_path, tmp_path / name), name
+    (tmp_path / "link").symlink_to(tmp_path / "a")
+    assert not counts(tmp_path, tmp_path / "a" / "r.json", tmp_path / "link" / "r.json")
+    assert not counts(tmp_path, tmp_path / "link" / "r.json", tmp_path / "a" / "r.json")
+    assert not counts(tmp_path, tmp_path / "lab.toml", rubric=tmp_path / "lab.toml")
+
+
+def test_which_changes_count_for_a_file(tmp_path: Path) -> None:
+    """Those of that file only, and of the one that it leads to."""
+    for name in ("a", "b"):
+        (tmp_path / name).mkdir()
+    (tmp_path / "b" / "real.urdf").touch()
+    (tmp_path / "a" / "link.urdf").symlink_to(tmp_path / "b" / "real.urdf")
+    path = tmp_path / "a" / "link.urdf"
+    assert _place(path).folders == (str(tmp_path / "a"), str(tmp_path / "b"))
+    assert counts(path, path)
+    assert counts(path, tmp_path / "b" / "real.urdf")
+    assert not counts(path, tmp_path / "a" / "other.urdf")
+    assert not counts(path, tmp_path / "b" / "link.urdf")
+
+
+def test_a_name_that_is_no_text_is_a_change_like_any_other(tmp_path: Path) -> None:
+    """And the next one is heard all the same."""
+    heard = filter(None, rounds(Watched(tmp_path)))
+    next(heard)
+    Path(os.fsdecode(os.fsencode(tmp_path) + b"/\xff.txt")).touch()
+    next(heard)
+    (tmp_path / "plain.txt").touch()
+    next(heard)
+
+
+def test_what_no_event_has_told_is_seen_all_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A folder is graded once more a little later, a file whenever it is another one; neither is news without a reason."""
+
+    def deaf(*_paths: str, **_options: object) -> Iterator[set[object]]:
+        while True:
+            time.sleep(0.01)
+            yield set()
+
+    monkeypatch.setattr("grader.cli.listening.watch", deaf)
+    monkeypatch.setattr("grader.cli.listening._ONCE_MORE", 0.02)
+    folder = rounds(Watched(tmp_path))
+    assert [next(folder), next(folder)] == [True, False]
+    robot = tmp_path / "my_robot.urdf"
+    file = rounds(Watched(robot))
+    assert next(file)
+    for text in ("a", "b", "longer"):
+        put(text, robot)
+        assert next(file)
+
+
+def test_nothing_is_listened_to_where_nothing_can_be(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A system that has no more watches to give is named, and the way around it."""
+
+    def refused(*_paths: str, **_options: object) -> Iterator[set[object]]:
+        raise RuntimeError("OS file watch limit reached.")
+
+    monkeypatch.setattr("grader.cli.listening.watch", refused)
+    with pytest.raises(InputError, match=r"limit reached\.; with WATCHFILES_FORCE_POLLING=1 in the"):
+        next(rounds(Watched(tmp_path)))
+
+
+@pytest.mark.parametrize("name", sorted({path.name for path in (ROOT / "submissions").iterdir()})[:20])
+def test_what_a_folder_holds_is_looked_at(name: str) -> None:
+    """Every file that is taken in counts when it changes."""
+    folder = ROOT / "submissions" / name
+    assert all(is_looked_at(folder, path) for path in read_folder(folder).files)

@@ -1,0 +1,108 @@
+"""Classroom 50's result.json: valid, in whole numbers, and only where it is known whose result it is."""
+
+import os
+from decimal import Decimal
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from grader.grading.report import Report
+from grader.report.classroom50 import identity_from, render_classroom50
+from tests.golden.cases import CLASSROOM50, run
+from tests.report.readers import read_by_schema
+from tests.report.reports import half_points, marked
+from tests.samples import SAMPLES
+
+READ = read_by_schema("classroom50")
+MISTAKEN = "submissions/several-mistakes/my_robot.urdf"
+
+
+def result_of(report: Report) -> Any:
+    """The data of a report: whole numbers, none of them a truth value, no score above its maximum, and sums that are right."""
+    data = READ(render_classroom50(report, identity_from(os.environ)))
+    for each in (data, *data["tests"]):
+        assert {type(each["score"]), type(each["max-score"])} == {int}
+        assert 0 <= each["score"] <= each["max-score"]
+    for key in ("score", "max-score"):
+        assert sum(each[key] for each in data["tests"]) == data[key]
+    scale = Decimal(data["max-score"]) / report.max_score
+    assert data["score"] == report.score * scale
+    return data
+
+
+@pytest.mark.parametrize("name", SAMPLES)
+def test_every_criterion_is_a_test(name: str) -> None:
+    """Whole points stay as they are, and what waits for a person has not passed yet."""
+    report = SAMPLES[name].grade()
+    data = result_of(report)
+    assert (data["score"], data["max-score"]) == (report.score, report.max_score)
+    for test, result in zip(data["tests"], report.results, strict=True):
+        assert test["test-name"] == f"{result.criterion.title} ({result.criterion.id})"
+        assert test["passed"] == (result.outcome.status == "passed")
+        assert (test["score"], test["max-score"]) == (result.points, result.criterion.points)
+
+
+def test_fractions_are_made_whole(tmp_path: Path) -> None:
+    """Eighths are given in thousandths; what was skipped has not passed, though it is worth nothing."""
+    data = result_of(half_points(tmp_path))
+    assert [(each["score"], each["max-score"], each["passed"]) for each in data["tests"]] == [
+        (0, 500, False),
+        (250, 250, True),
+        (0, 0, False),
+        (0, 0, False),
+        (0, 125, False),
+    ]
+
+
+def test_what_a_person_has_decided_counts() -> None:
+    """All points by hand have passed, whatever the check has found; half of them have not."""
+    report = marked()
+    data = result_of(report)
+    told = {
+        result.outcome.status: test["passed"]
+        for test, result in zip(data["tests"], report.results, strict=True)
+        if result.ruling is not None
+    }
+    assert told == {"failed": True, "passed": False, "pending": False}
+
+
+def test_the_identity_is_the_runners() -> None:
+    """Each field is the variable's; without a link to review, the commit's."""
+    data = result_of(SAMPLES["reference"].grade())
+    assert (data["classroom"], data["assignment"], data["owner"]) == ("robotics", "lab6", "alice")
+    assert data["submission"] == CLASSROOM50["SUBMISSION_TAG"]
+    assert data["datetime"] == "2026-11-20T18:30:05Z"
+    without = {name: value for name, value in CLASSROOM50.items() if name not in ("REVIEW_URL", "ASSIGNMENT_TYPE")}
+    identity = identity_from(without)
+    assert (identity.review, identity.kind) == (CLASSROOM50["COMMIT_URL"], "individual")
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        (dict.fromkeys(CLASSROOM50, ""), "CLASSROOM, ASSIGNMENT, SUBMISSION_TAG, USERNAME, COMMIT_URL, RELEASE_URL"),
+        ({"USERNAME": ""}, "takes USERNAME from the environment"),
+        ({"SUBMISSION_TAG": "main"}, "not 'main'"),
+        ({"SUBMISSION_TAG": "submit/2026-11-20T25-00-00Z-ab12cd3"}, "SUBMISSION_TAG has to be as"),
+        ({"SUBMISSION_TAG": "submit/2026-11-20T18-30-05Z-"}, "SUBMISSION_TAG has to be as"),
+        (
+            {"SUBMISSION_TAG": "submit/2026-11-20T18-30-05Z-a\n::error::x"},
+            "not 'submit/2026-11-20T18-30-05Z-a\\\\x0a::error::x'",
+        ),
+        ({"SUBMISSION_TAG": "submit/\u0662\u0660\u0662\u0666-11-20T18-30-05Z-a"}, "SUBMISSION_TAG has to be as"),
+        ({"ASSIGNMENT_TYPE": "duet"}, "one of individual, group, team, not 'duet'"),
+    ],
+)
+@pytest.mark.parametrize("saved", [False, True])
+def test_without_an_identity_nothing_is_graded(
+    tmp_path: Path, changed: dict[str, str], words: str, saved: bool
+) -> None:
+    """One line says what is missing or odd, before anything is written."""
+    file = tmp_path / "result.json"
+    wanted = ("--save", f"classroom50={file}") if saved else ("--format", "classroom50")
+    done = run(("grade", MISTAKEN, *wanted), **{**CLASSROOM50, **changed})
+    assert (done.returncode, done.stdout) == (2, b"")
+    assert words in done.stderr.decode()
+    assert done.stderr.count(b"\n") == 1
+    assert not file.exists()

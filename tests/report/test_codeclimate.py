@@ -1,0 +1,53 @@
+"""GitLab's Code Quality report: valid, one issue for each finding, each of them told apart."""
+
+from typing import Any
+
+import pytest
+
+from grader.grading.report import Report
+from grader.report.codeclimate import render_codeclimate
+from grader.report.findings import findings
+from grader.report.places import Base
+from tests.report.readers import read_by_schema
+from tests.samples import SAMPLES
+
+READ = read_by_schema("codeclimate")
+SEVERITIES = {"error": "major", "warning": "minor", "note": "info"}
+
+
+def issues(report: Report, base: Base = Base("lab/")) -> Any:  # noqa: B008  immutable
+    """The issues of a report, whose fingerprints all differ."""
+    found = READ(render_codeclimate(report, base))
+    assert len({each["fingerprint"] for each in found}) == len(found)
+    return found
+
+
+@pytest.mark.parametrize("name", SAMPLES)
+def test_every_finding_is_an_issue(name: str) -> None:
+    """Its rule, its severity, its words and its line in the repository are those of the finding."""
+    report = SAMPLES[name].grade()
+    found = findings(report, Base("lab/"))
+    for issue, each in zip(issues(report), found, strict=True):
+        assert (issue["check_name"], issue["severity"]) == (each.rule, SEVERITIES[each.level])
+        assert each.title in issue["description"]
+        assert each.text.replace("\n", " ") in issue["description"]
+        assert issue["location"]["path"].startswith("lab")
+        if each.place is not None:
+            assert issue["location"] == {"path": each.place.path, "lines": {"begin": each.place.line}}
+        if each.lost:
+            assert f"({each.lost} point{'' if each.lost == 1 else 's'}): " in issue["description"]
+
+
+def test_nothing_to_mend_is_an_empty_list() -> None:
+    """GitLab wants a list even then."""
+    assert render_codeclimate(SAMPLES["reference"].grade(), Base()) == "[]\n"
+
+
+@pytest.mark.parametrize("base", [Base(), Base("a/"), Base(archive="a.zip")])
+@pytest.mark.parametrize(
+    "name", ["several-mistakes", "pictures-only", "no-package-xml", "empty-urdf", "setup-as-created"]
+)
+def test_what_has_no_place_of_its_own_is_at_the_whole(name: str, base: Base) -> None:
+    """At the URDF, at the package or at the folder: never without a path, never at one that leads out of the repository."""
+    for issue in issues(SAMPLES[name].grade(), base):
+        assert issue["location"]["path"].startswith(base.archive or base.folder.rstrip("/"))

@@ -1,0 +1,97 @@
+"""Gradescope's results.json: valid, exact, and nothing that a person still decides has points in it."""
+
+from decimal import Decimal
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from grader.grading.report import Report
+from grader.report.gradescope import render_gradescope
+from tests.report.readers import read_as_github, read_by_schema
+from tests.report.reports import half_points, marked
+from tests.samples import SAMPLES
+
+READ = read_by_schema("gradescope")
+
+
+def results(report: Report) -> Any:
+    """The data of a report; each of its scores is an exact decimal, and their sum is the score."""
+    data = READ(render_gradescope(report))
+    assert _sum(each.get("score", 0) for each in data["tests"]) == _exact(data["score"]) == report.score
+    most = _sum(each.get("max_score", 0) for each in data["tests"])
+    assert most + _exact(data["extra_data"]["pending"]) == report.max_score
+    return data
+
+
+def _exact(number: float) -> Decimal:
+    return Decimal(str(number))
+
+
+def _sum(numbers: Any) -> Decimal:
+    return sum(map(_exact, numbers), Decimal(0))
+
+
+@pytest.mark.parametrize("name", SAMPLES)
+def test_every_criterion_is_a_test(name: str) -> None:
+    """In the rubric's order, with its number; pending ones have no score, so that none is taken for lost."""
+    report = SAMPLES[name].grade()
+    data = results(report)
+    for test, result in zip(data["tests"], report.results, strict=True):
+        criterion = result.criterion
+        assert test["name"].startswith(criterion.title)
+        assert test["tags"] == [criterion.id, criterion.part, result.outcome.status]
+        assert ("score" in test) == ("max_score" in test) == ("status" in test) == (not result.is_open)
+        assert ("given by a person" in test["name"]) == result.is_open
+        if not result.is_open:
+            assert test["status"] == ("passed" if result.outcome.status == "passed" else "failed")
+            assert (_exact(test["score"]), _exact(test["max_score"])) == (result.points, criterion.points)
+    numbers = [tuple(map(int, test["number"].split("."))) for test in data["tests"]]
+    assert numbers == sorted(set(numbers))
+
+
+def test_one_part_alone_keeps_its_numbers() -> None:
+    """A criterion has the same number whatever else is graded."""
+    whole = results(SAMPLES["reference"].grade())
+    alone = results(SAMPLES["several-mistakes"].grade())
+    by_id = {test["tags"][0]: test["number"] for test in whole["tests"]}
+    assert all(by_id[test["tags"][0]] == test["number"] for test in alone["tests"])
+
+
+def test_points_are_exact(tmp_path: Path) -> None:
+    """Halves, quarters and eighths add up; a test that is worth nothing has a score of 0."""
+    data = results(half_points(tmp_path))
+    assert [(each["score"], each["max_score"], each["status"]) for each in data["tests"]] == [
+        (0, 0.5, "failed"),
+        (0.25, 0.25, "passed"),
+        (0, 0, "failed"),
+        (0, 0, "failed"),
+        (0, 0.125, "failed"),
+    ]
+
+
+def test_what_a_person_has_decided_has_its_points() -> None:
+    """It is pending no more, and passed only with all its points."""
+    report = marked()
+    data = results(report)
+    by_hand = {
+        result.outcome.status: (test["score"], test["status"])
+        for test, result in zip(data["tests"], report.results, strict=True)
+        if result.ruling is not None
+    }
+    assert {status: decided for status, (_, decided) in by_hand.items()} == {
+        "failed": "passed",
+        "passed": "failed",
+        "pending": "failed",
+    }
+
+
+def test_the_output_is_markdown_that_stands_for_itself() -> None:
+    """The whole submission above, each criterion beside its test; every piece is rendered alone."""
+    data = results(SAMPLES["several-mistakes"].grade())
+    assert read_as_github(data["output"]).findtext("h1") == "42 / 70 points: IRP Lab 6: a wheeled base"
+    by_id = {test["tags"][0]: read_as_github(test["output"]) for test in data["tests"]}
+    assert [each.tag for each in by_id["base-green"]] == ["p", "p", "pre", "p"]
+    assert by_id["base-green"].findtext("pre/code") == '6 | <color rgba="0 1 0 1" />\n  |        --------------\n'
+    assert data["visibility"] == "visible"
+    assert data["stdout_visibility"] == "hidden"

@@ -1,0 +1,133 @@
+"""Markdown: the structure is ours, whatever a report holds, and a report that is cut is still Markdown."""
+
+import re
+from functools import cache
+from pathlib import Path
+from textwrap import indent
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grader.grading.report import Report
+from grader.report.markdown import cut_markdown, render_markdown
+from grader.report.markdown_text import code, escaped, fenced
+from grader.report.text import printable
+from tests.report.hostile import TEXT
+from tests.report.readers import read_as_github, read_markdown
+from tests.report.reports import half_points
+from tests.samples import SAMPLES
+
+NOTICE = "The report is cut off here: it is longer than can be shown."
+ELEMENTS = {"div", "h1", "h2", "h3", "p", "ul", "li", "code", "pre", "em", "strong"}
+JOINER = "\u2060"  # stands where GitHub would look for a mention
+# A part or group with its points, a criterion with its mark and its points.
+GROUP, ITEM = re.compile(r".+ \([0-9.]+/[0-9.]+\)"), re.compile("[\u2713\u2717\u2212?!] [0-9.]+/[0-9.]+ .+")
+
+
+@cache
+def report_of(name: str) -> Report:
+    """A sample's report."""
+    return SAMPLES[name].grade()
+
+
+@pytest.mark.parametrize("name", SAMPLES)
+def test_the_structure_is_that_of_the_report(name: str) -> None:
+    """The score is the only top heading; each part has one, each criterion is an item under its group; code is quoted as code."""
+    report = report_of(name)
+    root = read_as_github(render_markdown(report))
+    (top,) = root.findall("h1")
+    assert top.text_content() == f"{report.score} / {report.max_score} points: {report.rubric.title}"
+    more = ("Evidence", "What else there is to say of the file", "What else there is to say of the files")
+    parts = [each.text_content() for each in root.findall("h2")]
+    assert [each.rpartition(" (")[0] for each in parts if each not in more] == [
+        report.rubric.part(part).title for part in report.parts
+    ]
+    assert all(GROUP.fullmatch(each.text_content()) for each in root.findall("h3"))
+    items = [each.text_content().strip().split("\n")[0] for each in root.iterfind(".//li")]
+    criteria = [each for each in items if ITEM.fullmatch(each)]
+    for shown, result in zip(criteria, report.results, strict=True):
+        assert result.criterion.title in shown
+        assert (f"({result.criterion.id})" in shown) == (result.outcome.status != "passed")
+    assert {each.tag for each in root.iter()} <= ELEMENTS
+    assert _plain(root.findall("p")[-1].text_content()).endswith(f"sha256 {report.rubric.sha256}")
+
+
+def _plain(text: str) -> str:
+    return text.replace(JOINER, "")
+
+
+@pytest.mark.parametrize("name", SAMPLES)
+def test_no_fence_is_left_open(name: str) -> None:
+    """Each block of code ends before the next paragraph."""
+    for token in read_markdown(render_markdown(report_of(name))):
+        if token.type == "fence":
+            assert token.info == "text"
+            assert not ITEM.search(token.content)
+            assert "sha256" not in token.content
+
+
+@given(st.sampled_from(["reference", "several-mistakes", "pictures-only", "setup-as-created"]), st.integers(-5, 20_000))
+def test_a_cut_report_keeps_its_limit(name: str, most: int) -> None:
+    """It is never longer, whole blocks from the beginning stay, and a notice says that something is missing."""
+    whole = render_markdown(report_of(name))
+    text = cut_markdown(report_of(name), most)
+    assert len(text.encode()) <= max(0, most)
+    if len(whole.encode()) <= most:
+        assert text == whole
+    elif text:
+        kept, notice, _ = text.rpartition(f"**{NOTICE}**")
+        assert notice
+        assert whole.startswith(kept)
+        before, told = _contents(whole), _contents(kept)
+        assert told == before[: len(told)]
+        assert read_as_github(text).findall("p")[-1].text_content().startswith(NOTICE)
+    else:
+        assert most < 200
+
+
+def _contents(text: str) -> list[tuple[str, str]]:
+    return [(each.type, each.content) for each in read_markdown(text) if each.content]
+
+
+# Where text may stand, and what stands before it there.
+LAYOUTS = {"{}\n": "", "- \u2717 {}\n": "\u2717", "# {}\n": "", "*{}*\n": "", "- \u2717\n\n  {}\n": "\u2717"}
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+@given(text=(TEXT | st.text()).map(printable))
+def test_escaped_text_is_shown_as_it_is(layout: str, text: str) -> None:
+    """In a paragraph, an item, a heading: nothing in it is markup, a link or HTML, and no character is lost."""
+    if not text.strip():
+        return
+    written = layout.format(escaped(text))
+    root = read_as_github(written)
+    assert _plain(root.text_content()).strip().removeprefix(LAYOUTS[layout]).strip() == text.strip()
+    ours = read_as_github(layout.format("plain"))
+    assert [each.tag for each in root.iter()] == [each.tag for each in ours.iter()]
+    assert not {each.type for each in read_markdown(written)} - {
+        each.type for each in read_markdown(layout.format("plain"))
+    }
+    assert not re.search(r"@\w|#\d", root.text_content())
+
+
+@given((TEXT | st.text() | st.text("` a", min_size=1)).map(printable).filter(str.strip))
+def test_code_in_a_line_is_shown_as_it_is(text: str) -> None:
+    """Backticks in it do not end it; more of them than GitHub takes for code come as text."""
+    root = read_as_github(f"- x {code(text)} y\n")
+    is_code = "`" * 80 not in text
+    assert [each.tag for each in root.iter()] == ["div", "ul", "li", *(["code"] if is_code else [])]
+    assert _plain(root.text_content()).strip() == (f"x {text} y" if is_code else f"x {text.strip()} y")
+
+
+@given(st.lists((TEXT | st.text() | st.text("`~ a")).map(printable).filter(str.strip)))
+def test_a_block_of_code_ends_where_we_end_it(lines: list[str]) -> None:
+    """Whatever stands in it, at any length: GitHub counts no more than 255 backticks of a fence."""
+    root = read_as_github(f"- x\n\n{indent(fenced(lines), '  ')}\n\ny\n")
+    assert [each.tag for each in root.iter()] == ["div", "ul", "li", "p", "pre", "code", "p"]
+    assert root.find(".//code").text_content() == "".join(f"{line}\n" for line in lines)
+
+
+def test_feedback_is_one_line_however_the_rubric_breaks_it(tmp_path: Path) -> None:
+    """A line break in a rubric's text is a space, not something to be spelt out."""
+    assert "*Two lines.*" in render_markdown(half_points(tmp_path))

@@ -1,0 +1,193 @@
+"""Every format tells the same: what one of them has no room for is excused here, and nothing else is."""
+
+import json
+import os
+import re
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, NamedTuple
+from unittest.mock import patch
+from urllib.parse import unquote
+
+import pytest
+
+from grader.cli.formats import Format, render
+from grader.grading.report import Report, Result
+from grader.report.points import points_words
+from grader.report.text import printable
+from grader.report.words import untold
+from tests.report.readers import read_as_github, read_commands, read_junit
+from tests.samples import SAMPLES
+
+_FINDINGS = "it holds what is to be mended, a line each, and nothing else"
+_TESTS = "it has a test for each criterion, and no room for anything else"
+_ALIKE = "criteria in a row that are skipped, or wait, for one reason are one line"
+_NAMED = "of ten notices one names all that wait and all that are skipped"
+_PERSON = "it is for a person, who has started this grader and named this rubric"
+# What a format does not tell, and why not.
+EXCUSED: Mapping[Format, Mapping[str, str]] = {
+    Format.TERMINAL: {
+        **dict.fromkeys(("title of skipped", "title of pending"), _ALIKE),
+        **dict.fromkeys(("rubric", "version"), _PERSON),
+    },
+    Format.GITHUB: dict.fromkeys(("message of pending", "found"), _NAMED),
+    Format.CODECLIMATE: {
+        **dict.fromkeys(("title of skipped", "because", "title of pending", "message of pending", "found"), _FINDINGS),
+        **dict.fromkeys(("note", "aside", "package", "waits", "score", "rubric", "version"), _FINDINGS),
+    },
+    Format.CLASSROOM50: dict.fromkeys(
+        ("problem", "note", "aside", "package", "waits", "rubric", "version"),
+        _TESTS,
+    ),
+}
+
+
+class Fact(NamedTuple):
+    """One thing that a format has to tell, in one of several spellings; of a criterion or problem with its id or code."""
+
+    kind: str
+    spellings: tuple[str, ...]
+    rule: str = ""
+
+
+def facts(report: Report) -> Iterator[Fact]:
+    """All that a report tells."""
+    for result in report.results:
+        yield from _of_criterion(result, report)
+    for problem in untold(report):
+        message, line = printable(problem.message), problem.location.line
+        places = f"{problem.location.path}:{line}", f"line {line}: {message}"
+        for spellings in ((problem.code,), (message,), places):
+            yield Fact("problem", spellings, problem.code)
+    submission = report.submission
+    yield from (Fact("note", (each,)) for each in report.notes)
+    yield from (Fact("aside", (words,)) for each in submission.passed_over for words in each)
+    yield from (Fact("aside", (each,)) for each in submission.left_out)
+    if submission.package is not None and any(report.rubric.part(part).needs == "package" for part in report.parts):
+        yield Fact("package", (submission.package.folder or submission.package.name,))
+    score, most, waits = map(points_words, (report.score, report.max_score, report.pending))
+    if report.pending:
+        yield Fact("waits", (f"{waits} points wait", f'"pending":{waits},'))
+    keys = ('"max_score":', '"max-score":', '"maxScore":')
+    yield Fact(
+        "score",
+        (f"{score}/{most} points", f'"score":{score},"output', *(f'"score":{score},{key}{most}' for key in keys)),
+    )
+    yield Fact("rubric", (report.rubric.sha256,))
+    yield Fact("version", (f"grader {report.version}", f'"version":"{report.version}"'))
+
+
+def _of_criterion(result: Result, report: Report) -> Iterator[Fact]:
+    criterion, outcome = result.criterion, result.outcome
+    name, status = criterion.id, outcome.status
+    if status == "passed":
+        return
+    is_open = status in ("skipped", "pending")
+    yield Fact(f"title of {status}" if is_open else "title", (criterion.title, name), name)
+    if status == "skipped":
+        yield Fact("because", (f"{result.because} failed", f'"because":"{result.because}"'), name)
+        return
+    yield Fact("message of pending" if is_open else "message", (printable(outcome.message),), name)
+    if is_open and isinstance(outcome.measured, str):
+        yield from (Fact("found", (printable(line),), name) for line in outcome.measured.splitlines() if line.strip())
+    if status == "failed" and outcome.location is not None:
+        yield Fact("place", (f"{outcome.location.path}:{outcome.location.line}",), name)
+    if status == "failed" and (report.submission.has_urdf or criterion.check.subject not in ("urdf", "robot")):
+        yield Fact("feedback", (criterion.feedback,), name)
+
+
+def _markdown(text: str) -> str:
+    return str(read_as_github(text).text_content())
+
+
+def _junit(text: str) -> str:
+    return "\n".join(piece for each in read_junit(text).iter() for piece in (*each.attrib.values(), each.text or ""))
+
+
+def _github(text: str) -> str:
+    return "\n".join(
+        f"{each.get('title')}\n{each.get('file')}:{each.get('line')}\n{each.data}" for each in read_commands(text)
+    )
+
+
+def _sarif(text: str) -> str:
+    return "\n".join(_places(json.loads(text))) + _json(text)
+
+
+def _places(value: Any) -> Iterator[str]:
+    """The places of results, as others write them."""
+    for result in value["runs"][0]["results"]:
+        place = result["locations"][0]["physicalLocation"]
+        yield f"{unquote(place['artifactLocation']['uri'])}:{place['region']['startLine']}"
+
+
+def _json(text: str) -> str:
+    """Every string as it is, every number beside its key, places as others write them."""
+    data = json.loads(text)
+    return "\n".join((*_values(data), json.dumps(data)))
+
+
+def _values(value: Any) -> Iterator[str]:
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, list):
+        for each in value:
+            yield from _values(each)
+    elif isinstance(value, dict):
+        if {"path", "line"} <= set(value):
+            yield f"{value['path']}:{value['line']}"
+        if {"path", "lines"} <= set(value):
+            yield f"{value['path']}:{value['lines']['begin']}"
+        for each in value.values():
+            yield from _values(each)
+
+
+def _gradescope(text: str) -> str:
+    data = json.loads(text)
+    return "\n".join((_json(text), _markdown(data["output"]), *(_markdown(each["output"]) for each in data["tests"])))
+
+
+DECODED: Mapping[Format, Callable[[str], str]] = {
+    Format.TERMINAL: str,
+    Format.MARKDOWN: _markdown,
+    Format.JSON: _json,
+    Format.JUNIT: _junit,
+    Format.SARIF: _sarif,
+    Format.GITHUB: _github,
+    Format.GRADESCOPE: _gradescope,
+    Format.CLASSROOM50: _json,
+    Format.CODECLIMATE: _json,
+}
+
+
+def _plain(text: str) -> str:
+    """A text without white space and capitals, which are layout, and without what stops mentions and ends sentences."""
+    return re.sub(r"[\s\u2060]+|\.$", "", text).casefold()
+
+
+def untold_by(kind: Format, report: Report) -> Iterator[Fact]:
+    """What a format leaves out. Of more than ten annotations of a type GitHub shows none: the last one names the others."""
+    with patch.dict(os.environ, {"COLUMNS": "500"}):
+        text = render(report, kind)
+    shown = _plain(DECODED[kind](text))
+    told = read_commands(text) if kind is Format.GITHUB else []
+    named = {
+        name for each in told for name in each.data.partition("The report tells of these, too: ")[2].split(", ")
+    } - {""}
+    for fact in facts(report):
+        if fact.rule not in named and not any(_plain(each) in shown for each in fact.spellings):
+            yield fact
+
+
+@pytest.mark.parametrize("name", SAMPLES)
+def test_all_formats_tell_the_same(name: str) -> None:
+    """Of each criterion its title, its message, its place and its feedback; of the submission all that is said of it."""
+    report = SAMPLES[name].grade()
+    left_out = {(kind.value, fact) for kind in Format for fact in untold_by(kind, report)}
+    assert not {(kind, fact) for kind, fact in left_out if fact.kind not in EXCUSED.get(Format(kind), {})}
+
+
+def test_every_excuse_is_needed() -> None:
+    """What a format tells after all is excused no longer."""
+    reports = [sample.grade() for sample in SAMPLES.values()]
+    for kind, kinds in EXCUSED.items():
+        assert set(kinds) == {fact.kind for report in reports for fact in untold_by(kind, report)}

@@ -1,0 +1,49 @@
+"""The reader of workflow commands finds what a runner finds: the other tests rely on it."""
+
+import pytest
+
+from tests.report.workflow_commands import Command, commands
+
+
+@pytest.mark.parametrize(
+    ("line", "command"),
+    [
+        ("::error::x", Command("error", (), "x")),
+        (" \t\u3000::error::x", Command("error", (), "x")),
+        ("::ERROR::x", Command("error", (), "x")),
+        ("::error ::x", Command("error", (), "x")),
+        ("::warning file=a,line=1::x::y", Command("warning", (("file", "a"), ("line", "1")), "x::y")),
+        ("::notice file=a%2Cb%3A%25,title=::x", Command("notice", (("file", "a,b:%"),), "x")),
+        ("::error file=a=b,line::x", Command("error", (("file", "a=b"),), "x")),
+        ("::debug::a%0Ab%250A%3A", Command("debug", (), "a\nb%0A%3A")),
+        ("::stop-commands::token", Command("stop-commands", (), "token")),
+        ("anything ##[error]x", Command("error", (), "x")),
+        ("##[add-mask]x%5D%3B", Command("add-mask", (), "x];")),
+        ("##[set-env name=a;b=c]x", Command("set-env", (("name", "a"), ("b", "c")), "x")),
+        ("::x:: ##[error]y", Command("error", (), "y")),
+        ("\u2060::error::x", Command("error", (), "x")),
+    ],
+)
+def test_a_command_is_found(line: str, command: Command) -> None:
+    """In both forms, with space before it, in upper and lower case, and unescaped as the runner does it."""
+    for end in ("\n", "\r", "\r\n"):
+        assert commands(f"before{end}{line}{end}after{end}") == [command]
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "x ::error::y",
+        ": :error::x",
+        "::error",
+        "::nothing::x",
+        "::error:x",
+        "## [error]x",
+        "##[errors]x",
+        "##[error",
+        "::",
+    ],
+)
+def test_any_other_line_is_none(line: str) -> None:
+    """Neither what stands in the middle of a line nor a name that nobody registered."""
+    assert commands(line) == []
