@@ -1,12 +1,14 @@
 """A Python file is followed without an error and in moderate time, whatever is in it; what would stop Python is a fault."""
 
+import ast
 import random
+from typing import Any
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from grader.submission.python.parse import parse
+from grader.submission.python.parse import Code, parse
 from grader.submission.setup_py import Setup, read_setup
 from grader.submission.tree import File, make_tree
 from tests.patience import processor_time
@@ -371,3 +373,18 @@ def test_a_declared_encoding_is_used() -> None:
     """Bytes are no UTF-8 where the file says so."""
     text = "# coding: latin-1\n" + _IMPORTS + end("[('share/ä', ['package.xml'])]")
     assert followed(text.encode("latin-1")).installed() == {"share/ä/package.xml": "package.xml"}
+
+
+def test_a_miscount_of_cpython_costs_nobody_anything(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where CPython's own count of depth is off, which is no fault of the file, the file is parsed once more."""
+    parse_once, calls = ast.parse, []
+
+    def miscounting(text: str, *rest: Any) -> ast.Module:
+        calls.append(text)
+        if len(calls) == 1:
+            raise SystemError("AST constructor recursion depth mismatch (before=50, after=47)")
+        return parse_once(text, *rest)
+
+    monkeypatch.setattr(ast, "parse", miscounting)
+    assert isinstance(parse(b"x = 1\n", "setup.py"), Code)
+    assert len(calls) == 2

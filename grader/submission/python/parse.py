@@ -51,7 +51,7 @@ def parse(data: bytes, path: str) -> Code | SyntaxFault:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # such as an invalid escape, which Python accepts
-            tree = ast.parse(text)
+            tree = _tree(text)
             compile(tree, path, "exec", dont_inherit=True)  # only made, never run: it finds what the grammar allows
             return Code(source, tree)
     except SyntaxError as error:
@@ -60,3 +60,11 @@ def parse(data: bytes, path: str) -> Code | SyntaxFault:
         return SyntaxFault(source, error.msg, place, sure=not newer)
     except (RecursionError, MemoryError, ValueError, OverflowError):
         return SyntaxFault(source, "too deeply nested for Python to read", Location(path, 1, 1))
+
+
+def _tree(text: str) -> ast.Module:
+    """The tree of a text. CPython 3.11 loses count where its garbage collector runs in the midst of making one: then once more."""
+    try:
+        return ast.parse(text)
+    except SystemError:  # AST constructor recursion depth mismatch
+        return ast.parse(text)
