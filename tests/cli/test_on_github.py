@@ -1,52 +1,14 @@
 """In a job of GitHub Actions: annotations on standard error, the report in the job's summary, and nothing else is another way."""
 
-import os
-import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
+from tests.cli.jobs import ELSEWHERE, Job
 from tests.report.readers import read_as_github
 from tests.report.workflow_commands import commands
-from tests.samples import LAB6, ROOT
 
-MISTAKEN = ROOT / "submissions/several-mistakes/my_robot.urdf"
-REFERENCE = ROOT / "submissions/reference"
 LIMIT = 1024 * 1024  # bytes that GitHub takes of a summary
-
-
-class Job:
-    """A checkout with a submission in it, and the file that becomes the job's summary."""
-
-    def __init__(self, folder: Path) -> None:
-        self.checkout = folder / "checkout"
-        (self.checkout / ".git").mkdir(parents=True)
-        shutil.copy(MISTAKEN, self.checkout)
-        self.summary = folder / "summary.md"
-
-    def run(self, *arguments: str, start: Path | None = None, **variables: str) -> subprocess.CompletedProcess[bytes]:
-        """Run the command line in the checkout, as a step does."""
-        around = {
-            "GITHUB_ACTIONS": "true",
-            "GITHUB_WORKSPACE": str(self.checkout),
-            "GITHUB_STEP_SUMMARY": str(self.summary),
-        }
-        return subprocess.run(
-            [sys.executable, "-m", "grader", *arguments],
-            cwd=start or self.checkout,
-            env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1", **around, **variables},
-            capture_output=True,
-            check=False,
-            timeout=60,
-        )
-
-    def files(self, path: str, start: Path | None = None, **variables: str) -> set[str | None]:
-        """The files that a path's annotations are put on."""
-        done = self.run("grade", path, start=start, **variables)
-        assert done.returncode in (0, 1), done.stderr
-        return {each.get("file") for each in commands(done.stderr.decode())} - {None}
 
 
 @pytest.fixture
@@ -59,12 +21,12 @@ def job(tmp_path: Path) -> Job:
 def test_a_job_gets_annotations_and_a_summary(job: Job, form: str) -> None:
     """Standard output is byte for byte what it is elsewhere; the annotations are those of their own format."""
     done = job.run("grade", "my_robot.urdf", "--format", form)
-    elsewhere = job.run("grade", "my_robot.urdf", "--format", form, GITHUB_ACTIONS="")
+    elsewhere = job.run("grade", "my_robot.urdf", "--format", form, around=ELSEWHERE)
     assert (done.stdout, done.returncode) == (elsewhere.stdout, elsewhere.returncode)
     assert elsewhere.stderr == b""
-    assert done.stderr == job.run("grade", "my_robot.urdf", "--format", "github", GITHUB_ACTIONS="").stdout
+    assert done.stderr == job.run("grade", "my_robot.urdf", "--format", "github", around=ELSEWHERE).stdout
     assert (
-        job.summary.read_bytes() == job.run("grade", "my_robot.urdf", "--format", "markdown", GITHUB_ACTIONS="").stdout
+        job.summary.read_bytes() == job.run("grade", "my_robot.urdf", "--format", "markdown", around=ELSEWHERE).stdout
     )
     assert commands(done.stdout.decode()) == []
 
@@ -80,7 +42,7 @@ def test_annotations_that_are_asked_for_come_once(job: Job) -> None:
 @pytest.mark.parametrize("variable", ["GITHUB_ACTIONS", "GITHUB_STEP_SUMMARY"])
 def test_elsewhere_there_is_nothing_of_it(job: Job, variable: str) -> None:
     """Another system that sets some of the variables, and a runner that has no summaries."""
-    done = job.run("grade", "my_robot.urdf", **{variable: ""})
+    done = job.run("grade", "my_robot.urdf", around={variable: ""})
     assert (done.stderr == b"") == (variable == "GITHUB_ACTIONS")
     assert not job.summary.exists()
 
@@ -100,7 +62,7 @@ def test_the_summary_is_added_to(job: Job) -> None:
 @pytest.mark.parametrize("room", [0, 1, 50, 200, 3000, 5806, 5807, 20_000])
 def test_the_summary_is_no_longer_than_github_takes(job: Job, room: int) -> None:
     """Together with what is there already; where there is no room, nothing is added."""
-    whole = job.run("grade", "my_robot.urdf", "--format", "markdown", GITHUB_ACTIONS="").stdout
+    whole = job.run("grade", "my_robot.urdf", "--format", "markdown", around=ELSEWHERE).stdout
     before = b"x" * (LIMIT - room - 1) + b"\n"
     job.summary.write_bytes(before)
     assert job.run("grade", "my_robot.urdf").returncode == 1
@@ -122,7 +84,7 @@ def test_a_summary_that_cannot_be_written_changes_nothing_else(job: Job, place: 
     """One line says so; report, annotations and exit code are as always."""
     (job.checkout / "folder").mkdir()
     usual = job.run("grade", "my_robot.urdf")
-    done = job.run("grade", "my_robot.urdf", GITHUB_STEP_SUMMARY=place)
+    done = job.run("grade", "my_robot.urdf", around={"GITHUB_STEP_SUMMARY": place})
     assert (done.stdout, done.returncode) == (usual.stdout, usual.returncode)
     added = done.stderr.removeprefix(usual.stderr)
     assert added.startswith(b"grader: the job summary cannot be written: ")
@@ -175,41 +137,3 @@ def test_help_is_plain_text_in_a_job(job: Job) -> None:
     for arguments in (("--help",), ("grade", "--help"), ("grade",), ("grad",)):
         done = job.run(*arguments)
         assert b"\x1b" not in done.stdout + done.stderr
-
-
-def test_the_rubric_is_the_courses(job: Job) -> None:
-    """Whatever a repository calls its files, an id means the rubric that comes with the grader; a path means the file."""
-    own = LAB6.data.replace(b"IRP Lab 6", b"My own")
-    for name in ("lab6", "lab6.toml", "rubrics/lab6.toml", "grader/rubrics/lab6.toml", ".toml/lab6"):
-        file = job.checkout / name
-        file.parent.mkdir(parents=True, exist_ok=True)
-        file.write_bytes(own)
-    for arguments in ((), ("--rubric", "lab6")):
-        done = job.run("grade", "my_robot.urdf", *arguments, "--expect-rubric", LAB6.sha256)
-        assert done.returncode == 1, done.stderr
-        assert b"My own" not in done.stdout
-    for name in ("lab6.toml", "./lab6", "rubrics/lab6.toml"):
-        assert b"My own" in job.run("grade", "my_robot.urdf", "--rubric", name).stdout
-        done = job.run("grade", "my_robot.urdf", "--rubric", name, "--expect-rubric", LAB6.sha256)
-        assert (done.returncode, done.stdout) == (2, b"")
-
-
-@pytest.mark.parametrize(
-    ("given", "words"),
-    [
-        (LAB6.sha256, ""),
-        (LAB6.sha256.upper(), ""),
-        (LAB6.sha256[:-1] + ("0" if LAB6.sha256[-1] != "0" else "1"), f"its sha256 is {LAB6.sha256}, not "),
-        (LAB6.sha256[:-1], "--expect-rubric takes the 64 digits"),
-        (LAB6.sha256 + "\n", "--expect-rubric takes the 64 digits"),
-        ("\uff10" * 64, "--expect-rubric takes the 64 digits"),
-        ("", "--expect-rubric takes the 64 digits"),
-    ],
-)
-def test_expected_rubric(job: Job, given: str, words: str) -> None:
-    """Only the very bytes that are expected are graded by, in upper or lower case; what is no hash is refused."""
-    done = job.run("grade", "my_robot.urdf", "--expect-rubric", given, GITHUB_ACTIONS="")
-    assert done.returncode == (2 if words else 1)
-    assert words in done.stderr.decode()
-    assert done.stderr.count(b"\n") == bool(words)
-    assert (done.stdout == b"") == bool(words)

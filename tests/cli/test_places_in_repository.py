@@ -3,13 +3,16 @@
 import json
 import shutil
 import subprocess
+import sys
 import zipfile
 from pathlib import Path
 
 import pytest
 
-from tests.cli.test_on_github import MISTAKEN, REFERENCE, Job
+from tests.cli.jobs import MISTAKEN, Job
+from tests.samples import ROOT
 
+REFERENCE = ROOT / "submissions/reference"
 URDF = "roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
 
 
@@ -62,7 +65,7 @@ def test_a_workspace_that_is_a_link(job: Job, tmp_path: Path) -> None:
     link = tmp_path / "link"
     link.symlink_to(job.checkout)
     for path in (str(link), str(job.checkout), str(link / "roscourse_sim_ws")):
-        assert job.files(path, GITHUB_WORKSPACE=str(link)) == {URDF}
+        assert job.files(path, around={"GITHUB_WORKSPACE": str(link)}) == {URDF}
 
 
 def test_outside_of_the_workspace(job: Job, tmp_path: Path) -> None:
@@ -76,14 +79,14 @@ def test_outside_of_the_workspace(job: Job, tmp_path: Path) -> None:
 def test_without_a_ci_system(job: Job) -> None:
     """The nearest repository counts, a submodule's or worktree's too, and without any the current folder."""
     alone = {"GITHUB_WORKSPACE": ""}
-    assert job.files("my_robot.urdf", start=job.checkout / "lab 6", **alone) == {"lab 6/my_robot.urdf"}
+    assert job.files("my_robot.urdf", start=job.checkout / "lab 6", around=alone) == {"lab 6/my_robot.urdf"}
     (job.checkout / "lab 6/.git").write_text("gitdir: ../.git/worktrees/lab\n")
-    assert job.files("lab 6/my_robot.urdf", **alone) == {"my_robot.urdf"}
+    assert job.files("lab 6/my_robot.urdf", around=alone) == {"my_robot.urdf"}
     for place in ("lab 6/.git", ".git"):
         git = job.checkout / place
         git.unlink() if git.is_file() else git.rmdir()
-    assert job.files("lab 6/my_robot.urdf", **alone) == {"lab 6/my_robot.urdf"}
-    assert job.files("my_robot.urdf", start=job.checkout / "lab 6", **alone) == {"my_robot.urdf"}
+    assert job.files("lab 6/my_robot.urdf", around=alone) == {"lab 6/my_robot.urdf"}
+    assert job.files("my_robot.urdf", start=job.checkout / "lab 6", around=alone) == {"my_robot.urdf"}
 
 
 def test_on_gitlab(job: Job) -> None:
@@ -91,9 +94,7 @@ def test_on_gitlab(job: Job) -> None:
     (job.checkout / "lab 6/.git").mkdir()
     done = job.run(
         *("grade", "lab 6/my_robot.urdf", "--format", "codeclimate"),
-        GITHUB_ACTIONS="",
-        GITHUB_WORKSPACE="",
-        CI_PROJECT_DIR=str(job.checkout),
+        around={"GITHUB_ACTIONS": "", "GITHUB_WORKSPACE": "", "CI_PROJECT_DIR": str(job.checkout)},
     )
     assert {each["location"]["path"] for each in json.loads(done.stdout)} == {"lab 6/my_robot.urdf"}
     assert done.stderr == b""
@@ -102,7 +103,8 @@ def test_on_gitlab(job: Job) -> None:
 def test_standard_input(job: Job) -> None:
     """It has no file that an annotation could be put on but the one that everyone calls so."""
     done = subprocess.run(
-        ["bash", "-c", 'python -m grader grade - --format sarif < "lab 6/my_robot.urdf"'],
+        [sys.executable, "-m", "grader", "grade", "-", "--format", "sarif"],
+        input=MISTAKEN.read_bytes(),
         cwd=job.checkout,
         capture_output=True,
         check=False,
@@ -117,7 +119,7 @@ def test_a_folder_that_is_gone(tmp_path: Path) -> None:
     gone = tmp_path / "gone"
     gone.mkdir()
     done = subprocess.run(
-        ["bash", "-c", f"rmdir ../gone; python -m grader grade {MISTAKEN} --format github"],
+        ["bash", "-c", f"rmdir ../gone; '{sys.executable}' -m grader grade {MISTAKEN} --format github"],
         cwd=gone,
         capture_output=True,
         check=False,

@@ -50,7 +50,10 @@ class Recast:
 
 def recast(report: Report, words: Words) -> Report:
     """A report of the same results, in other words: messages, notes, problems, paths, names, lines that are quoted."""
-    path = lambda: f"a{printable(words())}".replace("\0", "")
+
+    def path() -> str:
+        return f"a{printable(words())}"
+
     problems = tuple(replace(each, message=words(), location=Location(path(), 2, 3)) for each in untold(report))
     return replace(
         report,

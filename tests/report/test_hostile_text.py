@@ -19,16 +19,19 @@ from grader.cli.formats import Format, render
 from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.report.places import Base
+from grader.submission.submission import read_submission
 from tests.report.hostile import BREAKING, PIECES, SLOTS, TEXT, UNASKED, hand_in, name_of
 from tests.report.readers import READERS
 from tests.report.recast import recast, structure
 from tests.report.workflow_commands import commands
+from tests.robot.edge_cases import EDGE_CASES
 from tests.samples import LAB6, SAMPLES, opened
 
 ANNOTATIONS = {"error", "warning", "notice"}
 PROPERTIES = {"file", "line", "endLine", "col", "endColumn", "title"}
 TEXTS = st.dictionaries(st.sampled_from(SLOTS + BREAKING), TEXT, min_size=1, max_size=6)
-EVERYWHERE = {slot: "".join(PIECES[:200:7]) for slot in SLOTS}
+EVERYWHERE = {slot: "".join(PIECES[::7]) for slot in SLOTS}
+FENCES = {"answer": "`" * 300 + "\n![x](http://e.org/y.png)\n# h\n", "file": "`" * 90 + "![x](y)", "box": "`" * 90}
 
 
 def is_harmless(text: str, kind: Format | None = None) -> None:
@@ -69,6 +72,7 @@ def written(texts: Mapping[str, str]) -> Report:
 
 @given(TEXTS)
 @example(EVERYWHERE)
+@example(FENCES)
 @settings(max_examples=100)
 def test_of_a_hand_in_only_words_come_through(texts: Mapping[str, str]) -> None:
     """Names of robots, links, joints, materials, files and folders, comments, answers, values and strings in Python."""
@@ -82,6 +86,13 @@ def test_words_that_nobody_asks_for_cost_nothing(texts: Mapping[str, str]) -> No
     assert written(texts).score == 90
 
 
+def test_of_a_broken_file_only_words_come_through() -> None:
+    """Whatever ROS 2 makes of a URDF: some of those that its reader is held against."""
+    for case in EDGE_CASES[::40]:
+        if len(case.text) < 20_000:
+            holds(grade(LAB6, read_submission(case.text, identity=case.name, path="a.urdf")), Base())
+
+
 @cache
 def report_of(name: str) -> Report:
     """A sample's report."""
@@ -91,7 +102,8 @@ def report_of(name: str) -> Report:
 @pytest.mark.parametrize("base", [Base(), Base("a b/"), Base(archive="a.zip")], ids=["folder", "below", "archive"])
 @pytest.mark.parametrize("name", ["several-mistakes", "pictures-only", "setup-as-created", "smart-quotes", "reference"])
 @given(words=st.lists(TEXT, min_size=1, max_size=9))
-@settings(max_examples=25)
+@example(["`" * 90 + "![x](y)"])
+@settings(max_examples=15)
 def test_of_a_report_only_words_come_through(name: str, base: Base, words: list[str]) -> None:
     """Also what no file system and no XML can carry: NUL, halves of surrogate pairs, in every message, name and path."""
     following = cycle(words)
@@ -137,6 +149,7 @@ def test_what_is_printed_in_a_job_is_harmless(texts: Mapping[str, str]) -> None:
 
 
 @given(TEXT)
+@example("##[error]x\n::error::y")
 @settings(max_examples=60)
 def test_a_path_that_is_not_there_is_told_harmlessly(text: str) -> None:
     """The reason why nothing was graded names it, on standard error and in the summary."""

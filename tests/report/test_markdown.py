@@ -6,7 +6,7 @@ from pathlib import Path
 from textwrap import indent
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from grader.grading.report import Report
@@ -112,6 +112,8 @@ def test_escaped_text_is_shown_as_it_is(layout: str, text: str) -> None:
 
 
 @given((TEXT | st.text() | st.text("` a", min_size=1)).map(printable).filter(str.strip))
+@example("`" * 79 + "<b>")
+@example("`" * 90 + "<b>")
 def test_code_in_a_line_is_shown_as_it_is(text: str) -> None:
     """Backticks in it do not end it; more of them than GitHub takes for code come as text."""
     root = read_as_github(f"- x {code(text)} y\n")
@@ -121,6 +123,8 @@ def test_code_in_a_line_is_shown_as_it_is(text: str) -> None:
 
 
 @given(st.lists((TEXT | st.text() | st.text("`~ a")).map(printable).filter(str.strip)))
+@example(["`" * 300, "# h"])
+@example(["   " + "`" * 90, "~" * 300, "<b>"])
 def test_a_block_of_code_ends_where_we_end_it(lines: list[str]) -> None:
     """Whatever stands in it, at any length: GitHub counts no more than 255 backticks of a fence."""
     root = read_as_github(f"- x\n\n{indent(fenced(lines), '  ')}\n\ny\n")

@@ -1,0 +1,49 @@
+"""A job of GitHub Actions: a checkout, what the runner says of it in variables, and a file for the summary."""
+
+import os
+import shutil
+import subprocess
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+
+from tests.report.workflow_commands import commands
+from tests.samples import ROOT
+
+MISTAKEN = ROOT / "submissions/several-mistakes/my_robot.urdf"
+ON_GITHUB: Mapping[str, str] = {}
+ELSEWHERE: Mapping[str, str] = {"GITHUB_ACTIONS": ""}
+
+
+class Job:
+    """A checkout with a submission in it, and the file that becomes the job's summary."""
+
+    def __init__(self, folder: Path) -> None:
+        self.checkout = folder / "checkout"
+        (self.checkout / ".git").mkdir(parents=True)
+        shutil.copy(MISTAKEN, self.checkout)
+        self.summary = folder / "summary.md"
+
+    def run(
+        self, *arguments: str, start: Path | None = None, around: Mapping[str, str] = ON_GITHUB
+    ) -> subprocess.CompletedProcess[bytes]:
+        """Run the command line in the checkout, as a step does; `around` are variables that are otherwise than there."""
+        job = {
+            "GITHUB_ACTIONS": "true",
+            "GITHUB_WORKSPACE": str(self.checkout),
+            "GITHUB_STEP_SUMMARY": str(self.summary),
+        }
+        return subprocess.run(
+            [sys.executable, "-m", "grader", *arguments],
+            cwd=start or self.checkout,
+            env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1", **job, **around},
+            capture_output=True,
+            check=False,
+            timeout=60,
+        )
+
+    def files(self, path: str, start: Path | None = None, around: Mapping[str, str] = ON_GITHUB) -> set[str | None]:
+        """The files that a path's annotations are put on."""
+        done = self.run("grade", path, start=start, around=around)
+        assert done.returncode in (0, 1), done.stderr
+        return {each.get("file") for each in commands(done.stderr.decode())} - {None}
