@@ -2,12 +2,13 @@
 
 import os
 import sys
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.cli.output import complain
+from grader.errors import GraderError
 
 if TYPE_CHECKING:
     from grader.grading.report import Report
@@ -47,6 +48,17 @@ def tell_github_nothing(reason: str) -> None:
     _add_to_summary(lambda room: text if len(text.encode()) <= room else "")
 
 
+@contextmanager
+def refusals_told() -> Iterator[None]:
+    """Say in a job on GitHub why nothing was graded, whatever stops a command before it has."""
+    try:
+        yield
+    except GraderError as error:
+        if on_github():
+            tell_github_nothing(str(error))
+        raise
+
+
 def _annotate(commands: str) -> None:
     if sys.stderr is not None:
         with suppress(OSError):
@@ -74,14 +86,14 @@ def base_of(path: str, *, is_single: bool) -> "Base":
     from grader.report.places import Base
 
     if path == "-":
-        return Base()
+        return Base(is_outside=True)
     named = Path(path)
     is_folder = named.is_dir()
     # A file is called what it was named, whatever a link of that name leads to; of a folder the files count.
     place = named.resolve() if is_folder else named.parent.resolve() / named.name
     root = _repository(place)
     if root is None:
-        return Base()
+        return Base(is_outside=True)
     if is_folder or is_single:
         folder = (place if is_folder else place.parent).relative_to(root).as_posix()
         return Base("" if folder == "." else f"{folder}/")

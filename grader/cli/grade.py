@@ -4,6 +4,7 @@ from typing import Annotated
 
 import typer
 
+from grader.cli.ci import refusals_told
 from grader.cli.formats import Format
 from grader.cli.grade_run import Threshold, Wanted, grade_once, read_saves
 from grader.cli.options import DEFAULT_RUBRIC, RubricOption
@@ -62,18 +63,19 @@ def grade(
 
       grader grade lab6.zip --save markdown=report.md --save junit=report.xml
     """
-    wanted = Wanted(
-        path,
-        rubric,
-        expect_rubric,
-        tuple(part or ()),
-        output_format,
-        read_saves(save_as or ()),
-        Threshold.read(fail_under) if fail_under is not None else None,
-        max_size,
-    )
-    if is_watched:
-        from grader.cli.watch import watch
+    with refusals_told():
+        wanted = Wanted(
+            path,
+            rubric,
+            expect_rubric,
+            tuple(part or ()),
+            output_format,
+            read_saves(save_as or ()),
+            Threshold.read(fail_under) if fail_under is not None else None,
+            max_size,
+        )
+        if is_watched:
+            from grader.cli.watch import watch
 
-        return watch(wanted)
-    return grade_once(wanted)[1]
+            return watch(wanted)
+        return grade_once(wanted)[1]

@@ -8,7 +8,7 @@ from decimal import Decimal, InvalidOperation
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from grader.cli.ci import base_of, on_github, tell_github, tell_github_nothing
+from grader.cli.ci import base_of, on_github, tell_github
 from grader.cli.formats import Format, render
 from grader.cli.output import complain, emit, save
 from grader.errors import GraderError, InputError
@@ -85,15 +85,6 @@ def _split_save(text: str) -> tuple[Format, Path]:
 
 def grade_once(wanted: Wanted) -> tuple["Report", int]:
     """Grade, save and print the reports that are wanted; the report and the exit code. Raises GraderError."""
-    try:
-        return _grade(wanted)
-    except GraderError as error:
-        if on_github():
-            tell_github_nothing(str(error))
-        raise
-
-
-def _grade(wanted: Wanted) -> tuple["Report", int]:
     done = graded(wanted)
     save_reports(wanted, done)
     text = render(done.report, wanted.format, done.base, to_file=False)

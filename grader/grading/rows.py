@@ -143,6 +143,8 @@ class Rows:
                 self._complain((*where, key), f"points have at most {_DECIMALS} decimals, not as many as {value}")
             elif key in ("id", "title", "urdf") and not value.strip():
                 self._complain((*where, key), f"{key} must not be empty")
+            elif key == "id" and (not value.isprintable() or " " in value):
+                self._complain((*where, key), f"an id is one printable word, not {value!r}")
             elif key == "urdf" and value.rstrip("/").split("/")[-1] in ("", ".", ".."):
                 self._complain((*where, key), f"urdf must be the path of a file, not {value!r}")
         needed = [key for key in known if key not in _OPTIONAL and (key != "points" or what == "criterion")]

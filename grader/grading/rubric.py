@@ -159,8 +159,8 @@ def read_rubric(data: bytes, path: Path) -> Rubric:
         raise RubricError(tuple(f"{shown}:{line}: {what}" for line, _, what in found))
     return Rubric(
         table["id"],
-        table["title"],
-        tuple(Part(row["id"], row["title"], row.get("needs", "urdf")) for row in table["part"]),
+        _line(table["title"]),
+        tuple(Part(row["id"], _line(row["title"]), row.get("needs", "urdf")) for row in table["part"]),
         tuple(
             _criterion(position, row, *bound)
             for position, (row, bound) in enumerate(zip(table["criterion"], rows.bound, strict=True))
@@ -175,19 +175,24 @@ def read_rubric(data: bytes, path: Path) -> Rubric:
     )
 
 
+def _line(title: str) -> str:
+    """A title in one line, however it is broken in the file."""
+    return " ".join(title.split())
+
+
 def _late(row: dict[str, Any]) -> Late:
     kept = {key: Decimal(row.get(key, 0)) for key in ("grace_minutes", "percent_per_day", "floor_percent")}
     return Late(row.get("due"), **kept)
 
 
 def _evidence(row: dict[str, Any]) -> Evidence:
-    return Evidence(row["id"], row["part"], row["title"], tuple(row["names"]))
+    return Evidence(row["id"], row["part"], _line(row["title"]), tuple(row["names"]))
 
 
 def _criterion(position: int, row: dict[str, Any], check: Check, arguments: dict[str, Any]) -> Criterion:
     return Criterion(
         row["id"],
-        row["title"],
+        _line(row["title"]),
         row["part"],
         Decimal(row["points"]),
         check,

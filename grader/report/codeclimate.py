@@ -18,11 +18,10 @@ def render_codeclimate(report: Report, base: Base) -> str:
     issues = []
     for each in findings(report, base):
         place = each.place or whole(report, base)
-        cost = f" ({so_many_points(each.lost)})" if each.lost else ""
-        text = each.text.replace("\n", " ")
+        cost = f" ({so_many_points(each.lost)} lost)" if each.lost else ""
         issues.append(
             {
-                "description": f"{each.title}{cost}: {text}" if each.title else text,
+                "description": each.text.replace("\n", " ") + cost,
                 "check_name": each.rule,
                 "fingerprint": each.fingerprint,
                 "severity": _SEVERITIES[each.level],

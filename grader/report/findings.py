@@ -10,7 +10,7 @@ from typing import Literal, NamedTuple
 from grader.grading.report import Report, Result
 from grader.report.places import Base, Place, placed
 from grader.report.text import printable
-from grader.report.words import Told, place_words, told, untold
+from grader.report.words import Told, place_words, sentence, told, untold
 from grader.robot.source import Location, Source
 
 Level = Literal["error", "warning", "note"]
@@ -26,7 +26,6 @@ class Finding(NamedTuple):
 
     rule: str
     level: Level
-    title: str
     text: str
     lost: Decimal
     place: Place | None
@@ -43,7 +42,7 @@ def findings(report: Report, base: Base) -> list[Finding]:
     for each in problems:
         text = _text((printable(each.message),), each.location, base)
         place = placed(each.location, source_of(each.location.path), base)
-        found.append(Finding(each.code, each.severity, "", text, Decimal(0), place, ""))
+        found.append(Finding(each.code, each.severity, text, Decimal(0), place, ""))
     seen: Counter[str] = Counter()
     return [each._replace(fingerprint=_fingerprint(each, seen)) for each in found]
 
@@ -66,15 +65,15 @@ def whole(report: Report, base: Base) -> Place:
 
 def _of_criterion(result: Result, what: Told, source_of: Callable[[str], Source | None], base: Base) -> Finding:
     criterion = result.criterion
-    text = _text((*what.sentences, *filter(None, [what.feedback])), what.place, base)
+    aim = f"Passes when: {sentence(criterion.title)}"
+    text = _text((*what.sentences, *filter(None, [what.feedback]), aim), what.place, base)
     place = placed(what.place, source_of(what.place.path), base) if what.place is not None else None
-    lost = criterion.points - result.points
-    return Finding(criterion.id, "error", printable(criterion.title), text, lost, place, "")
+    return Finding(criterion.id, "error", text, criterion.points - result.points, place, "")
 
 
 def _text(lines: tuple[str, ...], where: Location | None, base: Base) -> str:
-    """What is said; of a file in an archive also where that is, because a place in a repository cannot tell."""
-    inside = (f"In {place_words(where)}.",) if where is not None and base.archive else ()
+    """What is said; of a file that the repository does not hold as such also where that is."""
+    inside = (f"In {place_words(where)}.",) if where is not None and (base.archive or base.is_outside) else ()
     return "\n".join((*lines, *inside))
 
 

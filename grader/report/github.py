@@ -22,9 +22,12 @@ _COMMANDS: dict[Level, str] = {"error": "error", "warning": "warning", "note": "
 
 def render_github(report: Report, base: Base) -> str:
     """The annotations of a report: the score as a notice, then what costs most points first."""
-    found = {level: [each for each in findings(report, base) if each.level == level] for level in _COMMANDS}
+    every = findings(report, base)
+    if base.is_outside:  # a file of the repository may be called the same
+        every = [each._replace(place=None) for each in every]
     lines = [command("notice", None, f"{score_words(report)}: {printable(report.rubric.title)}", _whole(report))]
-    for level, some in found.items():
+    for level in _COMMANDS:
+        some = [each for each in every if each.level == level]
         lines += _annotations(level, some, room=_MOST - (level == "note"))
     return "".join(lines)
 
@@ -32,15 +35,16 @@ def render_github(report: Report, base: Base) -> str:
 def _annotations(level: Level, found: Sequence[Finding], room: int) -> Iterator[str]:
     shown = found if len(found) <= room else found[: room - 1]
     for each in shown:
-        cost = f" ({so_many_points(each.lost)})" if each.lost else ""
-        text = f"{each.title}: {each.text}" if each.title else each.text
-        yield command(_COMMANDS[level], each.place, f"{each.rule}{cost}", text)
+        yield command(_COMMANDS[level], each.place, f"{each.rule}{_cost(each.lost)}", each.text)
     rest = found[len(shown) :]
     if rest:
         names = ", ".join(dict.fromkeys(each.rule for each in rest))
-        lost = sum((each.lost for each in rest), Decimal(0))
-        cost = f", {so_many_points(lost)}" if lost else ""
+        cost = _cost(sum((each.lost for each in rest), Decimal(0)))
         yield command(_COMMANDS[level], None, f"{len(rest)} more{cost}", f"The report tells of these, too: {names}")
+
+
+def _cost(lost: Decimal) -> str:
+    return f" ({so_many_points(lost)} lost)" if lost else ""
 
 
 def _whole(report: Report) -> str:

@@ -74,7 +74,7 @@ def _case(suite: Any, result: Result, report: Report, base: Base) -> None:
         classname=f"{report.rubric.id}.{criterion.part}",
     )
     place = told(result, report).place
-    if place is not None and not base.archive:
+    if place is not None and not base.archive and place.path != "-":
         case.set("file", printable(base.folder + place.path))
         case.set("line", str(place.line))
     _properties(case, {"points": f"{points_words(result.points)}/{points_words(criterion.points)}"})

@@ -19,6 +19,7 @@ from grader.report.words import (
     pending_words,
     place_words,
     score_words,
+    status_of,
     summary,
     told,
     untold,
@@ -85,7 +86,7 @@ def _head(report: Report) -> Iterator[str]:
 
 
 def _item(result: Result, report: Report, shown: set[str]) -> str:
-    criterion, status = result.criterion, result.outcome.status
+    criterion, status = result.criterion, status_of(result)
     points = f"{points_words(result.points)}/{points_words(criterion.points)}"
     head = f"- {_MARKS[status]} {points} {escaped(printable(criterion.title))}"
     if status == "passed" and result.ruling is None:

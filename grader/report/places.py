@@ -20,10 +20,14 @@ class Excerpt(NamedTuple):
 
 
 class Base(NamedTuple):
-    """Where a submission stands in a repository: the folder of its paths, which ends in a slash, or the archive that they are in."""
+    """Where a submission stands in a repository: the folder of its paths, which ends in a slash, or the archive that they are in.
+
+    `is_outside` tells that it stands in none: its paths name no file there.
+    """
 
     folder: str = ""
     archive: str = ""
+    is_outside: bool = False
 
 
 class Place(NamedTuple):

@@ -69,7 +69,7 @@ def _result(finding: Finding, index: int, report: Report, base: Base) -> dict[st
         "ruleId": finding.rule,
         "ruleIndex": index,
         "level": finding.level,
-        "message": {"text": _no_links(f"{finding.title}: {finding.text}" if finding.title else finding.text)},
+        "message": {"text": _no_links(finding.text)},
         "locations": [{"physicalLocation": _physical(finding.place or whole(report, base))}],
         "partialFingerprints": {"primaryLocationLineHash": finding.fingerprint},
         **cost,

@@ -21,6 +21,7 @@ from grader.report.words import (
     pending_words,
     place_words,
     score_words,
+    status_of,
     summary,
     told,
     untold,
@@ -138,7 +139,7 @@ def _show_alike(results: tuple[Result, ...], reason: str, console: Console) -> N
 
 
 def _show_result(result: Result, page: _Page) -> None:
-    console, criterion, status = page.console, result.criterion, result.outcome.status
+    console, criterion, status = page.console, result.criterion, status_of(result)
     points = f"{points_words(result.points)}/{points_words(criterion.points)}"
     head = Text.assemble("  ", (symbol(console, *_SYMBOLS[status]), _STYLES[status]), f" {points:<5} ")
     title = Text(printable(criterion.title))

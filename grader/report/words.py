@@ -38,6 +38,13 @@ def score_words(report: Report) -> str:
     return f"{points_words(report.score)} / {points_words(report.max_score)} points"
 
 
+def status_of(result: Result) -> str:
+    """What became of a criterion: of one that a person has decided, whether it has all points."""
+    if result.ruling is None:
+        return result.outcome.status
+    return "passed" if result.points >= result.criterion.points else "failed"
+
+
 def earned(results: tuple[Result, ...]) -> str:
     """The points of some criteria together: 8/14."""
     got = sum((result.points for result in results), Decimal(0))

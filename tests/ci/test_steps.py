@@ -91,7 +91,9 @@ def test_a_red_check(job: Job, tmp_path: Path) -> None:
     done = job.grade()
     path = urdf.relative_to(tmp_path / "work").as_posix()
     assert done.code == 1
-    assert f"::error file={path},line=39,endLine=39,col=15,endColumn=30,title=lidar-frame (6 points)::" in done.stderr
+    assert (
+        f"::error file={path},line=39,endLine=39,col=15,endColumn=30,title=lidar-frame (6 points lost)::" in done.stderr
+    )
     assert job.output("score") == "62"
     assert "lidar-frame" in job.runner.summary
 

@@ -152,7 +152,7 @@ def test_when_it_was_due_is_remembered(tmp_path: Path) -> None:
         ("--reports", "class", "in the class folder"),
         ("--reports", "g.db", "is no folder"),
         ("--csv", "g.db", "would replace the gradebook"),
-        ("--csv", "nowhere/grades.csv", "there is no such folder"),
+        ("--csv", "nowhere/grades.csv", "there is no folder"),
     ],
 )
 def test_what_could_not_be_written_is_refused_first(top: Path, option: str, value: str, words: str) -> None:

@@ -100,6 +100,8 @@ def test_a_summary_that_cannot_be_written_changes_nothing_else(job: Job, place: 
         (("my_robot.urdf", "--part", "task2"), "name the folder or archive"),
         (("my_robot.urdf", "--expect-rubric", "0" * 64), "is not the one that is expected"),
         (("my_robot.urdf", "--save", "json=nowhere/a.json"), "cannot write nowhere/a.json"),
+        (("my_robot.urdf", "--save", "html=a.html"), "--save takes FORMAT=FILE"),
+        (("my_robot.urdf", "--fail-under", "many"), "--fail-under takes points"),
     ],
 )
 def test_where_nothing_was_graded_the_job_says_why(job: Job, arguments: tuple[str, ...], words: str) -> None:

@@ -145,6 +145,15 @@ def test_a_part_is_found_by_its_id(tmp_path: Path) -> None:
         rubric.part("zzz")
 
 
+def test_an_id_is_one_word_and_a_title_one_line(tmp_path: Path) -> None:
+    """An id with spaces or control characters is refused; a title may be broken in the file, and is one line in reports."""
+    for bad in ("a b", "a\\u001b", "a\\nb"):
+        (told,) = complaints(tmp_path, GOOD.replace('id = "loads"', f'id = "{bad}"'))
+        assert "an id is one printable word" in told
+    rubric = loaded(tmp_path, GOOD.replace('title = "Part A"', 'title = """Part\n  A"""'))
+    assert rubric.parts[0].title == "Part A"
+
+
 # --- Many mistakes at once --------------------------------------------------------------------------------------------
 
 EVERY_KIND_OF_MISTAKE = """\

@@ -36,13 +36,13 @@ def test_each_finding_is_on_its_line() -> None:
         (each for each in report.results if each.outcome.status == "failed"), key=lambda each: -each.criterion.points
     )
     summary, *found = annotated(report)
-    assert [each.get("title") for each in found][:2] == ["base-green (6 points)", "lidar-frame (6 points)"]
+    assert [each.get("title") for each in found][:2] == ["base-green (6 points lost)", "lidar-frame (6 points lost)"]
     assert len(found) == len(lost) == 7
     for told, result in zip(found, lost, strict=True):
         assert told.name == "error"
         assert (
             told.get("title")
-            == f"{result.criterion.id} ({result.criterion.points} point{'s' * (result.criterion.points != 1)})"
+            == f"{result.criterion.id} ({result.criterion.points} point{'s' * (result.criterion.points != 1)} lost)"
         )
         assert result.outcome.message[1:].rstrip(".") in told.data
         assert result.criterion.title in told.data
@@ -75,7 +75,7 @@ def test_no_more_than_are_shown_and_all_are_counted(name: str) -> None:
         own = [each for each in found if each.level == level]
         told = [each for each in shown[1:] if each.name == called]
         assert len(told) + (called == "notice") <= MOST
-        rest = [each for each in told if "more" in (each.get("title") or "").split(",")[0].split()]
+        rest = [each for each in told if "more" in (each.get("title") or "").split(" (")[0].split()]
         more = int((rest[0].get("title") or "").split()[0]) if rest else 0
         assert len(told) - len(rest) + more == len(own)
         assert len(told) == min(len(own), MOST - (called == "notice"))
@@ -83,7 +83,7 @@ def test_no_more_than_are_shown_and_all_are_counted(name: str) -> None:
         assert all(each.rule in words for each in own)
         if rest and any(each.lost for each in own):
             lost = sum((each.lost for each in own[len(told) - 1 :]), Decimal(0))
-            assert f"{more} more, {lost} point" in (rest[0].get("title") or "")
+            assert f"{more} more ({lost} point" in (rest[0].get("title") or "")
     words = shown[0].data
     assert all(
         each.criterion.id in words for each in report.results if each.is_open or each.outcome.status == "skipped"
