@@ -46,7 +46,7 @@ def explainable(context: typer.Context) -> Iterator[tuple[str, str]]:
 
 
 def _rubric(context: typer.Context) -> "Rubric":
-    from grader.cli.options import DEFAULT_RUBRIC
     from grader.grading.rubric import load_rubric
 
-    return load_rubric(context.params.get("rubric") or DEFAULT_RUBRIC)
+    unless_told = next(str(each.default) for each in context.command.params if each.name == "rubric")
+    return load_rubric(context.params.get("rubric") or unless_told)
