@@ -4,20 +4,23 @@ import os
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from decimal import Decimal, InvalidOperation
+from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.cli.ci import base_of, on_github, tell_github
 from grader.cli.formats import Format, render
-from grader.cli.output import complain, emit, save
+from grader.cli.output import complain, emit, is_same, save
 from grader.errors import GraderError, InputError
+from grader.submission.files import printable_path
 
 if TYPE_CHECKING:
     from grader.grading.report import Report
     from grader.grading.rubric import Rubric
     from grader.report.places import Base
 
+_NUMBER = re.compile(r"[0-9]{1,9}(?:\.[0-9]{1,9})?%?")
+_MOST_PERCENT = 100
 _SHA256 = re.compile(r"[0-9a-fA-F]{64}")
 
 
@@ -31,13 +34,9 @@ class Threshold:
     @classmethod
     def read(cls, text: str) -> "Threshold":
         """The threshold that `--fail-under` names, as 58.5 or 80%; raises GraderError."""
-        try:
-            value = Decimal(text.removesuffix("%"))
-        except InvalidOperation:
-            value = Decimal("NaN")
-        if not value.is_finite() or value < 0:
+        if not _NUMBER.fullmatch(text) or (text.endswith("%") and Decimal(text[:-1]) > _MOST_PERCENT):
             raise GraderError(f"--fail-under takes points or a percentage such as 80%, not {text!r}")
-        return cls(value, text.endswith("%"))
+        return cls(Decimal(text.removesuffix("%")), text.endswith("%"))
 
     def reached(self, score: Decimal, most: Decimal) -> bool:
         """Whether a score of so many points is enough."""
@@ -69,7 +68,7 @@ class Graded(NamedTuple):
 def read_saves(texts: Sequence[str]) -> tuple[tuple[Format, Path], ...]:
     """What `--save` names: formats and files; raises GraderError."""
     saves = tuple(map(_split_save, texts))
-    files = [os.path.realpath(file) for _, file in saves]
+    files = [os.path.realpath(file) for _, file in saves if file.is_file() or not file.exists()]
     for _, file in saves:
         if files.count(os.path.realpath(file)) > 1:
             raise GraderError(f"--save names {file} twice, and one file cannot hold two reports")
@@ -80,7 +79,7 @@ def _split_save(text: str) -> tuple[Format, Path]:
     kind, equals, file = text.partition("=")
     if kind not in list(Format) or not equals or file in ("", "-"):
         raise GraderError(f"--save takes FORMAT=FILE with one of the formats {', '.join(Format)}, not {text!r}")
-    return Format(kind), Path(file)
+    return Format(kind), Path(file).expanduser() if file.startswith("~/") else Path(file)  # no shell does it behind `=`
 
 
 def grade_once(wanted: Wanted) -> tuple["Report", int]:
@@ -111,11 +110,16 @@ def graded(wanted: Wanted) -> Graded:
         if result.traceback:
             complain(printable(f"{result.criterion.id}: {result.traceback.strip().splitlines()[-1]}"))
     base = base_of(wanted.path, is_single=submission.is_single)
-    return Graded(report, base, _exit_code(report, wanted.threshold))
+    is_read = not (submission.unread or submission.unopened)
+    return Graded(report, base, _exit_code(report, wanted.threshold, is_read=is_read))
 
 
 def save_reports(wanted: Wanted, done: Graded) -> None:
     """Write the reports that `--save` names; raises InputError."""
+    graded_from = [wanted.path, wanted.rubric, os.path.join(wanted.path, done.report.submission.path or "")]  # noqa: PTH118  names
+    for _, file in wanted.saves:
+        if any(is_same(file, Path(each)) and Path(each).is_file() for each in graded_from):
+            raise InputError(f"--save would replace {printable_path(file)}, which is graded: name another file")
     for kind, file in wanted.saves:
         save(file, render(done.report, kind, done.base))
 
@@ -139,9 +143,15 @@ def wanted_rubric(wanted: Wanted) -> "Rubric":
     return rules
 
 
-def _exit_code(report: "Report", threshold: Threshold | None) -> int:
+def _exit_code(report: "Report", threshold: Threshold | None, *, is_read: bool) -> int:
+    """3 for a fault of ours; 0 where all that can be decided passed, or the score is enough; otherwise 1.
+
+    What was handed in and cannot be read keeps a check from being green: a person has to look first.
+    """
+    from grader.report.words import undecided
+
     if report.counts("errored"):
         return 3
-    if threshold is not None:
-        return 0 if threshold.reached(report.score, report.max_score) else 1
-    return 1 if report.counts("failed", "skipped") else 0
+    if threshold is not None and threshold.reached(report.score, report.max_score):
+        return 0
+    return 1 if report.counts("failed", "skipped") or (undecided(report) and not is_read) else 0

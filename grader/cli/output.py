@@ -74,11 +74,12 @@ def not_over(path: Path, gradebook: Path) -> None:
     """Raises InputError where a file that is to be written is the gradebook, or one that SQLite keeps beside it."""
     book = Path(os.path.realpath(gradebook))
     for each in (book, *(book.with_name(book.name + ending) for ending in _BESIDE)):
-        if Path(os.path.realpath(path)) == each or _is_same(path, each):
+        if Path(os.path.realpath(path)) == each or is_same(path, each):
             raise InputError(f"cannot write {path}: it would replace the gradebook, and all marks by hand in it")
 
 
-def _is_same(path: Path, other: Path) -> bool:
+def is_same(path: Path, other: Path) -> bool:
+    """Whether two paths lead to one file, which is there."""
     try:
         return path.samefile(other)
     except OSError:  # one of them is not there
@@ -96,17 +97,26 @@ def save(path: Path, text: str) -> None:
 def save_bytes(path: Path, data: bytes) -> None:
     """As `save`, for what is no text."""
     try:
-        target = Path(os.path.realpath(path))
-        if target.exists() and not target.is_file():
+        if _is_output(path):  # also where that leads to a file: what is printed goes there as well
+            emit(data)
+        elif path.exists() and not path.is_file():
             with path.open("wb") as file:
                 file.write(data)
-            return
-        _replace(target, data)
+        else:
+            _replace(Path(os.path.realpath(path)), data)
     except (OSError, ValueError) as error:
         if isinstance(error, FileNotFoundError) and not path.parent.exists():
             raise no_folder(path) from None
         reason = error.strerror if isinstance(error, OSError) else str(error)
         raise InputError(f"cannot write {path}: {reason}") from None
+
+
+def _is_output(path: Path) -> bool:
+    """Whether a path is standard output, as /dev/stdout is."""
+    try:
+        return sys.stdout is not None and os.path.samestat(path.stat(), os.fstat(sys.stdout.fileno()))
+    except (OSError, ValueError):
+        return False
 
 
 def no_folder(path: Path) -> InputError:

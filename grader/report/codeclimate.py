@@ -4,7 +4,7 @@ https://docs.gitlab.com/ci/testing/code_quality/#code-quality-report-format
 """
 
 from grader.grading.report import Report
-from grader.report.findings import Level, findings, whole
+from grader.report.findings import Level, findings
 from grader.report.places import Base
 from grader.report.plain import to_json_list
 from grader.report.points import so_many_points
@@ -17,7 +17,7 @@ def render_codeclimate(report: Report, base: Base) -> str:
     """The findings of a report; an empty list where there is nothing to mend."""
     issues = []
     for each in findings(report, base):
-        place = each.place or whole(report, base)
+        place = each.place or each.whole
         cost = f" ({so_many_points(each.lost)} lost)" if each.lost else ""
         issues.append(
             {

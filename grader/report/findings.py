@@ -2,15 +2,16 @@
 
 import hashlib
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from decimal import Decimal
 from functools import cache
 from typing import Literal, NamedTuple
 
 from grader.grading.report import Report, Result
-from grader.report.places import Base, Place, placed
+from grader.report.places import Base, Place, archive_around, placed
+from grader.report.points import so_many_points
 from grader.report.text import printable
-from grader.report.words import Told, place_words, sentence, told, untold
+from grader.report.words import place_words, sentence, told, undecided, untold
 from grader.robot.source import Location, Source
 
 Level = Literal["error", "warning", "note"]
@@ -21,7 +22,8 @@ class Finding(NamedTuple):
     """One thing to mend. `rule` is the criterion's id or the problem's code, `text` printable, line by line.
 
     `place` is None where the submission as a whole is meant. `fingerprint` stays the same while the line stays the same,
-    wherever in its file it moves.
+    wherever in its file it moves. `lost` counts what is skipped because of it as well. `place` is where to look, `whole` what
+    stands for it where that cannot be told, as far as a format has no way to leave it open.
     """
 
     rule: str
@@ -29,20 +31,20 @@ class Finding(NamedTuple):
     text: str
     lost: Decimal
     place: Place | None
-    fingerprint: str
+    whole: Place
+    fingerprint: str = ""
 
 
 def findings(report: Report, base: Base) -> list[Finding]:
     """All there is to mend in a submission; `base` is where that stands in its repository."""
-    lost = [each for each in report.results if is_lost(each)]
-    lost.sort(key=lambda each: each.points - each.criterion.points)
     source_of = cache(report.submission.source)  # a file is read once, however much there is to say of it
-    found = [_of_criterion(each, told(each, report), source_of, base) for each in lost]
-    problems = sorted(untold(report), key=lambda each: _ORDER.index(each.severity))
-    for each in problems:
+    found = [_of_criterion(each, report, source_of, base) for each in report.results if is_lost(each)]
+    found.sort(key=lambda each: -each.lost)
+    found += _undecided(report, base)
+    for each in sorted(untold(report), key=lambda each: _ORDER.index(each.severity)):
         text = _text((printable(each.message),), each.location, base)
         place = placed(each.location, source_of(each.location.path), base)
-        found.append(Finding(each.code, each.severity, text, Decimal(0), place, ""))
+        found.append(Finding(each.code, each.severity, text, Decimal(0), place, place))
     seen: Counter[str] = Counter()
     return [each._replace(fingerprint=_fingerprint(each, seen)) for each in found]
 
@@ -54,26 +56,43 @@ def is_lost(result: Result) -> bool:
     return result.outcome.status in ("failed", "errored")
 
 
-def whole(report: Report, base: Base) -> Place:
-    """The place of a finding that has none of its own: the URDF, the package, or the folder that was handed in."""
+def _whole(report: Report, base: Base, *, of_package: bool) -> Place:
+    """What stands for a finding without a place of its own: the URDF, the package, or the folder that was handed in."""
     submission = report.submission
     path = submission.path
-    if path is None and submission.package is not None:
+    if submission.package is not None and (of_package or path is None):
         path = f"{submission.package.folder}/package.xml".lstrip("/")
     return Place(base.archive or (base.folder + path if path is not None else base.folder.rstrip("/")) or ".")
 
 
-def _of_criterion(result: Result, what: Told, source_of: Callable[[str], Source | None], base: Base) -> Finding:
-    criterion = result.criterion
+def _of_criterion(result: Result, report: Report, source_of: Callable[[str], Source | None], base: Base) -> Finding:
+    criterion, what = result.criterion, told(result, report)
+    behind = [each.criterion.points for each in report.results if each.because == criterion.id and each.ruling is None]
     aim = f"Passes when: {sentence(criterion.title)}"
-    text = _text((*what.sentences, *filter(None, [what.feedback]), aim), what.place, base)
+    lines = [*what.sentences, *filter(None, [what.feedback]), aim]
+    if behind:
+        lines.append(f"Skipped because of it: {len(behind)} more, {so_many_points(sum(behind, Decimal(0)))}.")
     place = placed(what.place, source_of(what.place.path), base) if what.place is not None else None
-    return Finding(criterion.id, "error", text, criterion.points - result.points, place, "")
+    whole = place or _whole(report, base, of_package=criterion.check.subject == "package")
+    lost = sum(behind, criterion.points - result.points)
+    return Finding(criterion.id, "error", _text(tuple(lines), what.place, base), lost, place, whole)
+
+
+def _undecided(report: Report, base: Base) -> Iterator[Finding]:
+    """What a program decides as a rule, and has to leave to a person here, with the reasons."""
+    left = undecided(report)
+    if left:
+        points = so_many_points(sum((each.criterion.points for each in left), Decimal(0)))
+        reasons = dict.fromkeys(sentence(each.outcome.message) for each in left)
+        text = "\n".join((*reasons, f"Not decided ({points}): {', '.join(each.criterion.id for each in left)}"))
+        place = _whole(report, base, of_package=all(each.criterion.check.subject == "package" for each in left))
+        yield Finding(left[0].criterion.id, "warning", text, Decimal(0), None, place)
 
 
 def _text(lines: tuple[str, ...], where: Location | None, base: Base) -> str:
     """What is said; of a file that the repository does not hold as such also where that is."""
-    inside = (f"In {place_words(where)}.",) if where is not None and (base.archive or base.is_outside) else ()
+    is_there = where is None or not (base.archive or base.is_outside or archive_around(where.path))
+    inside = () if is_there or where is None else (f"In {place_words(where)}.",)
     return "\n".join((*lines, *inside))
 
 

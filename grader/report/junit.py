@@ -11,7 +11,7 @@ from lxml import etree
 
 from grader.grading.report import Report, Result
 from grader.report.findings import is_lost
-from grader.report.places import Base
+from grader.report.places import Base, archive_around
 from grader.report.plain_text import criterion_lines, headline, problem_line, provenance
 from grader.report.points import points_words
 from grader.report.text import printable
@@ -74,7 +74,7 @@ def _case(suite: Any, result: Result, report: Report, base: Base) -> None:
         classname=f"{report.rubric.id}.{criterion.part}",
     )
     place = told(result, report).place
-    if place is not None and not base.archive and place.path != "-":
+    if place is not None and place.path != "-" and not (base.archive or archive_around(place.path)):
         case.set("file", printable(base.folder + place.path))
         case.set("line", str(place.line))
     _properties(case, {"points": f"{points_words(result.points)}/{points_words(criterion.points)}"})

@@ -51,7 +51,7 @@ def cut_markdown(report: Report, most: int) -> str:
 
 def whole_markdown(report: Report) -> str:
     """What is said of the submission as a whole: the report without its criteria."""
-    return "\n\n".join((*_head(report), *_evidence(report), *_problems(report), escaped(provenance(report))))
+    return "\n\n".join((*_head(report), *_evidence(report), *_problems(report)))
 
 
 def criterion_markdown(result: Result, report: Report) -> str:
@@ -74,7 +74,7 @@ def _blocks(report: Report) -> Iterator[str]:
             yield from (_item(each, report, shown) for each in group)
     yield from _evidence(report)
     yield from _problems(report)
-    yield from filter(None, (advice(report), escaped(provenance(report))))
+    yield from filter(None, (advice(report),))
 
 
 def _head(report: Report) -> Iterator[str]:
@@ -82,6 +82,7 @@ def _head(report: Report) -> Iterator[str]:
     yield from (escaped(line) for line in (summary(report), package_words(report)) if line)
     if report.pending:
         yield f"**{pending_words(report)}**"
+    yield escaped(provenance(report))
     yield from map(escaped, (*notes(report), *asides(report)))
 
 

@@ -7,6 +7,7 @@ from grader.report.text import printable
 from grader.robot.source import Location, Source
 
 _MEANT = re.compile(r"""[^\s=<>"'/]+\s*=\s*(?:"[^"]*"?|'[^']*'?)|<[^\s>]*[^>]*>?|[\w.]+""")
+_INSIDE = re.compile(r"(?i)(.*?\.(?:zip|tar|tgz|tar\.gz))/", re.DOTALL)  # the archives that are looked into
 _MARGIN = 4  # characters that are shown before what is meant, where the line is cut
 _LONGEST = 500  # characters of a line that tell it from others: a whole file may stand in one
 
@@ -64,10 +65,17 @@ def excerpt(source: Source, where: Location, room: int) -> Excerpt:
     return Excerpt(shown, len(before), max(1, min(len(meant), room - len(before))))
 
 
+def archive_around(path: str) -> str:
+    """The archive that a file of a submission stands in, by its path; empty for a file that stands in none."""
+    found = _INSIDE.match(path)
+    return found[1] if found else ""
+
+
 def placed(where: Location, source: Source | None, base: Base) -> Place:
     """A place of a submission as seen from the repository's root."""
-    if base.archive:
-        return Place(base.archive)
+    around = base.archive or archive_around(where.path)
+    if around:
+        return Place(around if base.archive else base.folder + around)
     if source is None:
         return Place(base.folder + where.path, where.line, where.column, where.column)
     line = source.line(where.line)

@@ -12,9 +12,14 @@ from grader.robot.source import Location
 _ROOM = 120  # characters of a quoted line
 
 
+def core(report: Report) -> list[str]:
+    """What is said first: what ROS 2 makes of the URDF, the package, and what waits for a person."""
+    return [summary(report), package_words(report), pending_words(report)]
+
+
 def headline(report: Report) -> list[str]:
     """What is said of the submission as a whole, beside its score."""
-    said = [summary(report), package_words(report), pending_words(report), *notes(report), *asides(report)]
+    said = [*core(report), *notes(report), *asides(report)]
     shown = [f"Evidence, {part}: {words}" for part, lines in evidence(report) for words, _ in lines]
     return [*filter(None, said), *shown]
 

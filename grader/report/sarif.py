@@ -7,12 +7,13 @@ from typing import Any
 from urllib.parse import quote
 
 from grader.grading.report import Report
-from grader.report.findings import Finding, findings, whole
+from grader.report.findings import Finding, findings
 from grader.report.places import Base, Place
 from grader.report.plain import exact, to_json
 from grader.report.plain_text import criterion_lines, headline
 from grader.report.rubrics import EVERY_KIND
 from grader.report.text import printable
+from grader.report.words import explain_command
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 _MOST = 5000  # results of a run that GitHub shows
@@ -32,7 +33,7 @@ def render_sarif(report: Report, base: Base) -> str:
         },
         "columnKind": "unicodeCodePoints",
         "automationDetails": {"id": f"grader/{printable(report.rubric.id)}/"},
-        "results": [_result(each, rules.index(each.rule), report, base) for each in found[:_MOST]],
+        "results": [_result(each, rules.index(each.rule)) for each in found[:_MOST]],
         "properties": _properties(report, len(found)),
     }
     return to_json({"$schema": _SCHEMA, "version": "2.1.0", "runs": [run]})
@@ -42,35 +43,35 @@ def _rule(name: str, report: Report) -> dict[str, Any]:
     """A criterion, or a kind of problem. GitHub wants each of the texts, and none of them empty."""
     for criterion in report.rubric.criteria:
         if criterion.id == name:
-            title = printable(criterion.title)
+            title, command = printable(criterion.title), explain_command(name, report)
             fact = printable(f"Passes when: {criterion.title}. {criterion.check.fact}")
-            return _described(name, title, fact, printable(criterion.feedback) or fact, "error")
+            return _described(name, title, fact, printable(criterion.feedback) or fact, "error", command)
     for kind in EVERY_KIND:
         if kind.code == name:
             explanation = " ".join(kind.explanation.split())
-            return _described(name, kind.title, explanation, explanation, kind.severity)
-    return _described(name, name, name, name, "warning")
+            return _described(name, kind.title, explanation, explanation, kind.severity, f"grader explain {name}")
+    return _described(name, name, name, name, "warning", f"grader explain {name}")
 
 
-def _described(name: str, title: str, text: str, advice: str, level: str) -> dict[str, Any]:
+def _described(name: str, title: str, text: str, advice: str, level: str, command: str) -> dict[str, Any]:
     return {
         "id": name,
         "shortDescription": {"text": title},
         "fullDescription": {"text": text},
-        "help": {"text": f"{advice}\n\n`grader explain {name}` says more."},
+        "help": {"text": f"{advice}\n\n`{command}` says more."},
         "defaultConfiguration": {"level": level},
         "properties": {"tags": ["grading"]},
     }
 
 
-def _result(finding: Finding, index: int, report: Report, base: Base) -> dict[str, Any]:
+def _result(finding: Finding, index: int) -> dict[str, Any]:
     cost = {"properties": {"points": exact(finding.lost)}} if finding.lost else {}
     return {
         "ruleId": finding.rule,
         "ruleIndex": index,
         "level": finding.level,
         "message": {"text": _no_links(finding.text)},
-        "locations": [{"physicalLocation": _physical(finding.place or whole(report, base))}],
+        "locations": [{"physicalLocation": _physical(finding.place or finding.whole)}],
         "partialFingerprints": {"primaryLocationLineHash": finding.fingerprint},
         **cost,
     }

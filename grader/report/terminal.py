@@ -82,14 +82,8 @@ def _show_head(report: Report, console: Console) -> None:
     for line, line_style in (*lines, *((note, "cyan") for note in notes(report))):
         if line:
             wrapped(console, Text(line, style=line_style), 0)
-    _show_lines(asides(report), console)
-
-
-def _show_lines(lines: list[str], console: Console) -> None:
-    for line in lines[:_MOST_LISTED]:
+    for line in asides(report):
         wrapped(console, Text(line, style="dim"), 0)
-    if len(lines) > _MOST_LISTED:
-        wrapped(console, Text(f"... and {len(lines) - _MOST_LISTED} more", style="dim"), 0)
 
 
 def _show_groups(results: tuple[Result, ...], title: str, whole: str | None, page: _Page) -> None:

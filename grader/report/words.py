@@ -5,6 +5,7 @@ from decimal import Decimal
 from itertools import groupby
 from typing import NamedTuple
 
+from grader.checks.handed_in import JUDGED_BY_A_PERSON
 from grader.grading.report import Exhibits, Report, Result
 from grader.report.points import points_words, so_many_points
 from grader.report.text import printable
@@ -16,6 +17,7 @@ _VERDICTS = {
     "degraded": "ROS 2 loads the file, but drops some of it",
     "rejected": "ROS 2 rejects the file",
 }
+_MOST_LISTED = 12
 _STATUSES = ("passed", "failed", "skipped", "pending", "errored", "marked by hand")
 
 
@@ -85,9 +87,16 @@ def notes(report: Report) -> list[str]:
 
 
 def asides(report: Report) -> list[str]:
-    """What might have been graded and was not, and what was not read."""
-    passed_over = [f"Passed over {each.path}: {each.because}" for each in report.submission.passed_over]
-    return [printable(each) for each in (*passed_over, *(f"Left out: {each}" for each in report.submission.left_out))]
+    """What might have been graded and was not, and what was not read: of many the first, and how many more there are."""
+    every = [f"Passed over {each.path}: {each.because}" for each in report.submission.passed_over]
+    every += [f"Left out: {each}" for each in report.submission.left_out]
+    more = [f"... and {len(every) - _MOST_LISTED} more"] if len(every) > _MOST_LISTED else []
+    return [printable(each) for each in (*every[:_MOST_LISTED], *more)]
+
+
+def undecided(report: Report) -> list[Result]:
+    """Criteria that wait for a person though a program decides them as a rule: what they ask of could not be read."""
+    return [each for each in report.results if each.is_open and each.criterion.check.function not in JUDGED_BY_A_PERSON]
 
 
 def told(result: Result, report: Report) -> Told:
@@ -166,6 +175,14 @@ def advice(report: Report) -> str:
     first = next((each.criterion.id for each in report.results if each.outcome.status == "failed"), None)
     if first is None:
         return ""
-    rubric = "" if report.rubric.is_shipped else f" --rubric {printable(report.rubric.path.name)}"
     whole = ", `grader inspect` shows the whole robot" if report.submission.has_urdf else ""
-    return f"`grader explain {first}{rubric}` says how it is decided{whole}."
+    return f"`{explain_command(first, report)}` says how it is decided{whole}."
+
+
+def explain_command(name: str, report: Report) -> str:
+    """The command that explains a criterion. Of a rubric's path no more is told than where it stands below the current folder."""
+    path = report.rubric.path
+    rubric = (
+        "" if report.rubric.is_shipped else f" --rubric {printable(path.name if path.is_absolute() else str(path))}"
+    )
+    return f"grader explain {name}{rubric}"

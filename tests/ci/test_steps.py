@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.ci.conftest import repository
+from tests.ci.conftest import git, repository
 from tests.ci.runner import Done, Runner, composite, load
 
 ROOT = Path(__file__).parent.parent.parent
@@ -100,10 +100,13 @@ def test_a_red_check(job: Job, tmp_path: Path) -> None:
 
 def test_inputs(job: Job) -> None:
     """Threshold, parts, path and rubric are those that are given."""
-    assert job.grade(fail_under="95").code == 1
-    assert job.grade(fail_under="90").code == 0
-    done = job.grade(part="task1 questions", path=".")
+    done = job.grade(part="task1\nquestions", path=".")
     assert (done.code, job.output("max-score")) == (0, "78")
+    [setup] = (job.runner.workspace).rglob("setup.py")
+    setup.write_text(setup.read_text(encoding="utf-8").replace("import os\n", ""), encoding="utf-8")
+    assert job.grade().code == 1
+    assert job.grade(fail_under="90%").code == 1
+    assert job.grade(fail_under="89").code == 0
     assert job.grade(rubric="no-such-lab").code == 2
 
 
@@ -154,7 +157,7 @@ def test_the_student_workflow(tmp_path: Path, temp: Path) -> None:
     kept: list[str] = []
 
     def upload(runner: Runner, given: Mapping[str, str]) -> Done:
-        kept.extend(sorted(path.name for path in Path(given["path"]).iterdir()))
+        kept.extend(sorted(path.name for path in map(Path, given["path"].split()) if path.is_file()))
         return Done(0, "", "")
 
     for sample, code in (("reference", 0), ("missing-import-os", 1)):
@@ -166,7 +169,7 @@ def test_the_student_workflow(tmp_path: Path, temp: Path) -> None:
             "actions/upload-artifact@v6": upload,
         }
         assert runner.job(workflow["jobs"]["grade"]["steps"]) == code, runner.done
-    assert kept == ["junit.xml", "report.json", "report.md", "report.sarif"] * 2
+    assert kept == ["junit.xml", "report.md", "report.sarif"] * 2
 
 
 def test_a_version_is_taken_from_the_repository(tmp_path: Path, published: Path) -> None:
@@ -192,11 +195,13 @@ def test_the_class_workflow(tmp_path: Path, published: Path) -> None:
     for name, sample in (("lab6-ada", "reference"), ("lab6-grace", "missing-import-os"), ("other", "reference")):
         shutil.copytree(ROOT / "submissions" / sample, host / name)
         repository(host / name)
+    (host / "lab6-none").mkdir()
+    git(host / "lab6-none", "init", "--quiet")
     bin_ = tmp_path / "bin"
     bin_.mkdir()
     (bin_ / "gh").write_text(
         "#!/usr/bin/env bash\n"
-        f'if [ "$2" = list ]; then ls "{host}"; echo lab6-gone; exit; fi\n'
+        f'if [ "$2" = list ]; then ls "{host}"; echo lab6-gone; exit; fi\n'  # without templates, as --jq says
         f'git clone --quiet "{host}/${{3#*/}}" "$4" "${{@:6}}"\n',
         encoding="utf-8",
     )
@@ -208,16 +213,22 @@ def test_the_class_workflow(tmp_path: Path, published: Path) -> None:
     (runner.workspace / "roster.csv").write_text(
         "login,name\nada,Ada L\ngrace,Grace H\nalan,Alan T\n", encoding="utf-8"
     )
-    runner.variables = {"PATH": f"{bin_}{os.pathsep}{os.environ['PATH']}", **instead_of_github(published)}
+    runner.variables = {"PATH": f"{bin_}{os.pathsep}{os.environ['PATH']}"}
     runner.contexts = {"secrets.CLASS_TOKEN": "none"}
-    runner.actions = dict.fromkeys(
-        ("actions/checkout@v6", "actions/setup-python@v6", "actions/upload-artifact@v6"), nothing
-    )
+
+    def checkout(runner: Runner, given: Mapping[str, str]) -> Done:
+        if "repository" in given:
+            git(runner.workspace, "clone", "--quiet", str(published / given["repository"]), given["path"])
+        return Done(0, "", "")
+
+    runner.actions = dict.fromkeys(("actions/setup-python@v6", "actions/upload-artifact@v6"), nothing)
+    runner.actions["actions/checkout@v6"] = checkout
     assert runner.job(workflow["jobs"]["grade"]["steps"], workflow["env"]) == 0, runner.done
     said = "".join(each.stdout for _, each in runner.done)
-    assert "::warning title=lab6-gone::" in said
+    assert "::warning title=lab6-gone::This repository could not be fetched." in said
+    assert "::warning title=lab6-none::This repository is empty." in said
     grades = (runner.temp / "grades.csv").read_text(encoding="utf-8")
-    assert len(grades.splitlines()) == 4
+    assert len(grades.splitlines()) == 5  # a header, the roster, and the empty one
     assert {path.name for path in (runner.temp / "reports").iterdir()} == {"ada.md", "grace.md"}
 
 

@@ -252,7 +252,7 @@ def documents(draw: st.DrawFn) -> tuple[str, dict[Path, int]]:
 
     def key() -> tuple[str, str]:
         """A new name, and one of the ways to write it."""
-        name = draw(_bare) + str(next(names))
+        name = f"{next(names)}x{draw(_bare)}"  # the number and its x are no other name's
         return draw(st.sampled_from([name, f'"{name}"', f"'{name}'", f' "{name}" '])), name
 
     def keys(table: Path) -> None:

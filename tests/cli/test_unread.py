@@ -1,0 +1,129 @@
+"""What cannot be read is no way to a green check, and is told where findings are told."""
+
+import json
+import shutil
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from tests.golden.cases import ROOT, run
+
+REFERENCE = ROOT / "submissions" / "reference"
+URDF = ROOT / "rubrics" / "lab6" / "my_robot" / "urdf" / "my_robot.urdf"
+
+
+def graded(path: Path, *options: str) -> tuple[int, str]:
+    """The exit code of grading a path, and its annotations."""
+    done = run(("grade", str(path), "--format", "github", *options))
+    return done.returncode, done.stdout.decode()
+
+
+@pytest.mark.parametrize("name", ["lab6.zip", "notes.tar.gz"])
+def test_an_archive_that_does_not_open(tmp_path: Path, name: str) -> None:
+    """Alone or beside a URDF: what may be in it is not decided, and the check is red."""
+    (tmp_path / name).write_bytes(b"no archive")
+    code, told = graded(tmp_path)
+    assert code == 1
+    assert f"::warning title=urdf-loads::No URDF was found, but {name} could not be opened" in told
+    shutil.copy(URDF, tmp_path)
+    code, told = graded(tmp_path)
+    assert code == 1
+    assert f"::warning title=package-found::No package was found, but {name} could not be opened" in told
+    assert "Not decided (20 points): package-found, " in told
+
+
+def test_a_urdf_that_is_too_large(tmp_path: Path) -> None:
+    """The rest is graded, Task 1 waits for a person, and the check is red until somebody has looked."""
+    shutil.copytree(REFERENCE, tmp_path / "work")
+    [urdf] = (tmp_path / "work").rglob("*.urdf")
+    urdf.write_bytes(urdf.read_bytes() + b"<!-- " + b"x" * 1_100_000 + b" -->")
+    code, told = graded(tmp_path / "work")
+    assert code == 1
+    assert "::warning title=urdf-loads::" in told or "::warning file=" in told
+    assert "Not decided (70 points)" in told
+
+
+def test_what_a_person_marks_anyway_is_green() -> None:
+    """Pictures and written answers wait for a person in every hand-in."""
+    assert graded(REFERENCE) == (0, graded(REFERENCE)[1])
+    assert "::warning" not in graded(REFERENCE)[1]
+
+
+def test_a_threshold_is_another_way_to_green(tmp_path: Path) -> None:
+    """All that can be decided passed, or the score is enough: what waits for a person counts against nobody."""
+    assert graded(REFERENCE, "--fail-under", "95%")[0] == 0
+    (tmp_path / "lab6.zip").write_bytes(b"no archive")
+    shutil.copy(URDF, tmp_path)
+    assert graded(tmp_path, "--fail-under", "70")[0] == 0
+    assert graded(tmp_path, "--fail-under", "70.5")[0] == 1
+    for odd in ("1_0", "\uff14\uff12", "101%", "60 %", "-1", "nan", "%"):
+        assert run(("grade", str(REFERENCE), "--fail-under", odd)).returncode == 2, odd
+
+
+def test_findings_in_an_archive_of_a_folder_are_on_the_archive(tmp_path: Path) -> None:
+    """The repository has no file inside it; the words say where it is."""
+    with zipfile.ZipFile(tmp_path / "lab6.zip", "w") as archive:
+        archive.write(ROOT / "submissions" / "several-mistakes" / "my_robot.urdf", "my_robot.urdf")
+    (tmp_path / ".git").mkdir()
+    _, told = graded(tmp_path)
+    assert "::error file=lab6.zip,title=base-green (6 points lost)::" in told
+    assert "In lab6.zip/my_robot.urdf:6:14." in told
+    done = run(("grade", str(tmp_path), "--format", "codeclimate"))
+    assert {each["location"]["path"] for each in json.loads(done.stdout)} <= {"lab6.zip", "lab6.zip/my_robot.urdf"}
+
+
+def test_what_causes_most_is_told_first() -> None:
+    """A criterion counts for those that are skipped because of it."""
+    _, told = graded(ROOT / "submissions" / "several-mistakes")
+    first = told.splitlines()[1]
+    assert "title=package-found (20 points lost)::" in first
+    assert "Skipped because of it: 11 more, 19 points." in first
+
+
+def test_many_files_push_nothing_out(tmp_path: Path) -> None:
+    """Of what was passed over the first dozen is told in a report that people read, and all of it in JSON."""
+    shutil.copytree(REFERENCE, tmp_path / "work")
+    for number in range(40):
+        (tmp_path / "work" / f"robot_{number}.urdf").write_text("<robot name='r'/>", encoding="utf-8")
+    done = run(("grade", str(tmp_path / "work"), "--format", "markdown"))
+    assert done.stdout.decode().count("Passed over") == 12
+    assert "... and 28 more" in done.stdout.decode()
+    assert "sha256" in done.stdout.decode().partition("Passed over")[0]
+    done = run(("grade", str(tmp_path / "work"), "--format", "json"))
+    assert len(json.loads(done.stdout)["submission"]["passed_over"]) == 40
+
+
+def test_what_is_graded_is_not_written_over(tmp_path: Path) -> None:
+    """Neither the URDF, alone or in its folder, nor the rubric; and nothing else is written then."""
+    shutil.copy(URDF, tmp_path / "my_robot.urdf")
+    shutil.copy(ROOT / "rubrics" / "lab6.toml", tmp_path / "lab.toml")
+    for place, over in (
+        (tmp_path / "my_robot.urdf", "my_robot.urdf"),
+        (tmp_path, "my_robot.urdf"),
+        (tmp_path, "lab.toml"),
+    ):
+        before = (tmp_path / over).read_bytes()
+        options = ("--rubric", str(tmp_path / "lab.toml"), "--save", f"json={tmp_path / 'a.json'}")
+        done = run(("grade", str(place), *options, "--save", f"markdown={tmp_path / over}"))
+        assert done.returncode == 2
+        assert b"which is graded: name another file" in done.stderr
+        assert (tmp_path / over).read_bytes() == before
+        assert not (tmp_path / "a.json").exists()
+
+
+def test_a_report_may_be_saved_to_standard_output(tmp_path: Path) -> None:
+    """Beside the one that is printed, in a pipe and in a file."""
+    arguments = (
+        "grade",
+        str(URDF),
+        "--format",
+        "codeclimate",
+        "--save",
+        "json=/dev/stdout",
+        "--save",
+        "junit=/dev/null",
+    )
+    text = run(arguments).stdout.decode()
+    assert text.startswith('{\n "schema": "grader/report/v1"')
+    assert text.endswith("}\n[]\n")
