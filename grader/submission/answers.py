@@ -82,7 +82,12 @@ def _documents(tree: Tree, files: Sequence[str], unread: list[str]) -> Iterator[
             unread.append(str(error))
             continue
         if not _OTHER.match(text):
-            yield file, text.splitlines()
+            yield file, _lines(text)
+
+
+def _lines(text: str) -> list[str]:
+    """Lines as git and editors count them: `splitlines` also breaks at form feeds and separators of Unicode."""
+    return text.replace("\r\n", "\n").replace("\r", "\n").removesuffix("\n").split("\n")
 
 
 def _text(file: File) -> str:

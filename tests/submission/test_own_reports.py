@@ -1,4 +1,4 @@
-"""Reports that were saved beside the lab are no part of it."""
+"""Reports that were saved beside the lab are no part of it, and lines of answers are those that editors count."""
 
 import shutil
 from pathlib import Path
@@ -21,3 +21,16 @@ def test_a_report_is_no_answer(tmp_path: Path, kind: Format) -> None:
     after = grade(LAB6, opened(work))
     assert [each.outcome for each in after.results] == [each.outcome for each in before.results]
     assert after.problems == before.problems
+
+
+@pytest.mark.parametrize("odd", ["\f", "\x85", "\u2028", "\v", "\x1c"])
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_an_answer_is_in_the_line_that_an_editor_shows(tmp_path: Path, odd: str, end: str) -> None:
+    """Only line ends begin a line, whatever else Unicode takes for a break."""
+    text = end.join(["# Lab 6", f"some{odd}thing", "", "## Task 1 step 15", "The tree has two roots.", ""])
+    (tmp_path / "answers.md").write_bytes(text.encode())
+    found = [
+        each.outcome for each in grade(LAB6, opened(tmp_path)).results if each.criterion.id == "answer-floating-link"
+    ]
+    assert found[0].location is not None
+    assert (found[0].location.line, "two roots" in str(found[0].measured)) == (4, True)
