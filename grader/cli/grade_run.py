@@ -79,7 +79,7 @@ def _split_save(text: str) -> tuple[Format, Path]:
     kind, equals, file = text.partition("=")
     if kind not in list(Format) or not equals or file in ("", "-"):
         raise GraderError(f"--save takes FORMAT=FILE with one of the formats {', '.join(Format)}, not {text!r}")
-    return Format(kind), Path(file).expanduser() if file.startswith("~/") else Path(file)  # no shell does it behind `=`
+    return Format(kind), Path(os.path.expanduser(file))  # noqa: PTH111  no shell does it behind `=`; this never raises
 
 
 def grade_once(wanted: Wanted) -> tuple["Report", int]:

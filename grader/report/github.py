@@ -10,7 +10,7 @@ from decimal import Decimal
 from grader.grading.report import Report
 from grader.report.findings import Finding, Level, findings
 from grader.report.places import Base, Place
-from grader.report.plain_text import core, headline, provenance
+from grader.report.plain_text import beside, core, provenance
 from grader.report.points import so_many_points
 from grader.report.text import printable
 from grader.report.words import score_words
@@ -50,7 +50,7 @@ def _cost(lost: Decimal) -> str:
 def _whole(report: Report) -> str:
     """What there is to say of the submission as a whole, and what nobody has decided yet."""
     waiting = [each.criterion.id for each in report.results if each.is_open]
-    lines = [*filter(None, core(report)), provenance(report)]  # first, because the rest may be cut off
+    lines = [*core(report), provenance(report)]  # first, because the rest may be cut off
     if waiting:
         lines.append(f"A person decides: {', '.join(waiting)}")
     skipped: dict[str, list[str]] = {}
@@ -58,7 +58,7 @@ def _whole(report: Report) -> str:
         if each.because is not None and each.ruling is None:
             skipped.setdefault(each.because, []).append(each.criterion.id)
     lines += [f"Skipped, because {because} failed: {', '.join(names)}" for because, names in skipped.items()]
-    return "\n".join((*lines, *(line for line in headline(report) if line not in lines)))
+    return "\n".join((*lines, *beside(report)))
 
 
 def command(name: str, place: Place | None, title: str, text: str) -> str:

@@ -14,14 +14,18 @@ _ROOM = 120  # characters of a quoted line
 
 def core(report: Report) -> list[str]:
     """What is said first: what ROS 2 makes of the URDF, the package, and what waits for a person."""
-    return [summary(report), package_words(report), pending_words(report)]
+    return [*filter(None, (summary(report), package_words(report), pending_words(report)))]
+
+
+def beside(report: Report) -> list[str]:
+    """What else there is to say of the submission as a whole: how it was read, what was passed over, and its evidence."""
+    shown = [f"Evidence, {part}: {words}" for part, lines in evidence(report) for words, _ in lines]
+    return [*notes(report), *asides(report), *shown]
 
 
 def headline(report: Report) -> list[str]:
-    """What is said of the submission as a whole, beside its score."""
-    said = [*core(report), *notes(report), *asides(report)]
-    shown = [f"Evidence, {part}: {words}" for part, lines in evidence(report) for words, _ in lines]
-    return [*filter(None, said), *shown]
+    """All that is said of the submission as a whole, beside its score."""
+    return core(report) + beside(report)
 
 
 def criterion_lines(result: Result, report: Report) -> list[str]:
