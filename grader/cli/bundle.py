@@ -21,7 +21,7 @@ class Platform(StrEnum):
 
 
 def bundle(
-    platform: Annotated[Platform, typer.Argument(metavar="gradescope", help="Where the bundle is used.")],
+    platform: Annotated[Platform, typer.Argument(metavar="PLATFORM", help="Where the bundle is used: gradescope.")],
     output: Annotated[Path, typer.Argument(metavar="OUT.zip", help="The file that is written.")],
     rubric: RubricOption = DEFAULT_RUBRIC,
 ) -> int:
