@@ -8,7 +8,7 @@ class Student:
     """A student or a team. `key` names them in the gradebook, and is unique there; the rest is empty where it is not known.
 
     `login`, `sis` (the number that the university gives), `canvas` (Canvas' user id) and `moodle` (Moodle's participant id) are what
-    rosters and LMS files know them by.
+    rosters and LMS files know them by. `team` is the team folder that a submission lies in, in the teams layout; it is not kept.
     """
 
     key: str
@@ -18,6 +18,7 @@ class Student:
     sis: str = ""
     canvas: str = ""
     moodle: str = ""
+    team: str = ""
 
 
 @dataclass(frozen=True, slots=True)

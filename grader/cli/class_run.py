@@ -120,8 +120,8 @@ def _run(
 def _tell(intake: "Intake") -> None:
     """Say how the class was taken in, and what was left out."""
     complain(f"{len(intake)} hand-in{'' if len(intake) == 1 else 's'}, laid out as {intake.layout}")
-    strangers = [f"{key} is not on the roster" for key in intake.strangers]
-    for lines in (intake.notes, strangers, [f"left out: {line}" for line in intake.left_out]):
+    unmatched = [f"{key} is not on the roster" for key in intake.unmatched]
+    for lines in (intake.notes, unmatched, [f"left out: {line}" for line in intake.left_out]):
         _tell_lines(lines)
 
 

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.intake.names import canvas_name
 from grader.classroom.intake.roster import Entry, Roster
 from grader.classroom.intake.taking import take_in
+from grader.classroom.matching import canvas_name
 from grader.classroom.students import HandIn, Student
 from grader.errors import InputError
 from tests.classroom.class_folders import lay_out, pack, taken
@@ -108,9 +108,9 @@ def test_the_roster_knows_numbers_and_sortable_names(tmp_path: Path) -> None:
     intake = take_in(tmp_path, Roster(Entry(each) for each in students))
     assert list(taken(intake)) == ["a", "ashal_5", "b", "c", "leekim_4"]
     assert [each.student.canvas for each in intake.hand_ins()] == ["1", "5", "2", "3", "4"]
-    assert intake.strangers == ("ashal_5", "leekim_4")
+    assert intake.unmatched == ("ashal_5", "leekim_4")
     assert intake.notes == (
-        "ashal_5 has the name of f, but another number: it counts as nobody's there",
+        "ashal_5 has the name of f, but another number: left unassigned",
         "leekim_4 could be of several in the roster: it counts as nobody's there",
     )
 

@@ -20,18 +20,18 @@ TEAM = (
 
 
 def test_students_of_teams(tmp_path: Path) -> None:
-    """Each student's folder is a hand-in; a name that two teams have gets its team's in front; other teams stay whole."""
+    """Each student's folder is a hand-in; its key has the team's name in front; other teams stay whole."""
     files = (*TEAM, "blue/lab_06/Ash/lab/a.urdf", "blue/lab_06/Cedar/lab/a.urdf", "gold/my_robot/package.xml")
     for place in (lay_out(tmp_path / "class", *files), pack(tmp_path / "class.zip", files)):
         intake = take_in(place)
         assert (intake.layout, taken(intake)) == (
             "teams",
             {
-                "Birch": ("red/Lab6/Birch",),
-                "Cedar": ("blue/lab_06/Cedar",),
-                "blue-Ash": ("blue/lab_06/Ash",),
+                "blue/Ash": ("blue/lab_06/Ash",),
+                "blue/Cedar": ("blue/lab_06/Cedar",),
                 "gold": ("gold",),
-                "red-Ash": ("red/Lab6/Ash",),
+                "red/Ash": ("red/Lab6/Ash",),
+                "red/Birch": ("red/Lab6/Birch",),
             },
         )
         assert intake.left_out == ("red/Lab6/README.md is not a folder, an archive or a URDF",)
@@ -58,19 +58,44 @@ def test_what_may_be_one_submission_stays_one(tmp_path: Path, files: tuple[str, 
 
 
 def test_a_roster_makes_students_sure(tmp_path: Path) -> None:
-    """Names that stand in the roster are students' even where nothing is in their folders; surnames count there."""
+    """Names that stand in the roster are students' even where nothing is in their folders; surnames count in their team."""
     students = [Student("1", "Ann Ash"), Student("2", "Birch, Bea"), Student("3", "Cal Cedar")]
-    roster = Roster(Entry(each) for each in students)
+    roster = Roster(Entry(each, "Red") for each in students)
     intake = take_in(lay_out(tmp_path, "red/Lab6/ash/step.png", "red/Lab6/Birch.zip", "blue/Lab6/src/"), roster)
     assert taken(intake) == {"1": ("red/Lab6/ash",), "2": ("red/Lab6/Birch.zip",), "blue": ("blue",)}
     assert intake.absent == (students[2],)
+
+
+@pytest.mark.parametrize(
+    ("group", "words"), [("blue", "whose group is 'blue'"), ("", "who has no group in the roster")]
+)
+@pytest.mark.parametrize("name", ["ash", "ASH", "Ann Ash", "1"])
+def test_a_team_names_only_its_own_members(tmp_path: Path, name: str, group: str, words: str) -> None:
+    """Whatever a folder in a team is called, it is of nobody whose group is not that team; the student is not affected."""
+    ann = Student("1", "Ann Ash", login="ash")
+    roster = Roster([Entry(ann, group), Entry(Student("2", login="bea"), "red")])
+    files = [f"red/Lab6/{name}/a.urdf", "red/Lab6/bea/a.urdf"]
+    intake = take_in(lay_out(tmp_path / "class", *files), roster, layout="teams")
+    assert taken(intake) == {"2": ("red/Lab6/bea",), f"red/{name}": (f"red/Lab6/{name}",)}
+    assert intake.notes == (f"red/{name} is named like 1, {words}: left unassigned",)
+    assert (intake.absent, intake.contested) == ((ann,), ())
+    if group:
+        intake = take_in(lay_out(tmp_path / "class", "blue/Lab6/ash/a.urdf"), roster, layout="teams")
+        assert taken(intake)["1"] == ("blue/Lab6/ash",)
+
+
+def test_a_team_cannot_submit_for_another_team(tmp_path: Path) -> None:
+    """A folder that is named like another group counts for nobody in it."""
+    roster = Roster([Entry(Student("1", login="ash"), "blue"), Entry(Student("2", login="bea"), "red")])
+    intake = take_in(lay_out(tmp_path, "red/Lab6/blue/a.urdf", "red/Lab6/bea/a.urdf"), roster, layout="teams")
+    assert taken(intake) == {"2": ("red/Lab6/bea",), "red/blue": ("red/Lab6/blue",)}
 
 
 def test_teams_that_are_told(tmp_path: Path) -> None:
     """Told that there are teams, a lab folder's folders are students' unless they are parts of a package."""
     lay_out(tmp_path, "red/Lab6/Ash/step.png", "blue/Lab6/src/a.urdf")
     assert take_in(tmp_path).layout == "folders"
-    assert taken(take_in(tmp_path, layout="teams")) == {"Ash": ("red/Lab6/Ash",), "blue": ("blue",)}
+    assert taken(take_in(tmp_path, layout="teams")) == {"red/Ash": ("red/Lab6/Ash",), "blue": ("blue",)}
 
 
 def test_what_a_labs_folder_is_called() -> None:

@@ -16,7 +16,7 @@ ANN = Student("100", "Ann Ash", login="aash")
 BEA = Student("200", "Bea Birch", login="bbirch")
 CAL = Student("300", "Cal Cedar", login="ccedar")
 DAN = Student("400", "Dan Dale", login="ddale")
-SHARED = "handed in by groups, and counted for each of their members: {}"
+SHARED = "submitted by groups, and counted for each of their members: {}"
 
 
 def roster(red: str = "Team Red", blue: str = "Team Blue") -> Roster:
@@ -32,7 +32,7 @@ def test_each_member_has_what_the_group_has_handed_in(tmp_path: Path, name: str)
         intake = take_in(place, roster())
         assert len(intake) == 3
         assert [(each.student, each.paths) for each in intake.hand_ins()][:2] == [(ANN, (name,)), (CAL, (name,))]
-        assert (intake.strangers, intake.absent) == (tuple(list(taken(intake))[2:]), (BEA, DAN))
+        assert (intake.unmatched, intake.absent) == (tuple(list(taken(intake))[2:]), (BEA, DAN))
         assert intake.notes == (SHARED.format(1),)
 
 
@@ -40,7 +40,7 @@ def test_each_member_has_what_the_group_has_handed_in(tmp_path: Path, name: str)
 def test_only_the_whole_name_counts(tmp_path: Path, name: str) -> None:
     """A group with another name is a stranger, as without groups."""
     intake = take_in(lay_out(tmp_path, f"{name}/my_robot.urdf", "x.zip"), roster())
-    assert sorted(taken(intake)) == sorted(intake.strangers) == sorted([name, "x"])
+    assert sorted(taken(intake)) == sorted(intake.unmatched) == sorted([name, "x"])
     assert len(intake.absent) == 4
     assert not intake.notes
 
@@ -55,20 +55,21 @@ def test_who_has_handed_in_keeps_that(tmp_path: Path) -> None:
         "300": ("ccedar.zip",),
         "team-blue": ("team-blue.zip",),
     }
-    assert intake.strangers == ("team-blue",)
+    assert intake.unmatched == ("team-blue",)
     assert intake.absent == (DAN,)
     assert intake.notes == (
-        "200 has handed in bbirch, which counts for them, and not team-blue of their group",
-        "300 has handed in ccedar, which counts for them, and not team-red of their group",
+        "200 has submitted bbirch, which counts for them, not team-blue of their group",
+        "300 has submitted ccedar, which counts for them, not team-red of their group",
         SHARED.format(1),
     )
 
 
-def test_of_two_of_a_group_the_first_counts(tmp_path: Path) -> None:
-    """By key; the other one is a stranger's."""
+def test_of_two_of_a_group_none_counts(tmp_path: Path) -> None:
+    """Nobody can tell which is the group's: its members are contested."""
     intake = take_in(lay_out(tmp_path, "team_red/", "Team Red/"), roster())
-    assert taken(intake) == {"100": ("Team Red",), "300": ("Team Red",), "team_red": ("team_red",)}
-    assert intake.notes[1] == "team_red is called like a group as well, whose Team Red counts"
+    assert taken(intake) == {"Team Red": ("Team Red",), "team_red": ("team_red",)}
+    assert intake.notes == ("Team Red, team_red are each named like one group: left unassigned",)
+    assert (intake.contested, intake.absent) == ((CAL, ANN), (BEA, DAN))
 
 
 def test_a_student_goes_before_a_group(tmp_path: Path) -> None:
@@ -77,9 +78,9 @@ def test_a_student_goes_before_a_group(tmp_path: Path) -> None:
     assert taken(intake) == {"100": ("aash",)}
     twins = Roster([Entry(Student("1", "Sam"), "sam"), Entry(Student("2", "Sam"), "sam")])
     intake = take_in(tmp_path, twins)
-    assert intake.strangers == ("aash",)
+    assert intake.unmatched == ("aash",)
     intake = take_in(lay_out(tmp_path / "twins", "sam/"), twins)
-    assert (intake.strangers, len(intake.absent)) == (("sam",), 2)
+    assert (intake.unmatched, len(intake.absent), len(intake.contested)) == (("sam",), 0, 2)
 
 
 def test_a_section_is_no_group(tmp_path: Path) -> None:
@@ -88,7 +89,7 @@ def test_a_section_is_no_group(tmp_path: Path) -> None:
     place = lay_out(tmp_path, *files)
     intake = take_in(place, roster("Section 1", "Section 2"))
     assert taken(intake) == {"200": ("Section 2",), "Section 1": ("Section 1",)}
-    assert "Section 1 is called like a group, but holds what several students have handed in" in intake.notes
+    assert "Section 1 is named like a group, but holds submissions of several students" in intake.notes
 
 
 def test_a_group_in_moodle_and_in_a_roster_file(tmp_path: Path) -> None:
@@ -114,7 +115,7 @@ def test_the_order_is_that_of_the_keys(tmp_path: Path) -> None:
         intake = take_in(tmp_path, Roster(entries))
         assert list(taken(intake).items()) == list(wanted.items())
         assert list(intake.hand_ins()) == list(intake.hand_ins())
-        assert (len(intake), intake.strangers, intake.absent) == (101, ("zoe",), ())
+        assert (len(intake), intake.unmatched, intake.absent) == (101, ("zoe",), ())
 
 
 @pytest.mark.parametrize("layout", ["auto", "folders", "canvas", "moodle", "teams"])

@@ -156,7 +156,7 @@ def test_the_roster_knows_numbers_and_names(tmp_path: Path) -> None:
     ]
     intake = take_in(tmp_path, Roster(Entry(each) for each in students))
     assert list(taken(intake)) == ["Ann Ash_14", "a", "b", "e", "max_15"]
-    assert intake.notes == ("Ann Ash_14 has the name of c, but another number: it counts as nobody's there",)
+    assert intake.notes == ("Ann Ash_14 has the name of c, but another number: left unassigned",)
 
 
 NAMES = st.text(

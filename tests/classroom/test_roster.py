@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.intake.names import canvas_name, canvas_names, iso_time, plain_name, surname
+from grader.classroom.intake.names import iso_time
 from grader.classroom.intake.roster import Entry, Match, Roster
 from grader.classroom.intake.roster_file import read_roster
 from grader.classroom.students import Student

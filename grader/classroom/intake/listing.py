@@ -1,4 +1,4 @@
-"""What lies in a class folder: names only. No link that leads out of it is followed."""
+"""What lies in a class folder: names only. No symlink is followed: whose a file is depends on where it really lies."""
 
 import os
 from collections.abc import Iterable
@@ -9,7 +9,7 @@ from grader.errors import InputError
 from grader.submission.files import printable_path, read_start
 
 _SILENT = frozenset({"__MACOSX", "__pycache__", "node_modules", "site-packages", "Thumbs.db", "desktop.ini", "Icon\r"})
-_OUT = "is a link that leads out of the class folder, and was not followed"
+_LINK = "is a symlink, and was not followed"
 _NO_FILE = "is not a regular file"
 
 
@@ -30,9 +30,6 @@ class Listing(Protocol):
     def first(self, folder: str) -> str | None:
         """Some name in a folder; None where it holds nothing or cannot be opened."""
 
-    def is_link(self, path: str) -> bool:
-        """Whether a file that is listed is a link to another one."""
-
     def starts(self, paths: Iterable[str], count: int) -> dict[str, bytes]:
         """The first bytes of some files, of those that can be read."""
 
@@ -47,7 +44,6 @@ class FolderListing:
 
     def __init__(self, top: Path) -> None:
         self._top = os.fspath(top)
-        self._real = os.path.realpath(top).rstrip(os.sep) + os.sep
 
     def children(self, folder: str, most: int | None = None) -> Children:
         """What is in a folder; InputError where it is the top and cannot be opened."""
@@ -77,20 +73,16 @@ class FolderListing:
 
     def _take(self, entry: "os.DirEntry[str]", found: Children) -> None:
         try:
-            if entry.is_symlink() and not os.path.realpath(entry.path).startswith(self._real):
-                found.refused.append((entry.name, _OUT))
+            if entry.is_symlink():
+                found.refused.append((entry.name, _LINK))
             elif entry.is_dir():
                 found.folders.append(entry.name)
             elif entry.is_file():
                 found.files.append(entry.name)
             else:
                 found.refused.append((entry.name, _NO_FILE))
-        except OSError as error:  # such as a link to itself
+        except OSError as error:
             found.refused.append((entry.name, f"cannot be read: {error.strerror}"))
-
-    def is_link(self, path: str) -> bool:
-        """Whether a file is a link to another one in the class folder."""
-        return Path(self._top, path).is_symlink()
 
     def starts(self, paths: Iterable[str], count: int) -> dict[str, bytes]:
         """The first bytes of some files, of those that can be read and are no links."""

@@ -1,8 +1,6 @@
-"""How people and their files are named: in rosters, in an LMS, and by browsers that save a file for the second time."""
+"""What file names and times in a class folder mean: endings, copies that a browser has numbered, dates."""
 
 import re
-import unicodedata
-from collections.abc import Iterator
 from datetime import UTC, datetime
 from functools import lru_cache
 
@@ -14,12 +12,8 @@ ENDINGS = (
 _LAST = frozenset(ENDINGS)
 _BEFORE = {".gz": ".tar", ".bz2": ".tar", ".xz": ".tar", ".xacro": ".urdf"}
 _COPY = re.compile(r"(.+?) ?\((\d{1,4})\)", re.DOTALL)
-_WORD = frozenset({"Lu", "Ll", "Lt", "Lm", "Lo", "Mn", "Mc", "Me", "Nd", "Pc"})
-_SUFFIX = re.compile(r"(sn?r|senior|jn?r|junior|i{2,3}|iv|vi?|esq|esquire)\.?", re.IGNORECASE)
 _ZONE = re.compile(r"\s*(?:UTC|UCT|GMT|Z)$")
 _OFFSET = re.compile(r"\s+(?=[+-][0-9:]+$)")
-_UNWRITTEN = str.maketrans("", "", "&<>\"`|':\\/")
-_MOST_WORDS = 8
 
 
 @lru_cache(maxsize=64)  # each name is asked for several times in a row
@@ -45,60 +39,6 @@ def without_copy(stem: str, ending: str = "") -> tuple[str, int]:
     if ending.lower() in (".gz", ".bz2", ".xz") and plain.lower().endswith(".tar") and len(plain) > len(".tar"):
         plain = plain[: -len(".tar")]
     return plain, int(found[2])
-
-
-def plain_word(word: str) -> str:
-    """A login, number or address for comparison: case does not count, nor how an accent is put together."""
-    return word.casefold() if word.isascii() else unicodedata.normalize("NFC", word).casefold()
-
-
-def plain_name(name: str) -> str:
-    """A full name for comparison: compatible characters, case and spaces made alike, `Doe, Jane` the same as `Jane Doe`.
-
-    Apostrophes and the like do not count: Moodle leaves them out of the names of files (moodlelib.php, PARAM_FILE).
-    """
-    words = name.casefold().replace("_", " ")
-    if not words.isascii():
-        words = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", name).casefold()).replace("_", " ")
-        words = "".join(letter for letter in words if unicodedata.category(letter) != "Cf")  # marks of direction
-    last, comma, first = words.translate(_UNWRITTEN).partition(",")
-    return " ".join(f"{first} {last}".split()) if comma else " ".join(last.split())
-
-
-def plain_group(name: str) -> str:
-    """The name of a group or of its hand-in for comparison: case does not count, nor which of space, `_` and `-` stands between words."""
-    return " ".join(plain_word(name).replace("_", " ").replace("-", " ").split())
-
-
-def is_word(letter: str) -> bool:
-    """Whether a character is one of words to Ruby, in which Canvas is written: a letter, mark, digit or connector."""
-    return (letter.isascii() and letter.isalnum()) or unicodedata.category(letter) in _WORD
-
-
-def canvas_name(sortable: str) -> str:
-    """What Canvas makes of a sortable name in the names of files (canvas-lms, content_zipper.rb), for comparison."""
-    plain = unicodedata.normalize("NFC", re.sub(r"_(\d+)_", r"\1", sortable))
-    return "".join(letter for letter in plain if is_word(letter)).casefold()
-
-
-def canvas_names(name: str) -> Iterator[str]:
-    """What Canvas may call someone in a file's name: it sorts by the last word of a name, or by what its user has set."""
-    if "," in name:
-        yield canvas_name(name)
-        return
-    words = name.split()[:_MOST_WORDS]
-    for index in range(len(words)):
-        yield canvas_name("".join(words[index:] + words[:index]))
-    if len(words) > 2 and _SUFFIX.fullmatch(words[-1]):
-        *given, last, suffix = words
-        yield canvas_name("".join([last, *given, suffix]))
-
-
-def surname(name: str) -> str:
-    """The part of a full name that people are sorted by: what stands before a comma, or the last word."""
-    last, comma, _ = name.partition(",")
-    words = last.split()
-    return plain_name(last) if comma else plain_name(words[-1] if words else "")
 
 
 def iso_time(text: str) -> str:

@@ -1,39 +1,43 @@
-"""Hand-ins and a roster brought together: whose each of them is, whose nobody's, and who has handed in nothing."""
+"""Submissions and a roster brought together: whose each of them is, which are unmatched, and who has submitted nothing."""
 
 from array import array
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
-from grader.classroom.intake.layouts.shelf import Shelf, unique
+from grader.classroom.intake.layouts.shelf import Shelf, place_key
 from grader.classroom.intake.roster import Roster
+from grader.classroom.matching import CERTAIN, Clue, plain_word
 from grader.classroom.students import HandIn, Student
 
 _NOBODY = -1
-_MOST_NOTES = 200
+_MAX_NOTES = 200
 
 
 @dataclass(frozen=True, slots=True)
 class Placement:
-    """The hand-ins in the order of their final keys, and what the roster makes of them.
+    """The submissions in the order of their final keys, and what the roster makes of them.
 
-    `order` has an index into the shelf for each of them; that of a team is there once for each of its members, and in `shared`.
-    `whose` has beside each an index into the roster, or -1; `renamed` the keys of strangers whose own are taken.
+    `order` has an index into the shelf for each of them; a team's submission is there once for each member, and in `shared`.
+    `whose` has beside each an index into the roster, or -1; `renamed` the keys of unmatched submissions that have an odd name.
+    `contested` are students whom several submissions may belong to: none is assigned, and what the gradebook has of them stays.
     """
 
     order: Sequence[int]
     whose: Sequence[int] = ()
     shared: Mapping[int, Sequence[int]] = field(default_factory=dict)
     renamed: Mapping[int, str] = field(default_factory=dict)
-    strangers: tuple[str, ...] = ()
+    unmatched: tuple[str, ...] = ()
     absent: tuple[Student, ...] = ()
+    contested: tuple[Student, ...] = ()
     notes: tuple[str, ...] = ()
 
     def final(self, roster: Roster | None, position: int, hand_in: HandIn) -> HandIn:
-        """The hand-in at this position of the order as it is graded: that of the student in the roster, or of a stranger."""
+        """The submission at this position of the order as it is graded: that of a student in the roster, or an unmatched one."""
         if roster is None:
             return hand_in
         index, owner = self.order[position], self.whose[position]
-        if index in self.shared:  # the names and numbers are the team's, and not its member's
+        if index in self.shared:  # the names and numbers are the team's, not its member's
             hand_in = replace(hand_in, student=roster.entries[owner].student)
         if owner != _NOBODY:
             return roster.complete(owner, hand_in)
@@ -45,30 +49,28 @@ def place(
     shelf: Shelf,
     roster: Roster | None,
     *,
-    surnames: bool = False,
     holds_students: Callable[[str], bool] = lambda _: False,
 ) -> Placement:
-    """Whose each hand-in is.
+    """Whose each submission is.
 
-    Of two that belong to one student the one that was found more surely is theirs, or else the first by key; the other is
-    kept as a stranger's under its own key. One that is of no student, but called like a group, is that of each member who has
-    none of their own, unless its folder `holds_students`: then the group is a section.
+    Of several that may belong to one student, the one that bears the student's own number, key or login counts; without one, none
+    does, and the student is contested. What belongs to no student, but is named like a group, counts for each member who has
+    submitted nothing else, unless its folder `holds_students`: then the group is a section.
     """
     if roster is None:
         return Placement(range(len(shelf)))
-    whose, unmatched, notes = _join(shelf, roster, surnames=surnames)
-    shared = _share(shelf, roster, whose, unmatched, notes, holds_students)
-    taken = {entry.student.key for entry in roster.entries}
+    joined = _join(shelf, roster)
+    whose, notes = joined.whose, joined.notes
+    shared = _share(shelf, roster, joined, holds_students)
+    taken = {plain_word(entry.student.key) for entry in roster.entries}
     renamed: dict[int, str] = {}
-    strangers: list[str] = []
+    unmatched: list[str] = []
     for index, owner in enumerate(whose):
         if owner == _NOBODY and index not in shared:
-            own = shelf.student(index).key
-            key = unique(own, taken)
-            taken.add(key)
-            strangers.append(key)
-            if key != own:
-                renamed[index] = key
+            key = shelf.student(index).key
+            if plain_word(key) in taken:  # it must not be mistaken for the student's own
+                key = renamed[index] = place_key(shelf.place(index))
+            unmatched.append(key)
 
     def final_key(placed: tuple[int, int]) -> str:
         index, owner = placed
@@ -77,82 +79,108 @@ def place(
     placed = [(index, owner) for index, owner in enumerate(whose) if index not in shared]
     placed += [(index, member) for index, members in shared.items() for member in members]
     placed.sort(key=final_key)
-    there = {owner for _, owner in placed}
-    shown = sorted(notes)[:_MOST_NOTES]
+    there = {owner for _, owner in placed} | joined.contested
+    shown = sorted(notes)[:_MAX_NOTES]
     return Placement(
         array("l", (index for index, _ in placed)),
         array("l", (owner for _, owner in placed)),
         shared,
         renamed,
-        tuple(sorted(strangers)),
+        tuple(sorted(unmatched)),
         tuple(entry.student for index, entry in enumerate(roster.entries) if index not in there),
+        tuple(roster.entries[index].student for index in sorted(joined.contested)),
         (*shown, f"and {len(notes) - len(shown)} more") if len(notes) > len(shown) else tuple(shown),
     )
 
 
-def _join(shelf: Shelf, roster: Roster, *, surnames: bool) -> tuple["array[int]", list[int], list[str]]:
-    """Whose each hand-in is by what is said of them; those of which nobody in the roster may be meant; and notes."""
-    whose = array("l", [_NOBODY]) * len(shelf)
-    holders: dict[int, tuple[int, int]] = {}
-    unmatched: list[int] = []
-    notes: list[str] = []
-    several: list[tuple[int, int]] = []
+class _Claim(NamedTuple):
+    """A submission that may belong to a student, and how surely: the least is the surest."""
+
+    clue: Clue
+    is_other_word: bool
+    at: int
+
+    @property
+    def rank(self) -> tuple[Clue, bool]:
+        """How surely it is the student's."""
+        return self.clue, self.is_other_word
+
+
+class _Joined(NamedTuple):
+    """What the names of submissions say: whose each is, which may be a group's, and which students are contested."""
+
+    whose: "array[int]"
+    open: list[int]
+    contested: set[int]
+    notes: list[str]
+
+
+def _join(shelf: Shelf, roster: Roster) -> _Joined:
+    joined = _Joined(array("l", [_NOBODY]) * len(shelf), [], set(), [])
+    claims: dict[int, list[_Claim]] = {}
     for index in range(len(shelf)):
         student = shelf.student(index)
-        match = roster.match(student, surnames=surnames)
-        if match.place is None:
-            if match.doubt:
-                notes.append(f"{student.key} {match.doubt}: it counts as nobody's there")
-            else:
-                unmatched.append(index)
+        match = roster.match(student)
+        if match.place is not None:
+            claims.setdefault(match.place, []).append(_Claim(match.clue, not match.is_key, index))
+        elif match.doubt:
+            joined.notes.append(f"{student.key} {match.doubt}: left unassigned")
+            joined.contested.update(match.several)
+        else:
+            joined.open.append(index)
+    for owner, claimants in claims.items():
+        first, *others = sorted(claimants)
+        key = roster.entries[owner].student.key
+        if others and (first.clue > CERTAIN or others[0].rank == first.rank):
+            names = ", ".join(shelf.student(each.at).key for each in (first, *others))
+            joined.contested.add(owner)
+            joined.notes.append(f"{names} may each be of {key}: left unassigned, and what {key} had before stays")
             continue
-        step, holder = holders.get(match.place, (match.step + 1, index))
-        if match.step < step:
-            holders[match.place] = match.step, index
-        if holder != index:
-            several.append((match.place, index if match.step >= step else holder))
-    for owner, (_, index) in holders.items():
-        whose[index] = owner
-    for owner, index in several:
-        theirs = shelf.student(holders[owner][1]).key
-        name = shelf.student(index).key
-        notes.append(f"{name} seems to be of {roster.entries[owner].student.key} as well, whose {theirs} counts")
-    return whose, unmatched, notes
+        joined.whose[first.at] = owner
+        theirs = shelf.student(first.at).key
+        joined.notes.extend(
+            f"{shelf.student(each.at).key} may be of {key} as well, whose {theirs} counts: left unassigned"
+            for each in others
+        )
+    joined.contested.difference_update(joined.whose)
+    return joined
 
 
 def _share(
     shelf: Shelf,
     roster: Roster,
-    whose: Sequence[int],
-    unmatched: Sequence[int],
-    notes: list[str],
+    joined: _Joined,
     holds_students: Callable[[str], bool],
 ) -> dict[int, list[int]]:
-    """Of each hand-in of a team the members that it counts for: those who have none of their own."""
-    own = {owner: index for index, owner in enumerate(whose) if owner != _NOBODY}
+    """Of each submission of a team the members that it counts for: those who have submitted nothing else."""
+    own = {owner: index for index, owner in enumerate(joined.whose) if owner != _NOBODY}
+    by_group: dict[tuple[int, ...], list[int]] = {}
+    for index in joined.open:
+        if members := roster.members(shelf.student(index)):
+            by_group.setdefault(tuple(members), []).append(index)
     shared: dict[int, list[int]] = {}
-    counts: dict[int, int] = {}  # for each member, the team's hand-in
-    for index in unmatched:
-        team = shelf.student(index)
-        members = roster.members(team)
-        if not members:
-            continue
-        if any(map(holds_students, shelf.hand_in(index).paths)):
-            notes.append(f"{team.key} is called like a group, but holds what several students have handed in")
-            continue
-        first = counts.get(members[0])
-        if first is not None:
-            notes.append(f"{team.key} is called like a group as well, whose {shelf.student(first).key} counts")
-            continue
-        counts |= dict.fromkeys(members, index)
-        without = [member for member in members if member not in own]
-        for member in members:
-            if member in own:
-                theirs = shelf.student(own[member]).key
-                key = roster.entries[member].student.key
-                notes.append(f"{key} has handed in {theirs}, which counts for them, and not {team.key} of their group")
-        if without:
-            shared[index] = without
+    for members, claimants in by_group.items():
+        alone = [index for index in claimants if not any(map(holds_students, shelf.hand_in(index).paths))]
+        keys = {index: shelf.student(index).key for index in claimants}
+        joined.notes.extend(
+            f"{keys[index]} is named like a group, but holds submissions of several students"
+            for index in claimants
+            if index not in alone
+        )
+        without = [member for member in members if member not in own and member not in joined.contested]
+        if len(alone) > 1:
+            names = ", ".join(keys[index] for index in alone)
+            joined.notes.append(f"{names} are each named like one group: left unassigned")
+            joined.contested.update(without)
+        elif alone:
+            joined.notes.extend(
+                f"{roster.entries[member].student.key} has submitted {shelf.student(own[member]).key}, which counts for them,"
+                f" not {keys[alone[0]]} of their group"
+                for member in members
+                if member in own
+            )
+            if without:
+                shared[alone[0]] = without
     if shared:
-        notes.append(f"handed in by groups, and counted for each of their members: {len(shared)}")
+        joined.notes.append(f"submitted by groups, and counted for each of their members: {len(shared)}")
     return shared

@@ -24,9 +24,10 @@ Knows = Callable[[str], bool]
 class Intake:
     """A class's hand-ins. `left_out` says in one line each what in the folder is no submission, and why.
 
-    With a roster, `strangers` are the keys of hand-ins that are of nobody in it (they are graded all the same), `absent` are
-    those who have handed in nothing, and `notes` says where the roster left it open whose a hand-in is. A hand-in that is called
-    like a group of the roster, and like nobody in it, counts once for each member of the group.
+    With a roster, `unmatched` are the keys of submissions that belong to nobody in it (they are graded all the same), `absent`
+    are those who have submitted nothing, `contested` those whom several submissions may belong to, and `notes` says where the
+    roster leaves it open whose a submission is. A submission that is named like a group of the roster, and like nobody in it,
+    counts once for each member of the group.
     """
 
     def __init__(
@@ -34,8 +35,9 @@ class Intake:
     ) -> None:
         self.layout = layout
         self.left_out = left_out.lines()
-        self.strangers = placement.strangers
+        self.unmatched = placement.unmatched
         self.absent: tuple[Student, ...] = placement.absent
+        self.contested: tuple[Student, ...] = placement.contested
         self.notes = (*(roster.notes if roster else ()), *placement.notes)
         self._shelf = shelf
         self._roster = roster
@@ -81,7 +83,7 @@ def take_in(
         example = f": {lines[0]}" if lines else ""
         advice = f" (without --layout {layout} it is found out)" if layout != "auto" else ""
         raise InputError(f"nothing in {printable_path(path)} is a submission{example}{advice}")
-    placement = place(shelf, roster, surnames=chosen == "teams", holds_students=taking.holds_students)
+    placement = place(shelf, roster, holds_students=taking.holds_students)
     return Intake(chosen, shelf, left_out, roster, placement)
 
 
@@ -92,7 +94,7 @@ class _Taking:
         self._listing = listing
         self._top = top
         self._knows: Knows | None = roster.knows if roster else None
-        self._knows_hand_in: Knows | None = roster.knows_hand_in if roster else None
+        self._knows_submission: Knows | None = roster.knows_submission if roster else None
         self._knows_surname: Knows | None = roster.knows_surname if roster else None
         self._assignment = assignment
         self._rubric_id = rubric_id
@@ -127,9 +129,9 @@ class _Taking:
                 )
             case "teams":
                 labs = self._labs(is_told=is_told)
-                return teams.shelve(listing, children, start, left_out, self._rubric_id, self._knows_hand_in, labs)
+                return teams.shelve(listing, children, start, left_out, self._rubric_id, self._knows_submission, labs)
             case _:
-                return folders.shelve(listing, children, start, left_out, self._rubric_id, self._knows_hand_in)
+                return folders.shelve(listing, children, start, left_out, self._rubric_id, self._knows_submission)
 
     def holds_students(self, path: str) -> bool:
         """Whether a folder holds hand-ins of at least two students: then it is a section, and not what a team has handed in."""

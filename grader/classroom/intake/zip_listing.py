@@ -44,7 +44,7 @@ class ZipListing:
                 self._folders[where][step] = "folder"
                 self._folders.setdefault(here, {})
             else:
-                kind = "is a link in an archive, and was not followed" if member.kind == "link" else "file"
+                kind = "is a symlink in an archive, and was not followed" if member.kind == "link" else "file"
                 self._folders[where].setdefault(step, kind)
             where = here
 
@@ -66,11 +66,6 @@ class ZipListing:
     def first(self, folder: str) -> str | None:
         """Some name in a folder of the zip."""
         return next(iter(self._folders.get(folder, ())), None)
-
-    def is_link(self, path: str) -> bool:
-        """False: no link is listed as a file."""
-        del path
-        return False
 
     def starts(self, paths: Iterable[str], count: int) -> dict[str, bytes]:
         """The first bytes of some files, of those that can be read."""

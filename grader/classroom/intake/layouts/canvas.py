@@ -12,7 +12,8 @@ from typing import NamedTuple
 
 from grader.classroom.intake.layouts.shelf import LeftOut, Listed, listed
 from grader.classroom.intake.listing import Children
-from grader.classroom.intake.names import ending_of, is_word
+from grader.classroom.intake.names import ending_of
+from grader.classroom.matching import is_word
 from grader.classroom.students import HandIn, Student
 
 _NAME = re.compile(

@@ -5,13 +5,14 @@ a folder may hold nothing but attempts. Where two names differ in their ending o
 order of `names.ENDINGS`; the other one is left out, and named.
 """
 
+from collections import Counter
 from collections.abc import Callable, Iterable
 from itertools import groupby
 from typing import NamedTuple
 
 from grader.classroom.intake.layouts.attempts import attempts_in, last_copy
 from grader.classroom.intake.layouts.prefix import class_prefix, has_prefix
-from grader.classroom.intake.layouts.shelf import LeftOut, unique
+from grader.classroom.intake.layouts.shelf import LeftOut, place_key
 from grader.classroom.intake.listing import Children, Listing
 from grader.classroom.intake.names import ending_of, without_copy
 from grader.classroom.students import HandIn, Student
@@ -22,12 +23,12 @@ _NO_SUBMISSION = "is not a folder, an archive or a URDF"
 _BUILT = "is a folder of a build"
 
 
-class _Special(NamedTuple):
-    """What is known of a name beyond what it says itself."""
+class _Copy(NamedTuple):
+    """The last of several copies: the name without its number, which attempt it is, and the earlier ones."""
 
-    key: str
-    attempt: int = 1
-    earlier: tuple[str, ...] = ()
+    stem: str
+    attempt: int
+    earlier: tuple[str, ...]
 
 
 class FolderShelf:
@@ -39,7 +40,8 @@ class FolderShelf:
         self._prefix = prefix
         self._folders = folders  # those that have the name of an archive or URDF
         self._names: list[str] = []
-        self._special: dict[str, _Special] = {}
+        self._copies: dict[str, _Copy] = {}
+        self._keys: dict[str, str] = {}  # of names that cannot be keys
 
     def __len__(self) -> int:
         return len(self._names)
@@ -47,40 +49,44 @@ class FolderShelf:
     def student(self, index: int) -> Student:
         """Who has handed in, as the name says."""
         name = self._names[index]
-        key, plain = self._key(name), self._plain(name)
+        key, stem, plain = self._key(name), self._stem(name), self._plain(name)
         return Student(
             key,
-            name=""
-            if plain.isprintable() or not _is_text(plain)
-            else plain,  # as a roster has it: the key is spelt out
-            login=key if self._stem(name) != name.removesuffix(self._ending(name)) else "",
+            name=plain if not plain.isprintable() and _is_text(plain) else "",  # as a roster has it
+            login=stem if key != stem or stem != name.removesuffix(self._ending(name)) else "",
         )
 
     def hand_in(self, index: int) -> HandIn:
         """What was handed in; a folder is looked into for attempts."""
         name = self._names[index]
         path = self._start + name
-        _, attempt, earlier = self._special.get(name) or (None, 1, ())
-        earlier = tuple(self._start + each for each in earlier)
+        copy = self._copies.get(name)
+        attempt = copy.attempt if copy is not None else 1
+        earlier = tuple(self._start + each for each in copy.earlier) if copy is not None else ()
         found = None if self._ending(name) else attempts_in(self._listing, path)
         if found is not None:
             path, attempt, earlier = found.last, found.number, (*earlier, *found.earlier)
         return HandIn(self.student(index), (path,), attempt=attempt, earlier=earlier)
 
+    def place(self, index: int) -> str:
+        """The path of the student's folder or file; of several copies that of the last one."""
+        return self._start + self._names[index]
+
     def fill(self, names: list[str], knows: Callable[[str], bool] | None, left_out: LeftOut) -> None:
         """Put the names on the shelf: one for each student, in the order of their keys."""
-        names.sort(key=self._plain)
-        for plain, group in groupby(names, key=self._plain):
+        names.sort(key=self._shared_by_copies)
+        for _, group in groupby(names, key=self._shared_by_copies):
             same = list(group)
-            if len(same) > 1 or self._stem(same[0]) != plain:
+            plain = self._plain(same[0])
+            if len(same) > 1 or self._own_stem(same[0]) != plain:
                 for stem, copies in self._by_student(plain, same, knows):
                     last, number, earlier = last_copy(copies, self._folders_among(same), left_out, self._start)
                     self._names.append(last)
-                    self._special[last] = _Special(stem, number, earlier)
+                    self._copies[last] = _Copy(stem, number, earlier)
             else:
                 self._names.append(same[0])
         self._settle_keys()
-        if self._special:
+        if self._copies or self._keys:
             self._names.sort(key=self._key)
 
     def _by_student(
@@ -90,27 +96,24 @@ class FolderShelf:
 
         `alice (1)` is alice's where there is an `alice`, or the roster has her: without either it may be a team's own name.
         """
-        numbered = [(without_copy(self._stem(name), self._ending(name))[1], name) for name in names]
+        numbered = [(without_copy(self._own_stem(name), self._ending(name))[1], name) for name in names]
         if any(number == 0 for number, _ in numbered) or (knows is not None and knows(plain)):
             return [(plain, numbered)]
         by_stem: dict[str, list[tuple[int, str]]] = {}
         for number, name in numbered:
-            by_stem.setdefault(self._stem(name), []).append((number, name))
+            by_stem.setdefault(self._own_stem(name), []).append((number, name))
         return by_stem.items()
 
     def _settle_keys(self) -> None:
-        """See to it that keys are printable and differ; only where there is something odd can they fail to."""
-        if not self._special and all(name.isprintable() for name in self._names):
+        """Make keys printable and different; only where there is something odd can they fail to be."""
+        if not self._prefix and not self._copies and all(name.isprintable() for name in self._names):
             return
-        keys = [self._key(name) for name in self._names]
-        taken = {key for key in keys if key.isprintable()}
-        met: set[str] = set()
-        for name, wanted in zip(self._names, keys, strict=True):
-            if wanted in met or not wanted.isprintable():
-                key = unique(printable_path(wanted), taken)
-                taken.add(key)
-                self._special[name] = (self._special.get(name) or _Special(key))._replace(key=key)
-            met.add(wanted)
+        counts = Counter(map(self._key, self._names))
+        self._keys = {
+            name: place_key(self._start + name)
+            for name in self._names
+            if counts[self._key(name)] > 1 or not self._key(name).isprintable()
+        }
 
     def _folders_among(self, names: list[str]) -> Callable[[str], bool]:
         folders = {name for name in names if not self._ending(name)}
@@ -119,17 +122,28 @@ class FolderShelf:
     def _ending(self, name: str) -> str:
         return "" if name in self._folders else ending_of(name)
 
-    def _stem(self, name: str) -> str:
+    def _own_stem(self, name: str) -> str:
+        """A name without its ending and the class's prefix."""
         stem = name[: len(name) - len(ending)] if (ending := self._ending(name)) else name
-        return stem[len(self._prefix) :] if self._prefix and has_prefix(stem, self._prefix) else stem
+        return stem[len(self._prefix) :] if self._is_prefixed(stem) else stem
+
+    def _is_prefixed(self, name: str) -> bool:
+        return bool(self._prefix) and has_prefix(name, self._prefix)
 
     def _plain(self, name: str) -> str:
-        stem = self._stem(name)
+        stem = self._own_stem(name)
         return without_copy(stem, self._ending(name))[0] if stem.endswith(")") else stem
 
+    def _shared_by_copies(self, name: str) -> str:
+        """What copies have in common: `alice` is no copy of `lab6-alice`."""
+        return f"{self._plain(name)}\0{self._prefix}" if self._is_prefixed(name) else self._plain(name)
+
+    def _stem(self, name: str) -> str:
+        copy = self._copies.get(name)
+        return copy.stem if copy is not None else self._own_stem(name)
+
     def _key(self, name: str) -> str:
-        special = self._special.get(name)
-        return special.key if special is not None else self._stem(name)
+        return self._keys.get(name) or self._stem(name)
 
 
 def _is_text(name: str) -> bool:

@@ -93,12 +93,11 @@ def _hand_in(
 
 
 def _lone_file(listing: Listing, folder: str) -> str | None:
-    """The one archive or URDF in a folder that holds nothing else; a link is not taken for one."""
+    """The one archive or URDF in a folder that holds nothing else."""
     children = listing.children(folder, _MOST_FILES)
     if children.folders or children.refused or len(children.files) != 1 or not ending_of(children.files[0]):
         return None
-    path = f"{folder}/{children.files[0]}"
-    return None if listing.is_link(path) else path
+    return f"{folder}/{children.files[0]}"
 
 
 def _side_by_side(listing: Listing, saved: _Saved, start: str, *, is_folder: bool) -> dict[str, str]:

@@ -1,7 +1,10 @@
 """What every layout has to give: hand-ins in a row, and what was left out."""
 
-from collections.abc import Collection, Iterable, Sequence
+import os
+from collections import Counter
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from hashlib import sha256
 from typing import Protocol
 
 from grader.classroom.students import HandIn, Student
@@ -22,6 +25,9 @@ class Shelf(Protocol):
     def hand_in(self, index: int) -> HandIn:
         """What was handed in."""
 
+    def place(self, index: int) -> str:
+        """Where it stands in the class: the path of the student's folder or file."""
+
 
 @dataclass(frozen=True, slots=True)
 class Listed:
@@ -40,26 +46,36 @@ class Listed:
         """What was handed in."""
         return self.hand_ins[index]
 
+    def place(self, index: int) -> str:
+        """The path of the first of its files."""
+        return self.hand_ins[index].paths[0]
+
 
 def listed(hand_ins: Iterable[HandIn]) -> Listed:
-    """A shelf of these hand-ins; keys are made printable, and a second one that is the same gets a number."""
-    taken: set[str] = set()
-    made: list[HandIn] = []
-    for each in sorted(hand_ins, key=lambda each: (each.student.key, each.paths)):
-        key = unique(printable_path(each.student.key), taken)
-        taken.add(key)
-        made.append(each if key == each.student.key else replace(each, student=replace(each.student, key=key)))
+    """A shelf of these hand-ins. A key that is not printable, or that several have, gives way to the key of their places."""
+    given = list(hand_ins)
+    counts = Counter(each.student.key for each in given)
+    keys = [
+        each.student.key
+        if counts[each.student.key] == 1 and each.student.key.isprintable()
+        else place_key(each.paths[0])
+        for each in given
+    ]
+    made = [
+        each if key == each.student.key else replace(each, student=replace(each.student, key=key))
+        for each, key in zip(given, keys, strict=True)
+    ]
     return Listed(sorted(made, key=lambda each: each.student.key))
 
 
-def unique(key: str, taken: Collection[str]) -> str:
-    """A key that nobody has yet: the one wanted, or it with the first free number."""
-    number = 2
-    wanted = key
-    while key in taken:
-        key = f"{wanted}~{number}"
-        number += 1
-    return key
+def place_key(path: str) -> str:
+    """The key of a submission whose own name cannot be its key: its path, which no other submission can have.
+
+    It begins with `./`, as no name does, so no student can take such a key over by naming a folder after it.
+    """
+    if path.isprintable():
+        return f"./{path}"
+    return f"./{printable_path(path)}-{sha256(os.fsencode(path)).hexdigest()}"
 
 
 class LeftOut:

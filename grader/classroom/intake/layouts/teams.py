@@ -5,7 +5,6 @@ folder stay one hand-in each.
 """
 
 import re
-from collections import Counter
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -77,16 +76,17 @@ def shelve(
     rest = children._replace(folders=[name for name in children.folders if name not in teams])
     alone = shelve_folders(listing, rest, start, left_out, rubric_id, knows)
     hand_ins = [alone.hand_in(index) for index in range(len(alone))]
-    by_team: list[tuple[str, HandIn]] = []
     for lab, team in labs.items():
         shelf = shelve_folders(listing, listing.children(lab), f"{lab}/", left_out)
-        by_team += ((team, shelf.hand_in(index)) for index in range(len(shelf)))
-    counts = Counter(each.student.key for each in (*hand_ins, *(each for _, each in by_team)))
-    for team, each in by_team:
-        name = each.student.key
-        key = name if counts[name] == 1 else f"{team}-{name}"
-        hand_ins.append(replace(each, student=replace(each.student, key=key, name=name)))
+        hand_ins += (_of_team(shelf.hand_in(index), team) for index in range(len(shelf)))
     return listed(hand_ins)
+
+
+def _of_team(hand_in: HandIn, team: str) -> HandIn:
+    """A submission in a team's folder: its key has the team in front, so that no other team can take it over."""
+    student = hand_in.student
+    name = student.login or student.key
+    return replace(hand_in, student=replace(student, key=f"{team}/{name}", name=name, login=name, team=team))
 
 
 def is_part(name: str) -> bool:

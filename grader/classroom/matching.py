@@ -1,0 +1,200 @@
+"""Which student is meant: one matcher for class folders, rosters, gradebooks, LMS files and what a person types.
+
+A student is identified by clues. The first kind of clue at which anybody is found decides; where it finds several, or somebody whom
+an LMS knows by another number, nobody is taken. Spelling is compared in one way everywhere (`clues_of` and `claims_of`).
+"""
+
+import re
+import unicodedata
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from enum import IntEnum
+from typing import NamedTuple
+
+from grader.classroom.students import Student
+from grader.submission.files import printable_path
+
+_SUFFIX = re.compile(r"(sn?r|senior|jn?r|junior|i{2,3}|iv|vi?|esq|esquire)\.?", re.IGNORECASE)
+_UNWRITTEN = str.maketrans("", "", "&<>\"`|':\\/")
+_WORD_CATEGORIES = frozenset({"Lu", "Ll", "Lt", "Lm", "Lo", "Mn", "Mc", "Me", "Nd", "Pc"})
+_MAX_WORDS = 8
+
+
+class Clue(IntEnum):
+    """What identifies a student, the most reliable first."""
+
+    CANVAS = 0  # the user id
+    MOODLE = 1  # the participant id
+    WORD = 2  # key, login, SIS id or email address, exactly
+    ANY_CASE = 3  # the same in upper or lower case
+    LOCAL_PART = 4  # of an email address
+    CANVAS_NAME = 5  # a full name as Canvas writes it into file names
+    NAME = 6
+    SURNAME = 7
+
+
+Clues = Mapping[Clue, Collection[str]]
+NUMBERS = (Clue.CANVAS, Clue.MOODLE)
+CERTAIN = Clue.WORD  # a clue of this kind or above is a student's own, exactly as written
+OF_FOLDERS = tuple(clue for clue in Clue if clue is not Clue.SURNAME)  # what a submission's name is compared by
+OF_RECORDS = (*NUMBERS, Clue.WORD, Clue.ANY_CASE, Clue.NAME, Clue.CANVAS_NAME)  # two lists of people
+
+
+class Found(NamedTuple):
+    """Who is meant: the positions of those whom the first matching kind of clue finds.
+
+    `contradicted` has those whom it finds as well, but whom an LMS knows by another number: they are not meant.
+    """
+
+    people: tuple[int, ...]
+    clue: Clue = Clue.SURNAME
+    contradicted: tuple[int, ...] = ()
+
+    @property
+    def only(self) -> int | None:
+        """The one who is meant; None for nobody or several."""
+        return self.people[0] if len(self.people) == 1 else None
+
+
+class People:
+    """A list of people by their clues."""
+
+    def __init__(self, people: Iterable[Clues]) -> None:
+        self.clues = tuple(people)
+        self._tables: dict[Clue, dict[str, int | tuple[int, ...]]] = {clue: {} for clue in Clue}
+        for index, clues in enumerate(self.clues):
+            for clue, values in clues.items():
+                table = self._tables[clue]
+                for value in values:
+                    before = table.get(value)
+                    table[value] = index if before is None else (*_tuple(before), index)
+
+    def find(
+        self, claims: Clues, kinds: Sequence[Clue] = OF_FOLDERS, among: Collection[int] | None = None
+    ) -> Found:
+        """Who has these clues, of everybody or of the positions in `among`."""
+        for clue in kinds:
+            table = self._tables[clue]
+            found = {index for value in claims.get(clue, ()) for index in _tuple(table.get(value, ()))}
+            if among is not None:
+                found.intersection_update(among)
+            if found:
+                against = {index for index in found if _contradict(claims, self.clues[index])}
+                return Found(tuple(sorted(found - against)), clue, tuple(sorted(against)))
+        return Found(())
+
+
+def clues_of(student: Student, aliases: Iterable[str] = ()) -> Clues:
+    """The clues in a record of a student: a row of a roster or LMS file, or a student of the gradebook."""
+    local_part, at, _ = student.email.partition("@")
+    words = _words(student.key, student.login, student.sis, student.email, *aliases)
+    return _present(
+        {
+            Clue.CANVAS: (student.canvas,),
+            Clue.MOODLE: (student.moodle,),
+            Clue.WORD: words,
+            Clue.ANY_CASE: {word.casefold() for word in words},
+            Clue.LOCAL_PART: {plain_word(local_part)} if at else (),
+            Clue.CANVAS_NAME: set(canvas_names(student.name)),
+            Clue.NAME: {plain_name(student.name), plain_name(printable_path(student.name))},
+            Clue.SURNAME: (surname(student.name),),
+        }
+    )
+
+
+def claims_of(student: Student) -> Clues:
+    """The clues in the name of a submission, or in what a person types: a word may be anything that identifies a student."""
+    words = _words(student.key, student.login, student.name if student.team else "")
+    lower = {word.casefold() for word in words}
+    in_canvas = student.key.removesuffix(f"_{student.canvas}") if student.canvas else ""
+    return _present(
+        {
+            Clue.CANVAS: (student.canvas,),
+            Clue.MOODLE: (student.moodle,),
+            Clue.WORD: words,
+            Clue.ANY_CASE: lower,
+            Clue.LOCAL_PART: lower,
+            Clue.CANVAS_NAME: (canvas_name(in_canvas),),
+            Clue.NAME: {plain_name(student.name), plain_name(student.key)},
+            Clue.SURNAME: (plain_name(student.name or student.key),),
+        }
+    )
+
+
+def numbers_of(student: Student) -> Clues:
+    """Only the numbers by which an LMS knows a student."""
+    return _present({Clue.CANVAS: (student.canvas,), Clue.MOODLE: (student.moodle,)})
+
+
+def _present(clues: Mapping[Clue, Collection[str]]) -> Clues:
+    return {clue: kept for clue, values in clues.items() if (kept := {value for value in values if value})}
+
+
+def _words(*words: str) -> set[str]:
+    return {" ".join(_composed(word).split()) for word in words}
+
+
+def _composed(word: str) -> str:
+    return word if word.isascii() else unicodedata.normalize("NFC", word)
+
+
+def _tuple(found: int | tuple[int, ...]) -> tuple[int, ...]:
+    return (found,) if isinstance(found, int) else found
+
+
+def _contradict(left: Clues, right: Clues) -> bool:
+    """Whether two are certainly not the same: an LMS knows them by different numbers."""
+    return any(clue in left and clue in right and set(left[clue]).isdisjoint(right[clue]) for clue in NUMBERS)
+
+
+def plain_word(word: str) -> str:
+    """A login, number or address for comparison: case does not count, nor how an accent is encoded."""
+    return _composed(word).casefold()
+
+
+def plain_name(name: str) -> str:
+    """A full name for comparison: compatible characters, case and spaces made alike, `Doe, Jane` the same as `Jane Doe`.
+
+    Apostrophes and the like do not count: Moodle removes them from the names of files (moodlelib.php, PARAM_FILE).
+    """
+    words = name.casefold().replace("_", " ")
+    if not words.isascii():
+        words = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", name).casefold()).replace("_", " ")
+        words = "".join(letter for letter in words if unicodedata.category(letter) != "Cf")  # direction marks
+    last, comma, first = words.translate(_UNWRITTEN).partition(",")
+    return " ".join(f"{first} {last}".split()) if comma else " ".join(last.split())
+
+
+def plain_group(name: str) -> str:
+    """The name of a group or team for comparison: case does not count, nor whether a space, `_` or `-` separates words."""
+    return " ".join(plain_word(name).replace("_", " ").replace("-", " ").split())
+
+
+def is_word(letter: str) -> bool:
+    """Whether Ruby, in which Canvas is written, counts a character as part of a word: a letter, mark, digit or connector."""
+    return (letter.isascii() and letter.isalnum()) or unicodedata.category(letter) in _WORD_CATEGORIES
+
+
+def canvas_name(sortable: str) -> str:
+    """What Canvas makes of a sortable name in file names (canvas-lms, content_zipper.rb), for comparison."""
+    plain = unicodedata.normalize("NFC", re.sub(r"_(\d+)_", r"\1", sortable))
+    return "".join(letter for letter in plain if is_word(letter)).casefold()
+
+
+def canvas_names(name: str) -> Iterator[str]:
+    """What Canvas may call a student in a file name: it sorts by the last word of a name, or as its user has set."""
+    if "," in name:
+        yield canvas_name(name)
+        return
+    words = name.split()[:_MAX_WORDS]
+    for index in range(len(words)):
+        yield canvas_name("".join(words[index:] + words[:index]))
+    if len(words) > 2 and _SUFFIX.fullmatch(words[-1]):
+        *given, last, suffix = words
+        yield canvas_name("".join([last, *given, suffix]))
+
+
+def surname(name: str) -> str:
+    """The part of a full name that people are sorted by: what precedes a comma, or the last word."""
+    last, comma, _ = name.partition(",")
+    words = last.split()
+    return plain_name(last) if comma else plain_name(words[-1] if words else "")
