@@ -23,8 +23,8 @@ from run import check_urdf, in_turn, once
 
 from grader.classroom.batch import Batch, Progress, Settings
 from grader.classroom.gradebook import Gradebook
+from grader.classroom.intake.taking import take_in
 from grader.classroom.pool import Processes, processors
-from grader.classroom.students import HandIn, Student
 from grader.classroom.work import PRELOAD, Class, Task, grade_all, prepare
 from grader.grading.rubric import load_rubric
 
@@ -213,9 +213,8 @@ def _fresh(bench: Bench, count: int, jobs: int, executor: Executor) -> Callable[
 def grade_class(folder: Path, count: int, jobs: int, executor: Executor, book: Path) -> Progress:
     """Grade a class into a gradebook; every hand-in gets a mark or has been marked before."""
     root, rubric = str(folder), load_rubric("lab6")
-    hand_ins = (HandIn(Student(name.removesuffix(".urdf")), (name,)) for name in names_in(folder))
     with Gradebook(book, create=True) as opened:
-        progress = Batch(opened, rubric, Settings(root, "folders", count, jobs), executor).grade(hand_ins)
+        progress = Batch(opened, rubric, Settings(root, "folders", count, jobs), executor).grade(take_in(folder))
     assert (progress.done, progress.errored, progress.unreadable) == (count, 0, 0), progress
     return progress
 

@@ -164,7 +164,7 @@ def test_the_lists_match_the_class(layout: str, list_name: str, tmp_path: Path) 
     made_up.write_beside(written, MIXED, layout, None, tmp_path / "roster.csv", tmp_path / "lms.csv")
     intake = take_in(folder, read_roster(tmp_path / list_name))
     assert intake.layout == layout
-    assert len(intake.strangers) == 1
+    assert len(intake.unmatched) == 1
     assert len(intake.absent) == sum(not each.paths for each in written)
 
 

@@ -1,15 +1,17 @@
 """Grade a class: what is new or changed is handed out, what comes back goes into the gradebook at once."""
 
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from grader import __version__
+from grader.classroom.belonging import assignments_text, check_belongs
 from grader.classroom.gradebook import Gradebook
 from grader.classroom.identity import Identities
-from grader.classroom.intake.roster import Entry, Roster
+from grader.classroom.intake.roster import Entry, Roster, entry_to_json
+from grader.classroom.intake.taking import Intake
 from grader.classroom.known import Enrolment, Known
 from grader.classroom.opening import fingerprint
 from grader.classroom.queue import Queue
@@ -49,7 +51,7 @@ class Progress:
 
 
 class Settings(NamedTuple):
-    """How a run is done. `root` is the absolute path of the class."""
+    """How a run is done. `root` is the absolute path of the class; `add` has it added to whatever the gradebook holds."""
 
     root: str
     layout: str
@@ -58,6 +60,7 @@ class Settings(NamedTuple):
     force: bool = False
     roster: Roster | None = None
     due: str = ""
+    add: bool = False
 
 
 class Batch:
@@ -101,13 +104,18 @@ class Batch:
         """How far it has come."""
         return self._progress
 
-    def grade(self, hand_ins: Iterable[HandIn], absent: Sequence[Student] = ()) -> Progress:
-        """Grade all hand-ins that are new or changed. `absent` are students of whom there is none."""
-        self._run = self._book.begin(self._settings.root, self._settings.layout, self._rubric, self._settings.due)
+    def grade(self, intake: Intake) -> Progress:
+        """Grade all submissions that are new or changed. Raises InputError for a class that belongs into another gradebook."""
+        settings = self._settings
+        self._identities = Identities(self._book, settings.root, settings.roster, intake.keys)
+        if not settings.add:
+            check_belongs(self._book, intake, self._identities, self._rubric.id)
+        assignment = assignments_text(intake.assignments)
+        self._run = self._book.begin(settings.root, settings.layout, self._rubric, settings.due, assignment)
         self._before = self._book.all_known()
         self._next = next(self._before, None)
         self._has_others = self._next is not None
-        for hand_in in hand_ins:
+        for hand_in in intake.hand_ins():
             known = self._known(hand_in)
             if known is not None and self._is_unchanged(hand_in, known):
                 self._tell(("unchanged",))
@@ -118,12 +126,15 @@ class Batch:
         while len(self._queue):
             self._take(all_in=True)
         self._pass_to(None)
+        contested = {student.key for student in intake.contested}
         with self._book.transaction():
             for known in self._passed:
-                if known.student not in self._renamed:
+                if known.student not in self._renamed and known.key not in contested:
                     self._book.see_gone(known, self._run)
-            for student in absent:
+            for student in (*intake.absent, *intake.contested):
                 self._book.keep_student(student, self._enrolment(student))
+            if settings.roster is not None:
+                self._book.leave_roster({student.key for student in settings.roster.students})
         self._book.finish(self._run)
         return self._progress
 
@@ -136,9 +147,7 @@ class Batch:
 
     def _same_person(self, hand_in: HandIn) -> Known | None:
         """Who has this hand-in under another key, and gets this one now."""
-        if self._identities is None:
-            self._identities = Identities(self._book, self._settings.root)
-        known = self._identities.of(hand_in)
+        known = self._identities.of(hand_in) if self._identities is not None else None
         key = hand_in.student.key
         if known is None or known.student in self._renamed or known.key == key:
             return None
@@ -148,7 +157,7 @@ class Batch:
             )
             return None
         self._renamed.add(known.student)
-        self.notes.append(f"{known.key} is {key} now, with all marks by hand")
+        self.notes.append(f"{known.key} is {key} now, with all manual marks")
         return known
 
     def _known(self, hand_in: HandIn) -> Known | None:
@@ -223,4 +232,4 @@ def _enrolment_of(entry: Entry | None) -> Enrolment:
     if entry is None:
         return Enrolment(0)
     days_late = 0.0 if entry.is_late is False and entry.days_late is None else entry.days_late
-    return Enrolment(1, entry.due, entry.extension_days, days_late)
+    return Enrolment(1, entry.due, entry.extension_days, days_late, entry_to_json(entry))

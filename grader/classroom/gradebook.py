@@ -2,7 +2,7 @@
 
 import sqlite3
 import zlib
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from contextlib import closing, contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
@@ -12,6 +12,7 @@ from grader import __version__
 from grader.classroom.database import PATIENCE, prepare
 from grader.classroom.known import (
     ADD_STUDENT,
+    ALL_STUDENTS,
     CHANGE_STUDENT,
     FIND_STUDENT,
     KNOWN,
@@ -107,17 +108,15 @@ class Gradebook:
 
     # --- what a batch writes -------------------------------------------------------------------------------------------
 
-    def begin(self, source: str, layout: str, rubric: Rubric, due: str = "") -> int:
-        """Begin a run; its number. Raises InputError for another lab's rubric."""
+    def begin(self, source: str, layout: str, rubric: Rubric, due: str = "", assignment: str = "") -> int:
+        """Begin a run; its number."""
         with self.transaction():
-            other = "SELECT rubric.id FROM run JOIN rubric ON rubric.sha256 = run.rubric WHERE rubric.id <> ? LIMIT 1"
-            for (name,) in self.connection.execute(other, (rubric.id,)).fetchall():
-                raise InputError(f"{self._shown} is the gradebook of {name}: name another file for {rubric.id}")
             self._keep_rubric(rubric)
             last_mark = self.connection.execute("SELECT coalesce(max(id), 0) FROM mark").fetchone()[0]
-            row = (_now(), storable(source), layout, rubric.sha256, __version__, last_mark, due)
+            row = (_now(), storable(source), layout, rubric.sha256, __version__, last_mark, due, storable(assignment))
             found = self.connection.execute(
-                "INSERT INTO run (started, source, layout, rubric, version, last_mark, due) VALUES (?, ?, ?, ?, ?, ?, ?)",
+                "INSERT INTO run (started, source, layout, rubric, version, last_mark, due, assignment)"
+                " VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
                 row,
             )
             return int(found.lastrowid or 0)
@@ -193,6 +192,12 @@ class Gradebook:
         row = (known.student, run, known.result, known.place, "", known.is_late, known.submitted, 1)
         self.connection.execute("INSERT INTO seen VALUES (?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING", row)
 
+    def leave_roster(self, keys: Container[str]) -> None:
+        """Note of everybody who was on the roster, and is not in `keys`, that they no longer are."""
+        for identity, key in self.connection.execute("SELECT id, key FROM student WHERE expected = 1").fetchall():
+            if key not in keys:
+                self.connection.execute("UPDATE student SET expected = 0, entry = '' WHERE id = ?", (identity,))
+
     def rename(self, student: int, key: str) -> bool:
         """Give a student another key, with all that there is of them; False where it is that of another who has something."""
         with self.transaction():
@@ -212,6 +217,16 @@ class Gradebook:
         for (due,) in list(self.rows("SELECT due FROM run ORDER BY id DESC LIMIT 1")):
             return str(due)
         return ""
+
+    def roster_entries(self) -> Iterator[str]:
+        """The rows of the roster that was named last, as JSON, in the order of the keys."""
+        for (entry,) in self.rows("SELECT entry FROM student WHERE expected = 1 AND entry <> '' ORDER BY key"):
+            yield str(entry)
+
+    def students(self) -> Iterator[Student]:
+        """Every student, in the order of their keys."""
+        for row in self.rows(ALL_STUDENTS):
+            yield Student(*row)
 
     def runs(self) -> list[Run]:
         """All runs, the oldest first."""

@@ -1,48 +1,54 @@
-"""Who of those in the gradebook is meant by a new key: a roster that comes later, or is left out, names the same people otherwise."""
+"""Who of those in the gradebook is meant by a new key: a roster that comes later, or is corrected, gives people other keys."""
 
-import json
+from collections.abc import Callable, Iterable
+from functools import cached_property
+from json import dumps, loads
 
 from grader.classroom.gradebook import Gradebook
+from grader.classroom.intake.roster import Roster
 from grader.classroom.known import Known
+from grader.classroom.matching import NUMBERS, Clue, Clues, People, clues_of, numbers_of
 from grader.classroom.students import HandIn, Student
 
 
 class Identities:
-    """Those whom a gradebook knew when a run began, by all that is theirs alone."""
+    """Those whom a gradebook knew when a run began. `keys` are those of the class that is graded now.
 
-    def __init__(self, book: Gradebook, root: str) -> None:
-        self._found: dict[tuple[str, str], Known | None] = {}
-        for known in book.all_known():
-            key, _, email, login, sis, canvas, moodle, *_ = known.told
-            self._enter("canvas", canvas, known)
-            self._enter("moodle", moodle, known)
-            for word in {key, email, login, sis}:
-                self._enter("word", str(word).casefold(), known)
-            if known.source == root:
-                self._enter("place", _place(known), known)
+    A student whose key is in the class or on the roster keeps it, and everything with it. Of the others, one who was on a roster is
+    recognised by the numbers of the LMS and by what the roster says, never by what a folder is named; one who never was is
+    recognised by the exact name as well, and by the place of the submission.
+    """
 
-    def _enter(self, kind: str, value: str, known: Known) -> None:
-        if value:
-            self._found[kind, value] = known if (kind, value) not in self._found else None  # of several nobody is meant
+    def __init__(self, book: Gradebook, root: str, roster: Roster | None, keys: Callable[[], Iterable[str]]) -> None:
+        self._book, self._root, self._roster, self._keys = book, root, roster, keys
+
+    @cached_property
+    def _known(self) -> list[Known]:
+        """Those whose key is neither in the class nor on the roster: in most runs nobody asks for them."""
+        kept = set(self._keys()).union(student.key for student in (self._roster.students if self._roster else ()))
+        return [each for each in self._book.all_known() if each.key not in kept]
+
+    @cached_property
+    def _people(self) -> People:
+        return People(_clues(each, self._root) for each in self._known)
+
+    @cached_property
+    def _never_on_roster(self) -> set[int]:
+        return {index for index, each in enumerate(self._known) if not each.is_expected}
 
     def of(self, hand_in: HandIn) -> Known | None:
-        """The one who is surely the same: by the number in the LMS, else by a login or key, else by the place of the hand-in."""
+        """The one who is certainly the same."""
         student = hand_in.student
-        ways = [("canvas", student.canvas), ("moodle", student.moodle)]
-        ways += [("word", word.casefold()) for word in (student.login, student.sis, student.email, student.key) if word]
-        ways.append(("place", json.dumps(hand_in.paths)))
-        for way in ways:
-            known = self._found.get(way) if way[1] else None
-            if known is not None and not _differ(known, student):
-                return known
-        return None
+        entry = self._roster.entry(student.key) if self._roster is not None else None
+        told = clues_of(entry.student, entry.aliases) if entry is not None else {}
+        found = self._people.find({**told, **numbers_of(student)}, (*NUMBERS, Clue.WORD))
+        if not (found.people or found.contradicted) and (self._roster is None or entry is not None):
+            words = clues_of(Student(student.key, login=student.login, canvas=student.canvas, moodle=student.moodle))
+            claims = {**words, Clue.PLACE: (dumps(hand_in.paths),)}
+            found = self._people.find(claims, (*NUMBERS, Clue.WORD, Clue.PLACE), self._never_on_roster)
+        return self._known[found.only] if found.only is not None else None
 
 
-def _place(known: Known) -> str:
-    return json.dumps(json.loads(known.place)[0])
-
-
-def _differ(known: Known, student: Student) -> bool:
-    """Whether two are surely not the same: an LMS knows them by other numbers."""
-    *_, canvas, moodle = known.told[:7]
-    return any(old and new and old != new for old, new in ((canvas, student.canvas), (moodle, student.moodle)))
+def _clues(known: Known, root: str) -> Clues:
+    place = (dumps(loads(known.place)[0]),) if known.source == root else ()
+    return {**clues_of(known.record), Clue.PLACE: place}

@@ -15,10 +15,12 @@ class Enrolment(NamedTuple):
     due: str = ""
     extension: float = 0.0
     days_late: float | None = None
+    entry: str = ""  # the whole row of the roster as JSON, for a run that names none
 
 
 UNKNOWN = Enrolment(None)
 _COLUMNS = (*_STUDENT, *Enrolment._fields)
+ALL_STUDENTS = f"SELECT {', '.join(_STUDENT)} FROM student ORDER BY key"
 FIND_STUDENT = f"SELECT id, {', '.join(_COLUMNS)} FROM student WHERE key = ?"
 ADD_STUDENT = f"INSERT INTO student ({', '.join(_COLUMNS)}) VALUES (?{', ?' * (len(_COLUMNS) - 1)})"
 CHANGE_STUDENT = f"UPDATE student SET {', '.join(f'{name} = ?' for name in _COLUMNS)} WHERE id = ?"
@@ -53,6 +55,16 @@ class Known(NamedTuple):
     def key(self) -> str:
         """The student's key."""
         return str(self.told[0])
+
+    @property
+    def record(self) -> Student:
+        """What is known of the student."""
+        return Student(*self.told[: len(_STUDENT)])
+
+    @property
+    def is_expected(self) -> bool:
+        """Whether the student was on the roster."""
+        return bool(self.told[len(_STUDENT)])
 
     def is_same(self, hand_in: HandIn, enrolment: Enrolment | None) -> bool:
         """Whether nothing new is said of the student and the hand-in, whatever is in it."""

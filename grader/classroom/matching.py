@@ -30,13 +30,16 @@ class Clue(IntEnum):
     CANVAS_NAME = 5  # a full name as Canvas writes it into file names
     NAME = 6
     SURNAME = 7
+    PLACE = 8  # where a submission was before
 
 
 Clues = Mapping[Clue, Collection[str]]
 NUMBERS = (Clue.CANVAS, Clue.MOODLE)
 CERTAIN = Clue.WORD  # a clue of this kind or above is a student's own, exactly as written
-OF_FOLDERS = tuple(clue for clue in Clue if clue is not Clue.SURNAME)  # what a submission's name is compared by
+OF_FOLDERS = tuple(clue for clue in Clue if clue < Clue.SURNAME)  # what a submission's name is compared by
+OF_TEAM_FOLDERS = (*OF_FOLDERS, Clue.SURNAME)
 OF_RECORDS = (*NUMBERS, Clue.WORD, Clue.ANY_CASE, Clue.NAME, Clue.CANVAS_NAME)  # two lists of people
+TYPED = (*NUMBERS, Clue.WORD, Clue.NAME)  # what a person may type, who is then asked to be exact
 
 
 class Found(NamedTuple):
@@ -68,9 +71,7 @@ class People:
                     before = table.get(value)
                     table[value] = index if before is None else (*_tuple(before), index)
 
-    def find(
-        self, claims: Clues, kinds: Sequence[Clue] = OF_FOLDERS, among: Collection[int] | None = None
-    ) -> Found:
+    def find(self, claims: Clues, kinds: Sequence[Clue] = OF_FOLDERS, among: Collection[int] | None = None) -> Found:
         """Who has these clues, of everybody or of the positions in `among`."""
         for clue in kinds:
             table = self._tables[clue]
@@ -81,6 +82,12 @@ class People:
                 against = {index for index in found if _contradict(claims, self.clues[index])}
                 return Found(tuple(sorted(found - against)), clue, tuple(sorted(against)))
         return Found(())
+
+    def named(self, name: str) -> tuple[int, ...]:
+        """Everybody whom a number, key, login, address or full name may mean that a person types: whatever kind of clue it is."""
+        claims = {**claims_of(Student(name, name)), Clue.CANVAS: (name,), Clue.MOODLE: (name,)}
+        found = (self.find({kind: claims.get(kind, ())}, (kind,)) for kind in TYPED)
+        return tuple(sorted({each for some in found for each in some.people}))
 
 
 def clues_of(student: Student, aliases: Iterable[str] = ()) -> Clues:
@@ -105,10 +112,10 @@ def claims_of(student: Student) -> Clues:
     """The clues in the name of a submission, or in what a person types: a word may be anything that identifies a student."""
     words = _words(student.key, student.login, student.name if student.team else "")
     lower = {word.casefold() for word in words}
-    in_canvas = student.key.removesuffix(f"_{student.canvas}") if student.canvas else ""
+    in_canvas = student.key.rpartition("_")[0] if student.canvas or student.maybe_canvas else ""
     return _present(
         {
-            Clue.CANVAS: (student.canvas,),
+            Clue.CANVAS: (student.canvas, *student.maybe_canvas),
             Clue.MOODLE: (student.moodle,),
             Clue.WORD: words,
             Clue.ANY_CASE: lower,

@@ -160,4 +160,9 @@ LEFT JOIN run ON run.id = seen.run
 LEFT JOIN ruled ON ruled.student = student.id;
 """
 
-STEPS = (_FIRST,)  # the first makes version 1; each later one brings a gradebook to the next
+_ROSTER_AND_ASSIGNMENT = """
+ALTER TABLE student ADD COLUMN entry TEXT NOT NULL DEFAULT '';     -- the row of the roster as JSON, empty for one who is not on it
+ALTER TABLE run ADD COLUMN assignment TEXT NOT NULL DEFAULT '';    -- what the class folder calls it, empty where it does not
+"""
+
+STEPS = (_FIRST, _ROSTER_AND_ASSIGNMENT)  # the first makes version 1; each later one brings a gradebook to the next

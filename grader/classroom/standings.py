@@ -12,6 +12,7 @@ from grader.checks.outcome import Outcome
 from grader.classroom.gradebook import Gradebook
 from grader.classroom.known import storable
 from grader.classroom.lateness import Lateness, Times, lateness, read_time
+from grader.classroom.matching import People, clues_of
 from grader.classroom.quoting import Origin, Quoting
 from grader.classroom.students import Student
 from grader.classroom.work import UNITS
@@ -22,6 +23,8 @@ from grader.grading.rubric import Rubric
 from grader.robot.names import did_you_mean
 from grader.submission.files import printable_path
 
+_MAX_NAMED = 5
+_MAX_GUESSED = 5_000  # students among whom a name that nobody has is looked for
 _QUERY = (
     "SELECT id, key, name, email, login, sis, canvas, moodle, due, extension, days_late, expected, run, result, rubric,"
     " digest, verdict, reason, score, out_of, pending, faults, marks, older_marks, over_marks, is_gone, signs, place, is_late, submitted,"
@@ -169,16 +172,16 @@ class Standings:
         found = list(self.book.rows(f"{_QUERY} WHERE key = ?", name))
         if found:
             return self._standing(found[0])
-        known = "SELECT key FROM student WHERE ? IN (login, email, sis, canvas, moodle, name) ORDER BY key LIMIT 6"
-        keys = [str(row[0]) for row in self.book.rows(known, name)] if name else []
+        students = list(self.book.students())
+        keys = [students[index].key for index in People(map(clues_of, students)).named(name)]
         if len(keys) == 1:
             return self.find(keys[0])
         if keys:
-            more = " and others" if len(keys) > 5 else ""
-            listed = f"{', '.join(map(repr, keys[:5]))}{more}"
+            more = " and others" if len(keys) > _MAX_NAMED else ""
+            listed = f"{', '.join(map(repr, keys[:_MAX_NAMED]))}{more}"
             raise InputError(f"{name!r} may be any of {listed}: name one by this key")
-        rows = self.book.rows("SELECT key, login, name FROM student ORDER BY key LIMIT 5000")
-        guess = did_you_mean(name, {each for row in rows for each in row})
+        some = students[:_MAX_GUESSED]
+        guess = did_you_mean(name, {each for student in some for each in (student.key, student.login, student.name)})
         everyone = f"grader export csv --gradebook {printable_path(self.book.path)}"
         raise InputError(f"there is no {name!r} in the gradebook{guess or f'; {everyone} lists everyone'}")
 

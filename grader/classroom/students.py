@@ -8,7 +8,8 @@ class Student:
     """A student or a team. `key` names them in the gradebook, and is unique there; the rest is empty where it is not known.
 
     `login`, `sis` (the number that the university gives), `canvas` (Canvas' user id) and `moodle` (Moodle's participant id) are what
-    rosters and LMS files know them by. `team` is the team folder that a submission lies in, in the teams layout; it is not kept.
+    rosters and LMS files know them by. `team` is the team folder that a submission lies in, in the teams layout. `maybe_canvas` are
+    the numbers one of which is Canvas' user id, where a file's name can be read in more than one way. Neither of these two is kept.
     """
 
     key: str
@@ -19,6 +20,7 @@ class Student:
     canvas: str = ""
     moodle: str = ""
     team: str = ""
+    maybe_canvas: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

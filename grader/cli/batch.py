@@ -40,6 +40,9 @@ def batch(
     csv: Annotated[Path | None, typer.Option(metavar="FILE", help="Also write the grades as CSV.")] = None,
     due: DueOption = None,
     force: Annotated[bool, typer.Option("--force", help="Grade all again, also what has not changed.")] = False,
+    add: Annotated[
+        bool, typer.Option("--add", help="Add to the gradebook, even if it is of another class, assignment or rubric.")
+    ] = False,
     cluster: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="Grade on a Dask cluster: tcp://host:8786.")
     ] = None,
@@ -74,5 +77,6 @@ def batch(
         due=due,
         force=force,
         cluster=cluster,
+        add=add,
     )
     return 0

@@ -49,10 +49,10 @@ def lms_grades(standings: Standings, *, feedback: bool, pending_as_zero: bool) -
             standing.verdict in ("graded", "errored") and not replace(standing, pending=Decimal(0)).why_not_final
         )
         if reason and not (waits_only and pending_as_zero):
-            yield Grade(standing.student, None, "", reason)
+            yield Grade(standing.student, None, "", reason, standing.is_expected is not False)
             continue
         text = _feedback(standings, standing) if feedback else ""
-        yield Grade(standing.student, standing.total, text)
+        yield Grade(standing.student, standing.total, text, is_on_roster=standing.is_expected is not False)
 
 
 class Filling(NamedTuple):

@@ -1,14 +1,18 @@
 """A report for each student of a class, from the gradebook, in files of their own."""
 
+import csv
 import hashlib
+import io
 import re
 import unicodedata
+from collections import Counter
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.classroom.lms.spreadsheet import neutral, write_table
 from grader.cli.formats import Format, render
 from grader.cli.output import save
 from grader.errors import InputError
@@ -22,7 +26,9 @@ if TYPE_CHECKING:
 _TOGETHER = 50
 _UNSAFE = re.compile(r'[\x00-\x1f\x7f<>:"/\\|?*\s]+')
 _RESERVED = re.compile(r"(?i)(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?")  # names that Windows keeps for devices
-_LONGEST = 180  # bytes: with a digest, an ending and what `save` puts around it a file system takes 255
+_DIGEST = re.compile(r"-[0-9a-fA-F]{64}$")
+INDEX = "index.csv"  # whose each report is
+_LONGEST = 140  # bytes: with a digest, an ending and what `save` puts around it a file system takes 255
 
 
 def write_reports(
@@ -38,6 +44,7 @@ def write_reports(
     with Gradebook(book) as opened:
         keys = [str(row[0]) for row in opened.rows("SELECT key FROM grade WHERE result IS NOT NULL ORDER BY key")]
     names = file_names(keys)
+    _record_names(folder / INDEX, names)
     some = [keys[start : start + _TOGETHER] for start in range(0, len(keys), _TOGETHER)]
     waiting = [
         executor.submit(_write_some, str(book), str(folder), tuple(formats), {key: names[key] for key in each}, due)
@@ -81,15 +88,40 @@ def report_of(standings: "Standings", standing: "Standing") -> "Report":
 
 
 def file_names(keys: Sequence[str]) -> dict[str, str]:
-    """A file name, without its ending, for each key: safe on every system, and no two alike, in upper or lower case."""
+    """A file name, without its ending, for each key: safe on every system, and no two alike, in upper or lower case.
+
+    A key that is no such name, or looks like one with a digest, has its digest behind it.
+    """
     plain = {key: _plain(key) for key in keys}
-    taken: dict[str, int] = {}
-    for name in plain.values():
-        taken[name.casefold()] = taken.get(name.casefold(), 0) + 1
-    return {
-        key: name if name == key and taken[name.casefold()] == 1 else f"{name}-{_digest(key)}"
+    counts = Counter(map(_folded, plain.values()))
+    names = {
+        key: name
+        if name == key and counts[_folded(name)] == 1 and not _DIGEST.search(name)
+        else _with_digest(name, key)
         for key, name in plain.items()
     }
+    if len(set(map(_folded, names.values()))) < len(names):
+        raise InputError("two students would share a report file; nothing was written")
+    return names
+
+
+def _record_names(index: Path, names: dict[str, str]) -> None:
+    """Write down whose each report is; raises InputError where a report of another student would be written over."""
+    try:
+        before = dict(list(csv.reader(io.StringIO(index.read_text(encoding="utf-8"))))[1:]) if index.exists() else {}
+    except (OSError, ValueError):
+        raise InputError(
+            f"cannot read {index}, which says whose each report is: remove it, or name another folder"
+        ) from None
+    rows = {neutral(name): neutral(key) for key, name in names.items()}
+    other = next((name for name, key in rows.items() if before.get(name, key) != key), None)
+    if other is not None:
+        raise InputError(f"{index.parent} has a report of {before[other]} named {other}: name another folder")
+    save(index, write_table(("report", "id"), sorted({**before, **rows}.items())))
+
+
+def _folded(name: str) -> str:
+    return unicodedata.normalize("NFC", name).casefold()
 
 
 def _plain(key: str) -> str:
@@ -98,5 +130,5 @@ def _plain(key: str) -> str:
     return f"_{name}" if _RESERVED.fullmatch(name) or name.startswith("-") else name
 
 
-def _digest(key: str) -> str:
-    return hashlib.sha256(key.encode("utf-8", "surrogateescape")).hexdigest()[:6]
+def _with_digest(name: str, key: str) -> str:
+    return f"{name}-{hashlib.sha256(key.encode('utf-8', 'surrogateescape')).hexdigest()}"

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from grader.classroom.batch import Batch, Progress, Settings
 from grader.classroom.gradebook import Gradebook
+from grader.classroom.intake.roster import Roster, roster_from_json
 from grader.classroom.intake.roster_file import read_roster
 from grader.classroom.intake.taking import Intake, take_in
 from grader.classroom.lateness import read_time
@@ -55,6 +56,7 @@ def grade_class(
     due: str | None,
     force: bool,
     cluster: str | None,
+    add: bool,
 ) -> None:
     """Grade a class into a gradebook, and write what is wanted of it. Raises InputError and RubricError."""
     gc.enable()  # unlike other commands this one may run for long
@@ -62,7 +64,7 @@ def grade_class(
         raise InputError(f"--timeout takes a number of seconds, not {timeout}")
     rules = load_rubric(rubric)
     deadline = read_time(due) if due else None
-    known = read_roster(roster) if roster is not None else None
+    known = read_roster(roster) if roster is not None else _kept_roster(gradebook)
     root = path.resolve()
     _check(wanted, gradebook, root)
     intake = take_in(path, known, layout, assignment, rules.id)
@@ -70,7 +72,7 @@ def grade_class(
     with Gradebook(gradebook, create=True) as book:
         with _executor(cluster, jobs, timeout, root) as (executor, workers):
             told = deadline.isoformat() if deadline is not None else ""
-            settings = Settings(str(root), intake.layout, len(intake), workers, force, known, told)
+            settings = Settings(str(root), intake.layout, len(intake), workers, force, known, told, add)
             done = _run(book, rules, intake, settings, executor)
         if wanted.reports is not None:
             with _processes(jobs, _REPORTING) as local:
@@ -79,6 +81,14 @@ def grade_class(
         if wanted.csv is not None:
             save(wanted.csv, grades_csv(Standings(book, deadline)))
         emit(class_text(Standings(book, deadline), wanted.output, done))
+
+
+def _kept_roster(gradebook: Path) -> Roster | None:
+    """The roster that an earlier run into this gradebook was given."""
+    if not gradebook.exists():
+        return None
+    with Gradebook(gradebook) as book:
+        return roster_from_json(book.roster_entries())
 
 
 @contextmanager
@@ -105,7 +115,7 @@ def _run(
     with ProgressDisplay() as display:
         run = Batch(book, rules, settings, executor, display.show)
         try:
-            done = run.grade(intake.hand_ins(), intake.absent)
+            done = run.grade(intake)
         except BaseException:
             if run.has_begun:
                 done_so_far = f"{run.progress.done} of {len(intake)} have a result, which is kept"

@@ -243,18 +243,6 @@ def test_exactly_what_has_changed_is_graded_again(graded: Path, tmp_path: Path) 
     assert reports_of(tmp_path / "lab6.db", tmp_path / "reports") == batch(graded, tmp_path / "fresh")
 
 
-def test_one_link_to_another_hand_in_follows_it(graded: Path) -> None:
-    """Where one hand-in is a link to another one, both are graded again when that one changes."""
-    path = min(graded.glob("*.urdf"))
-    (graded / "friend.urdf").symlink_to(path.name)
-    (graded / "team").symlink_to("packed")
-    assert again(graded) == f"2 graded, {SIZE} unchanged"
-    assert again(graded) == f"0 graded, {SIZE + 2} unchanged"
-    _change_one_byte(path)
-    (graded / "packed/notes.txt").write_text("new")
-    assert again(graded) == f"4 graded, {SIZE - 2} unchanged"
-
-
 def test_a_new_student_and_one_who_is_gone(graded: Path, tmp_path: Path) -> None:
     """Only the new one is graded; the grade of one whose hand-in is gone stays."""
     shutil.copy(REFERENCE, graded / "new.urdf")

@@ -3,7 +3,7 @@
 import csv
 import io
 from decimal import Decimal
-from typing import Literal
+from typing import Any, Literal
 
 import pytest
 from hypothesis import given
@@ -20,7 +20,7 @@ HEADER = "Student,ID,SIS User ID,SIS Login ID,Section,Lab 6 (98765)"
 POINTS = "    Points Possible,,,,,100.00"
 
 
-def graded(key: str, total: str | None = "58.5", why_not: str = "", **known: str) -> Grade:
+def graded(key: str, total: str | None = "58.5", why_not: str = "", **known: Any) -> Grade:
     return Grade(Student(key, **known), None if total is None else Decimal(total), why_not=why_not)
 
 
@@ -85,7 +85,9 @@ def test_the_surest_key_decides() -> None:
         data, graded("a", "10", canvas="12", name="Jane Doe"), graded("b", "20", canvas="13", name="Rick Roe")
     )
     assert lines(filled)[2:] == ['"Roe, Rick",12,,,A,10.00']
-    assert filled.preflight.unknown == (Left(3, "Doe, Jane", "nobody of ours has this number, address or name"),)
+    assert filled.preflight.unknown == (
+        Left(3, "Doe, Jane", "no student of the gradebook has this number, address or name"),
+    )
     assert filled.preflight.missing == (Left(0, "Rick Roe", "has a grade, but no row in the file"),)
     assert not filled.preflight.matches
 

@@ -153,7 +153,9 @@ def test_of_two_submissions_of_one_student_the_certain_one_counts(tmp_path: Path
     assert intake.notes == ("Ann Ash may be of 100 as well, whose aash counts: left unassigned",)
 
 
-@pytest.mark.parametrize("names", [("aash.zip", "ann@example.org.zip"), ("Ann Ash/", "Ash, Ann/"), ("AASH/", "Ann Ash/")])
+@pytest.mark.parametrize(
+    "names", [("aash.zip", "ann@example.org.zip"), ("Ann Ash/", "Ash, Ann/"), ("AASH/", "Ann Ash/")]
+)
 def test_between_equal_claims_nobody_decides(tmp_path: Path, names: tuple[str, str]) -> None:
     """Of two that are equally certain, or both uncertain, none is assigned; the student is contested, not absent."""
     intake = take_in(lay_out(tmp_path, *names), roster())

@@ -111,7 +111,7 @@ def test_the_roster_knows_numbers_and_sortable_names(tmp_path: Path) -> None:
     assert intake.unmatched == ("ashal_5", "leekim_4")
     assert intake.notes == (
         "ashal_5 has the name of f, but another number: left unassigned",
-        "leekim_4 could be of several in the roster: it counts as nobody's there",
+        "leekim_4 may be of several in the roster: left unassigned",
     )
 
 

@@ -5,7 +5,7 @@ import html
 import io
 import re
 from decimal import Decimal
-from typing import Literal
+from typing import Any, Literal
 
 import pytest
 from hypothesis import given
@@ -33,7 +33,7 @@ COMMENT = feedback_html(
 )
 
 
-def graded(key: str, total: str | None = "58.5", feedback: str = "", why_not: str = "", **known: str) -> Grade:
+def graded(key: str, total: str | None = "58.5", feedback: str = "", why_not: str = "", **known: Any) -> Grade:
     return Grade(Student(key, **known), None if total is None else Decimal(total), feedback, why_not)
 
 

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.classroom.intake.names import iso_time
-from grader.classroom.intake.roster import Entry, Match, Roster
+from grader.classroom.intake.roster import Entry, Roster
 from grader.classroom.intake.roster_file import read_roster
 from grader.classroom.students import Student
 from grader.errors import InputError
@@ -148,79 +148,6 @@ def test_a_file_that_cannot_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr("grader.classroom.intake.roster_file._LIMIT", 10)
     with pytest.raises(InputError, match=r"larger than 10 bytes, the limit$"):
         read(tmp_path, PLAIN)
-
-
-ANN = Student("100", "Ann Ash", "ann@example.org", "aash", "s100")
-BEA = Student("200", "Bea Ash", "bea@example.org", "bash", canvas="5", moodle="6")
-CAL = Student("300", "José de la Cruz", "ann@other.example")
-CLASS = Roster([Entry(ANN, aliases=("annie",)), Entry(BEA), Entry(CAL)])
-
-
-@pytest.mark.parametrize(
-    ("name", "student"),
-    [
-        *(
-            (name, ANN)
-            for name in ("100", "AASH", "s100", "Annie", "ANN@example.org", "ann  ash", "Ash, Ann", "Ann_Ash")
-        ),
-        *((name, BEA) for name in ("bea", "BASH", "Ｂea Ash")),
-        *((name, CAL) for name in ("JOSE\u0301 DE LA CRUZ", "de la Cruz, José", "\u200fJosé de la Cruz")),
-        *((name, None) for name in ("ann", "ash", "", "cruz", "Jose de la Cruz", "5", "An Ash")),
-    ],
-)
-def test_find(name: str, student: Student | None) -> None:
-    """A name is somebody's only if it is exactly theirs, but for case, spaces and the way it is encoded."""
-    assert CLASS.find(name) == student
-    assert CLASS.knows(name) is (student is not None)
-
-
-def test_numbers_of_an_lms_decide() -> None:
-    """A number goes before a name, and a name is of nobody whose number is another."""
-    assert CLASS.find("Ann Ash", canvas="5") == BEA
-    assert CLASS.find(moodle="6") == BEA
-    assert CLASS.find("Bea Ash", canvas="7") is None
-    assert CLASS.match(Student("x", "Bea Ash", moodle="7")) == Match(None, 5, "has the name of 200, but another number")
-
-
-def test_surnames_count_only_where_they_are_told_to() -> None:
-    """A surname is somebody's if it is of one student, and if it was asked for."""
-    assert CLASS.knows_surname("cruz")
-    assert not CLASS.knows_surname("Ash")
-    assert not CLASS.knows("cruz")
-    assert CLASS.entry("100") == Entry(ANN, aliases=("annie",))
-    assert CLASS.entry("x") is None
-
-
-@pytest.mark.parametrize(
-    ("name", "form"),
-    [
-        ("Doe, Jane", "doejane"),
-        ("O'Neil-Smith, Zoë", "oneilsmithzoë"),
-        ("_12_, x", "12x"),
-        ("לוי, עדה", "לויעדה"),
-        ("!?", ""),
-    ],
-)
-def test_what_canvas_makes_of_a_name(name: str, form: str) -> None:
-    """Small letters, marks, digits and underscores of any script are what is left."""
-    assert canvas_name(name) == form
-
-
-@given(st.lists(st.from_regex(r"[^\W_]{1,8}", fullmatch=True), min_size=1, max_size=6))
-def test_canvas_may_sort_by_any_word(words: list[str]) -> None:
-    """Wherever the surname begins, the sortable name is among those that are known."""
-    forms = set(canvas_names(" ".join(words)))
-    for index in range(len(words)):
-        assert canvas_name(f"{' '.join(words[index:])}, {' '.join(words[:index])}") in forms
-
-
-@given(st.text(max_size=30))
-def test_plain_names_stay_as_they_are(name: str) -> None:
-    """To make a name plain twice changes nothing, and the two orders of a name are one."""
-    plain = plain_name(name)
-    assert plain_name(plain.replace(",", " ")) == plain_name(plain.replace(",", " "))
-    assert plain_name("Ash, Ann") == plain_name("ann  ASH")
-    assert surname("Ash, Ann") == surname("Ann Ash") == "ash"
 
 
 @given(st.datetimes())

@@ -387,7 +387,7 @@ class Trip(NamedTuple):
     def hand_ins(self) -> Iterator[HandIn]:
         """Whoever is on the roster and has handed something in."""
         intake = take_in(self.top / "class", read_roster(self.top / "roster.csv"))
-        return (each for each in intake.hand_ins() if each.student.key not in intake.strangers)
+        return (each for each in intake.hand_ins() if each.student.key not in intake.unmatched)
 
 
 @pytest.fixture(scope="module", params=["canvas", "moodle"])

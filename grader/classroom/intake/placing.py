@@ -32,6 +32,13 @@ class Placement:
     contested: tuple[Student, ...] = ()
     notes: tuple[str, ...] = ()
 
+    def key(self, roster: Roster | None, position: int, student: Student) -> str:
+        """The final key of the submission at this position, of which `student` says what its name says."""
+        owner = self.whose[position] if roster is not None else _NOBODY
+        if roster is not None and owner != _NOBODY:
+            return roster.entries[owner].student.key
+        return self.renamed.get(self.order[position]) or student.key
+
     def final(self, roster: Roster | None, position: int, hand_in: HandIn) -> HandIn:
         """The submission at this position of the order as it is graded: that of a student in the roster, or an unmatched one."""
         if roster is None:

@@ -1,10 +1,11 @@
 """Who is in the class, and who of them has handed something in: by what is surely theirs, never by a guess."""
 
+import json
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import NamedTuple
 
-from grader.classroom.matching import OF_FOLDERS, Clue, People, claims_of, clues_of, plain_group
+from grader.classroom.matching import OF_FOLDERS, OF_TEAM_FOLDERS, Clue, People, claims_of, clues_of, plain_group
 from grader.classroom.students import HandIn, Student
 
 
@@ -41,11 +42,15 @@ class Match(NamedTuple):
 
 
 class Roster:
-    """The students of a class, in the order of the file; `notes` says what in it was not understood."""
+    """The students of a class, in the order of the file; `notes` says what in it was not understood.
 
-    def __init__(self, entries: Iterable[Entry], notes: tuple[str, ...] = ()) -> None:
+    `assignments` has Canvas' ids of the assignments that the file has columns for.
+    """
+
+    def __init__(self, entries: Iterable[Entry], notes: tuple[str, ...] = (), assignments: Iterable[str] = ()) -> None:
         self.entries = tuple(entries)
         self.notes = notes
+        self.assignments = frozenset(assignments)
         self._by_key = {entry.student.key: index for index, entry in enumerate(self.entries)}
         self._people = People(clues_of(entry.student, entry.aliases) for entry in self.entries)
         self._groups: dict[str, list[int]] = {}
@@ -69,7 +74,7 @@ class Roster:
 
     def knows_surname(self, name: str) -> bool:
         """Whether a name is that of one student in the roster, or the surname of one."""
-        return self._people.find(claims_of(Student(name)), tuple(Clue)).only is not None
+        return self._people.find(claims_of(Student(name)), OF_TEAM_FOLDERS).only is not None
 
     def knows_submission(self, name: str) -> bool:
         """Whether a name is that of one student in the roster, or of a group."""
@@ -91,7 +96,7 @@ class Roster:
         """
         claims = claims_of(student)
         group = self._groups.get(plain_group(student.team), ()) if student.team else None
-        found = self._people.find(claims, tuple(Clue) if student.team else OF_FOLDERS, group)
+        found = self._people.find(claims, OF_TEAM_FOLDERS if student.team else OF_FOLDERS, group)
         if found.only is not None:
             return Match(found.only, found.clue, self.entries[found.only].student.key == (student.name or student.key))
         if found.people:
@@ -99,7 +104,7 @@ class Roster:
         if found.contradicted:
             other = self.entries[found.contradicted[0]].student
             return Match(None, found.clue, doubt=f"has the name of {other.key}, but another number")
-        elsewhere = self._people.find(claims).people if student.team else ()
+        elsewhere = self._people.find(claims, OF_TEAM_FOLDERS).people if student.team else ()
         if elsewhere:
             entry = self.entries[elsewhere[0]]
             group_words = f"whose group is {entry.section!r}" if entry.section else "who has no group in the roster"
@@ -121,3 +126,15 @@ class Roster:
             is_late=hand_in.is_late if entry.is_late is None else entry.is_late,
             submitted=entry.submitted or hand_in.submitted,
         )
+
+
+def entry_to_json(entry: Entry) -> str:
+    """A row of a roster as a gradebook keeps it."""
+    return json.dumps(asdict(entry), sort_keys=True)
+
+
+def roster_from_json(entries: Iterable[str]) -> Roster | None:
+    """The roster that a gradebook has kept; None where there is none."""
+    rows = [json.loads(each) for each in entries]
+    kept = (Entry(**{**row, "student": Student(**row["student"]), "aliases": tuple(row["aliases"])}) for row in rows)
+    return Roster(kept) if rows else None

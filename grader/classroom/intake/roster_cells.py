@@ -28,6 +28,7 @@ _ALIASES = {
 }
 _FIELD_OF = {alias: field for field, aliases in _ALIASES.items() for alias in aliases.split()}
 _WHO = ("id", "sis", "login", "github", "email", "name", "canvas", "moodle")
+_ASSIGNMENT = re.compile(r".+ \((\d+)\)", re.DOTALL)  # Canvas' column of an assignment: Lab 6 (98765)
 _AS_TEXT = re.compile(r'="(.*)"', re.DOTALL)  # how spreadsheets are kept from making a number of something
 
 
@@ -65,7 +66,7 @@ def rows_of(text: str, shown: str) -> Iterator[Row]:
             continue
         if fields is None:
             fields, width = _header(cells, shown), len(cells)
-            of_canvas = {"student", "id"} <= {_plain(cell) for cell in cells} and bool({"sis", "login"} & set(fields))
+            of_canvas = _is_canvas_header(cells)
             continue
         if len(cells) < width or any(cells[width:]):
             count = len(cells)
@@ -76,6 +77,19 @@ def rows_of(text: str, shown: str) -> Iterator[Row]:
                 continue
             row = Row(line, {**row.cells, "canvas": row["canvas"] or row["id"]})
         yield row
+
+
+def canvas_assignments(text: str, shown: str) -> frozenset[str]:
+    """The assignments that a gradebook exported from Canvas has columns for; none in any other roster."""
+    header = next((cells for _, cells in _cells(text, shown) if any(cells)), [])
+    if not _is_canvas_header(header):
+        return frozenset()
+    return frozenset(f"Canvas {found[1]}" for cell in header if (found := _ASSIGNMENT.fullmatch(cell)))
+
+
+def _is_canvas_header(cells: list[str]) -> bool:
+    plain = {_plain(cell) for cell in cells}
+    return {"student", "id"} <= plain and not {"sis", "login"}.isdisjoint(_FIELD_OF.get(cell, "") for cell in plain)
 
 
 def _cells(text: str, shown: str) -> Iterator[tuple[int, list[str]]]:

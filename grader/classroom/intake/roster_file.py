@@ -5,7 +5,7 @@ from pathlib import Path
 
 from grader.classroom.intake.names import iso_time
 from grader.classroom.intake.roster import Entry, Roster
-from grader.classroom.intake.roster_cells import Row, rows_of, text_of
+from grader.classroom.intake.roster_cells import Row, canvas_assignments, rows_of, text_of
 from grader.classroom.students import Student
 from grader.errors import InputError
 from grader.submission.files import printable_path, read_capped
@@ -38,7 +38,7 @@ def read_roster(path: Path) -> Roster:
         entries.append(entry)
     if not entries:
         raise InputError(f"{shown} has no students in it")
-    return Roster(entries, tuple(notes))
+    return Roster(entries, tuple(notes), canvas_assignments(text, shown))
 
 
 def _entry(row: Row, shown: str, notes: list[str]) -> Entry:

@@ -12,13 +12,13 @@ from decimal import Decimal
 from grader.classroom.lms.canvas_columns import CanvasColumns, find_columns, is_student, names_rubric
 from grader.classroom.lms.filling import Filling, same_maximum
 from grader.classroom.lms.grades import Grade, exact_words, has_decimal_comma, points_text, read_points
-from grader.classroom.lms.matching import Keys, Person, full_names, join, run_together, spellings
+from grader.classroom.lms.matching import Person, join
 from grader.classroom.lms.preflight import Filled
 from grader.classroom.lms.tables import Row, Table, read_table
 from grader.classroom.students import Student
 
 _QUOTED = re.compile(r'="(.*)"', re.DOTALL)  # gradebook_exporter.rb: so are names that begin with =
-_TEST_STUDENT = spellings("Student, Test", "Test Student")
+_TEST_STUDENT = frozenset({"student, test", "test student"})
 _NOT_OURS = {"ex": "is excused in Canvas", "n/a": "is not given this assignment in Canvas"}
 
 
@@ -44,7 +44,7 @@ def fill_gradebook(
         possible = columns.points_possible.value(columns.grade)
         same_maximum(f"Canvas' Points Possible of {columns.title!r}", [possible], out_of)
     people = {row.number: _person(row, columns) for row in table.rows if is_student(row)}
-    filling = Filling(columns.title, join(list(people.values()), grades, _keys))
+    filling = Filling(columns.title, join(list(people.values()), grades))
     comma = columns.points_possible is not None and has_decimal_comma(columns.points_possible.value(columns.grade))
     rows = []
     for row in table.rows:
@@ -81,25 +81,9 @@ def _person(row: Row, columns: CanvasColumns) -> Person:
     name = quoted[1] if quoted else written
     if columns.first_name is not None:
         name = f"{name}, {row.value(columns.first_name)}"
-    keys = (
-        spellings(row.value(columns.id)),
-        spellings(row.value(columns.sis)),
-        spellings(row.value(columns.login)),
-        full_names(name),
-        run_together(name),
-    )
-    return Person(row.number, name, keys)
-
-
-def _keys(student: Student) -> Keys:
-    is_run_together = re.fullmatch(r"\w+", student.name) is not None
-    return (
-        spellings(student.canvas),
-        spellings(student.sis, student.key),
-        spellings(student.login, student.sis, student.key, student.email),
-        full_names(student.name),
-        run_together(student.name) if is_run_together else frozenset(),
-    )
+    value = row.value
+    student = Student("", name, login=value(columns.login), sis=value(columns.sis), canvas=value(columns.id))
+    return Person(row.number, name, student)
 
 
 def _warnings(table: Table, columns: CanvasColumns, out_of: Decimal, wanted: tuple[str, ...]) -> list[str]:

@@ -15,13 +15,15 @@ _COMMA = re.compile(r"[0-9],[0-9]{1,2}$")
 class Grade:
     """What one student gets. Without a total `why_not` says, in words, why: no hand-in, a person still has to look.
 
-    `feedback` is HTML (`feedback_html` makes it); Moodle takes it, Canvas' gradebook has no place for it.
+    `feedback` is HTML (`feedback_html` makes it); Moodle takes it, Canvas' gradebook has no place for it. `is_on_roster` is False for
+    a submission that is not on the roster of its class.
     """
 
     student: Student
     total: Decimal | None
     feedback: str = ""
     why_not: str = ""
+    is_on_roster: bool = True
 
     @property
     def who(self) -> str:

@@ -14,7 +14,7 @@ from decimal import Decimal
 from grader.classroom.lms.feedback import is_our_feedback
 from grader.classroom.lms.filling import Filling, same_maximum
 from grader.classroom.lms.grades import Grade, cut, exact_words, has_decimal_comma, points_text, read_points
-from grader.classroom.lms.matching import Keys, Person, full_names, join, spellings
+from grader.classroom.lms.matching import Person, join
 from grader.classroom.lms.moodle_columns import MoodleColumns, find_columns, people_rows
 from grader.classroom.lms.moodle_words import NO
 from grader.classroom.lms.preflight import Filled
@@ -47,7 +47,7 @@ def fill_worksheet(
     if not any_maximum:
         same_maximum(f"Moodle's {columns.titles[columns.maximum]!r}", sorted(_maxima(table, columns)), out_of)
     people = {row.number: _person(row, columns) for row in people_rows(table)}
-    filling = Filling(columns.title, join(list(people.values()), grades, _keys))
+    filling = Filling(columns.title, join(list(people.values()), grades))
     rows = []
     for row in table.rows:
         person = people.get(row.number)
@@ -105,22 +105,8 @@ def _person(row: Row, columns: MoodleColumns) -> Person:
     name = " ".join(html.unescape(_TAG.sub(" ", row.value(columns.name))).split())
     identifier = row.value(columns.identifier)
     number = _NUMBER.search(identifier)
-    keys = (
-        spellings(number[0] if number else ""),
-        spellings(row.value(columns.email)),
-        spellings(*(row.value(index) for index in columns.numbers)),
-        full_names(name),
-    )
-    return Person(row.number, name or identifier, keys)
-
-
-def _keys(student: Student) -> Keys:
-    return (
-        spellings(student.moodle),
-        spellings(student.email),
-        spellings(student.sis, student.login, student.key),
-        full_names(student.name),
-    )
+    student = Student("", name, row.value(columns.email), moodle=number[0] if number else "")
+    return Person(row.number, name or identifier, student, tuple(row.value(index) for index in columns.numbers))
 
 
 def _maxima(table: Table, columns: MoodleColumns) -> set[str]:

@@ -21,6 +21,7 @@ _NAME = re.compile(
     r"_(?:(?P<attachment>[0-9]{1,20})_(?P<file>.+)|(?P<page>text|link)\.(?:html|url))",
     re.DOTALL,
 )
+_MAYBE_USER = re.compile(r"_([0-9]{1,20})(?=_[0-9]{1,20}_.)")
 _REPEATED = re.compile(
     r"(?P<stem>.+?)(?:-(?P<number>[1-9]\d?))?(?P<ending>(?:\.[A-Za-z][A-Za-z0-9]*)*(?:\.[A-Za-z0-9]*)?)", re.DOTALL
 )
@@ -32,6 +33,7 @@ class _Saved(NamedTuple):
     path: str
     name: str
     user: str
+    maybe_users: tuple[str, ...]
     is_anonymous: bool
     is_late: bool
     attachment: int
@@ -62,7 +64,26 @@ def shelve(children: Children, start: str, left_out: LeftOut) -> Listed:
         else:
             by_user[saved.is_anonymous, saved.user].append(saved)
     left_out.add_all((start + name, reason) for name, reason in children.refused)
-    return listed(_hand_in(saved, start) for saved in by_user.values())
+    return listed(
+        _hand_in(certain, start) for saved in by_user.values() if (certain := _certain(saved, start, left_out))
+    )
+
+
+def _certain(saved: list[_Saved], start: str, left_out: LeftOut) -> list[_Saved]:
+    """The files of a user without those that may be another user's.
+
+    Users choose their names, and one may end in a number: `mallory_77` with the id 99 has a file `mallory_77_99_...`. Canvas writes
+    one user's name in one way, so a name that can be read in two ways must be one that a file has which cannot.
+    """
+    if len({each.name for each in saved}) == 1:
+        return saved
+    certain = {each.name for each in saved if len(each.maybe_users) < 2}
+    for each in saved:
+        if each.name not in certain:
+            left_out.add(
+                start + each.path, f"may be of another user than {each.user}: its name can be read in two ways"
+            )
+    return [each for each in saved if each.name in certain]
 
 
 def _is_lower(saved: _Saved | None) -> bool:
@@ -80,6 +101,7 @@ def _saved(name: str) -> _Saved | None:
         name,
         "anon" if anonymous else found["name"],
         anonymous or found["user"],
+        tuple(_MAYBE_USER.findall(name)),
         anonymous is not None,
         bool(found["late_anon"] or found["late"]),
         int(found["attachment"] or 0),
@@ -90,9 +112,10 @@ def _saved(name: str) -> _Saved | None:
 def _hand_in(saved: Iterable[_Saved], start: str) -> HandIn:
     last, earlier = _attempts(saved)
     first = min(last, key=lambda each: each.name)
-    canvas = "" if first.is_anonymous else first.user
+    maybe = () if any(len(each.maybe_users) < 2 for each in last) else first.maybe_users
+    canvas = "" if first.is_anonymous or maybe else first.user
     return HandIn(
-        Student(f"{first.name}_{first.user}", canvas=canvas),
+        Student(f"{first.name}_{first.user}", canvas=canvas, maybe_canvas=maybe),
         tuple(start + each.path for each in last),
         is_late=any(each.is_late for each in last),
         attempt=1 + max((len(each) for each in earlier), default=0),

@@ -16,7 +16,6 @@ from grader.classroom.intake.layouts.shelf import LeftOut, place_key
 from grader.classroom.intake.listing import Children, Listing
 from grader.classroom.intake.names import ending_of, without_copy
 from grader.classroom.students import HandIn, Student
-from grader.submission.files import printable_path
 from grader.submission.tree import BUILT
 
 _NO_SUBMISSION = "is not a folder, an archive or a URDF"
@@ -33,6 +32,8 @@ class _Copy(NamedTuple):
 
 class FolderShelf:
     """Hand-ins of which only the names are kept: the rest is worked out when it is asked for."""
+
+    assignments: frozenset[str] = frozenset()
 
     def __init__(self, listing: Listing, start: str, prefix: str, folders: frozenset[str]) -> None:
         self._listing = listing

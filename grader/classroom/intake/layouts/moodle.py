@@ -62,7 +62,9 @@ def shelve(listing: Listing, children: Children, start: str, left_out: LeftOut) 
 
 
 def _saved(name: str) -> _Saved | None:
-    if "_assignsubmission_" not in name:
+    if (
+        name.count("_assignsubmission_") != 1
+    ):  # twice, it could be of two participants: names and files are the students' own
         return None
     found = _NAME.fullmatch(name)
     return _Saved(name, found["name"], found["id"] or "", found["plugin"], found["file"]) if found else None

@@ -4,6 +4,7 @@ nbgrader writes that time as `%Y-%m-%d %H:%M:%S.%f %Z`, in UTC unless it is conf
 """
 
 from collections import defaultdict
+from dataclasses import replace
 
 from grader.classroom.intake.layouts.shelf import LeftOut, Listed, listed
 from grader.classroom.intake.listing import Children, Listing
@@ -47,10 +48,11 @@ def shelve(listing: Listing, start: str, left_out: LeftOut, assignment: str, rub
     left_out.add_all((start + each, reason) for each, reason in children.refused)
     paths = {student: f"{start}{student}/{name}" for student in found[name]}
     stamps = listing.starts((f"{path}/{_STAMP}" for path in paths.values()), _LONGEST_STAMP)
-    return listed(
+    submitted = listed(
         HandIn(Student(student, login=student), (path,), submitted=_time(stamps.get(f"{path}/{_STAMP}", b"")))
         for student, path in paths.items()
     )
+    return replace(submitted, assignments=frozenset({f"nbgrader {printable_path(name)}"}))
 
 
 def _assignments(listing: Listing, start: str) -> dict[str, list[str]]:

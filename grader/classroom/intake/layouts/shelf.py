@@ -16,6 +16,10 @@ MOST_LINES = 200
 class Shelf(Protocol):
     """Hand-ins, sorted by their students' keys, which are printable and differ. A student is told without a look into the files."""
 
+    @property
+    def assignments(self) -> frozenset[str]:
+        """What an LMS calls the assignment."""
+
     def __len__(self) -> int:
         """How many there are."""
 
@@ -34,6 +38,7 @@ class Listed:
     """A shelf whose hand-ins are all at hand."""
 
     hand_ins: Sequence[HandIn]
+    assignments: frozenset[str] = frozenset()
 
     def __len__(self) -> int:
         return len(self.hand_ins)

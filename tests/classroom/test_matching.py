@@ -1,0 +1,170 @@
+"""Which student is meant: one table for every place that asks, and how names are compared."""
+
+from collections.abc import Callable
+from decimal import Decimal
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grader.classroom.gradebook import Gradebook
+from grader.classroom.intake.roster import Entry, Roster
+from grader.classroom.lms.grades import Grade
+from grader.classroom.lms.matching import Person, join
+from grader.classroom.matching import Clue, People, canvas_name, canvas_names, clues_of, plain_name, surname
+from grader.classroom.standings import Standings
+from grader.classroom.students import Student
+from grader.errors import InputError
+
+ANN = Student("100", "Ann Ash", "ann@example.org", "aash", "s100")
+BEA = Student("200", "Bea Ash", "bea@example.org", "bash", canvas="5", moodle="6")
+CAL = Student("300", "José de la Cruz", "ann@other.example")
+DEE = Student("400", "André Dee", "andr\u00e9@example.org")
+CLASS = (ANN, BEA, CAL, DEE)
+
+Asked = Callable[[str], Student | None]
+
+
+def in_roster(name: str) -> Student | None:
+    """Whose a folder of this name is."""
+    place = Roster(map(Entry, CLASS)).match(Student(name)).place
+    return None if place is None else CLASS[place]
+
+
+def in_a_team(name: str) -> Student | None:
+    """Whose a folder of this name is in the team of everybody."""
+    found = Roster(Entry(each, "red") for each in CLASS).match(Student(f"red/{name}", name, login=name, team="red"))
+    return None if found.place is None else CLASS[found.place]
+
+
+def in_lms(name: str) -> Student | None:
+    """Whose grade goes into a row of an LMS file that has this login, address and name."""
+    row = Person(1, name, Student("", name, email=name, login=name))
+    grade = join([row], [Grade(each, Decimal(1)) for each in CLASS]).matched.get(1)
+    return grade.student if grade is not None else None
+
+
+def in_gradebook(name: str, tmp_path: Path) -> Student | None:
+    """Whom `grader mark` takes this name for."""
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        with book.transaction():
+            for each in CLASS:
+                book.keep_student(each, None)
+        try:
+            return Standings(book).find(name).student
+        except InputError:
+            return None
+
+
+SURE = [  # in every place
+    *((name, ANN) for name in ("100", "aash", "s100", "ann@example.org", "Ann Ash", "ann  ash", "Ash, Ann", "Ann_Ash")),
+    *((name, BEA) for name in ("200", "bash", "bea@example.org", "Ｂea Ash")),
+    *((name, CAL) for name in ("JOSE\u0301 DE LA CRUZ", "de la Cruz, José", "\u200fJosé de la Cruz")),
+    *((name, DEE) for name in ("andr\u00e9@example.org", "andre\u0301@example.org", "Andre\u0301 Dee")),
+    *((name, None) for name in ("ann", "Jose de la Cruz", "An Ash", "zoe", "0100", "100 ~2")),
+]
+
+
+@pytest.mark.parametrize(("name", "student"), SURE)
+@pytest.mark.parametrize("ask", [in_roster, in_a_team, in_lms])
+def test_a_name_means_the_same_everywhere(ask: Asked, name: str, student: Student | None) -> None:
+    """Whether a folder, a team's folder or a row of an LMS file has the name, the same student is meant."""
+    assert ask(name) == student
+
+
+@pytest.mark.parametrize(("name", "student"), SURE)
+def test_what_a_person_types_means_the_same(name: str, student: Student | None, tmp_path: Path) -> None:
+    """`grader mark` takes a name for the same student."""
+    assert in_gradebook(name, tmp_path) == student
+
+
+@pytest.mark.parametrize("name", ["AASH", "ANN@example.org"])
+def test_case_counts_only_for_a_mark(name: str, tmp_path: Path) -> None:
+    """Logins and addresses may differ in case, but a manual mark asks for the exact one."""
+    assert [ask(name) for ask in (in_roster, in_a_team, in_lms)] == [ANN] * 3
+    assert in_gradebook(name, tmp_path) is None
+
+
+@pytest.mark.parametrize(("name", "roster", "team"), [("bea", BEA, BEA), ("cruz", None, CAL), ("ash", None, None)])
+def test_the_weakest_clues(name: str, roster: Student | None, team: Student | None) -> None:
+    """The local part of an address counts for a folder, a surname in a team only, and neither in an LMS file."""
+    assert (in_roster(name), in_a_team(name), in_lms(name)) == (roster, team, None)
+
+
+def test_exact_case_decides_before_another() -> None:
+    """Beside the exact word another case is nobody's."""
+    grades = [Grade(Student(key), Decimal(1)) for key in ("alice", "ALICE")]
+    found = join([Person(1, "alice", Student("", login="alice"))], grades)
+    assert found.matched[1].student.key == "alice"
+
+
+def test_numbers_of_an_lms_decide() -> None:
+    """A number goes before a name, and a name is of nobody whose number is another."""
+    people = Roster(map(Entry, CLASS))
+    assert people.match(Student("x", "Ann Ash", canvas="5")).place == 1
+    assert people.match(Student("x", moodle="6")).place == 1
+    found = people.match(Student("x", "Bea Ash", moodle="7"))
+    assert (found.place, found.doubt) == (None, "has the name of 200, but another number")
+
+
+def test_what_is_not_on_the_roster_is_matched_by_number_only() -> None:
+    """A folder that calls itself Ann Ash gets no row of an LMS file; one with the LMS's own number does."""
+    row = Person(1, "Ann Ash", Student("", "Ann Ash", login="aash", canvas="7"))
+    stranger = Grade(Student("aash", "Ann Ash"), Decimal(1), is_on_roster=False)
+    numbered = Grade(Student("aash", "Ann Ash", canvas="7"), Decimal(1), is_on_roster=False)
+    assert not join([row], [stranger]).matched
+    assert join([row], [stranger, Grade(ANN, Decimal(2))]).matched[1].student == ANN
+    assert join([row], [numbered]).matched[1] == numbered
+
+
+@given(st.lists(st.sampled_from("abAB"), min_size=1, max_size=5), st.lists(st.sampled_from("abAB"), max_size=5))
+def test_pairs_are_the_only_ones(rows: list[str], keys: list[str]) -> None:
+    """A row has a grade exactly where one row and one student have its word, or, if none has it exactly, its letters."""
+    grades = [Grade(Student(key, login=f"{key}{index}"), Decimal(index)) for index, key in enumerate(keys)]
+    found = join([Person(index, row, Student("", login=row)) for index, row in enumerate(rows)], grades).matched
+    for index, row in enumerate(rows):
+        exact = [each for each in grades if each.student.key == row]
+        if rows.count(row) == 1 and len(exact) == 1:
+            assert found[index] == exact[0]
+        elif exact or keys.count(row.swapcase()) != 1 or rows.count(row) > 1:
+            assert index not in found
+
+
+def test_clues_that_are_not_known_are_none() -> None:
+    """An empty field is no clue: two students without a number are not the same."""
+    people = People([clues_of(Student("a")), clues_of(Student("b"))])
+    assert set(people.clues[0]) == {Clue.WORD, Clue.ANY_CASE}
+    assert people.named("") == ()
+
+
+@pytest.mark.parametrize(
+    ("name", "form"),
+    [
+        ("Doe, Jane", "doejane"),
+        ("O'Neil-Smith, Zoë", "oneilsmithzoë"),
+        ("_12_, x", "12x"),
+        ("לוי, עדה", "לויעדה"),
+        ("!?", ""),
+    ],
+)
+def test_what_canvas_makes_of_a_name(name: str, form: str) -> None:
+    """Small letters, marks, digits and underscores of any script are what is left."""
+    assert canvas_name(name) == form
+
+
+@given(st.lists(st.from_regex(r"[^\W_]{1,8}", fullmatch=True), min_size=1, max_size=6))
+def test_canvas_may_sort_by_any_word(words: list[str]) -> None:
+    """Wherever the surname begins, the sortable name is among those that are known."""
+    forms = set(canvas_names(" ".join(words)))
+    for index in range(len(words)):
+        assert canvas_name(f"{' '.join(words[index:])}, {' '.join(words[:index])}") in forms
+
+
+@given(st.text(max_size=30))
+def test_a_plain_name_stays_plain(name: str) -> None:
+    """To make a name plain twice changes nothing, and the two orders of a name are one."""
+    plain = plain_name(name.replace(",", " "))
+    assert plain_name(plain) == plain
+    assert plain_name("Ash, Ann") == plain_name("ann  ASH")
+    assert surname("Ash, Ann") == surname("Ann Ash") == "ash"

@@ -1,0 +1,282 @@
+"""Whose submission it is, through the command line: nothing that a student can write decides it."""
+
+import json
+import shutil
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.classroom.class_runs import Done, here
+from tests.samples import ROOT
+
+GOOD, BAD = ROOT / "submissions" / "reference", ROOT / "submissions" / "lidar-buried"
+TEAMS = "id,login,name,group\n1,alice,Alice Ash,team2\n2,mallory,Mallory Moss,team1\n"
+
+
+def submit(place: Path, source: Path = GOOD) -> None:
+    """Put a submission somewhere."""
+    shutil.copytree(source, place)
+
+
+def batch(top: Path, *more: str | Path, roster: str = "", into: str = "g.db") -> Done:
+    """Grade the class below a folder."""
+    if roster:
+        (top / "roster.csv").write_text(roster, encoding="utf-8")
+        more = (*more, "--roster", top / "roster.csv")
+    return here("batch", top / "class", "--gradebook", top / into, *more)
+
+
+def students(top: Path, into: str = "g.db") -> dict[str, dict[str, Any]]:
+    """Everyone's current grade, by key."""
+    done = here("export", "json", "--gradebook", top / into)
+    assert done.returncode == 0, done.stderr
+    return {each["id"]: each for each in json.loads(done.stdout)["students"]}
+
+
+def mark(top: Path, who: str) -> None:
+    """Give somebody a manual mark."""
+    assert here("mark", who, "answer-floating-link", "3.5", "--gradebook", top / "g.db").returncode == 0
+
+
+@pytest.mark.parametrize("name", ["alice", "ALICE", "Alice Ash", "Ash", "1"])
+def test_a_team_cannot_submit_for_a_member_of_another(tmp_path: Path, name: str) -> None:
+    """A folder in team1 counts for nobody in team2, before and after alice has submitted; her marks stay hers."""
+    submit(tmp_path / "class/team1/Lab6/mallory", BAD)
+    submit(tmp_path / f"class/team1/Lab6/{name}")
+    done = batch(tmp_path, "--layout", "teams", roster=TEAMS)
+    assert f"team1/{name} is named like 1, whose group is 'team2': left unassigned" in done.stderr
+    assert students(tmp_path)["1"]["status"] == "missing"
+    submit(tmp_path / "class/team2/Lab6/alice", BAD)
+    batch(tmp_path, "--layout", "teams", roster=TEAMS)
+    mark(tmp_path, "1")
+    before = students(tmp_path)
+    assert (before["1"]["score"], before["1"]["marks_by_hand"]) == (65.5, 1)
+    shutil.rmtree(tmp_path / "class/team2")
+    batch(tmp_path, "--layout", "teams", roster=TEAMS)
+    after = students(tmp_path)
+    assert (after["1"]["score"], after["1"]["marks_by_hand"]) == (65.5, 1)
+    assert not after["1"]["is_final"]
+    assert after[f"team1/{name}"] == before[f"team1/{name}"]
+
+
+@pytest.mark.parametrize("roster", ["", "id,name\nalice,Alice Ash\n"])
+@pytest.mark.parametrize("name", ["ALICE", "Alice", "alice~2", "\u0430lice", "Alice Ash", "alice ash"])
+def test_a_name_that_is_alike_takes_nothing_over(tmp_path: Path, name: str, roster: str) -> None:
+    """Beside alice another spelling of her name has a grade of its own, and hers stays with all manual marks."""
+    submit(tmp_path / "class/alice", BAD)
+    batch(tmp_path, roster=roster)
+    mark(tmp_path, "alice")
+    before = students(tmp_path)["alice"]
+    submit(tmp_path / "class" / name)
+    done = batch(tmp_path, roster=roster)
+    assert " now, with all" not in done.stderr
+    after = students(tmp_path)
+    assert after["alice"] == before
+    assert len(after) == 2
+    shutil.rmtree(tmp_path / "class/alice")
+    batch(tmp_path)
+    assert students(tmp_path)["alice"]["marks_by_hand"] == 1
+    assert sum(each["marks_by_hand"] for each in students(tmp_path).values()) == 1
+
+
+def test_marks_never_leave_the_roster(tmp_path: Path) -> None:
+    """A roster entry keeps its marks though its folder is contested: no folder name moves them to `alice~2` or elsewhere."""
+    submit(tmp_path / "class/alice", BAD)
+    roster = "id,login\n7,alice\n"
+    batch(tmp_path, roster=roster)
+    mark(tmp_path, "7")
+    before = students(tmp_path)["7"]
+    changed = "id,login,email\n7,alice,alice\n8,alice,bob@example.org\n"  # now two may be meant
+    done = batch(tmp_path, roster=changed)
+    assert "alice may be of several in the roster: left unassigned" in done.stderr
+    after = students(tmp_path)
+    assert [after["7"][each] for each in ("score", "marks_by_hand", "status")] == [65.5, 1, "graded"]
+    assert before["score"] == 65.5
+    assert after["alice"]["marks_by_hand"] == 0
+
+
+def test_contested_submissions_change_nothing(tmp_path: Path) -> None:
+    """Once a second folder claims the same student by name only, neither counts, and what was there before stays."""
+    submit(tmp_path / "class/Alice Ash", BAD)
+    roster = "id,name\n7,Alice Ash\n"
+    batch(tmp_path, roster=roster)
+    before = students(tmp_path)["7"]
+    submit(tmp_path / "class/Ash, Alice")
+    done = batch(tmp_path, roster=roster)
+    assert "Alice Ash, Ash, Alice may each be of 7: left unassigned, and what 7 had before stays" in done.stderr
+    assert students(tmp_path)["7"] == before
+
+
+@pytest.mark.parametrize(
+    ("start", "link", "target"),
+    [
+        ("class", "lab6-mallory/attempt_1", "../lab6-bob"),
+        ("class", "lab6-mallory", "lab6-bob"),
+        ("class/submitted", "mallory/lab6", "../bob/lab6"),
+        ("class/red", "Lab6/mallory", "bob"),
+        ("class/red", "Lab6/mallory", "../../blue/Lab6/bob"),
+    ],
+)
+def test_a_symlink_brings_nobody_elses_work(tmp_path: Path, start: str, link: str, target: str) -> None:
+    """In every layout a symlink from one student's folder to another's is not followed: not as the submission, not as an attempt."""
+    for place in (
+        "class/lab6-bob",
+        "class/submitted/bob/lab6",
+        "class/red/Lab6/bob",
+        "class/red/Lab6/ann",
+        "class/blue/Lab6/bob",
+    ):
+        if place.startswith(start):
+            submit(tmp_path / place)
+    (tmp_path / start / link).parent.mkdir(parents=True, exist_ok=True)
+    (tmp_path / start / link).symlink_to(target)
+    batch(tmp_path)
+    found = {key: each for key, each in students(tmp_path).items() if "mallory" in key}
+    assert all(each["score"] in (0, None) and each["status"] != "graded" for each in found.values()), found
+
+
+@pytest.mark.parametrize("target", ["../lab6-bob/src", "../lab6-bob/src/my_robot", "..", "../../class/lab6-bob", "/"])
+def test_a_symlink_in_a_submission_stays_in_it(tmp_path: Path, target: str) -> None:
+    """A symlink below a student's folder that leads out of it is ignored and named; one that stays in it is followed."""
+    submit(tmp_path / "class/lab6-bob")
+    (tmp_path / "class/lab6-mallory").mkdir(parents=True)
+    (tmp_path / "class/lab6-mallory/src").symlink_to(target)
+    (tmp_path / "class/lab6-mallory/notes.txt").write_text("mine")
+    submit(tmp_path / "class/lab6-ann/real")
+    (tmp_path / "class/lab6-ann/linked").symlink_to("real")
+    batch(tmp_path, "--reports", tmp_path / "reports")
+    assert students(tmp_path)["mallory"]["score"] == 0
+    assert students(tmp_path)["ann"]["score"] == students(tmp_path)["bob"]["score"] == 90
+    assert "src is a link that leads out of the submission" in (tmp_path / "reports/mallory.txt").read_text()
+
+
+def test_another_class_is_refused(tmp_path: Path) -> None:
+    """A class with no student in common is refused with a line that says what the gradebook holds, unless --add."""
+    for name in ("ann", "bea", "cal", "dee"):
+        submit(tmp_path / "class" / name)
+    batch(tmp_path)
+    before = (tmp_path / "g.db").read_bytes()
+    (tmp_path / "class").rename(tmp_path / "first")
+    submit(tmp_path / "class/zoe")
+    done = batch(tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.splitlines()[-1].endswith(
+        "g.db is the gradebook of another class: no student of this class is in it (it holds ann, bea, cal, ...);"
+        " name another file, or use --add"
+    )
+    assert (tmp_path / "g.db").read_bytes() == before
+    assert batch(tmp_path, "--add").returncode == 0
+    assert set(students(tmp_path)) == {"ann", "bea", "cal", "dee", "zoe"}
+    assert batch(tmp_path).returncode == 0
+
+
+def test_another_rubric_is_refused(tmp_path: Path) -> None:
+    """Results of two labs never mix unasked."""
+    submit(tmp_path / "class/ann", BAD)
+    batch(tmp_path)
+    text = (ROOT / "rubrics" / "lab6.toml").read_text(encoding="utf-8").replace('id = "lab6"', 'id = "lab7"', 1)
+    (tmp_path / "lab7.toml").write_text(text.replace('reference = "lab6/my_robot"', "", 1), encoding="utf-8")
+    done = batch(tmp_path, "--rubric", tmp_path / "lab7.toml")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "it was graded by the rubric lab6, not lab7 (it holds ann)" in done.stderr
+    assert batch(tmp_path, "--rubric", tmp_path / "lab7.toml", "--add").returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "words"),
+    [
+        ("Lab 6 (98765)", "Lab 6 (11111)", "it was graded for Canvas 98765, not Canvas 11111"),
+        ("Lab 6 (98765)", "Lab 5 (22),Lab 6 (98765)", ""),
+    ],
+)
+def test_another_course_of_canvas_is_refused(tmp_path: Path, first: str, second: str, words: str) -> None:
+    """A roster that Canvas has exported for another course has none of the assignments of the first."""
+    submit(tmp_path / "class/ann", BAD)
+    header = "Student,ID,SIS User ID,SIS Login ID,Section"
+    batch(tmp_path, roster=f'{header},{first}\n"Ash, Ann",5,s5,ann,A{"," * (first.count(",") + 1)}\n')
+    done = batch(tmp_path, roster=f'{header},{second}\n"Ash, Ann",5,s5,ann,A{"," * (second.count(",") + 1)}\n')
+    assert (done.returncode, words in done.stderr) == (2 if words else 0, True)
+
+
+def test_another_assignment_of_moodle_is_refused(tmp_path: Path) -> None:
+    """Moodle gives the participants of each assignment other numbers: the same names with other numbers are another assignment."""
+    for number in (12, 13):
+        submit(tmp_path / f"class/Jane Doe {number}_{number}_assignsubmission_file/my_robot", BAD)
+    batch(tmp_path)
+    for number in (12, 13):
+        place = tmp_path / "class" / f"Jane Doe {number}_{number}_assignsubmission_file"
+        place.rename(tmp_path / "class" / f"Jane Doe {number}_{number + 70}_assignsubmission_file")
+    done = batch(tmp_path)
+    assert done.returncode == 2
+    assert "no student of this class is in it" in done.stderr
+
+
+def test_another_assignment_of_nbgrader_is_refused(tmp_path: Path) -> None:
+    """nbgrader names the assignment."""
+    for name in ("lab6", "lab7"):
+        submit(tmp_path / f"class/submitted/ann/{name}", BAD)
+    assert batch(tmp_path, "--assignment", "lab6").returncode == 0
+    done = batch(tmp_path, "--assignment", "lab7")
+    assert done.returncode == 2
+    assert "it was graded for nbgrader lab6, not nbgrader lab7 (it holds ann)" in done.stderr
+
+
+@pytest.mark.parametrize("roster", ["", "id,login\n1,ann\n"])
+def test_a_fresh_download_is_not_refused(tmp_path: Path, roster: str) -> None:
+    """The same class in another folder goes into the same gradebook, and so does one whose roster comes later."""
+    submit(tmp_path / "class/lab6-ann", BAD)
+    batch(tmp_path)
+    (tmp_path / "class").rename(tmp_path / "old")
+    submit(tmp_path / "class/lab6-ann")
+    assert batch(tmp_path, roster=roster).returncode == 0
+    assert [each["score"] for each in students(tmp_path).values()] == [90]
+
+
+def test_hostile_display_names_of_moodle_are_refused(tmp_path: Path) -> None:
+    """A full name that imitates a participant's number is left out: it could be read as either."""
+    submit(tmp_path / "class/Bob_7_assignsubmission_file/my_robot", BAD)
+    submit(tmp_path / "class/Mallory_7_assignsubmission_file__9_assignsubmission_file/my_robot")
+    done = batch(tmp_path)
+    assert "Mallory_7_assignsubmission_file__9_assignsubmission_file" in done.stderr
+    assert {key: each["score"] for key, each in students(tmp_path).items()} == {"Bob_7": 62}
+
+
+def test_hostile_display_names_of_canvas_are_refused(tmp_path: Path) -> None:
+    """A name that ends in another user's number could be read as theirs: beside the user's own files it is left out."""
+    (tmp_path / "class").mkdir()
+    shutil.copy(BAD / "my_robot.urdf", tmp_path / "class/smithbob_77_100_my_robot.urdf")
+    shutil.copy(ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf", tmp_path / "class/mallory_77_99_101_my_robot.urdf")
+    done = batch(tmp_path, "--layout", "canvas")
+    assert "mallory_77_99_101_my_robot.urdf" in done.stderr
+    assert {key: each["score"] for key, each in students(tmp_path).items()} == {"smithbob_77": 62}
+
+
+def digested(key: str) -> str:
+    """A report's name with the whole digest of a key."""
+    return f"{key.replace(' ', '_')}-{sha256(key.encode()).hexdigest()}"
+
+
+def test_a_report_is_of_one_student(tmp_path: Path) -> None:
+    """Names that become alike in a file system have reports of their own, and an index says whose each is."""
+    names = ["Bob Smith", "Bob_Smith", "bob_smith", "CON", "a" * 200, "a" * 201, "Zoe\u0308", "Zo\u00eb"]
+    names += ["Bob_Smith-7e3d89", digested("Bob Smith"), digested("BOB_SMITH")]
+    for name in names:
+        submit(tmp_path / "class" / name, BAD)
+    batch(tmp_path, "--reports", tmp_path / "reports")
+    written = [each.name for each in (tmp_path / "reports").iterdir() if each.suffix == ".txt"]
+    assert len({each.casefold() for each in written}) == len(names)
+    index = dict(line.split(",") for line in (tmp_path / "reports/index.csv").read_text().splitlines()[1:])
+    assert sorted(index.values()) == sorted(names)
+    assert sorted(f"{each}.txt" for each in index) == sorted(written)
+
+
+def test_a_report_of_another_student_is_not_written_over(tmp_path: Path) -> None:
+    """A folder with reports of another class is refused where a name stands for somebody else there."""
+    submit(tmp_path / "class/ann", BAD)
+    (tmp_path / "reports").mkdir()
+    (tmp_path / "reports/index.csv").write_text("report,id\r\nann,Ann Ash\r\n")
+    done = batch(tmp_path, "--reports", tmp_path / "reports")
+    assert done.returncode == 2
+    assert "has a report of Ann Ash named ann: name another folder" in done.stderr
