@@ -11,7 +11,7 @@ from typing import NamedTuple
 from grader.errors import InputError
 from grader.grading.rubric import Rubric
 from grader.submission.bulk import Bulk
-from grader.submission.files import URDF_LIMIT, capped, printable_path, read_start
+from grader.submission.files import URDF_LIMIT, capped, open_regular, printable_path, read_start
 from grader.submission.folder import file_at
 from grader.submission.opening import outer_tree, tree_name, with_inner, without_endings
 from grader.submission.submission import Submission, read_submission, submission_of
@@ -52,7 +52,7 @@ def open_hand_in(root: str, paths: tuple[str, ...], names: tuple[str, ...], name
     Several files make one hand-in, which is called `name`, and stand in it side by side as `names`.
     """
     if len(paths) == 1:
-        return _in_bulk(root, paths[0]) if is_bulk(root) else _on_disk(f"{root}/{paths[0]}")
+        return _in_bulk(root, paths[0]) if is_bulk(root) else _on_disk(root, f"{root}/{paths[0]}")
     given = dict(zip(paths, names or [PurePosixPath(path).name for path in paths], strict=True))
     tree = _bulk(root, _stamp(root)).files(given, name) if is_bulk(root) else _side_by_side(root, given, name)
     return Opened(name, name, _digest_of_tree(name, tree), None, tree)
@@ -64,18 +64,18 @@ def is_bulk(root: str) -> bool:
     return not Path(root).is_dir()
 
 
-def _on_disk(path: str) -> Opened:
+def _on_disk(root: str, path: str) -> Opened:
     last = path.rpartition("/")[2]
     if last.lower().endswith(_ROBOTS):
         shown = printable_path(last)
-        data = capped(read_start(path, URDF_LIMIT + 1, shown), URDF_LIMIT, shown)
+        data = capped(read_start(path, URDF_LIMIT + 1, shown, root), URDF_LIMIT, shown)
         return Opened(shown.rpartition(".")[0], shown, _digest_of(shown, data), data, None)
     place = Path(path)
-    tree = outer_tree(place)
+    tree = outer_tree(place, root)
     if tree is None:
         raise InputError(f"{printable_path(place.name)} {_NEITHER}")
     name = tree_name(place)
-    digest = _digest_of_tree(name, tree) if place.is_dir() else _digest_of_file(name, place)
+    digest = _digest_of_tree(name, tree) if place.is_dir() else _digest_of_file(name, place, root)
     return Opened(name, printable_path(place), digest, None, tree)
 
 
@@ -107,7 +107,7 @@ def _side_by_side(root: str, named: dict[str, str], name: str) -> Tree:
     """Some files on disk as one tree. What is not looked at in a folder or archive is not looked at here."""
     given = {clean(each): path for path, each in named.items()}
     ignored = {each for each in given if is_ignored(each)}
-    files = [file_at(Path(root, path), each) for each, path in given.items() if each not in ignored]
+    files = [file_at(Path(root, path), each, root) for each, path in given.items() if each not in ignored]
     generated = sorted(each for each in ignored if is_generated(each))
     unseen = [folder for each in ignored if (folder := ignored_folder(each)) is not None]
     return make_tree(name, files, (), generated=generated, unseen=unseen)
@@ -118,10 +118,10 @@ def _digest_of(name: str, data: bytes) -> str:
     return sha256(repr(name).encode() + data).hexdigest()
 
 
-def _digest_of_file(name: str, path: Path) -> str:
+def _digest_of_file(name: str, path: Path, root: str) -> str:
     digest = sha256(repr(name).encode())
     try:
-        with path.open("rb") as file:
+        with os.fdopen(open_regular(path, top=root), "rb") as file:
             while chunk := file.read(_CHUNK):
                 digest.update(chunk)
     except OSError as error:
@@ -176,16 +176,9 @@ def _fingerprint_of_bulk(root: str, paths: tuple[str, ...], now: int) -> str:
 
 
 def _walk(top: str) -> Iterator[tuple[str, os.stat_result]]:
-    """Every file and folder at and below a path, links in it as such, in the order of the alphabet; OSError where there are too many.
-
-    Where the path is a link itself, what it leads to is what was handed in.
-    """
+    """Every file and folder at and below a path, symlinks as such, in the order of the alphabet; OSError where there are too many."""
     status = os.lstat(top)
     yield "", status
-    if stat.S_ISLNK(status.st_mode):
-        top = os.path.realpath(top)
-        status = os.lstat(top)
-        yield top, status
     if not stat.S_ISDIR(status.st_mode):
         return
     waiting = [top]

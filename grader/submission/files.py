@@ -1,5 +1,6 @@
 """Reading a student's files: regular files only, never more than a limit, never outside the submission."""
 
+import errno
 import os
 import stat
 import sys
@@ -9,6 +10,10 @@ from pathlib import Path
 from grader.errors import InputError
 
 URDF_LIMIT = 1024 * 1024  # bytes
+# A FIFO would block at open and a device could be endless: both are recognised without reading.
+_FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
+_FOLDER = os.O_RDONLY | getattr(os, "O_DIRECTORY", 0) | getattr(os, "O_CLOEXEC", 0)
+_OPENS_IN_FOLDERS = os.open in os.supports_dir_fd and hasattr(os, "O_NOFOLLOW")
 _MOST_BESIDE = 1000  # names in a folder that are compared with one that is not there
 _ADVICE = " for a URDF (--max-size raises it)"
 
@@ -22,22 +27,64 @@ def read_capped(path: Path | str, limit: int = URDF_LIMIT, *, advice: str = _ADV
     return data if len(data) <= limit else capped(data, limit, printable_path(path), advice)
 
 
-def read_start(path: Path | str, count: int, shown: str = "") -> bytes:
+def read_start(path: Path | str, count: int, shown: str = "", top: str = "") -> bytes:
     """The first bytes of a regular file; raises InputError, in one plain sentence, for anything else.
 
-    `shown` is what messages call it, the path unless told.
+    `shown` is what messages call it (default: the path). Below the folder `top` no symlink is followed.
     """
+    handle = open_regular(path, shown, top)
     try:
-        # A FIFO would block at open and a device could be endless: both are recognised without reading.
-        handle = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
-        try:
-            if not stat.S_ISREG(os.fstat(handle).st_mode):
-                raise InputError(f"{shown or printable_path(path)} is not a regular file")
-            return _read(handle, count)
-        finally:
-            os.close(handle)
+        return _read(handle, count)
     except OSError as error:
         raise InputError(f"cannot read {shown or printable_path(path)}: {error.strerror or error}") from None
+    finally:
+        os.close(handle)
+
+
+def open_regular(path: Path | str, shown: str = "", top: str = "") -> int:
+    """A descriptor of a regular file; raises InputError, as `read_start` does."""
+    shown = shown or printable_path(path)
+    try:
+        handle = _open_below(top, os.fspath(path)) if top else os.open(path, _FLAGS)
+    except OSError as error:
+        if error.errno == errno.ELOOP and top:
+            raise InputError(f"{shown} is a symlink, and was not followed") from None
+        raise InputError(f"cannot read {shown}: {error.strerror or error}") from None
+    if not stat.S_ISREG(os.fstat(handle).st_mode):
+        os.close(handle)
+        raise InputError(f"{shown} is not a regular file")
+    return handle
+
+
+def _open_below(top: str, path: str) -> int:
+    """Open `path`, which begins with `top`, folder by folder: a symlink that is put in its way at any moment is an OSError."""
+    start = top.rstrip("/") + "/"
+    if not path.startswith(start):
+        raise OSError(errno.EPERM, "it is outside of the submission")
+    if not _OPENS_IN_FOLDERS:
+        return _open_and_verify(path)
+    *folders, name = path[len(start) :].split("/")
+    at = os.open(start, _FOLDER)
+    try:
+        for folder in folders:
+            inner = os.open(folder, _FOLDER | os.O_NOFOLLOW, dir_fd=at)
+            os.close(at)
+            at = inner
+        return os.open(name, _FLAGS | os.O_NOFOLLOW, dir_fd=at)
+    except NotADirectoryError:  # Linux' word for a symlink in place of a folder
+        raise OSError(errno.ELOOP, os.strerror(errno.ELOOP)) from None
+    finally:
+        os.close(at)
+
+
+def _open_and_verify(path: str) -> int:
+    """Open a file where the system cannot open it folder by folder (Windows), and see that no symlink led to it."""
+    handle = os.open(path, _FLAGS)
+    real = os.path.realpath(path)
+    if os.path.normcase(real) == os.path.normcase(path) and os.path.samestat(Path(real).stat(), os.fstat(handle)):
+        return handle
+    os.close(handle)
+    raise OSError(errno.ELOOP, os.strerror(errno.ELOOP))
 
 
 def _read(handle: int, count: int) -> bytes:

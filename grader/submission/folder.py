@@ -26,13 +26,15 @@ from grader.submission.tree import (
 _MOST_GENERATED = 10_000
 
 
-def read_folder(folder: Path) -> Tree:
+def read_folder(folder: Path, top: str = "") -> Tree:
     """The files of a folder. Raises InputError where it cannot be read or holds far too many.
+
+    Below `top`, a folder around it, no symlink is followed to get to it; by default it is trusted itself.
 
     Left out, and named: links that lead out of it or nowhere, folders that cannot be opened, and what is neither file nor
     folder. Left out in silence: folders of builds and tools, virtual environments, hidden files.
     """
-    walk = _Walk(folder)
+    walk = _Walk(folder, top)
     walk.enter("", linked=False)
     name = printable_path(folder.resolve().name or "submission")
     return make_tree(name, walk.files, walk.folders, sorted(walk.left_out), sorted(walk.generated), walk.unseen)
@@ -41,9 +43,12 @@ def read_folder(folder: Path) -> Tree:
 class _Walk:
     """Goes through a folder. A folder that links lead to is entered once by its own path, and once by a link."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, top: str) -> None:
         self._folder = folder
         self._top = os.path.realpath(folder)
+        self._trusted = os.path.realpath(top) if top else self._top
+        if top and self._top != f"{self._trusted}{os.fspath(folder).removeprefix(top)}":
+            raise InputError(f"{printable_path(folder.name)} is a symlink, and was not followed")
         self._count = 0
         self._by_link: set[str] = set()
         self.files: list[File] = []
@@ -58,12 +63,13 @@ class _Walk:
         links: list[str] = []
         while waiting:
             where = waiting.pop()
+            real_folder = os.path.realpath(self._folder / where) if linked else f"{self._top}/{where}".rstrip("/")
             for entry in self._entries(where):
                 self._count += 1
                 if self._count > MOST_FILES:
                     raise too_many(printable_path(self._folder))
                 path = f"{where}/{entry.name}" if where else entry.name
-                if not self._is_ignored(entry, path) and self._take(entry, path):
+                if not self._is_ignored(entry, path) and self._take(entry, path, real_folder):
                     (links if entry.is_symlink() else waiting).append(path)
         for path in links:
             real = os.path.realpath(self._folder / path)
@@ -81,7 +87,7 @@ class _Walk:
             self.generated += _generated(self._folder, path)
         return True
 
-    def _take(self, entry: "os.DirEntry[str]", path: str) -> bool:
+    def _take(self, entry: "os.DirEntry[str]", path: str, real_folder: str) -> bool:
         """Take in a file, or say what is left out; True for a folder that is to be entered."""
         shown = clean(path)
         try:
@@ -99,7 +105,8 @@ class _Walk:
                 self.folders.append(shown)
             return True
         elif is_file:
-            self.files.append(File(shown, _size(entry), partial(_read, Path(entry.path), shown)))
+            place = real or f"{real_folder}/{entry.name}"
+            self.files.append(File(shown, _size(entry), partial(_read, place, shown, self._trusted)))
         elif entry.is_symlink() and not Path(entry.path).exists():
             self.left_out.append(f"{shown} is a link that leads nowhere, and was not followed")
         else:
@@ -125,15 +132,18 @@ def is_looked_at(folder: Path, path: str) -> bool:
     return not any(os.path.lexists(folder / above / "pyvenv.cfg") for above in parents(path))
 
 
-def file_at(path: Path, name: str) -> File:
-    """A file on its own, as it is called in a submission; raises InputError where it is a link or cannot be found."""
+def file_at(path: Path, name: str, top: str) -> File:
+    """A file on its own, as it is called in a submission; raises InputError where it is a symlink or cannot be found.
+
+    Below the folder `top` no symlink is followed.
+    """
     try:
         status = path.lstat()
     except OSError as error:
         raise InputError(f"cannot read {name}: {error.strerror}") from None
     if stat.S_ISLNK(status.st_mode):
-        raise InputError(f"{name} is a link, and was not followed")
-    return File(name, status.st_size, partial(_read, path, name))
+        raise InputError(f"{name} is a symlink, and was not followed")
+    return File(name, status.st_size, partial(_read, os.fspath(path), name, top))
 
 
 def _generated(folder: Path, path: str) -> list[str]:
@@ -152,10 +162,10 @@ def _generated(folder: Path, path: str) -> list[str]:
     return found
 
 
-def _read(path: Path, shown: str, limit: int, *, first: bool = False) -> bytes:
+def _read(path: str, shown: str, top: str, limit: int, *, first: bool = False) -> bytes:
     """The bytes of a file; messages name it as the submission does, so that they are the same on every machine."""
-    start = read_start(path, limit if first else limit + 1, shown)
-    return start if first else capped(start, limit, shown, advice_for(path.name))
+    start = read_start(path, limit if first else limit + 1, shown, top)
+    return start if first else capped(start, limit, shown, advice_for(shown))
 
 
 def _size(entry: "os.DirEntry[str]") -> int:

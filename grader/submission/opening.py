@@ -6,7 +6,7 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from grader.errors import InputError
-from grader.submission.files import not_there, printable_path, read_start
+from grader.submission.files import not_there, open_regular, printable_path, read_start
 from grader.submission.tree import MOST_FILES, File, Tree, make_tree, too_many
 
 if TYPE_CHECKING:
@@ -34,8 +34,11 @@ def open_tree(path: Path) -> Tree | None:
     return with_inner(tree) if tree is not None else None
 
 
-def outer_tree(path: Path) -> Tree | None:
-    """The files at a path, archives among them unopened; None where it is a single file that is no archive. Raises InputError."""
+def outer_tree(path: Path, top: str = "") -> Tree | None:
+    """The files at a path, archives among them unopened; None where it is a single file that is no archive. Raises InputError.
+
+    Below the folder `top` no symlink is followed.
+    """
     try:
         is_folder = path.is_dir()
         if not is_folder and not os.path.lexists(path):
@@ -46,18 +49,18 @@ def outer_tree(path: Path) -> Tree | None:
     if is_folder:
         from grader.submission.folder import read_folder  # what a single URDF does not need is loaded late
 
-        return read_folder(path)
+        return read_folder(path, top)
     if path.name.lower().endswith((".urdf", ".xacro", ".xml")):
         return None
     shown = printable_path(path)
-    kind = archive_kind(read_start(path, 512))
+    kind = archive_kind(read_start(path, 512, top=top))
     if kind is None:
         if path.name.lower().endswith(ARCHIVES):
             raise InputError(f"{shown} is no archive that can be read, for all its name: it is damaged or empty")
         return None
     from grader.submission.archive import read_archive
 
-    return read_archive(path.open("rb"), kind, shown)
+    return read_archive(os.fdopen(open_regular(path, top=top), "rb"), kind, shown)
 
 
 def tree_name(path: Path) -> str:

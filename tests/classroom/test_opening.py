@@ -6,6 +6,7 @@ import shutil
 import time
 import zipfile
 from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,9 @@ from hypothesis import strategies as st
 from grader.classroom.opening import fingerprint, is_bulk, open_hand_in
 from grader.classroom.quoting import Origin, Quoting
 from grader.errors import InputError
+from grader.submission import files as reading
+from grader.submission.folder import read_folder
+from grader.submission.opening import outer_tree
 from tests.classroom.class_runs import Item, tarred
 from tests.samples import LAB6, ROOT
 
@@ -144,22 +148,20 @@ def test_digests_are_equal_for_equal_bytes_only(one: bytes, other: bytes) -> Non
     assert (digests[0] == digests[1]) == (one == other)
 
 
-def test_a_fingerprint_tells_of_times_and_links(tmp_path: Path) -> None:
-    """The same size, bytes and time of change are not enough: the inode's own time counts. What a link leads to counts as well."""
+def test_a_fingerprint_tells_of_times(tmp_path: Path) -> None:
+    """The same size, bytes and time of change are not enough: the inode's own time counts."""
     place = tmp_path / "ann.urdf"
     place.write_bytes(URDF)
-    (tmp_path / "bea.urdf").symlink_to("ann.urdf")
-    (tmp_path / "cal").symlink_to("dan")
     (tmp_path / "dan").mkdir()
     (tmp_path / "dan/a.urdf").write_bytes(URDF)
-    before = [mark(tmp_path, name) for name in ("ann.urdf", "bea.urdf", "cal")]
-    assert before == [mark(tmp_path, name) for name in ("ann.urdf", "bea.urdf", "cal")]
+    before = [mark(tmp_path, name) for name in ("ann.urdf", "dan")]
+    assert before == [mark(tmp_path, name) for name in ("ann.urdf", "dan")]
     assert all(before)
     for path in (place, tmp_path / "dan/a.urdf"):
         status = path.stat()
         path.write_bytes(URDF.replace(b"'b'", b"'c'"))
         os.utime(path, ns=(status.st_atime_ns, status.st_mtime_ns))
-    for name, was in zip(("ann.urdf", "bea.urdf", "cal"), before, strict=True):
+    for name, was in zip(("ann.urdf", "dan"), before, strict=True):
         assert mark(tmp_path, name) != was
 
 
@@ -214,8 +216,37 @@ def test_links_among_several_files_are_refused(tmp_path: Path) -> None:
     for target in ("/etc/passwd", "a.urdf"):
         (tmp_path / "b.txt").unlink(missing_ok=True)
         (tmp_path / "b.txt").symlink_to(target)
-        with pytest.raises(InputError, match=r"b\.txt is a link, and was not followed"):
+        with pytest.raises(InputError, match=r"b\.txt is a symlink, and was not followed"):
             open_hand_in(str(tmp_path), ("a.urdf", "b.txt"), (), "ann")
+
+
+@pytest.mark.parametrize("opens_in_folders", [True, False])
+@pytest.mark.parametrize("swapped", ["ann", "ann/urdf", "ann/urdf/my_robot.urdf"])
+def test_a_symlink_that_comes_late_is_not_followed(
+    swapped: str, opens_in_folders: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Once a file is found, another student's file cannot be put in its place, with or without opening folder by folder."""
+    monkeypatch.setattr(reading, "_OPENS_IN_FOLDERS", opens_in_folders and reading._OPENS_IN_FOLDERS)
+    for name, text in (("ann", URDF), ("bob", b"secret")):
+        (tmp_path / name / "urdf").mkdir(parents=True)
+        (tmp_path / name / "urdf/my_robot.urdf").write_bytes(text)
+    trees = [outer_tree(tmp_path / "ann", str(tmp_path)), read_folder(tmp_path / "ann")]
+    found = [tree.files["urdf/my_robot.urdf"] for tree in trees if tree is not None]
+    assert [file.read(1000) for file in found] == [URDF, URDF]
+    place = tmp_path / swapped
+    place.rename(tmp_path / "away")
+    place.symlink_to(tmp_path / swapped.replace("ann", "bob", 1))
+    for file in found[: 1 if swapped == "ann" else 2]:  # whoever names a folder trusts what it leads to
+        with pytest.raises(InputError, match=r"urdf/my_robot\.urdf is a symlink, and was not followed"):
+            file.read(1000)
+    with pytest.raises(InputError, match="is a symlink, and was not followed") if swapped == "ann" else nullcontext():
+        outer_tree(tmp_path / "ann", str(tmp_path))
+
+
+def test_nothing_outside_of_the_class_is_opened(tmp_path: Path) -> None:
+    """A path that leads elsewhere is refused before it is opened."""
+    with pytest.raises(InputError, match="it is outside of the submission"):
+        reading.read_start("/etc/passwd", 10, "x", str(tmp_path))
 
 
 def _fifo(top: Path) -> None:

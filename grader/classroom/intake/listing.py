@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
@@ -85,13 +86,9 @@ class FolderListing:
             found.refused.append((entry.name, f"cannot be read: {error.strerror}"))
 
     def starts(self, paths: Iterable[str], count: int) -> dict[str, bytes]:
-        """The first bytes of some files, of those that can be read and are no links."""
+        """The first bytes of some files, of those that can be read and are no symlinks."""
         starts: dict[str, bytes] = {}
         for path in paths:
-            place = Path(self._top, path)
-            try:
-                if not place.is_symlink():
-                    starts[path] = read_start(place, count)
-            except InputError:
-                continue
+            with suppress(InputError):
+                starts[path] = read_start(f"{self._top}/{path}", count, top=self._top)
         return starts
