@@ -28,6 +28,27 @@ class Outcome(NamedTuple):
     location: Location | None = None
 
 
+def fault_of(returned: object) -> str:
+    """What is wrong with what a check has returned, in words; empty for an Outcome that a report can hold."""
+    if not isinstance(returned, Outcome):
+        return f"it returned {type(returned).__name__}, not an Outcome"
+    if returned.status not in ("passed", "failed", "pending"):
+        return f"it returned the status {returned.status!r}; a check says passed, failed or pending"
+    wrong = [name for name, kinds in _TYPES.items() if not isinstance(getattr(returned, name), kinds)]
+    return f"it returned an Outcome whose {wrong[0]} is {type(getattr(returned, wrong[0])).__name__}" if wrong else ""
+
+
+_VALUES = (bool, int, float, str, tuple, Mapping, type(None))
+_TYPES: Mapping[str, tuple[type, ...]] = {
+    "message": (str,),
+    "measured": _VALUES,
+    "expected": _VALUES,
+    "tolerance": (int, float, type(None)),
+    "unit": (str, type(None)),
+    "location": (Location, type(None)),
+}
+
+
 def passed(message: str) -> Outcome:
     """The fact is true of the submission."""
     return Outcome("passed", message)

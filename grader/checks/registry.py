@@ -82,12 +82,14 @@ class Check:
     """A check as a rubric sees it.
 
     `subject` is what it is asked of: the URDF as it was read, the robot in it, the package, or all that was handed in.
+    `distribution` is the installed package that it comes from; empty for one of the grader's own.
     """
 
     name: str
     function: Callable[..., Outcome]
     subject: Subject
     parameters: Mapping[str, Parameter]
+    distribution: str = ""
 
     @property
     def fact(self) -> str:
@@ -95,11 +97,18 @@ class Check:
         return (inspect.getdoc(self.function) or "").split("\n\n")[0].replace("\n", " ")
 
 
-def describe(function: Callable[..., Outcome]) -> Check:
-    """The check that a function is: its signature is the schema of the rubric's `with` table."""
+def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:
+    """The check that a function is: its signature is the schema of the rubric's `with` table.
+
+    Raises InputError for a signature that is no schema.
+    """
     hints = get_type_hints(function)
-    signature = inspect.signature(function)
-    subject, *rest = signature.parameters.values()
+    subject, *rest = inspect.signature(function).parameters.values()
+    for each in rest:
+        if each.kind not in (each.KEYWORD_ONLY, each.POSITIONAL_OR_KEYWORD):
+            raise InputError(f"its argument {each} cannot be given by name")
+        if each.name not in hints:
+            raise InputError(f"its argument {each.name} has no annotation")
     parameters = {
         each.name: Parameter(
             each.name,
@@ -111,7 +120,7 @@ def describe(function: Callable[..., Outcome]) -> Check:
     }
     known: tuple[Subject, ...] = get_args(Subject)
     asked: Subject = next((each for each in known if each == subject.name), "robot")
-    return Check(function.__name__, function, asked, parameters)
+    return Check(function.__name__, function, asked, parameters, distribution)
 
 
 def check_names() -> list[str]:
@@ -127,10 +136,15 @@ def find_check(name: str) -> Check | None:
     entry = _entry_points().get(name)
     if entry is None:
         return None
+    distribution = entry.dist.name if entry.dist is not None else entry.value.partition(":")[0]
     try:
-        return replace(describe(entry.load()), name=name)
-    except Exception as error:  # noqa: BLE001  another package's fault, whatever it is
-        raise InputError(f"the check {name} of another package cannot be loaded: {error}") from None
+        return replace(describe(entry.load(), distribution), name=name)
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # noqa: BLE001  another package's fault, whatever it is, an exit included
+        said = str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
+        place = entry.value.replace(":", ".")
+        raise InputError(f"the check {name} of the package {distribution} ({place}) cannot be used: {said}") from None
 
 
 def _entry_points() -> dict[str, Any]:

@@ -88,6 +88,7 @@ def grade_once(wanted: Wanted) -> tuple["Report", int]:
     save_reports(wanted, done)
     text = render(done.report, wanted.format, done.base, to_file=False)
     emit(text if wanted.format is Format.TERMINAL else text.encode("utf-8", "backslashreplace"))
+    _complain_of_undecided(done)
     if on_github():
         tell_github(done.report, done.base, annotate=wanted.format is not Format.GITHUB)
     return done.report, done.code
@@ -110,8 +111,17 @@ def graded(wanted: Wanted) -> Graded:
         if result.traceback:
             complain(printable(f"{result.criterion.id}: {result.traceback.strip().splitlines()[-1]}"))
     base = base_of(wanted.path, is_single=submission.is_single)
-    is_read = not (submission.unread or submission.unopened)
-    return Graded(report, base, _exit_code(report, wanted.threshold, is_read=is_read))
+    return Graded(report, base, _exit_code(report, wanted.threshold))
+
+
+def _complain_of_undecided(done: Graded) -> None:
+    """Say why the exit code is 1 though nothing failed: a report may not be what is looked at."""
+    from grader.report.text import printable
+    from grader.report.words import undecided
+
+    left = [each.criterion.id for each in undecided(done.report)]
+    if done.code == 1 and left and not done.report.counts("failed", "skipped"):
+        complain(printable(f"exit code 1: could not be decided, and needs manual grading: {', '.join(left)}"))
 
 
 def save_reports(wanted: Wanted, done: Graded) -> None:
@@ -143,15 +153,15 @@ def wanted_rubric(wanted: Wanted) -> "Rubric":
     return rules
 
 
-def _exit_code(report: "Report", threshold: Threshold | None, *, is_read: bool) -> int:
-    """3 for a fault of ours; 0 where all that can be decided passed, or the score is enough; otherwise 1.
+def _exit_code(report: "Report", threshold: Threshold | None) -> int:
+    """3 for a faulty check; with a threshold, 0 exactly where the score reaches it; else 0 where a program decided that all passed.
 
-    What was handed in and cannot be read keeps a check from being green: a person has to look first.
+    What a program normally decides but could not is not green without a threshold: a person has to look first.
     """
     from grader.report.words import undecided
 
     if report.counts("errored"):
         return 3
-    if threshold is not None and threshold.reached(report.score, report.max_score):
-        return 0
-    return 1 if report.counts("failed", "skipped") or (undecided(report) and not is_read) else 0
+    if threshold is not None:
+        return 0 if threshold.reached(report.score, report.max_score) else 1
+    return 1 if report.counts("failed", "skipped") or undecided(report) else 0

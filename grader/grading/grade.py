@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from grader.checks.outcome import Outcome
-from grader.checks.registry import Subject
+from grader.checks.outcome import Outcome, fault_of
+from grader.checks.registry import Check, Subject
 from grader.errors import MissingElement, NotDecided
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Criterion, Rubric
@@ -88,6 +88,9 @@ class _Run:
             asked = criterion.check.subject
             subject = self._at_hand.get(asked) or self._missing(asked)
             outcome = criterion.check.function(subject, **criterion.arguments)
+            fault = fault_of(outcome) if criterion.check.distribution else ""
+            if fault:
+                return Result(criterion, _errored(criterion.check, fault))
             if outcome.status == "failed":
                 outcome = self._explained(outcome)
             return Result(criterion, outcome)
@@ -97,11 +100,13 @@ class _Run:
             return Result(criterion, Outcome("pending", f"{unknown}; a person has to look at it"))
         except NotDecided as reason:
             return Result(criterion, Outcome("pending", f"{reason}; a person has to look"))
-        except Exception as error:  # noqa: BLE001  a fault of ours must cost the student nothing else
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:  # noqa: BLE001  a faulty check, even one that exits, costs the student nothing else
             from traceback import format_exc  # only ever needed here
 
-            message = f"the grader itself failed here ({type(error).__name__}); please report it"
-            return Result(criterion, Outcome("errored", message), traceback=format_exc())
+            fault = f"{type(error).__name__}: {error}"
+            return Result(criterion, _errored(criterion.check, fault), traceback=format_exc())
 
     def _missing(self, name: Subject) -> object:
         """The package; for whatever else is asked of and is not at hand, raises MissingElement or NotDecided."""
@@ -140,3 +145,10 @@ class _Run:
 
 def _skipped(cause: str) -> Outcome:
     return Outcome("skipped", f"not decided, because {cause} failed")
+
+
+def _errored(check: Check, fault: str) -> Outcome:
+    """A criterion that nobody could decide because its check is faulty; an installed package answers for its own."""
+    if check.distribution:
+        return Outcome("errored", f"the check {check.name} of the package {check.distribution} is faulty: {fault}")
+    return Outcome("errored", f"the grader itself failed here ({fault.partition(':')[0]}); please report it")

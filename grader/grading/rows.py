@@ -6,6 +6,7 @@ from decimal import Decimal
 from typing import Any
 
 from grader.checks.registry import Check, check_names, find_check
+from grader.errors import InputError
 from grader.grading.arguments import bind
 from grader.grading.toml_lines import Path
 from grader.robot.names import closest, did_you_mean
@@ -89,18 +90,24 @@ class Rows:
         self._part(where, row, parts)
         self._requires(index, row, rows)
         name, given = row.get("check"), row.get("with", {})
-        check = find_check(name) if isinstance(name, str) else None
-        if isinstance(name, str) and check is None:
-            self._complain(
-                (*where, "check"),
-                f"there is no check {name!r}{did_you_mean(name, check_names()) or '; `grader rubric checks` lists them'}",
-            )
+        check = self._check((*where, "check"), name) if isinstance(name, str) else None
         if check is None or not isinstance(given, dict):
             return
         arguments, faults = bind(check, given)
         for key, fault in faults:
             self._complain((*where, "with", *key), fault)
         self.bound.append((check, arguments))
+
+    def _check(self, where: Path, name: str) -> Check | None:
+        try:
+            check = find_check(name)
+        except InputError as error:  # another package's
+            self._complain(where, str(error))
+            return None
+        if check is None:
+            guess = did_you_mean(name, check_names()) or "; `grader rubric checks` lists them"
+            self._complain(where, f"there is no check {name!r}{guess}")
+        return check
 
     def _requires(self, index: int, row: dict[str, Any], rows: list[dict[str, Any]]) -> None:
         required = row.get("requires", [])

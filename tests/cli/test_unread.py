@@ -50,15 +50,31 @@ def test_what_a_person_marks_anyway_is_green() -> None:
     assert "::warning" not in graded(REFERENCE)[1]
 
 
-def test_a_threshold_is_another_way_to_green(tmp_path: Path) -> None:
-    """All that can be decided passed, or the score is enough: what waits for a person counts against nobody."""
-    assert graded(REFERENCE, "--fail-under", "95%")[0] == 0
+def test_with_a_threshold_only_the_score_counts(tmp_path: Path) -> None:
+    """Green if and only if the score reaches it: neither passing everything else nor an undecided criterion changes that."""
+    assert graded(REFERENCE, "--fail-under", "90")[0] == 0
+    assert graded(REFERENCE, "--fail-under", "90.5")[0] == 1
+    assert graded(REFERENCE, "--fail-under", "95%")[0] == 1
     (tmp_path / "lab6.zip").write_bytes(b"no archive")
     shutil.copy(URDF, tmp_path)
     assert graded(tmp_path, "--fail-under", "70")[0] == 0
     assert graded(tmp_path, "--fail-under", "70.5")[0] == 1
     for odd in ("1_0", "\uff14\uff12", "101%", "60 %", "-1", "nan", "%"):
         assert run(("grade", str(REFERENCE), "--fail-under", odd)).returncode == 2, odd
+
+
+def test_xacro_that_cannot_be_expanded_is_not_green(tmp_path: Path) -> None:
+    """Nothing of it is decided: exit code 1, and standard error and the annotation say what was not decided."""
+    macro = '<xacro:macro name="m" params="x"><link name="${x}"/></xacro:macro><xacro:m x="base_link"/>'
+    text = f'<robot name="my_robot" xmlns:xacro="http://www.ros.org/wiki/xacro">{macro}</robot>'
+    (tmp_path / "my_robot.urdf.xacro").write_text(text)
+    done = run(("grade", str(tmp_path / "my_robot.urdf.xacro")))
+    assert done.returncode == 1
+    assert b"grader: exit code 1: could not be decided, and needs manual grading: urdf-loads, base-box, " in done.stderr
+    code, told = graded(tmp_path / "my_robot.urdf.xacro")
+    assert code == 1
+    assert "Not decided (70 points): urdf-loads, base-box, " in told
+    assert graded(tmp_path / "my_robot.urdf.xacro", "--fail-under", "0")[0] == 0
 
 
 def test_findings_in_an_archive_of_a_folder_are_on_the_archive(tmp_path: Path) -> None:

@@ -5,9 +5,24 @@ import os
 import signal
 import sys
 import time
+from typing import Any
 
 from grader.checks.outcome import Outcome, passed
 from grader.robot.kinematics import Configuration
+
+_RETURNED: dict[str, Any] = {
+    "returns_nothing": None,
+    "returns_text": "passed",
+    "returns_a_tuple": ("passed", "fine"),
+    "returns_another_status": Outcome("fine", "fine"),  # type: ignore[arg-type]
+    "returns_skipped": Outcome("skipped", "because"),
+    "returns_no_message": Outcome("passed", None),  # type: ignore[arg-type]
+    "returns_a_value_of_no_report": Outcome("passed", "fine", measured={1, 2}),  # type: ignore[arg-type]
+}
+
+
+class Unusual(BaseException):
+    """What no `except Exception` catches."""
 
 
 def behaves(robot: Configuration) -> Outcome:
@@ -28,6 +43,13 @@ def behaves(robot: Configuration) -> Outcome:
             os._exit(7)
         case "exits":
             sys.exit("out")
+        case "exits_with_0":
+            sys.exit(0)
+        case "raises_unusually":
+            raise Unusual("as asked")
+        case name if name in _RETURNED:
+            returned: Outcome = _RETURNED[name]
+            return returned
         case "crashes":
             ctypes.string_at(0)
         case "eats":
@@ -37,3 +59,12 @@ def behaves(robot: Configuration) -> Outcome:
         case "raises":
             raise RuntimeError("as asked")
     return passed("nothing bad was asked for")
+
+
+def without_annotation(robot, *, at_least):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN201
+    """A check whose argument has no annotation."""
+
+
+def without_names(robot: Configuration, *values: float) -> Outcome:
+    """A check whose arguments cannot be given by name."""
+    raise NotImplementedError

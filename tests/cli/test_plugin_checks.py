@@ -1,0 +1,92 @@
+"""Checks of other packages: a faulty one is an error of that package, never a result."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.classroom.class_runs import HOSTILE, HOSTILE_RUBRIC
+from tests.golden.cases import run
+
+WITH_HOSTILE = {"PYTHONPATH": str(HOSTILE)}
+FAULTY = "the check behaves of the package hostile-checks is faulty: "
+
+
+def robot(folder: Path, name: str) -> str:
+    """A URDF whose robot asks the check for something."""
+    place = folder / "my_robot.urdf"
+    place.write_text(f"<robot name='{name}'><link name='base_link'/></robot>")
+    return str(place)
+
+
+@pytest.mark.parametrize(
+    ("name", "fault"),
+    [
+        ("exits_with_0", "SystemExit: 0"),
+        ("exits", "SystemExit: out"),
+        ("raises", "RuntimeError: as asked"),
+        ("raises_unusually", "Unusual: as asked"),
+        ("returns_nothing", "it returned NoneType, not an Outcome"),
+        ("returns_text", "it returned str, not an Outcome"),
+        ("returns_a_tuple", "it returned tuple, not an Outcome"),
+        ("returns_another_status", "it returned the status 'fine'; a check says passed, failed or pending"),
+        ("returns_skipped", "it returned the status 'skipped'; a check says passed, failed or pending"),
+        ("returns_no_message", "it returned an Outcome whose message is NoneType"),
+        ("returns_a_value_of_no_report", "it returned an Outcome whose measured is set"),
+    ],
+)
+@pytest.mark.parametrize("threshold", [(), ("--fail-under", "0")])
+def test_a_faulty_check_is_errored(tmp_path: Path, name: str, fault: str, threshold: tuple[str, ...]) -> None:
+    """Whatever it raises or returns, the criterion is errored, the message names the package, and the exit code is 3."""
+    asked = ("grade", robot(tmp_path, name), "--rubric", HOSTILE_RUBRIC, "--format", "json", *threshold)
+    done = run(asked, **WITH_HOSTILE)
+    assert done.returncode == 3
+    loads, behaves = json.loads(done.stdout)["results"]
+    assert (loads["status"], loads["points"]) == ("passed", 1)
+    assert (behaves["status"], behaves["message"]) == ("errored", FAULTY + fault)
+    assert b"Traceback" not in done.stderr
+
+
+def test_a_check_that_works_decides(tmp_path: Path) -> None:
+    """A check of another package passes as the grader's own do."""
+    done = run(("grade", robot(tmp_path, "fine"), "--rubric", HOSTILE_RUBRIC), **WITH_HOSTILE)
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize(
+    ("check", "fault"),
+    [
+        (
+            "without_annotation",
+            "hostile_checks.without_annotation) cannot be used: its argument at_least has no annotation",
+        ),
+        (
+            "without_names",
+            "hostile_checks.without_names) cannot be used: its argument *values: float cannot be given by name",
+        ),
+        ("leaves_when_loaded", "hostile_exit.check) cannot be used: SystemExit: 0"),
+        ("is_not_there", "hostile_checks.nothing) cannot be used: AttributeError: "),
+    ],
+)
+def test_a_check_that_is_no_check_is_a_mistake_of_the_rubric(tmp_path: Path, check: str, fault: str) -> None:
+    """The message has the rubric's line, and names package, function and argument; nothing is graded."""
+    text = Path(HOSTILE_RUBRIC).read_text(encoding="utf-8").replace('check = "behaves"', f'check = "{check}"')
+    (tmp_path / "lab.toml").write_text(text)
+    for command in (
+        ("grade", robot(tmp_path, "fine"), "--rubric", str(tmp_path / "lab.toml")),
+        ("rubric", "check", str(tmp_path / "lab.toml")),
+    ):
+        done = run(command, **WITH_HOSTILE)
+        assert (done.returncode, done.stdout) == (2, b"")
+        [line] = done.stderr.decode().splitlines()
+        assert "lab.toml:20: the check " in line
+        assert f"{check} of the package hostile-checks ({fault}" in line
+
+
+def test_the_list_of_checks_names_the_faulty_ones() -> None:
+    """They hide none of the others."""
+    done = run(("rubric", "checks"), **WITH_HOSTILE)
+    assert done.returncode == 0
+    assert b"without_annotation\n  the check without_annotation of the package hostile-checks" in done.stdout
+    assert b"shows_box" in done.stdout
+    assert b"\nbehaves" in done.stdout
