@@ -58,11 +58,11 @@ def open_regular(path: Path | str, shown: str = "", top: str = "") -> int:
 
 def _open_below(top: str, path: str) -> int:
     """Open `path`, which begins with `top`, folder by folder: a symlink that is put in its way at any moment is an OSError."""
+    if not _OPENS_IN_FOLDERS:
+        return _open_and_verify(top, path)
     start = top.rstrip("/") + "/"
     if not path.startswith(start):
         raise OSError(errno.EPERM, "it is outside of the submission")
-    if not _OPENS_IN_FOLDERS:
-        return _open_and_verify(path)
     *folders, name = path[len(start) :].split("/")
     at = os.open(start, _FOLDER)
     try:
@@ -77,11 +77,12 @@ def _open_below(top: str, path: str) -> int:
         os.close(at)
 
 
-def _open_and_verify(path: str) -> int:
-    """Open a file where the system cannot open it folder by folder (Windows), and see that no symlink led to it."""
+def _open_and_verify(top: str, path: str) -> int:
+    """Open a file where the system cannot open it folder by folder (Windows), and verify that no symlink led to it."""
     handle = os.open(path, _FLAGS)
-    real = os.path.realpath(path)
-    if os.path.normcase(real) == os.path.normcase(path) and os.path.samestat(Path(real).stat(), os.fstat(handle)):
+    real, plain, inside = map(os.path.normcase, (os.path.realpath(path), os.path.normpath(path), os.path.realpath(top)))
+    is_inside = real.startswith(inside.rstrip(os.sep) + os.sep)
+    if real == plain and is_inside and os.path.samestat(Path(real).stat(), os.fstat(handle)):
         return handle
     os.close(handle)
     raise OSError(errno.ELOOP, os.strerror(errno.ELOOP))

@@ -47,7 +47,7 @@ class _Walk:
         self._folder = folder
         self._top = os.path.realpath(folder)
         self._trusted = os.path.realpath(top) if top else self._top
-        if top and self._top != f"{self._trusted}{os.fspath(folder).removeprefix(top)}":
+        if top and self._top != os.path.normpath(f"{self._trusted}{os.fspath(folder).removeprefix(top)}"):
             raise InputError(f"{printable_path(folder.name)} is a symlink, and was not followed")
         self._count = 0
         self._by_link: set[str] = set()

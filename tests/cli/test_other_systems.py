@@ -1,0 +1,68 @@
+"""On macOS and Windows `grade` works: nothing that only POSIX systems or Linux have is needed to grade a submission."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.samples import ROOT
+
+REFERENCE = ROOT / "submissions" / "reference"
+# A process in which everything is missing that Windows' Python has not.
+_WITHOUT = """
+import os, signal, sys
+for name in ("fcntl", "resource", "pwd", "grp", "termios", "tty", "syslog"):
+    sys.modules[name] = None
+os.supports_dir_fd = set()
+for module, names in ((os, ("O_NOFOLLOW", "O_DIRECTORY", "O_NONBLOCK", "O_CLOEXEC", "fork", "getuid", "mkfifo")),
+                      (signal, ("SIGKILL", "setitimer", "pthread_sigmask", "alarm"))):
+    for name in names:
+        if hasattr(module, name):
+            delattr(module, name)
+from grader.__main__ import main
+sys.argv = ["grader", *sys.argv[1:]]
+main()
+"""
+
+
+def elsewhere(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    """Run the command line as on a system without what POSIX has."""
+    command = [sys.executable, "-W", "error", "-c", _WITHOUT, *map(str, arguments)]
+    return subprocess.run(
+        command, capture_output=True, text=True, check=False, timeout=60, env={**os.environ, "COLUMNS": "80"}
+    )
+
+
+@pytest.mark.parametrize("kind", ["folder", "zip", "urdf"])
+def test_grade_needs_nothing_of_posix(tmp_path: Path, kind: str) -> None:
+    """A folder, an archive and a URDF get the report that they get here."""
+    place = REFERENCE
+    if kind == "zip":
+        place = Path(shutil.make_archive(str(tmp_path / "lab6"), "zip", REFERENCE))
+    elif kind == "urdf":
+        place = ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf"
+    done = elsewhere("grade", place, "--format", "json")
+    assert (done.returncode, done.stderr) == (0, "")
+    here = subprocess.run(
+        [sys.executable, "-m", "grader", "grade", str(place), "--format", "json"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.stdout == here.stdout
+
+
+def test_no_symlink_leads_out_there_either(tmp_path: Path) -> None:
+    """A symlink out of the submission is named and not followed, one inside is."""
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "secret.urdf").write_text("<robot name='a'/>")
+    (tmp_path / "sub/my_robot.urdf").symlink_to("../secret.urdf")
+    done = elsewhere("grade", tmp_path / "sub")
+    assert "leads out of the submission" in done.stdout + done.stderr
+    (tmp_path / "sub/inner.urdf").write_bytes((ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf").read_bytes())
+    (tmp_path / "sub/my_robot.urdf").unlink()
+    (tmp_path / "sub/my_robot.urdf").symlink_to("inner.urdf")
+    assert "70 / 100 points" in elsewhere("grade", tmp_path / "sub").stdout
