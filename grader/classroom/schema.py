@@ -160,4 +160,17 @@ LEFT JOIN run ON run.id = seen.run
 LEFT JOIN ruled ON ruled.student = student.id;
 """
 
-STEPS = (_FIRST,)  # the first makes version 1; each later one brings a gradebook to the next
+# `author` is for the audit: the name that `--by` gave, else the account of who typed. Reports show `signed`, which holds only the
+# former. Of marks that an earlier grader kept nobody knows which of the two `author` is, so they are not signed.
+_ANSWERS_AND_NAMES = """
+ALTER TABLE mark ADD COLUMN signed TEXT NOT NULL DEFAULT '';
+
+CREATE TABLE model_answer (
+    rubric TEXT NOT NULL REFERENCES rubric,
+    criterion TEXT NOT NULL,
+    text TEXT NOT NULL,
+    PRIMARY KEY (rubric, criterion)
+) WITHOUT ROWID;
+"""
+
+STEPS = (_FIRST, _ANSWERS_AND_NAMES)  # the first makes version 1; each later one brings a gradebook to the next

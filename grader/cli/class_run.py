@@ -24,7 +24,8 @@ from grader.cli.options import ClassFormat
 from grader.cli.output import complain, emit, no_folder, not_over, save
 from grader.cli.progress import ProgressDisplay
 from grader.errors import InputError
-from grader.grading.rubric import Rubric, load_rubric
+from grader.grading.answers import load_with_answers
+from grader.grading.rubric import Rubric
 from grader.report.text import printable
 from grader.submission.files import printable_path
 
@@ -60,7 +61,7 @@ def grade_class(
     gc.enable()  # unlike other commands this one may run for long
     if not isfinite(timeout):
         raise InputError(f"--timeout takes a number of seconds, not {timeout}")
-    rules = load_rubric(rubric)
+    rules = load_with_answers(rubric)  # for the gradebook, so that `review` has them on any machine
     deadline = read_time(due) if due else None
     known = read_roster(roster) if roster is not None else None
     root = path.resolve()

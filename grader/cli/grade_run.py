@@ -55,6 +55,7 @@ class Wanted:
     saves: tuple[tuple[Format, Path], ...]
     threshold: Threshold | None
     max_size: int
+    answers: bool = False
 
 
 class Graded(NamedTuple):
@@ -126,6 +127,7 @@ def save_reports(wanted: Wanted, done: Graded) -> None:
 
 def wanted_rubric(wanted: Wanted) -> "Rubric":
     """The rubric, if it is the one that is expected and has the parts that are named; raises GraderError."""
+    from grader.grading.answers import load_with_answers, missing_answers
     from grader.grading.rubric import load_rubric
 
     expected = wanted.expected_rubric
@@ -133,7 +135,9 @@ def wanted_rubric(wanted: Wanted) -> "Rubric":
         raise GraderError(
             f"--expect-rubric takes the 64 digits that `grader rubric show` prints as sha256, not {expected!r}"
         )
-    rules = load_rubric(wanted.rubric)
+    rules = (load_with_answers if wanted.answers else load_rubric)(wanted.rubric)
+    if wanted.answers and missing_answers(rules):
+        complain(missing_answers(rules))
     if expected is not None and expected.lower() != rules.sha256:
         raise InputError(
             f"the rubric {rules.id} is not the one that is expected: its sha256 is {rules.sha256}, not {expected.lower()}"

@@ -43,11 +43,6 @@ def complain(message: str) -> None:
             print(without_commands(f"grader: {message}"), file=sys.stderr, flush=True)
 
 
-def in_ci() -> bool:
-    """Whether a CI system runs this: GitHub, GitLab and nearly all others say so."""
-    return os.environ.get("CI", "").lower() in ("true", "1")
-
-
 def draw(render: Callable[["Console"], None], *, to_file: bool = False) -> str:
     """What a renderer prints, as text: coloured and as wide as standard output takes it, plain for a file."""
     from rich.console import Console  # rich is not needed for JSON

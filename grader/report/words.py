@@ -24,8 +24,8 @@ _STATUSES = ("passed", "failed", "skipped", "pending", "errored", "marked by han
 class Told(NamedTuple):
     """What there is to say of a criterion beside its title and points. `place` is where to look, if it failed.
 
-    `found` is what was answered to a question, line by line, and `model` the model answer. That is for the one who marks:
-    formats that are made for students leave it out.
+    `found` is what was answered to a question, line by line. `model` is the model answer, empty unless the rubric was loaded
+    with its answers.
     """
 
     sentences: tuple[str, ...]
@@ -104,7 +104,7 @@ def told(result: Result, report: Report) -> Told:
     outcome = result.outcome
     if result.ruling is not None:
         comment = f": {_line(result.ruling.comment)}" if result.ruling.comment else ""
-        by_hand = sentence(f"Marked by {result.ruling.by}{comment}")
+        by_hand = sentence(f"Marked by {result.ruling.by or 'hand'}{comment}")
         if outcome.status == "pending":
             return Told((by_hand,), *_answers(result))
         return Told((by_hand, sentence(f"The check: {outcome.status}. {outcome.message}")))
@@ -127,8 +127,7 @@ def _line(text: str) -> str:
 
 def _answers(result: Result) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """What was answered, and the model answer; nothing where no question was asked."""
-    model = result.outcome.expected
-    return (_lines(result.outcome.measured), _lines(model)) if isinstance(model, str) else ((), ())
+    return _lines(result.outcome.measured), _lines(result.criterion.answer)
 
 
 def _lines(text: object) -> tuple[str, ...]:
