@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.cli.formats import Format, render
-from grader.cli.output import save
+from grader.cli.saving import save
 from grader.errors import InputError
 
 if TYPE_CHECKING:

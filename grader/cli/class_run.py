@@ -21,8 +21,9 @@ from grader.cli.class_reports import write_reports
 from grader.cli.class_text import class_text
 from grader.cli.formats import Format
 from grader.cli.options import ClassFormat
-from grader.cli.output import complain, emit, no_folder, not_over, save
+from grader.cli.output import complain, emit
 from grader.cli.progress import ProgressDisplay
+from grader.cli.saving import no_folder, not_over, refuse_links, save
 from grader.errors import InputError
 from grader.grading.answers import load_with_answers
 from grader.grading.rubric import Rubric
@@ -78,7 +79,7 @@ def grade_class(
                 count = write_reports(local, gradebook, wanted.reports, wanted.report_formats, deadline)
             complain(f"{count} reports are in {printable_path(wanted.reports)}")
         if wanted.csv is not None:
-            save(wanted.csv, grades_csv(Standings(book, deadline)))
+            save(wanted.csv, grades_csv(Standings(book, deadline)), (root,))
         emit(class_text(Standings(book, deadline), wanted.output, done))
 
 
@@ -136,6 +137,8 @@ def _tell_lines(lines: Sequence[str]) -> None:
 def _check(wanted: Wanted, gradebook: Path, root: Path) -> None:
     """Refuse what could not be written in the end, or would be taken for a hand-in the next time; raises InputError."""
     reports, csv = wanted.reports, wanted.csv
+    for each in filter(None, (gradebook, reports, csv)):
+        refuse_links(each, (root,))
     if reports is not None and reports.exists() and not reports.is_dir():
         raise InputError(f"{printable_path(reports)} is no folder that reports could be written to")
     if reports is not None and (reports.resolve() == root or root in reports.resolve().parents):
