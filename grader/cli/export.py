@@ -8,7 +8,7 @@ import typer
 
 from grader.cli.options import DueOption, GradebookOption
 from grader.cli.output import complain, emit
-from grader.cli.saving import is_same, not_over, refuse_links, save_bytes
+from grader.cli.saving import is_output, is_same, not_over, refuse_links, save_bytes
 from grader.errors import GraderError
 from grader.submission.files import printable_path
 
@@ -72,9 +72,9 @@ def export(
         )
     if output is not None:
         not_over(output, gradebook)
-    if output is not None and into is not None and is_same(output, into):
+    if into is not None and (is_output(into) if output is None else is_same(output, into)):
         raise GraderError(
-            f"--output is the file that --into reads, {printable_path(into)}: rows without a grade would be lost; name another file"
+            f"cannot write {printable_path(into)}: --into reads it, and rows without a grade would be lost; name another file"
         )
     with Gradebook(gradebook) as book:
         classes = {run.source for run in book.runs()}

@@ -30,7 +30,7 @@ def save_bytes(path: Path, data: bytes, submissions: Sequence[Path | str] = (), 
     """As `save`, for what is no text."""
     refuse_links(path, submissions)
     try:
-        if _is_output(path):  # also where that leads to a file: what is printed goes there as well
+        if is_output(path):  # also where that leads to a file: what is printed goes there as well
             emit(data)
         elif path.exists() and not path.is_file():
             with path.open("wb") as file:
@@ -49,7 +49,7 @@ def clear(path: Path) -> int | None:
 
     What refuses the next run then leaves no report in its place. Raises InputError where it cannot be removed.
     """
-    if _is_output(path):
+    if is_output(path):
         return None
     target = Path(os.path.realpath(path))
     try:
@@ -129,7 +129,7 @@ def no_folder(path: Path) -> InputError:
     return InputError(f"cannot write {printable(str(path))}: there is no folder {folder} (mkdir -p {folder} makes it)")
 
 
-def _is_output(path: Path) -> bool:
+def is_output(path: Path) -> bool:
     """Whether a path is standard output, as /dev/stdout is."""
     try:
         return sys.stdout is not None and os.path.samestat(path.stat(), os.fstat(sys.stdout.fileno()))
