@@ -84,7 +84,7 @@ def _head(report: Report) -> Iterator[str]:
     yield f"# {escaped(score_words(report))}: {escaped(printable(report.rubric.title))}"
     yield from (escaped(line) for line in (summary(report), package_words(report)) if line)
     if report.pending:
-        yield f"**{pending_words(report)}**"
+        yield f"**{escaped(pending_words(report))}**"
     yield escaped(provenance(report))
     yield from map(escaped, (*notes(report), *asides(report)))
 

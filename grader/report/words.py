@@ -75,10 +75,13 @@ def package_words(report: Report) -> str:
 
 
 def pending_words(report: Report) -> str:
-    """How many points a person still has to give or refuse; empty where none wait."""
+    """How many points a person still has to give or refuse, and what no program could decide; empty where none wait."""
     if not report.pending:
         return ""
-    return f"{so_many_points(report.pending)} {'waits' if report.pending == 1 else 'wait'} for a person"
+    names = [printable(each.criterion.id) for each in undecided(report)]
+    more = f" and {len(names) - _MOST_LISTED} more" if len(names) > _MOST_LISTED else ""
+    left = f"; not decided: {', '.join(names[:_MOST_LISTED])}{more}" if names else ""
+    return f"{so_many_points(report.pending)} {'waits' if report.pending == 1 else 'wait'} for a person{left}"
 
 
 def notes(report: Report) -> list[str]:
