@@ -7,13 +7,14 @@ _DOCUMENTS = ("*.md", "*.txt", "*.docx", "*.pdf", "*.rst", "*.doc", "*.odt", "*.
 
 
 def answered(
-    submission: Submission, *, question: str, answer: str, places: list[str], files: tuple[str, ...] = _DOCUMENTS
+    submission: Submission, *, question: str, places: list[str], files: tuple[str, ...] = _DOCUMENTS, answer: str = ""
 ) -> Outcome:
     """A question is answered in writing, as a person judges.
 
-    `answer` is the model answer, shown beside what was found. `places` says how the passage is marked, such as "task 1 step
+    `answer` is the model answer: the rubric keeps it for `grader review` and `--answers`, or in a file of its own. `places` says how the passage is marked, such as "task 1 step
     15" or "question 15"; `files` are patterns for the names of documents. Always pending.
     """
+    del answer  # no outcome holds it: students read outcomes
     from grader.submission.answers import find_answer  # a URDF on its own has no answers
 
     found = find_answer(submission.tree, files, places)
@@ -27,7 +28,7 @@ def answered(
         place, text = None, None
     if found.unread:
         message += f" (not read: {'; '.join(found.unread[:4])})"
-    return Outcome("pending", message, text, answer, location=place)
+    return Outcome("pending", message, text, location=place)
 
 
 def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:

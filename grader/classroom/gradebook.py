@@ -28,6 +28,7 @@ from grader.classroom.known import (
 from grader.classroom.students import HandIn, Student
 from grader.classroom.work import UNITS, Graded
 from grader.errors import GraderError, InputError
+from grader.grading.answers import with_answers
 from grader.grading.rubric import Rubric, read_rubric
 from grader.submission.files import printable_path, sha256_of
 
@@ -143,6 +144,10 @@ class Gradebook:
                 for position, criterion in enumerate(rubric.criteria)
             ],
         )
+        self.connection.executemany(
+            "INSERT OR REPLACE INTO model_answer VALUES (?, ?, ?)",
+            [(rubric.sha256, each.id, storable(each.answer)) for each in rubric.criteria if each.answer],
+        )
 
     def all_known(self) -> Iterator[Known]:
         """What there is of everyone, in the order of their keys, as it was when this began, whatever is written meanwhile."""
@@ -233,10 +238,12 @@ class Gradebook:
         columns = "id, started, coalesce(finished, ''), source, layout, rubric, version, last_mark"
         return [Run(*row) for row in self.rows(f"SELECT {columns} FROM run ORDER BY id")]
 
-    def rubric(self, sha256: str) -> Rubric:
-        """The rubric of a run, as it was then; raises RubricError where this grader cannot read it."""
+    def rubric(self, sha256: str, *, answers: bool = False) -> Rubric:
+        """The rubric of a run, as it was then, with or without model answers; raises RubricError where this grader cannot read it."""
         for text, path in list(self.rows("SELECT text, path FROM rubric WHERE sha256 = ?", sha256)):
-            return read_rubric(text, Path(path))
+            rubric = read_rubric(text, Path(path), answers=answers)
+            kept = "SELECT criterion, text FROM model_answer WHERE rubric = ?"
+            return with_answers(rubric, dict(self.rows(kept, sha256))) if answers else rubric
         raise GraderError(f"the gradebook {self._shown} holds no rubric {sha256[:12]}")
 
     def record(self, result: int) -> tuple[str, str]:

@@ -18,6 +18,24 @@ _UNIT = Decimal(1) / UNITS
 TAKEN_BACK = "-"  # in place of points: what the check says counts again
 
 
+class Mark(NamedTuple):
+    """A mark in the gradebook: points (None where it took an earlier mark back), who gave it (empty without `--by`), why and when."""
+
+    id: int
+    points: Decimal | None
+    by: str
+    comment: str
+    at: str
+
+
+class NewerMarkError(Exception):
+    """Somebody has marked a criterion since it was shown."""
+
+    def __init__(self, mark: Mark) -> None:
+        super().__init__()
+        self.mark = mark
+
+
 class Waiting(NamedTuple):
     """A criterion of a student, by their key, that waited for a person when it was looked up."""
 
@@ -27,10 +45,11 @@ class Waiting(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Pending:
-    """One criterion of one student that a person still has to decide."""
+    """One criterion of one student that a person still has to decide; `newest` is the id of its newest mark, 0 if it has none."""
 
     standing: Standing
     result: Result
+    newest: int = 0
 
 
 def read_points(text: str, criterion: Criterion) -> Decimal | None:
@@ -58,20 +77,60 @@ def criterion_of(rubric: Rubric, name: str) -> Criterion:
     return known[name]
 
 
-def mark(book: Gradebook, standing: Standing, criterion: Criterion, points: Decimal | None, by: str, why: str) -> None:
-    """Add a mark to a student's newest result; raises InputError for one who has handed in nothing."""
+def mark(
+    book: Gradebook,
+    standing: Standing,
+    criterion: Criterion,
+    points: Decimal | None,
+    by: str,
+    why: str,
+    *,
+    shown: int | None = None,
+) -> Mark | None:
+    """Add a mark to a student's newest result; return the mark that was the newest one before, if there was one.
+
+    `by` is the name that reports show; the account is kept for the audit only. `shown` is the id of the newest mark that the
+    person has seen, 0 for none: where there is a newer one nothing is written, and NewerMarkError holds it. Without `shown`
+    the mark is added whatever is there. Raises InputError for a student who has handed in nothing.
+    """
     if standing.result is None:
         raise InputError(f"{standing.student.key} has handed in nothing that could be marked")
     units = None if points is None else int(points * UNITS)
     at = datetime.now(UTC).isoformat(timespec="seconds")
-    row = (standing.id, criterion.id, units, storable(why), storable(by), at, standing.result)
+    name = storable(by)
+    row = (standing.id, criterion.id, units, storable(why), name or storable(account()), name, at, standing.result)
     with book.complaining():
         book.connection.execute("PRAGMA synchronous = FULL")  # a person's word outlives a power cut
     with book.transaction():
+        before = newest_mark(book, standing.id, criterion.id)
+        if before is not None and shown is not None and before.id != shown:
+            raise NewerMarkError(before)
         book.connection.execute(
-            "INSERT INTO mark (student, criterion, points, comment, author, at, result) VALUES (?, ?, ?, ?, ?, ?, ?)",
+            "INSERT INTO mark (student, criterion, points, comment, author, signed, at, result)"
+            " VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
             row,
         )
+    return before
+
+
+def newest_mark(book: Gradebook, student: int, criterion: str) -> Mark | None:
+    """Return the newest mark of a student's criterion, also one that took an earlier one back."""
+    query = (
+        "SELECT id, points, signed, comment, at FROM mark WHERE student = ? AND criterion = ? ORDER BY id DESC LIMIT 1"
+    )
+    for identity, units, signed, comment, at in list(book.rows(query, student, criterion)):
+        return Mark(identity, None if units is None else Decimal(units) / UNITS, signed, comment, at)
+    return None
+
+
+def account() -> str:
+    """Return the account of who is at the keyboard, as the system knows it."""
+    import getpass
+
+    try:
+        return getpass.getuser()
+    except (OSError, KeyError, ImportError):  # as in a container without accounts
+        return ""
 
 
 def waiting(standings: Standings, criterion: str = "") -> list[Waiting]:
@@ -97,6 +156,9 @@ _WAITING = (
 def pending(standings: Standings, waiting: Waiting) -> Pending | None:
     """What is to be decided, as it stands now; None where somebody has decided it meanwhile."""
     standing = standings.find(waiting.key)
+    newest = newest_mark(
+        standings.book, standing.id, waiting.criterion
+    )  # first, so that no later one is taken for shown
     results = standings.report(standing).results
     found = next((each for each in results if each.criterion.id == waiting.criterion and each.is_open), None)
-    return Pending(standing, found) if found is not None else None
+    return Pending(standing, found, newest.id if newest is not None else 0) if found is not None else None

@@ -165,4 +165,18 @@ ALTER TABLE student ADD COLUMN entry TEXT NOT NULL DEFAULT '';     -- the row of
 ALTER TABLE run ADD COLUMN assignment TEXT NOT NULL DEFAULT '';    -- what the class folder calls it, empty where it does not
 """
 
-STEPS = (_FIRST, _ROSTER_AND_ASSIGNMENT)  # the first makes version 1; each later one brings a gradebook to the next
+# `author` is for the audit: the name that `--by` gave, else the account of who typed. Reports show `signed`, which holds only the
+# former. Of marks that an earlier grader kept nobody knows which of the two `author` is, so they are not signed.
+_ANSWERS_AND_NAMES = """
+ALTER TABLE mark ADD COLUMN signed TEXT NOT NULL DEFAULT '';
+
+CREATE TABLE model_answer (
+    rubric TEXT NOT NULL REFERENCES rubric,
+    criterion TEXT NOT NULL,
+    text TEXT NOT NULL,
+    PRIMARY KEY (rubric, criterion)
+) WITHOUT ROWID;
+"""
+
+# The first makes version 1; each later one brings a gradebook to the next.
+STEPS = (_FIRST, _ROSTER_AND_ASSIGNMENT, _ANSWERS_AND_NAMES)

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from datetime import datetime
 from decimal import Decimal
-from functools import cache
+from functools import cache, partial
 from typing import Any, NamedTuple
 
 from grader.checks.outcome import Outcome
@@ -108,13 +108,16 @@ class Looks(NamedTuple):
 
 
 class Standings:
-    """The current grades in a gradebook, with the rubrics that they are made by."""
+    """The current grades in a gradebook, with the rubrics that they are made by.
 
-    def __init__(self, book: Gradebook, due: datetime | None = None) -> None:
+    Only with `answers`, for those who grade, do these hold model answers.
+    """
+
+    def __init__(self, book: Gradebook, due: datetime | None = None, *, answers: bool = False) -> None:
         self.book = book
         told = book.due() if due is None else ""
         self._due = read_time(told) if told else due
-        self.rubric = cache(book.rubric)
+        self.rubric = cache(partial(book.rubric, answers=answers))
         self._newest_rubric: str | None = None
         self._templates: dict[tuple[str, str], Template] = {}
 
@@ -199,8 +202,8 @@ class Standings:
         return replace(report, results=_ruled(report, rulings)) if rulings else report
 
     def _rulings(self, student: int) -> dict[str, Ruling]:
-        rows = self.book.rows("SELECT criterion, points, author, comment FROM ruling WHERE student = ?", student)
-        return {name: Ruling(Decimal(points) / UNITS, author, comment) for name, points, author, comment in rows}
+        rows = self.book.rows("SELECT criterion, points, signed, comment FROM ruling WHERE student = ?", student)
+        return {name: Ruling(Decimal(points) / UNITS, signed, comment) for name, points, signed, comment in rows}
 
     def _standing(self, row: tuple[Any, ...]) -> Standing:
         (

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from grader.cli.options import DEFAULT_RUBRIC, RubricOption
-from grader.cli.output import emit, save_bytes
+from grader.cli.output import emit
+from grader.cli.saving import save_bytes
 from grader.errors import GraderError
 
 if TYPE_CHECKING:

@@ -8,14 +8,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.cli.output import complain
-from grader.errors import GraderError
+from grader.cli.saving import CHECKOUTS, refuse_links
+from grader.errors import GraderError, InputError
 
 if TYPE_CHECKING:
     from grader.grading.report import Report
     from grader.report.places import Base
 
 _SUMMARY_LIMIT = 1024 * 1024  # bytes that GitHub takes of a step's summary; it shows nothing of a longer one
-_CHECKOUTS = ("GITHUB_WORKSPACE", "CI_PROJECT_DIR")  # where GitHub and GitLab say that the repository is checked out
 
 
 def on_github() -> bool:
@@ -72,13 +72,20 @@ def _add_to_summary(text: Callable[[int], str]) -> None:
     if not summary:
         return
     try:
-        with Path(summary).open("ab") as file:
+        refuse_links(Path(summary))
+        with open(summary, "ab", opener=_no_link) as file:
             taken = file.tell()
             added = text(_SUMMARY_LIMIT - taken - 1).encode("utf-8", "backslashreplace")
             if added:
                 file.write(b"\n" * bool(taken) + added)
     except OSError as error:
         complain(f"the job summary cannot be written: {error.strerror or error}")
+    except InputError as error:
+        complain(f"the job summary: {error}")
+
+
+def _no_link(path: str, flags: int) -> int:
+    return os.open(path, flags | getattr(os, "O_NOFOLLOW", 0), 0o666)
 
 
 def base_of(path: str, *, is_single: bool) -> "Base":
@@ -103,7 +110,7 @@ def base_of(path: str, *, is_single: bool) -> "Base":
 def _repository(place: Path) -> Path | None:
     """The root of the repository that a path is in: as the CI system says, by its `.git`, or else the current folder."""
     around = [place, *place.parents]
-    for name in _CHECKOUTS:
+    for name in CHECKOUTS:
         checkout = Path(os.environ.get(name) or os.sep).resolve()
         if checkout in around[:-1]:  # the last is the file system's root
             return checkout

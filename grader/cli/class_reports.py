@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from grader.classroom.lms.spreadsheet import neutral, write_table
 from grader.cli.formats import Format, render
-from grader.cli.output import save
+from grader.cli.saving import save
 from grader.errors import InputError
 
 if TYPE_CHECKING:

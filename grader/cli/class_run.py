@@ -22,10 +22,12 @@ from grader.cli.class_reports import write_reports
 from grader.cli.class_text import class_text
 from grader.cli.formats import Format
 from grader.cli.options import ClassFormat
-from grader.cli.output import complain, emit, no_folder, not_over, save
+from grader.cli.output import complain, emit
 from grader.cli.progress import ProgressDisplay
+from grader.cli.saving import no_folder, not_over, refuse_links, save
 from grader.errors import InputError
-from grader.grading.rubric import Rubric, load_rubric
+from grader.grading.answers import load_with_answers
+from grader.grading.rubric import Rubric
 from grader.report.text import printable
 from grader.submission.files import printable_path
 
@@ -62,7 +64,7 @@ def grade_class(
     gc.enable()  # unlike other commands this one may run for long
     if not isfinite(timeout):
         raise InputError(f"--timeout takes a number of seconds, not {timeout}")
-    rules = load_rubric(rubric)
+    rules = load_with_answers(rubric)  # for the gradebook, so that `review` has them on any machine
     deadline = read_time(due) if due else None
     known = read_roster(roster) if roster is not None else _kept_roster(gradebook)
     root = path.resolve()
@@ -79,7 +81,7 @@ def grade_class(
                 count = write_reports(local, gradebook, wanted.reports, wanted.report_formats, deadline)
             complain(f"{count} reports are in {printable_path(wanted.reports)}")
         if wanted.csv is not None:
-            save(wanted.csv, grades_csv(Standings(book, deadline)))
+            save(wanted.csv, grades_csv(Standings(book, deadline)), (root,))
         emit(class_text(Standings(book, deadline), wanted.output, done))
 
 
@@ -145,6 +147,8 @@ def _tell_lines(lines: Sequence[str]) -> None:
 def _check(wanted: Wanted, gradebook: Path, root: Path) -> None:
     """Refuse what could not be written in the end, or would be taken for a hand-in the next time; raises InputError."""
     reports, csv = wanted.reports, wanted.csv
+    for each in filter(None, (gradebook, reports, csv)):
+        refuse_links(each, (root,))
     if reports is not None and reports.exists() and not reports.is_dir():
         raise InputError(f"{printable_path(reports)} is no folder that reports could be written to")
     if reports is not None and (reports.resolve() == root or root in reports.resolve().parents):

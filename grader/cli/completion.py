@@ -11,7 +11,8 @@ from typing import Any
 import typer
 from typer.main import get_command
 
-from grader.cli.output import emit, save
+from grader.cli.output import emit
+from grader.cli.saving import save
 from grader.cli.suggestions import SHELLS
 from grader.errors import GraderError, InputError
 from grader.submission.files import printable_path

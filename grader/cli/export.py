@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from grader.cli.options import DueOption, GradebookOption
-from grader.cli.output import complain, emit, not_over, save_bytes
+from grader.cli.output import complain, emit
+from grader.cli.saving import is_output, is_same, not_over, refuse_links, save_bytes
 from grader.errors import GraderError
+from grader.submission.files import printable_path
 
 if TYPE_CHECKING:
     from grader.classroom.standings import Standings
@@ -70,7 +72,14 @@ def export(
         )
     if output is not None:
         not_over(output, gradebook)
+    if into is not None and (is_output(into) if output is None else is_same(output, into)):
+        raise GraderError(
+            f"cannot write {printable_path(into)}: --into reads it, and rows without a grade would be lost; name another file"
+        )
     with Gradebook(gradebook) as book:
+        classes = {run.source for run in book.runs()}
+        if output is not None:
+            refuse_links(output, tuple(classes))
         standings = Standings(book, read_time(due) if due else None)
         if into is None:
             data = _plain(target, standings)
@@ -88,7 +97,7 @@ def export(
     if output is None:
         emit(data)
     else:
-        save_bytes(output, data)
+        save_bytes(output, data, tuple(classes))
     return 0
 
 

@@ -5,7 +5,7 @@ from enum import StrEnum
 from functools import partial
 from typing import TYPE_CHECKING
 
-from grader.cli.output import draw, in_ci
+from grader.cli.output import draw
 
 if TYPE_CHECKING:
     from grader.grading.report import Report
@@ -54,8 +54,7 @@ def render(report: "Report", kind: Format, base: "Base | None" = None, *, to_fil
         case Format.TERMINAL:
             from grader.report.terminal import render_terminal
 
-            # A job's log is read by students; model answers are for the one who marks.
-            return draw(partial(render_terminal, report, models=to_file or not in_ci()), to_file=to_file)
+            return draw(partial(render_terminal, report), to_file=to_file)
         case Format.MARKDOWN:
             from grader.report.markdown import render_markdown
 

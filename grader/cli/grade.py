@@ -44,6 +44,9 @@ def grade(
         str | None, typer.Option(metavar="N|N%", help="Exit 0 from this score on, in points or percent.")
     ] = None,
     max_size: Annotated[int, typer.Option(metavar="BYTES", min=1, help="The largest URDF that is read.")] = URDF_LIMIT,
+    answers: Annotated[
+        bool, typer.Option("--answers", help="Also show model answers, in terminal, markdown and json.")
+    ] = False,
     is_watched: Annotated[
         bool, typer.Option("--watch", help="Grade again whenever a file changes, until Ctrl-C.")
     ] = False,
@@ -73,6 +76,7 @@ def grade(
             read_saves(save_as or ()),
             Threshold.read(fail_under) if fail_under is not None else None,
             max_size,
+            answers,
         )
         if is_watched:
             from grader.cli.watch import watch

@@ -2,7 +2,7 @@
 
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from grader.cli.ci import base_of, on_github, tell_github
 from grader.cli.formats import Format, render
-from grader.cli.output import complain, emit, is_same, save
+from grader.cli.output import complain, emit
+from grader.cli.saving import ROBOTS, clear, is_same, refuse_links, save
 from grader.errors import GraderError, InputError
 from grader.submission.files import printable_path
 
@@ -55,6 +56,7 @@ class Wanted:
     saves: tuple[tuple[Format, Path], ...]
     threshold: Threshold | None
     max_size: int
+    answers: bool = False
 
 
 class Graded(NamedTuple):
@@ -84,8 +86,9 @@ def _split_save(text: str) -> tuple[Format, Path]:
 
 def grade_once(wanted: Wanted) -> tuple["Report", int]:
     """Grade, save and print the reports that are wanted; the report and the exit code. Raises GraderError."""
+    modes = make_room(wanted)
     done = graded(wanted)
-    save_reports(wanted, done)
+    save_reports(wanted, done, modes)
     text = render(done.report, wanted.format, done.base, to_file=False)
     emit(text if wanted.format is Format.TERMINAL else text.encode("utf-8", "backslashreplace"))
     _complain_of_undecided(done)
@@ -124,18 +127,35 @@ def _complain_of_undecided(done: Graded) -> None:
         complain(printable(f"exit code 1: could not be decided, and needs manual grading: {', '.join(left)}"))
 
 
-def save_reports(wanted: Wanted, done: Graded) -> None:
-    """Write the reports that `--save` names; raises InputError."""
-    graded_from = [wanted.path, wanted.rubric, os.path.join(wanted.path, done.report.submission.path or "")]  # noqa: PTH118  names
+def make_room(wanted: Wanted) -> dict[Path, int]:
+    """Remove what an earlier run, or a student, has left where `--save` writes; return the permissions of these files.
+
+    If the run is refused after that, no forged report is taken for its own. A robot stays: it may be what is graded. Raises
+    InputError where a report would replace what is graded, or would be written through a symlink of the submission.
+    """
+    for _, file in wanted.saves:
+        refuse_links(file, (wanted.path,))
+    _refuse_graded(wanted, wanted.path, wanted.rubric)
+    modes = {file: clear(file) for _, file in wanted.saves if Path(os.path.realpath(file)).suffix.lower() not in ROBOTS}
+    return {file: mode for file, mode in modes.items() if mode is not None}
+
+
+def _refuse_graded(wanted: Wanted, *graded_from: str) -> None:
     for _, file in wanted.saves:
         if any(is_same(file, Path(each)) and Path(each).is_file() for each in graded_from):
             raise InputError(f"--save would replace {printable_path(file)}, which is graded: name another file")
+
+
+def save_reports(wanted: Wanted, done: Graded, modes: Mapping[Path, int]) -> None:
+    """Write the reports that `--save` names, with the permissions of the files that were there; raises InputError."""
+    _refuse_graded(wanted, os.path.join(wanted.path, done.report.submission.path or ""))  # noqa: PTH118  names
     for kind, file in wanted.saves:
-        save(file, render(done.report, kind, done.base))
+        save(file, render(done.report, kind, done.base), (wanted.path,), modes.get(file))
 
 
 def wanted_rubric(wanted: Wanted) -> "Rubric":
     """The rubric, if it is the one that is expected and has the parts that are named; raises GraderError."""
+    from grader.grading.answers import load_with_answers, missing_answers
     from grader.grading.rubric import load_rubric
 
     expected = wanted.expected_rubric
@@ -143,7 +163,9 @@ def wanted_rubric(wanted: Wanted) -> "Rubric":
         raise GraderError(
             f"--expect-rubric takes the 64 digits that `grader rubric show` prints as sha256, not {expected!r}"
         )
-    rules = load_rubric(wanted.rubric)
+    rules = (load_with_answers if wanted.answers else load_rubric)(wanted.rubric)
+    if wanted.answers and missing_answers(rules):
+        complain(missing_answers(rules))
     if expected is not None and expected.lower() != rules.sha256:
         raise InputError(
             f"the rubric {rules.id} is not the one that is expected: its sha256 is {rules.sha256}, not {expected.lower()}"

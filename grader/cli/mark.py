@@ -5,9 +5,9 @@ from typing import Annotated
 import typer
 
 from grader.cli.options import GradebookOption
-from grader.cli.output import emit
+from grader.cli.output import complain, emit
 
-ByOption = Annotated[str, typer.Option("--by", metavar="NAME", help="Who says so; you, if not told.")]
+ByOption = Annotated[str, typer.Option("--by", metavar="NAME", help="Your name, for reports; default: none.")]
 
 
 def mark(
@@ -35,6 +35,7 @@ def mark(
     from grader.classroom.marking import mark as add_mark
     from grader.classroom.standings import Standings
     from grader.report.points import points_words
+    from grader.report.review import mark_words
     from grader.report.text import printable
 
     with Gradebook(gradebook) as book:
@@ -43,18 +44,10 @@ def mark(
         asked = criterion_of(
             standings.rubric(standing.rubric) if standing.rubric else standings.newest_rubric(), criterion
         )
-        add_mark(book, standing, asked, read_points(points, asked), by or author(), comment)
+        before = add_mark(book, standing, asked, read_points(points, asked), by, comment)
         now = standings.find(standing.student.key)
     waits = f"; waiting for a person: {points_words(now.pending)}" if now.pending else ""
     emit(printable(f"{now.student.key}: {points_words(now.score)} of {points_words(now.out_of)} points{waits}") + "\n")
+    if before is not None and before.points is not None:
+        complain(f"this replaces the newest mark of {asked.id}: {mark_words(before)}")
     return 0
-
-
-def author() -> str:
-    """Who is at the keyboard, as the system knows them."""
-    import getpass
-
-    try:
-        return getpass.getuser()
-    except (OSError, KeyError, ImportError):  # nobody, as in a container without accounts
-        return "someone"

@@ -5,17 +5,15 @@ import os
 import sys
 from collections.abc import Callable
 from contextlib import suppress
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.errors import InputError
-from grader.report.text import printable, without_commands
+from grader.report.text import without_commands
 
 if TYPE_CHECKING:
     from rich.console import Console
 
 _DEFAULT_WIDTH = 80
-_BESIDE = ("-wal", "-shm", "-journal")  # what has been written, but is not in the gradebook's own file yet
 
 
 def emit(text: str | bytes) -> None:
@@ -43,11 +41,6 @@ def complain(message: str) -> None:
             print(without_commands(f"grader: {message}"), file=sys.stderr, flush=True)
 
 
-def in_ci() -> bool:
-    """Whether a CI system runs this: GitHub, GitLab and nearly all others say so."""
-    return os.environ.get("CI", "").lower() in ("true", "1")
-
-
 def draw(render: Callable[["Console"], None], *, to_file: bool = False) -> str:
     """What a renderer prints, as text: coloured and as wide as standard output takes it, plain for a file."""
     from rich.console import Console  # rich is not needed for JSON
@@ -68,74 +61,6 @@ def draw(render: Callable[["Console"], None], *, to_file: bool = False) -> str:
     )
     render(console)
     return without_commands(buffer.getvalue())
-
-
-def not_over(path: Path, gradebook: Path) -> None:
-    """Raises InputError where a file that is to be written is the gradebook, or one that SQLite keeps beside it."""
-    book = Path(os.path.realpath(gradebook))
-    for each in (book, *(book.with_name(book.name + ending) for ending in _BESIDE)):
-        if Path(os.path.realpath(path)) == each or is_same(path, each):
-            raise InputError(f"cannot write {path}: it would replace the gradebook, and all marks by hand in it")
-
-
-def is_same(path: Path, other: Path) -> bool:
-    """Whether two paths lead to one file, which is there."""
-    try:
-        return path.samefile(other)
-    except OSError:  # one of them is not there
-        return False
-
-
-def save(path: Path, text: str) -> None:
-    """Write a file so that it is there whole or not at all; raises InputError.
-
-    A link is followed. What is no regular file, such as a pipe or device, is written to as it is.
-    """
-    save_bytes(path, text.encode("utf-8", "backslashreplace"))
-
-
-def save_bytes(path: Path, data: bytes) -> None:
-    """As `save`, for what is no text."""
-    try:
-        if _is_output(path):  # also where that leads to a file: what is printed goes there as well
-            emit(data)
-        elif path.exists() and not path.is_file():
-            with path.open("wb") as file:
-                file.write(data)
-        else:
-            _replace(Path(os.path.realpath(path)), data)
-    except (OSError, ValueError) as error:
-        if isinstance(error, FileNotFoundError) and not path.parent.exists():
-            raise no_folder(path) from None
-        reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise InputError(f"cannot write {path}: {reason}") from None
-
-
-def _is_output(path: Path) -> bool:
-    """Whether a path is standard output, as /dev/stdout is."""
-    try:
-        return sys.stdout is not None and os.path.samestat(path.stat(), os.fstat(sys.stdout.fileno()))
-    except (OSError, ValueError):
-        return False
-
-
-def no_folder(path: Path) -> InputError:
-    """What to say of a file that cannot be written, because the folder that it names is not there."""
-    folder = printable(str(path.parent))
-    return InputError(f"cannot write {printable(str(path))}: there is no folder {folder} (mkdir -p {folder} makes it)")
-
-
-def _replace(target: Path, data: bytes) -> None:
-    temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
-    try:
-        temporary.write_bytes(data)
-        if target.exists():
-            temporary.chmod(target.stat().st_mode & 0o7777)
-        temporary.replace(target)
-    except OSError:
-        with suppress(OSError):
-            temporary.unlink(missing_ok=True)
-        raise
 
 
 class _Buffer(io.StringIO):

@@ -6,15 +6,18 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from grader.cli.mark import ByOption, author
+from grader.cli.mark import ByOption
 from grader.cli.options import GradebookOption
 from grader.cli.output import complain, draw, emit
 from grader.errors import InputError
 
 if TYPE_CHECKING:
+    from decimal import Decimal
+
     from grader.classroom.marking import Pending
     from grader.classroom.standings import Standings
 
+_KEEP = "k to keep that mark, r to replace it with yours: "
 _HELP = "points and a comment, or s to skip, q to stop (everything is kept), ? for this line"
 
 
@@ -41,7 +44,7 @@ def review(
     if isinstance(sys.stdin, io.TextIOWrapper):
         sys.stdin.reconfigure(errors="backslashreplace")  # a terminal in another encoding
     with Gradebook(gradebook) as book:
-        standings = Standings(book)
+        standings = Standings(book, answers=True)
         if criterion:
             criterion_of(standings.newest_rubric(), criterion)
         asked = waiting(standings, criterion)
@@ -50,7 +53,7 @@ def review(
             found = pending(standings, each)
             if found is None:  # somebody else has decided it meanwhile
                 continue
-            answer = _ask(standings, found, f"{number} of {len(asked)}", by or author())
+            answer = _ask(standings, found, f"{number} of {len(asked)}", by)
             if answer is None:
                 break
             given += answer
@@ -61,7 +64,7 @@ def review(
 
 def _ask(standings: "Standings", pending: "Pending", place: str, by: str) -> int | None:
     """Ask until there is an answer: how many marks came of it, None to stop."""
-    from grader.classroom.marking import mark, read_points
+    from grader.classroom.marking import read_points
     from grader.report.review import render_pending
 
     emit(draw(lambda console: render_pending(pending, place, console)))
@@ -83,8 +86,34 @@ def _ask(standings: "Standings", pending: "Pending", place: str, by: str) -> int
         if points is None:
             complain(_HELP)
             continue
-        mark(standings.book, pending.standing, criterion, points, by, comment.strip())
-        return 1
+        return _mark(standings, pending, points, by, comment.strip())
+    return None
+
+
+def _mark(standings: "Standings", pending: "Pending", points: "Decimal", by: str, comment: str) -> int | None:
+    """Mark, unless somebody else has meanwhile and their mark is to be kept: how many marks came of it, None to stop."""
+    from grader.classroom.marking import NewerMarkError, mark
+    from grader.report.review import mark_words
+
+    shown = pending.newest
+    while True:
+        try:
+            mark(standings.book, pending.standing, pending.result.criterion, points, by, comment, shown=shown)
+        except NewerMarkError as error:
+            shown = error.mark.id
+            complain(f"somebody has marked this since it was shown: {mark_words(error.mark)}")
+        else:
+            return 1
+        is_kept = _is_kept()
+        if is_kept is not False:
+            return 0 if is_kept else None
+
+
+def _is_kept() -> bool | None:
+    """Ask whether the newer mark is kept; None to stop."""
+    while (typed := _line(_KEEP)) is not None:
+        if typed.strip().lower() in ("k", "keep", "r", "replace"):
+            return typed.strip().lower().startswith("k")
     return None
 
 

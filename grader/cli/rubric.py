@@ -1,12 +1,15 @@
 """grader rubric: what rubrics there are, what is in them, and whether one is right."""
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from grader.cli.output import emit
+from grader.cli.output import complain, emit
 from grader.cli.suggestions import rubric_ids
 from grader.errors import RubricError
+
+if TYPE_CHECKING:
+    from grader.grading.rubric import Rubric
 
 _HELP = """List, show and check rubrics, and the checks that they can name.
 
@@ -46,6 +49,7 @@ def list_rubrics() -> int:
 @rubric.command("show")
 def show_rubric(
     name: RubricArgument,
+    answers: Annotated[bool, typer.Option("--answers", help="Also show the model answers.")] = False,
 ) -> int:
     """Show a rubric: its parts and criteria with their points.
 
@@ -53,12 +57,14 @@ def show_rubric(
 
       grader rubric show lab6
 
+      grader rubric show lab6 --answers
+
       grader rubric show my_lab.toml
     """
     from grader.grading.rubric import load_rubric
     from grader.report.rubrics import rubric_text
 
-    emit(rubric_text(load_rubric(name)))
+    emit(rubric_text(_with_answers(name) if answers else load_rubric(name)))
     return 0
 
 
@@ -91,11 +97,10 @@ def check_rubric(
       grader rubric check my_lab.toml
     """
     from grader.grading.reference import grade_reference
-    from grader.grading.rubric import load_rubric
     from grader.report.points import points_words
     from grader.report.text import printable
 
-    rules = load_rubric(file)
+    rules = _with_answers(file)
     summary = f"{rules.id}: {len(rules.criteria)} criteria, {points_words(rules.points)} points, no mistakes found"
     if rules.reference:
         report = grade_reference(rules)
@@ -110,3 +115,13 @@ def check_rubric(
         summary += "; its reference gets full marks"
     emit(summary + "\n")
     return 0
+
+
+def _with_answers(name: str) -> "Rubric":
+    """The rubric with its model answers; says so on standard error where their file is not there."""
+    from grader.grading.answers import load_with_answers, missing_answers
+
+    rules = load_with_answers(name)
+    if missing_answers(rules):
+        complain(missing_answers(rules))
+    return rules

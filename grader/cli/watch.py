@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.cli.formats import Format, render
-from grader.cli.grade_run import Wanted, graded, save_reports, wanted_rubric
+from grader.cli.grade_run import Wanted, graded, make_room, save_reports, wanted_rubric
 from grader.cli.output import complain, draw, emit
 from grader.errors import GraderError, InputError, RubricError
 from grader.report.since import lines_since, nothing_since
@@ -36,6 +36,7 @@ def watch(wanted: Wanted) -> int:
     that there is not, standard output that is closed, a report that cannot be saved.
     """
     rounds = _rounds(wanted)
+    modes = make_room(wanted)
     gc.enable()  # unlike other commands this one may run for hours
     code: int | None = None
     last: _Told | None = None
@@ -52,7 +53,7 @@ def watch(wanted: Wanted) -> int:
                 said = str(error)
                 continue
             code, said = done.code, ""
-            save_reports(wanted, done)
+            save_reports(wanted, done, modes)
             last = _show(done.report, last, is_news=is_news)
     except KeyboardInterrupt:
         if code is None:  # in the midst of the first time

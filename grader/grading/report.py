@@ -20,7 +20,7 @@ _NOTHING = Decimal(0)
 
 
 class Ruling(NamedTuple):
-    """What a person has decided of a criterion: its points, whatever the check has found; who says so, and why."""
+    """What a person has decided of a criterion: its points, whatever the check has found; who says so, if they gave a name, and why."""
 
     points: Decimal
     by: str

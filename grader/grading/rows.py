@@ -14,6 +14,7 @@ from grader.robot.names import closest, did_you_mean
 _TEXT, _NUMBER, _TEXTS, _TABLE = "a text", "a number", "a list of texts", "a table"
 _TIME = "a date and time with its offset, such as 2026-11-20T23:59:00+01:00"
 _RUBRIC = {"id": _TEXT, "title": _TEXT, "reference": _TEXT, "urdf": _TEXT, "package": _TEXT, "points": _NUMBER}
+_RUBRIC |= {"answers": _TEXT}
 _PART = {"id": _TEXT, "title": _TEXT, "needs": _TEXT, "points": _NUMBER}
 _CRITERION = {
     "id": _TEXT,
@@ -31,7 +32,7 @@ _LATE = {"due": _TIME, "grace_minutes": _NUMBER, "percent_per_day": _NUMBER, "fl
 _MOST_POINTS = 1_000_000
 _DECIMALS = 4  # of points: gradebooks keep them as whole numbers of ten-thousandths
 _NEEDS = ("urdf", "package", "files")
-_OPTIONAL = {"reference", "urdf", "package", "needs", "about", "with", "requires", "feedback"}
+_OPTIONAL = {"reference", "urdf", "package", "answers", "needs", "about", "with", "requires", "feedback"}
 _OPTIONAL |= {"due", "grace_minutes", "floor_percent"}
 
 
@@ -154,6 +155,8 @@ class Rows:
                 self._complain((*where, key), f"an id is one printable word, not {value!r}")
             elif key == "urdf" and value.rstrip("/").split("/")[-1] in ("", ".", ".."):
                 self._complain((*where, key), f"urdf must be the path of a file, not {value!r}")
+            elif key == "answers" and not _is_below(value):
+                self._complain((*where, key), f"answers must be a .toml file in the rubric's folder, not {value!r}")
         needed = [key for key in known if key not in _OPTIONAL and (key != "points" or what == "criterion")]
         for key in needed:
             if key not in row and known[key] not in ("tables", _TABLE):
@@ -190,6 +193,11 @@ class Rows:
 
 def _listed(names: Iterable[str]) -> str:
     return f"; there are: {', '.join(names) or 'none'}"
+
+
+def _is_below(path: str) -> bool:
+    """Whether a path names a TOML file in the rubric's folder or below, on every system."""
+    return path.endswith(".toml") and not set(path) & set("\\:\0") and ".." not in path.split("/") and path[0] != "/"
 
 
 def _is_countable(value: object) -> bool:

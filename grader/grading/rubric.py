@@ -1,19 +1,23 @@
 """A rubric: which facts are asked of a submission, and what each is worth. Loaded strictly, all mistakes at once."""
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import datetime
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
+from grader.checks.handed_in import answered
 from grader.checks.registry import Check
 from grader.errors import InputError, RubricError
 from grader.grading.rows import Rows
+from grader.grading.toml_lines import Path as TomlPath
 from grader.grading.toml_lines import key_lines, line_of
 from grader.robot.names import did_you_mean
 from grader.submission.files import printable_path, read_capped, sha256_of
+
+_ANSWERS = ".answers.toml"  # how the files of model answers end that stand beside the shipped rubrics
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +41,10 @@ class Evidence:
 
 @dataclass(frozen=True, slots=True)
 class Criterion:
-    """One row of a rubric: a check with its arguments, and the exact points for passing it. `position` counts from 0."""
+    """One row of a rubric: a check with its arguments, and the exact points for passing it. `position` counts from 0.
+
+    `answer` is the model answer. It is empty unless the rubric was loaded with its answers.
+    """
 
     id: str
     title: str
@@ -49,6 +56,7 @@ class Criterion:
     feedback: str = ""
     about: str = ""
     position: int = 0
+    answer: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +74,7 @@ class Late:
 
 @dataclass(frozen=True, slots=True)
 class Rubric:
-    """A lab as data. Criteria run in file order."""
+    """A lab as data. Criteria run in file order. `answers` is the path of the file with the model answers, if it has one."""
 
     id: str
     title: str
@@ -79,6 +87,7 @@ class Rubric:
     package: str = ""
     evidence: tuple[Evidence, ...] = ()
     late: Late | None = None
+    answers: str = ""
 
     @property
     def sha256(self) -> str:
@@ -116,7 +125,7 @@ def shipped_rubrics() -> dict[str, Path]:
     # A wheel carries them inside the package; in a checkout they stand beside it.
     for folder in (package / "rubrics", package.parent / "rubrics"):
         if folder.is_dir():
-            return {path.stem: path for path in sorted(folder.glob("*.toml"))}
+            return {path.stem: path for path in sorted(folder.glob("*.toml")) if not path.name.endswith(_ANSWERS)}
     return {}
 
 
@@ -137,32 +146,25 @@ def find_rubric(name: str) -> Path:
 
 
 def load_rubric(name: str) -> Rubric:
-    """Load a rubric by its id or path; raises RubricError with one line for each mistake in it, InputError if unreadable."""
+    """Load a rubric by its id or path; raises RubricError with one line for each mistake in it, InputError if unreadable.
+
+    Its criteria have no model answers: `grader.grading.answers` loads a rubric with them.
+    """
     path = find_rubric(name)
     return read_rubric(read_capped(path, advice=""), path)
 
 
-def read_rubric(data: bytes, path: Path) -> Rubric:
-    """The rubric in the bytes of a file; raises RubricError."""
-    shown = printable_path(path)
-    try:
-        text = data.decode().removeprefix("\ufeff")
-        table = tomllib.loads(text, parse_float=Decimal)
-    except UnicodeDecodeError:
-        raise RubricError((f"{shown}: this is not UTF-8 text",)) from None
-    except (ValueError, RecursionError, ArithmeticError) as error:
-        raise RubricError((f"{shown}: not readable as TOML: {error}",)) from None
+def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
+    """Return the rubric in the bytes of a file, with the model answers that are in it or without; raises RubricError."""
+    text, table = read_toml(data, path)
     rows = Rows(table)
-    if rows.complaints:
-        lines = key_lines(text)
-        found = sorted((line_of(lines, where), order, what) for order, (where, what) in enumerate(rows.complaints))
-        raise RubricError(tuple(f"{shown}:{line}: {what}" for line, _, what in found))
+    complain_of(rows.complaints, text, path)
     return Rubric(
         table["id"],
         _line(table["title"]),
         tuple(Part(row["id"], _line(row["title"]), row.get("needs", "urdf")) for row in table["part"]),
         tuple(
-            _criterion(position, row, *bound)
+            _criterion(position, row, *bound, answers=answers)
             for position, (row, bound) in enumerate(zip(table["criterion"], rows.bound, strict=True))
         ),
         table.get("urdf", "robot.urdf"),
@@ -172,7 +174,28 @@ def read_rubric(data: bytes, path: Path) -> Rubric:
         table.get("package", ""),
         tuple(_evidence(row) for row in table.get("evidence", ())),
         _late(table["late"]) if "late" in table else None,
+        table.get("answers", ""),
     )
+
+
+def read_toml(data: bytes, path: Path) -> tuple[str, dict[str, Any]]:
+    """Return the text and the table of a TOML file; raises RubricError."""
+    shown = printable_path(path)
+    try:
+        text = data.decode().removeprefix("\ufeff")
+        return text, tomllib.loads(text, parse_float=Decimal)
+    except UnicodeDecodeError:
+        raise RubricError((f"{shown}: this is not UTF-8 text",)) from None
+    except (ValueError, RecursionError, ArithmeticError) as error:
+        raise RubricError((f"{shown}: not readable as TOML: {error}",)) from None
+
+
+def complain_of(complaints: Sequence[tuple[TomlPath, str]], text: str, path: Path) -> None:
+    """Raise RubricError with a line for each complaint, in the order of the file; do nothing where there is none."""
+    if complaints:
+        lines = key_lines(text)
+        found = sorted((line_of(lines, where), order, what) for order, (where, what) in enumerate(complaints))
+        raise RubricError(tuple(f"{printable_path(path)}:{line}: {what}" for line, _, what in found))
 
 
 def _line(title: str) -> str:
@@ -189,7 +212,11 @@ def _evidence(row: dict[str, Any]) -> Evidence:
     return Evidence(row["id"], row["part"], _line(row["title"]), tuple(row["names"]))
 
 
-def _criterion(position: int, row: dict[str, Any], check: Check, arguments: dict[str, Any]) -> Criterion:
+def _criterion(
+    position: int, row: dict[str, Any], check: Check, arguments: dict[str, Any], *, answers: bool
+) -> Criterion:
+    # Nothing that lists or passes on a criterion's arguments gets to see the model answer.
+    answer = arguments.pop("answer", "") if check.function is answered else ""
     return Criterion(
         row["id"],
         _line(row["title"]),
@@ -201,4 +228,5 @@ def _criterion(position: int, row: dict[str, Any], check: Check, arguments: dict
         row.get("feedback", ""),
         row.get("about", ""),
         position,
+        answer if answers else "",
     )

@@ -68,7 +68,7 @@ def _result(result: Result) -> dict[str, Any]:
         "max_points": exact(criterion.points),
         "message": outcome.message,
         "measured": rounded(outcome.measured),
-        "expected": rounded(outcome.expected),
+        "expected": criterion.answer or rounded(outcome.expected),
         "tolerance": outcome.tolerance,
         "unit": outcome.unit,
         "because": result.because,

@@ -29,19 +29,22 @@ _MARKS = {"passed": "\u2713", "failed": "\u2717", "skipped": "\u2212", "pending"
 _CUT = "**The report is cut off here: it is longer than can be shown.** A report that is saved to a file is whole.\n"
 
 
-def render_markdown(report: Report) -> str:
-    """The whole report."""
-    return "\n".join(f"{block}\n" for block in _blocks(report))
+def render_markdown(report: Report, *, answers: bool = True) -> str:
+    """Return the whole report, with the model answers that its rubric was loaded with or without."""
+    return "\n".join(f"{block}\n" for block in _blocks(report, answers=answers))
 
 
 def cut_markdown(report: Report, most: int) -> str:
-    """The report in no more than so many bytes of UTF-8: whole blocks from its beginning, and a notice if some are missing."""
-    text = render_markdown(report)
+    """The report in no more than so many bytes of UTF-8: whole blocks from its beginning, and a notice if some are missing.
+
+    Job summaries are made of it, which students read: no model answers are in it.
+    """
+    text = render_markdown(report, answers=False)
     if len(text.encode()) <= most:
         return text
     kept: list[str] = []
     left = most - len(_CUT.encode())
-    for block in _blocks(report):
+    for block in _blocks(report, answers=False):
         left -= len(block.encode()) + 2
         if left < 0:
             break
@@ -56,10 +59,10 @@ def whole_markdown(report: Report) -> str:
 
 def criterion_markdown(result: Result, report: Report) -> str:
     """What is said of one criterion, beside its title and points."""
-    return "\n\n".join(_details(result, report, set()))
+    return "\n\n".join(_details(result, report, set(), answers=False))
 
 
-def _blocks(report: Report) -> Iterator[str]:
+def _blocks(report: Report, *, answers: bool) -> Iterator[str]:
     """The report piece by piece; each stands for itself."""
     yield from _head(report)
     titles = {part.id: part.title for part in report.rubric.parts}
@@ -71,7 +74,7 @@ def _blocks(report: Report) -> Iterator[str]:
             group = tuple(some)
             if about and about != titles[part]:
                 yield f"### {escaped(printable(about))} ({earned(group)})"
-            yield from (_item(each, report, shown) for each in group)
+            yield from (_item(each, report, shown, answers=answers) for each in group)
     yield from _evidence(report)
     yield from _problems(report)
     yield from filter(None, (advice(report),))
@@ -81,22 +84,22 @@ def _head(report: Report) -> Iterator[str]:
     yield f"# {escaped(score_words(report))}: {escaped(printable(report.rubric.title))}"
     yield from (escaped(line) for line in (summary(report), package_words(report)) if line)
     if report.pending:
-        yield f"**{pending_words(report)}**"
+        yield f"**{escaped(pending_words(report))}**"
     yield escaped(provenance(report))
     yield from map(escaped, (*notes(report), *asides(report)))
 
 
-def _item(result: Result, report: Report, shown: set[str]) -> str:
+def _item(result: Result, report: Report, shown: set[str], *, answers: bool) -> str:
     criterion, status = result.criterion, status_of(result)
     points = f"{points_words(result.points)}/{points_words(criterion.points)}"
     head = f"- {_MARKS[status]} {points} {escaped(printable(criterion.title))}"
     if status == "passed" and result.ruling is None:
         return head
-    details = (indent(block, "  ") for block in _details(result, report, shown))
+    details = (indent(block, "  ") for block in _details(result, report, shown, answers=answers))
     return "\n\n".join((f"{head} ({code(criterion.id)})", *details))
 
 
-def _details(result: Result, report: Report, shown: set[str]) -> Iterator[str]:
+def _details(result: Result, report: Report, shown: set[str], *, answers: bool) -> Iterator[str]:
     """What is said of a criterion, block by block. Feedback that is shown already is not shown once more."""
     what = told(result, report)
     yield from map(escaped, what.sentences)
@@ -105,9 +108,10 @@ def _details(result: Result, report: Report, shown: set[str]) -> Iterator[str]:
         quoted = list(quoted_lines(what.place, report))
         if quoted:
             yield fenced(quoted)
-    if what.found:
-        yield "Found:"
-        yield fenced(list(what.found))
+    for name, lines in (("Found", what.found), ("Model answer", what.model if answers else ())):
+        if lines:
+            yield f"{name}:"
+            yield fenced(list(lines))
     if what.feedback and what.feedback not in shown:
         shown.add(what.feedback)
         yield f"*{escaped(what.feedback)}*"

@@ -5,9 +5,9 @@ from pathlib import Path
 from rich.console import Console
 from rich.text import Text
 
-from grader.classroom.marking import Pending
+from grader.classroom.marking import Mark, Pending
 from grader.report.layout import wrapped
-from grader.report.points import points_words
+from grader.report.points import points_words, so_many_points
 from grader.report.text import printable
 
 _INDENT = 2
@@ -26,11 +26,19 @@ def render_pending(pending: Pending, place: str, console: Console) -> None:
         _show("Found", outcome.measured, console)
     elif isinstance(outcome.measured, tuple | list):
         _show("Look at", "\n".join(_where(pending, str(each)) for each in outcome.measured), console)
-    if isinstance(outcome.expected, str):
-        _show("Model answer", outcome.expected, console)
+    if criterion.answer:
+        _show("Model answer", criterion.answer, console)
     if outcome.location is not None:
         place = f"in {_where(pending, outcome.location.path)}, line {outcome.location.line}"
         wrapped(console, Text(printable(place), "dim"), 0)
+
+
+def mark_words(mark: Mark) -> str:
+    """Return a mark in one printable line: points, by whom if they gave a name, when, and the comment."""
+    what = "taken back" if mark.points is None else so_many_points(mark.points)
+    words = [what, f"by {mark.by}" if mark.by else "by a person without a name", f"at {mark.at}"]
+    comment = " ".join(mark.comment.split())
+    return printable(f"{' '.join(words)}: {comment}" if comment else " ".join(words))
 
 
 def _show(what: str, text: str, console: Console) -> None:

@@ -24,13 +24,16 @@ EFFECTS = {
 
 
 def rubric_text(rubric: Rubric) -> str:
-    """A rubric part by part, a line for each criterion."""
+    """A rubric part by part, a line for each criterion, and the model answers that it was loaded with."""
     lines = [f"{rubric.id}: {rubric.title} ({points_words(rubric.points)} points)", f"sha256 {rubric.sha256}"]
     for part in rubric.parts:
         rows = [each for each in rubric.criteria if each.part == part.id]
         lines += ["", f"{part.id}: {part.title}"]
         width = max((len(each.id) for each in rows), default=0)
-        lines += [f"  {each.id:<{width}}  {points_words(each.points):>4}  {printable(each.title)}" for each in rows]
+        for each in rows:
+            lines.append(f"  {each.id:<{width}}  {points_words(each.points):>4}  {printable(each.title)}")
+            if each.answer:
+                lines.append(textwrap.indent(_filled(f"Model answer: {printable(each.answer)}"), "    "))
     return "\n".join(lines) + "\n"
 
 

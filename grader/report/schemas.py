@@ -244,12 +244,13 @@ def rubric_schema() -> dict[str, Any]:
             "urdf": _TEXT,
             "package": _TEXT,
             "points": _POINTS,
+            "answers": {"type": "string", "pattern": r"\.toml$"},
             "part": {**_array(part), "minItems": 1},
             "criterion": {**_array(criterion), "minItems": 1},
             "evidence": {**_array(evidence), "minItems": 1},
             "late": late,
         },
-        optional=("reference", "urdf", "package", "points", "evidence", "late"),
+        optional=("reference", "urdf", "package", "points", "answers", "evidence", "late"),
     )
     return {"$schema": _DIALECT, "title": "grader rubric", **rubric}
 

@@ -40,18 +40,17 @@ _MOST_LISTED = 12
 
 
 class _Page(NamedTuple):
-    """What is being printed, where, which feedback is printed already, and whether model answers are."""
+    """What is being printed, where, and which feedback is printed already."""
 
     report: Report
     console: Console
     shown: set[str]
-    models: bool
 
 
-def render_terminal(report: Report, console: Console, *, models: bool = True) -> None:
-    """Print a report, with model answers or without. Nothing of the submission is taken for markup or control codes."""
+def render_terminal(report: Report, console: Console) -> None:
+    """Print a report. Nothing of the submission is taken for markup or control codes."""
     _show_head(report, console)
-    page = _Page(report, console, set(), models)
+    page = _Page(report, console, set())
     titles = {part.id: part.title for part in report.rubric.parts}
     for part, of_part in groupby(report.results, key=lambda each: each.criterion.part):
         results = tuple(of_part)
@@ -115,7 +114,7 @@ def _shared(results: tuple[Result, ...]) -> str | None:
 def _reason(result: Result) -> str | None:
     if result.because is not None and result.ruling is None:
         return f"skipped, because {result.because} failed"
-    is_open = result.is_open and result.outcome.expected is None
+    is_open = result.is_open and not isinstance(result.outcome.measured, str)  # an answer is shown on its own
     return f"pending: {result.outcome.message}" if is_open else None
 
 
@@ -156,7 +155,7 @@ def _show_told(what: Told, styles: tuple[str, ...], page: _Page) -> None:
     console = page.console
     for words, style in zip(what.sentences, styles, strict=False):
         wrapped(console, Text(words, style=style), _INDENT)
-    for name, lines in (("Found", what.found), ("Model answer", what.model if page.models else ())):
+    for name, lines in (("Found", what.found), ("Model answer", what.model)):
         if lines:
             wrapped(console, Text(f"{name}:", style="bold"), _INDENT)
         for line in lines:

@@ -24,8 +24,8 @@ _STATUSES = ("passed", "failed", "skipped", "pending", "errored", "marked by han
 class Told(NamedTuple):
     """What there is to say of a criterion beside its title and points. `place` is where to look, if it failed.
 
-    `found` is what was answered to a question, line by line, and `model` the model answer. That is for the one who marks:
-    formats that are made for students leave it out.
+    `found` is what was answered to a question, line by line. `model` is the model answer, empty unless the rubric was loaded
+    with its answers.
     """
 
     sentences: tuple[str, ...]
@@ -75,10 +75,13 @@ def package_words(report: Report) -> str:
 
 
 def pending_words(report: Report) -> str:
-    """How many points a person still has to give or refuse; empty where none wait."""
+    """How many points a person still has to give or refuse, and what no program could decide; empty where none wait."""
     if not report.pending:
         return ""
-    return f"{so_many_points(report.pending)} {'waits' if report.pending == 1 else 'wait'} for a person"
+    names = [printable(each.criterion.id) for each in undecided(report)]
+    more = f" and {len(names) - _MOST_LISTED} more" if len(names) > _MOST_LISTED else ""
+    left = f"; not decided: {', '.join(names[:_MOST_LISTED])}{more}" if names else ""
+    return f"{so_many_points(report.pending)} {'waits' if report.pending == 1 else 'wait'} for a person{left}"
 
 
 def notes(report: Report) -> list[str]:
@@ -104,7 +107,7 @@ def told(result: Result, report: Report) -> Told:
     outcome = result.outcome
     if result.ruling is not None:
         comment = f": {_line(result.ruling.comment)}" if result.ruling.comment else ""
-        by_hand = sentence(f"Marked by {result.ruling.by}{comment}")
+        by_hand = sentence(f"Marked by {result.ruling.by or 'hand'}{comment}")
         if outcome.status == "pending":
             return Told((by_hand,), *_answers(result))
         return Told((by_hand, sentence(f"The check: {outcome.status}. {outcome.message}")))
@@ -127,8 +130,7 @@ def _line(text: str) -> str:
 
 def _answers(result: Result) -> tuple[tuple[str, ...], tuple[str, ...]]:
     """What was answered, and the model answer; nothing where no question was asked."""
-    model = result.outcome.expected
-    return (_lines(result.outcome.measured), _lines(model)) if isinstance(model, str) else ((), ())
+    return _lines(result.outcome.measured), _lines(result.criterion.answer)
 
 
 def _lines(text: object) -> tuple[str, ...]:

@@ -52,6 +52,20 @@ def test_the_files(bundle: Path) -> None:
     assert list(names) == sorted(names)
 
 
+def test_model_answers_stay_out(bundle: Path, tmp_path: Path) -> None:
+    """Neither those of lab6 nor those that another rubric keeps in a file of its own: nothing there needs them."""
+    secret = "Because of the roots."
+    rubric = tmp_path / "small.toml"
+    text = lab_text().replace(f', answer = "{secret}"', "")
+    rubric.write_text(f'answers = "small.answers.toml"\n{text}', encoding="utf-8")
+    (tmp_path / "small.answers.toml").write_text(f'essay = "{secret}"\n', encoding="utf-8")
+    done = grader("bundle", "gradescope", tmp_path / "own.zip", "--rubric", rubric)
+    assert done.returncode == 0, done.stderr
+    assert secret.encode() not in (tmp_path / "own.zip").read_bytes()
+    assert b'answers = "small.answers.toml"' in (tmp_path / "own.zip").read_bytes()
+    assert b"The model vanishes" not in bundle.read_bytes()
+
+
 def test_permissions_and_times(bundle: Path) -> None:
     """The two scripts can be run, nothing else can, and no clock has left a trace."""
     programs = {name for name, entry in members(bundle).items() if entry.external_attr >> 16 == 0o100755}

@@ -2,6 +2,7 @@
 
 import json
 import os
+import random
 import shutil
 import subprocess
 import sys
@@ -14,6 +15,9 @@ from tests.ci.conftest import git, repository
 from tests.ci.runner import Done, Runner, composite, load
 
 ROOT = Path(__file__).parent.parent.parent
+CHECKOUT = "actions/checkout@de0fac2e4500dabe0009e67214ff5f5447ce83dd"
+PYTHON = "actions/setup-python@a309ff8b426b58ec0e2a45f0f869d46889d02405"
+UPLOAD = "actions/upload-artifact@b7c566a772e6b6bfb58ed0dc250532a479d7789f"
 WORKFLOWS = ROOT / "docs" / "ci"
 
 pytestmark = [
@@ -164,12 +168,12 @@ def test_the_student_workflow(tmp_path: Path, temp: Path) -> None:
         shutil.copytree(ROOT / "submissions" / sample, tmp_path / sample)
         runner = Runner(tmp_path / sample, temp)
         runner.actions = {
-            "actions/checkout@v6": nothing,
+            CHECKOUT: nothing,
             "YOUR-ORG/grader@v1": composite(ROOT),
-            "actions/upload-artifact@v6": upload,
+            UPLOAD: upload,
         }
         assert runner.job(workflow["jobs"]["grade"]["steps"]) == code, runner.done
-    assert kept == ["junit.xml", "report.md", "report.sarif"] * 2
+    assert kept == ["junit.xml", "report.json", "report.md", "report.sarif"] * 2
 
 
 def test_a_version_is_taken_from_the_repository(tmp_path: Path, published: Path) -> None:
@@ -189,12 +193,25 @@ def test_a_version_is_taken_from_the_repository(tmp_path: Path, published: Path)
     assert not (tmp_path / "owned").exists()
 
 
+def too_large(host: Path) -> None:
+    """Repositories that no runner should check out: large as fetched, large once unpacked, with many files."""
+    for name in ("lab6-pushed", "lab6-zeros", "lab6-many"):
+        (host / name).mkdir()
+    (host / "lab6-pushed" / "video.mp4").write_bytes(random.Random(1).randbytes(3 * 2**20))
+    (host / "lab6-zeros" / "zeros.txt").write_bytes(bytes(3 * 2**20))
+    for number in range(201):
+        (host / "lab6-many" / f"{number}.txt").touch()
+    for name in ("lab6-pushed", "lab6-zeros", "lab6-many"):
+        repository(host / name)
+
+
 def test_the_class_workflow(tmp_path: Path, published: Path) -> None:
     """The template for a class organisation fetches every student's repository and grades it, whoever broke what."""
     host = tmp_path / "host"
     for name, sample in (("lab6-ada", "reference"), ("lab6-grace", "missing-import-os"), ("other", "reference")):
         shutil.copytree(ROOT / "submissions" / sample, host / name)
         repository(host / name)
+    too_large(host)
     (host / "lab6-none").mkdir()
     git(host / "lab6-none", "init", "--quiet")
     bin_ = tmp_path / "bin"
@@ -202,7 +219,7 @@ def test_the_class_workflow(tmp_path: Path, published: Path) -> None:
     (bin_ / "gh").write_text(
         "#!/usr/bin/env bash\n"
         f'if [ "$2" = list ]; then ls "{host}"; echo lab6-gone; exit; fi\n'  # without templates, as --jq says
-        f'git clone --quiet "{host}/${{3#*/}}" "$4" "${{@:6}}"\n',
+        f'git clone --quiet "file://{host}/${{3#*/}}" "$4" "${{@:6}}"\n',
         encoding="utf-8",
     )
     (bin_ / "gh").chmod(0o755)
@@ -221,11 +238,18 @@ def test_the_class_workflow(tmp_path: Path, published: Path) -> None:
             git(runner.workspace, "clone", "--quiet", str(published / given["repository"]), given["path"])
         return Done(0, "", "")
 
-    runner.actions = dict.fromkeys(("actions/setup-python@v6", "actions/upload-artifact@v6"), nothing)
-    runner.actions["actions/checkout@v6"] = checkout
-    assert runner.job(workflow["jobs"]["grade"]["steps"], workflow["env"]) == 0, runner.done
+    runner.actions = dict.fromkeys((PYTHON, UPLOAD), nothing)
+    runner.actions[CHECKOUT] = checkout
+    limits = {**{name: str(value) for name, value in workflow["env"].items()}, "MAX_MEGABYTES": "2", "MAX_FILES": "200"}
+    assert runner.job(workflow["jobs"]["grade"]["steps"], limits) == 0, runner.done
     said = "".join(each.stdout for _, each in runner.done)
-    assert "::warning title=lab6-gone::This repository could not be fetched." in said
+    for name in ("gone", "pushed"):
+        why = "Not graded: this repository could not be fetched, or is larger than MAX_MEGABYTES (2)."
+        assert f"::warning title=lab6-{name}::{why}" in said
+    for name in ("many", "zeros"):
+        why = "Not graded: it has more than MAX_MEGABYTES (2) or MAX_FILES (200) in this workflow."
+        assert f"::warning title=lab6-{name}::{why}" in said
+    assert {path.name for path in (runner.temp / "class").iterdir()} == {"lab6-ada", "lab6-grace", "lab6-none"}
     assert "::warning title=lab6-none::This repository is empty." in said
     grades = (runner.temp / "grades.csv").read_text(encoding="utf-8")
     assert len(grades.splitlines()) == 5  # a header, the roster, and the empty one
@@ -236,6 +260,9 @@ def test_the_classroom50_autograder(tmp_path: Path, published: Path) -> None:
     """The autograder for Classroom 50 writes both files in the student's checkout, and ends well with a bad mark."""
     work = tmp_path / "work"
     shutil.copytree(ROOT / "submissions" / "missing-import-os", work)
+    (tmp_path / "victim").write_text("precious")
+    (work / "result.json").symlink_to(tmp_path / "victim")
+    (work / "release-body.md").mkdir()
     urls = ("COMMIT_URL", "RELEASE_URL", "REVIEW_URL")
     who = {"CLASSROOM": "robo", "ASSIGNMENT": "lab6", "USERNAME": "ada", **dict.fromkeys(urls, "https://example.org")}
     variables = {**who, "SUBMISSION_TAG": "submit/2026-09-01T10-00-00Z-ab12cd3", **instead_of_github(published)}
@@ -248,6 +275,53 @@ def test_the_classroom50_autograder(tmp_path: Path, published: Path) -> None:
         timeout=300,
     )
     assert done.returncode == 0, done.stderr
+    assert (tmp_path / "victim").read_text() == "precious"
     result = json.loads((work / "result.json").read_text(encoding="utf-8"))
     assert (result["owner"], result["score"], result["max-score"]) == ("ada", 89, 90)
     assert "setup-imports" in (work / "release-body.md").read_text(encoding="utf-8")
+    (work / "result.json").write_text('{"score": 90}')
+    forged = subprocess.run(
+        [sys.executable, str(WORKFLOWS / "classroom50.py")],
+        cwd=work,
+        env={**os.environ, **variables, "SUBMISSION_TAG": "none"},
+        capture_output=True,
+        check=False,
+        timeout=300,
+    )
+    assert forged.returncode == 2
+    assert not (work / "result.json").exists()
+
+
+@pytest.mark.parametrize(("sample", "code"), [("reference", 0), ("missing-import-os", 1), ("xacro-in-urdf", None)])
+def test_the_gitlab_job(tmp_path: Path, sample: str, code: int | None) -> None:
+    """The exit code is the grader's, reports are not written through what a student has committed, nor left from before."""
+    work = tmp_path / "work"
+    shutil.copytree(ROOT / "submissions" / sample, work)
+    (tmp_path / "victim").mkdir()
+    (work / "grader-reports").symlink_to("../victim")
+    job = load(WORKFLOWS / "gitlab-ci.yml")["lab6"]
+    grader = Path(sys.executable).with_name("grader")
+    script = "\n".join(["set -e", *job["script"][2:]]).replace("/tmp/grader/bin/grader", str(grader))
+    variables = {**os.environ, **job["variables"], "CI": "true", "CI_PROJECT_DIR": str(work)}
+    done = subprocess.run(["bash", "-c", script], cwd=work, env=variables, capture_output=True, text=True, check=False)
+    alone = subprocess.run([grader, "grade", work], capture_output=True, check=False)
+    assert done.returncode == (alone.returncode if code is None else code), done.stderr
+    assert list((tmp_path / "victim").iterdir()) == []
+    kept = [*job["artifacts"]["paths"], *job["artifacts"]["reports"].values()]
+    assert all((work / path).stat().st_size for path in kept)
+    assert "|| true" not in script
+
+
+def test_a_job_says_what_was_not_decided(job: Job, tmp_path: Path) -> None:
+    """In an annotation and first thing in the summary: a mesh is in the place of the base's box."""
+    [urdf] = (tmp_path / "work").rglob("*.urdf")
+    text = urdf.read_text(encoding="utf-8")
+    urdf.write_text(
+        text.replace('<box size="0.6 0.4 0.2"/>', '<mesh filename="package://my_robot/base.stl"/>'), encoding="utf-8"
+    )
+    done = job.grade()
+    assert "Not decided (10 points): base-on-ground, lidar-on-top, left-wheel-clear" in done.stderr
+    assert (
+        "wait for a person; not decided: base-on-ground, lidar-on-top, left-wheel-clear"
+        in job.runner.summary.replace("\\", "")
+    )

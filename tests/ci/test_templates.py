@@ -42,6 +42,55 @@ def test_the_schemas_refuse_what_is_wrong(tmp_path: Path) -> None:
     assert done.returncode == 1
 
 
+WORKFLOWS = ("action.yml", "docs/ci/class.yml", "docs/ci/student-repository.yml")
+
+
+def zizmor(*files: Path) -> subprocess.CompletedProcess[str]:
+    """Look for ways to attack a workflow, without the network; ends with another code than 0 if there is one above "low"."""
+    program = Path(sys.executable).with_name("zizmor")
+    options = ("--offline", "--no-progress", "--no-config", "--min-severity", "medium")
+    return subprocess.run([program, *options, *files], capture_output=True, text=True, check=False)
+
+
+def test_zizmor_finds_nothing() -> None:
+    """Actions are pinned, permissions are few, no expression is in a script, no token is left in a checkout."""
+    done = zizmor(*(ROOT / name for name in WORKFLOWS))
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "No findings to report" in done.stdout + done.stderr
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "audit"),
+    [
+        ("@de0fac2e4500dabe0009e67214ff5f5447ce83dd # v6.0.2", "@v6", "unpinned-uses"),
+        ('"$RUBRIC" --layout', '"${{ github.event.issue.title }}" --layout', "template-injection"),
+        ("  workflow_dispatch:", "  pull_request_target:", "dangerous-triggers"),
+    ],
+)
+def test_zizmor_finds_what_is_there(tmp_path: Path, before: str, after: str, audit: str) -> None:
+    """A workflow that is less careful is told, so that the test above can fail."""
+    text = (ROOT / "docs/ci/class.yml").read_text(encoding="utf-8")
+    assert before in text
+    (tmp_path / "class.yml").write_text(text.replace(before, after), encoding="utf-8")
+    done = zizmor(tmp_path / "class.yml")
+    assert done.returncode != 0
+    assert audit in done.stdout
+
+
+def test_no_token_stays_in_a_checkout() -> None:
+    """Each checkout says so, each action is pinned to a commit with its version behind it, and permissions are to read."""
+    for name in WORKFLOWS[1:]:
+        text, workflow = (ROOT / name).read_text(encoding="utf-8"), load(ROOT / name)
+        assert workflow["permissions"] == {"contents": "read"}
+        steps = [step for job in workflow["jobs"].values() for step in job["steps"] if "uses" in step]
+        for step in steps:
+            if step["uses"].startswith("actions/checkout@"):
+                assert step["with"]["persist-credentials"] is False
+            if not step["uses"].startswith("YOUR-ORG/"):
+                assert re.search(rf"{step['uses']} # v[0-9]+\.[0-9]+\.[0-9]+$", text, re.MULTILINE), step["uses"]
+                assert re.fullmatch(r"[a-z/-]+@[0-9a-f]{40}", step["uses"])
+
+
 def test_hooks_are_valid() -> None:
     """pre-commit takes the file of hooks."""
     done = subprocess.run(

@@ -318,7 +318,7 @@ def _fast() -> str | None:
 
 def try_classes(number: int) -> None:
     """Try so many classes; raises AssertionError, with the shortest way there, for the first that does not hold."""
-    run_state_machine_as_test(  # type: ignore[no-untyped-call]
+    run_state_machine_as_test(
         HostileClass,
         settings=settings(
             max_examples=number,

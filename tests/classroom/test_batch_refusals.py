@@ -195,6 +195,22 @@ def test_reports_where_a_file_stands(folder: Path, tmp_path: Path) -> None:
     assert not book.exists()
 
 
+@pytest.mark.parametrize("option", ["--reports", "--csv", "--gradebook"])
+def test_no_link_of_a_submission_is_written_through(option: str, folder: Path, tmp_path: Path) -> None:
+    """It is refused before anything is graded; a link beside the class is followed."""
+    (folder / "mallory").mkdir()
+    (tmp_path / "elsewhere").mkdir()
+    (folder / "mallory" / "out").symlink_to(tmp_path / "elsewhere")
+    (tmp_path / "link").symlink_to("elsewhere")
+    book = () if option == "--gradebook" else ("--gradebook", tmp_path / "lab6.db")
+    line = refused("batch", folder, *book, option, folder / "mallory" / "out" / "a")
+    assert line.endswith("mallory/out is a symlink in the submission (name a file outside of it)")
+    assert not list((tmp_path / "elsewhere").iterdir())
+    assert not (tmp_path / "lab6.db").exists()
+    assert grader("batch", folder, *book, option, tmp_path / "link" / "a").returncode == 0
+    assert list((tmp_path / "elsewhere").iterdir())
+
+
 @pytest.mark.skipif(os.geteuid() == 0, reason="nothing is closed to root")
 def test_a_hand_in_that_may_not_be_read(folder: Path, tmp_path: Path) -> None:
     """It is unreadable, the others are graded, and it is graded once it may be read."""

@@ -62,7 +62,7 @@ def test_what_a_new_file_is(book: Gradebook) -> None:
         "application_id": APPLICATION_ID,
     }
     with pytest.raises(InputError, match="FOREIGN KEY"), book.complaining():
-        book.connection.execute("INSERT INTO mark VALUES (9, 99, 'essay', 1, '', '', '', 99)")
+        book.connection.execute("INSERT INTO mark VALUES (9, 99, 'essay', 1, '', '', '', 99, '')")
 
 
 @pytest.mark.parametrize(
@@ -71,7 +71,7 @@ def test_what_a_new_file_is(book: Gradebook) -> None:
         "UPDATE mark SET points = 40000",
         "UPDATE mark SET comment = ''",
         "DELETE FROM mark",
-        "INSERT OR REPLACE INTO mark SELECT id, student, criterion, 0, '', '', '', result FROM mark",
+        "INSERT OR REPLACE INTO mark SELECT id, student, criterion, 0, '', '', '', result, '' FROM mark",
         "REPLACE INTO mark SELECT * FROM mark",
         "UPDATE result SET score = 0",
         "DELETE FROM result",

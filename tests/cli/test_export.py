@@ -5,6 +5,7 @@ import io
 import json
 import re
 import shutil
+import subprocess
 import sys
 import zipfile
 from collections.abc import Iterator
@@ -233,7 +234,7 @@ def test_strict_writes_nothing(top: Path) -> None:
     arguments = ("canvas", "--into", top / "canvas.csv", "--output", top / "out.csv")
     strict = export(top, *arguments, "--strict")
     assert (strict.returncode, strict.stdout, (top / "out.csv").read_text()) == (1, "", "as it was")
-    assert "in the file, but not in the gradebook: row 4, Zoe, X: nobody of ours" in strict.stderr
+    assert "in the file, but not in the gradebook: row 4, Zoe, X: no student of the gradebook" in strict.stderr
     assert "in the gradebook, but not in the file: Ben Oh: has a grade, but no row in the file" in strict.stderr
     assert strict.stderr.endswith("grader: nothing was written: --strict, and not everything has a match\n")
     assert export(top, *arguments).returncode == 0
@@ -279,6 +280,50 @@ def test_the_gradebook_is_never_replaced(name: str, top: Path) -> None:
     book = ("--gradebook", top / "link.db")
     assert refusal(grader("export", "csv", *book, "--output", top / name)).endswith(why)
     assert {each.name: each.read_bytes() for each in top.iterdir() if each.is_file()} == before
+
+
+@pytest.mark.parametrize("name", ["lms.csv", "../small/lms.csv", "link.csv", "hard.csv"])
+@pytest.mark.parametrize("target", ["canvas", "moodle"])
+def test_the_file_of_the_lms_is_never_replaced(name: str, target: str, top: Path) -> None:
+    """Rows without a grade are left out of what is written: in its place they would be lost. It is refused by any name."""
+    lms = top / "lms.csv"
+    lms.write_text(canvas(ben="102", nobody="9"))
+    (top / "link.csv").symlink_to("lms.csv")
+    (top / "hard.csv").hardlink_to(lms)
+    before = lms.read_bytes()
+    why = f"cannot write {lms}: --into reads it, and rows without a grade would be lost; name another file"
+    assert refusal(export(top, target, "--into", lms, "--output", top / name)) == why
+    with lms.open("ab") as stdout:
+        command = [sys.executable, "-m", "grader", "export", target, "--gradebook", str(top / "book.db")]
+        done = subprocess.run([*command, "--into", str(top / name)], cwd=ROOT, stdout=stdout, check=False)
+    assert done.returncode == 2
+    assert lms.read_bytes() == before
+
+
+def test_without_an_output_no_file_is_written(top: Path) -> None:
+    """The filled file is printed, and the one that was read stays as it was."""
+    (top / "canvas.csv").write_text(canvas(ben="102"))
+    for arguments in (("csv",), ("json",), ("canvas", "--into", top / "canvas.csv")):
+        before = {each: (each.read_bytes(), each.stat().st_mtime_ns) for each in top.rglob("*") if each.is_file()}
+        done = export(top, *arguments)
+        assert done.returncode == 0, done.stderr
+        assert done.stdout
+        after = {each: (each.read_bytes(), each.stat().st_mtime_ns) for each in top.rglob("*") if each.is_file()}
+        assert after == before
+
+
+def test_no_link_of_a_submission_is_followed(top: Path) -> None:
+    """The gradebook knows the class: a link that a student has put there leads nowhere, one beside it does."""
+    assert batch(top).returncode == 0  # the gradebook comes from a copy of the class
+    (top / "class" / "anna" / "grades.csv").symlink_to(top / "victim")
+    (top / "class" / "anna" / "out").symlink_to(top)
+    (top / "link").symlink_to(top)
+    for place in ("grades.csv", "out/victim"):
+        why = refusal(export(top, "csv", "--output", top / "class" / "anna" / place))
+        assert why.endswith(" is a symlink in the submission (name a file outside of it)")
+    assert not (top / "victim").exists()
+    assert export(top, "csv", "--output", top / "link" / "victim").returncode == 0
+    assert (top / "victim").exists()
 
 
 def test_another_maximum_is_refused(top: Path) -> None:

@@ -14,6 +14,7 @@ import pytest
 from grader.classroom.gradebook import Gradebook
 from grader.classroom.standings import Standings
 from grader.cli.class_text import class_text
+from grader.cli.formats import Format
 from grader.cli.options import ClassFormat
 from grader.report.schemas import REPORT_SCHEMA
 from tests.classroom.gradebooks import ENVIRONMENT, HOSTILE, batch, grader, hand_in, lab_text, refusal, urdf
@@ -239,3 +240,46 @@ def test_marks_of_several_threads_wait_for_each_other(top: Path) -> None:
             assert other == []
         thread.join()
     assert other == [0]
+
+
+def test_what_a_mark_replaces_is_told(top: Path) -> None:
+    """It is never asked about, and one that was taken back is replaced by nothing."""
+    assert mark(top, "anna", "essay", "3", "--by", "Kim", "--comment", "no\nroots").stderr == ""
+    second = mark(top, "anna", "essay", "1")
+    assert second.stdout == "anna: 7 of 11 points; waiting for a person: 1\n"
+    assert second.stderr.startswith("grader: this replaces the newest mark of essay: 3 points by Kim at 20")
+    assert second.stderr.endswith(": no roots\n")
+    third = mark(top, "anna", "essay", "-")
+    assert "essay: 1 point by a person without a name at 20" in third.stderr
+    assert mark(top, "anna", "essay", "2").stderr == ""
+
+
+def test_an_account_is_named_by_no_report(top: Path) -> None:
+    """Without `--by` no report, table or feedback says who marked; with it, that name. The gradebook keeps the account."""
+    account = {"LOGNAME": "jdoe47"}
+    assert mark(top, "anna", "essay", "3", "--comment", "fine", **account).returncode == 0
+    assert mark(top, "emil", "essay", "3", "--by", "Kim", **account).returncode == 0
+    assert grader("review", "--gradebook", top / "book.db", stdin="1\nq\n", **account).returncode == 0
+    formats = [part for kind in Format if kind != "classroom50" for part in ("--report-format", kind)]
+    out = top / "out"
+    done = batch(top, "--reports", out, *formats, "--csv", out.with_suffix(".csv"))
+    assert done.returncode == 0, done.stderr
+    worksheet = top / "moodle.csv"
+    worksheet.write_text(
+        "Identifier,Full name,Email address,Status,Grade,Maximum Grade,Grade can be changed,Last modified (grade),Feedback comments\n"
+        "Participant 1,Anna Ek,anna@example.org,Submitted,-,11.00,Yes,-,\n",
+        encoding="utf-8",
+    )
+    book = ("--gradebook", top / "book.db")
+    said = [done.stdout, done.stderr]
+    for arguments in (("csv",), ("json",), ("moodle", "--into", worksheet, "--pending-as-zero")):
+        shown = grader("export", *arguments, *book)
+        assert shown.returncode == 0, shown.stderr
+        said.append(shown.stdout + shown.stderr)
+    assert "fine" in said[-1]
+    files = [path.read_text(encoding="utf-8") for path in (*out.iterdir(), out.with_suffix(".csv"))]
+    assert len(files) > len(Format)
+    assert all("jdoe47" not in text for text in (*files, *said))
+    assert "Marked by hand: fine." in (out / "anna.md").read_text(encoding="utf-8")
+    assert "Marked by Kim." in (out / "emil.md").read_text(encoding="utf-8")
+    assert [row[3] for row in marks(top)] == ["jdoe47", "Kim", "jdoe47"]

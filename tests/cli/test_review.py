@@ -4,12 +4,15 @@ import os
 import pty
 import subprocess
 import sys
+from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from grader.classroom.gradebook import Gradebook
+from grader.classroom.marking import NewerMarkError, Waiting, mark, pending
+from grader.classroom.standings import Standings
 from tests.classroom.gradebooks import ENVIRONMENT, grader
 from tests.samples import ROOT
 
@@ -138,6 +141,58 @@ def test_two_people_at_once(top: Path) -> None:
     assert "Ben Oh (emil): About picture" in out
     assert out.endswith("1 marked, 1 still wait\n")
     assert marks(top) == [("emil", "essay", 4.0, ""), ("anna", "picture", 1.0, ""), ("anna", "essay", 2.0, "")]
+
+
+@pytest.mark.parametrize(
+    ("typed", "end", "kept"),
+    [
+        ("k\n", "0 marked, 1 still wait\n", [1.5, None, 3.0]),
+        ("what\n\nKEEP\n", "0 marked, 1 still wait\n", [1.5, None, 3.0]),
+        ("r\n", "1 marked, 1 still wait\n", [1.5, None, 3.0, 2.0]),
+        ("", "0 marked, 1 still wait\n", [1.5, None, 3.0]),
+    ],
+)
+def test_a_newer_mark_is_shown_and_asked_about(typed: str, end: str, kept: list[float], top: Path) -> None:
+    """Whoever marks what another process has marked since it was shown keeps that mark or replaces it; all marks stay."""
+    book = ("--gradebook", top / "book.db")
+    for points in ("1.5", "-"):
+        assert grader("mark", "anna", "essay", points, *book).returncode == 0
+    command = [sys.executable, "-u", "-m", "grader", "review", "--criterion", "essay", *map(str, book)]
+    with subprocess.Popen(
+        command, cwd=ROOT, env=ENVIRONMENT, text=True,
+        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    ) as slow:  # fmt: skip
+        assert slow.stdout is not None
+        while "in " not in (line := slow.stdout.readline()):  # the last line before the question
+            assert line
+        assert grader("mark", "anna", "essay", "3", "--comment", "two roots", "--by", "Kim", *book).returncode == 0
+        out, err = slow.communicate(f"2 mine\n{typed}", timeout=60)
+    assert err.startswith("grader: somebody has marked this since it was shown: 3 points by Kim at 20")
+    assert err.endswith("+00:00: two roots\n")
+    assert err.count("\n") == 1
+    assert "k to keep that mark, r to replace it with yours: " in out
+    assert out.endswith(end)
+    assert [row[2] for row in marks(top)] == kept
+
+
+def test_a_third_mark_is_shown_as_well(graded_class: Path, top: Path) -> None:
+    """Each look and write are one transaction: also a mark that comes in while the question about another stands."""
+    del graded_class
+    with Gradebook(top / "book.db") as one, Gradebook(top / "book.db") as other:
+        standings = Standings(one)
+        found = pending(standings, Waiting("anna", "essay"))
+        assert found is not None
+        shown, seen = found.newest, []
+        for points in (1, 2):
+            theirs = mark(other, found.standing, found.result.criterion, Decimal(points), "", "")
+            assert (theirs.points if theirs is not None else 0) == points - 1
+            with pytest.raises(NewerMarkError) as caught:
+                mark(one, found.standing, found.result.criterion, Decimal(4), "Kim", "", shown=shown)
+            shown = caught.value.mark.id
+            seen.append(caught.value.mark.points)
+        mark(one, found.standing, found.result.criterion, Decimal(4), "Kim", "", shown=shown)
+    assert seen == [1, 2]
+    assert [row[2] for row in marks(top)] == [1, 2, 4]
 
 
 def test_ctrl_c_keeps_what_was_given(top: Path) -> None:

@@ -1,13 +1,16 @@
 """grader grade --save: as many reports as are wanted from one run, each whole or not there at all."""
 
 import os
+import shutil
 import subprocess
 from pathlib import Path
 
 import pytest
 
 from grader.cli.formats import Format
+from grader.cli.saving import save
 from tests.golden.cases import CLASSROOM50, run
+from tests.samples import ROOT
 
 MISTAKEN = "submissions/several-mistakes/my_robot.urdf"
 
@@ -74,6 +77,130 @@ def test_a_file_is_replaced_as_a_whole(tmp_path: Path) -> None:
     assert link.is_symlink()
     assert file.read_bytes() == run(("grade", MISTAKEN, "--format", "json")).stdout
     assert file.stat().st_mode & 0o777 == 0o640
+
+
+@pytest.fixture
+def sub(tmp_path: Path) -> Path:
+    """A submission with links that a student has made, beside what they lead to."""
+    folder = tmp_path / "sub"
+    folder.mkdir()
+    shutil.copy(ROOT / MISTAKEN, folder)
+    (tmp_path / "victim").write_text("precious")
+    (tmp_path / "etc").mkdir()
+    (folder / "report.md").symlink_to("../victim")
+    (folder / "out").symlink_to(tmp_path / "etc")
+    (folder / "new").symlink_to("../later")
+    (folder / "deep").mkdir()
+    (folder / "deep" / "link").symlink_to("../out")
+    (tmp_path / "mine").symlink_to("sub/out")
+    (tmp_path / "sub-too").symlink_to("sub")
+    return folder
+
+
+PLANTED = ("sub/report.md", "sub/out/x", "sub/new", "sub/deep/link/x", "mine/x", "sub-too/out/x", "sub/../sub/./out/x")
+
+
+@pytest.mark.parametrize("place", PLANTED)
+@pytest.mark.parametrize("graded", ["sub", "sub-too", "sub/my_robot.urdf"])
+def test_no_link_of_a_submission_is_followed(sub: Path, graded: str, place: str) -> None:
+    """Also not on the way, of a URDF on its own, or by a link of the instructor's that leads over one; nothing is written."""
+    top = sub.parent
+    before = {path: path.lstat().st_mtime_ns for path in top.rglob("*")}
+    done = run(("grade", str(top / graded), "--save", f"markdown={top}/{place}"))
+    assert (done.returncode, done.stdout) == (2, b"")
+    assert done.stderr.startswith(f"grader: cannot write {top}/".encode())
+    assert done.stderr.endswith(b" is a symlink in the submission (name a file outside of it)\n")
+    assert done.stderr.count(b"\n") == 1
+    assert {path: path.lstat().st_mtime_ns for path in top.rglob("*")} == before
+    assert (top / "victim").read_text() == "precious"
+
+
+def test_links_of_the_instructor_are_followed(sub: Path) -> None:
+    """Those outside of the submission, and files in it that are no links."""
+    top = sub.parent
+    (top / "safe").symlink_to("etc")
+    (top / "latest.md").symlink_to("etc/b.md")
+    for place in ("safe/a.md", "latest.md", "sub/plain.md"):
+        assert run(("grade", str(sub), "--save", f"markdown={top}/{place}")).returncode == 1
+    assert sorted(path.name for path in (top / "etc").iterdir()) == ["a.md", "b.md"]
+    assert (sub / "plain.md").read_text(encoding="utf-8").startswith("# 42 / 100 points")
+
+
+@pytest.mark.parametrize("variable", ["GITHUB_WORKSPACE", "CI_PROJECT_DIR"])
+def test_the_checkout_of_a_job_is_the_students(sub: Path, variable: str) -> None:
+    """A link in it is not followed, whatever part of it is graded."""
+    top = sub.parent
+    graded = str(sub / "deep")
+    shutil.copy(ROOT / MISTAKEN, graded)
+    done = run(("grade", graded, "--save", f"json={sub}/out/x"), **{variable: str(sub)})
+    assert done.returncode == 2
+    assert b"is a symlink in the submission" in done.stderr
+    bundle = run(("bundle", "gradescope", f"{sub}/out/x.zip"), **{variable: str(sub)})
+    assert (bundle.returncode, list((top / "etc").iterdir())) == (2, [])
+
+
+def test_a_summary_is_not_written_through_a_link(sub: Path) -> None:
+    """The report is given all the same."""
+    summary = {"GITHUB_ACTIONS": "true", "GITHUB_STEP_SUMMARY": str(sub / "report.md")}
+    done = run(("grade", str(sub)), **summary)
+    assert done.returncode == 1
+    assert b"the job summary cannot be written" in done.stderr
+    assert (sub.parent / "victim").read_text() == "precious"
+
+
+def test_no_temporary_file_can_be_foretold(sub: Path) -> None:
+    """What is written first has a name that is another each time, and is never there before."""
+    names, opened = [], os.open
+
+    def watched(path: Path, flags: int, mode: int) -> int:
+        names.append(path.name)
+        assert flags & os.O_EXCL
+        assert flags & os.O_NOFOLLOW
+        return opened(path, flags, mode)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(os, "open", watched)
+        for _ in range(3):
+            save(sub / "plain.md", "text")
+    assert len(set(names)) == 3
+    assert sorted(path.name for path in sub.iterdir()) == [
+        "deep",
+        "my_robot.urdf",
+        "new",
+        "out",
+        "plain.md",
+        "report.md",
+    ]
+
+
+@pytest.mark.parametrize("why", ["rubric", "hash", "path", "size"])
+def test_a_run_that_is_refused_leaves_no_forged_report(sub: Path, why: str) -> None:
+    """A file that was there before is gone, inside the submission and outside."""
+    forged = [sub / "results.json", sub.parent / "result.json"]
+    for file in forged:
+        file.write_text('{"score": 100}')
+    path = str(sub) if why != "path" else str(sub / "none")
+    more = {"rubric": ("--rubric", "lab7"), "hash": ("--expect-rubric", "0" * 64), "path": (), "size": ()}[why]
+    if why == "size":
+        path = str(sub / "empty")
+        (sub / "empty").mkdir()
+    done = run(("grade", path, *more, *(part for file in forged for part in ("--save", f"json={file}"))))
+    assert (done.returncode, done.stdout) == (2, b"")
+    assert not any(file.exists() for file in forged)
+
+
+def test_what_is_graded_is_never_removed(sub: Path) -> None:
+    """Neither a URDF, nor the rubric, nor any robot: it may be what is graded."""
+    robot, rubric = sub / "my_robot.urdf", sub.parent / "lab.toml"
+    rubric.write_bytes((ROOT / "rubrics" / "lab6.toml").read_bytes())
+    (sub.parent / "hard.json").hardlink_to(robot)
+    for graded, target in ((robot, robot), (sub, robot), (sub, rubric), (robot, sub.parent / "hard.json")):
+        before = target.read_bytes()
+        done = run(("grade", str(graded), "--rubric", str(rubric), "--save", f"json={target}"))
+        assert (done.returncode, b"which is graded" in done.stderr) == (2, True)
+        assert target.read_bytes() == before
+    assert run(("grade", str(sub / "none"), "--save", f"json={robot}")).returncode == 2
+    assert robot.exists()
 
 
 def test_a_device_is_written_to(tmp_path: Path) -> None:

@@ -34,8 +34,7 @@ def _cause(result: Result) -> tuple[str, str] | None:
         return None
     if result.because is not None:
         return "skipped", result.because
-    is_question = result.outcome.expected is not None  # with its own model answer
-    return ("pending", result.outcome.message) if result.is_open and not is_question else None
+    return ("pending", result.outcome.message) if result.is_open else None
 
 
 def _said(result: Result) -> str:

@@ -1,0 +1,63 @@
+"""Model answers: those in a rubric, and those that it keeps in a file of its own so that students can have the rubric."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from grader.checks.handed_in import answered
+from grader.errors import RubricError
+from grader.grading.rubric import Rubric, complain_of, find_rubric, read_rubric, read_toml
+from grader.grading.toml_lines import Path as TomlPath
+from grader.robot.names import did_you_mean
+from grader.submission.files import printable_path, read_capped
+
+
+def load_with_answers(name: str) -> Rubric:
+    """Load a rubric by its id or path, with all model answers that are there; raises RubricError and InputError.
+
+    Without its file of answers a rubric is complete otherwise: `missing_answers` says so.
+    """
+    path = find_rubric(name)
+    rubric = read_rubric(read_capped(path, advice=""), path, answers=True)
+    if not rubric.answers or missing_answers(rubric):
+        return rubric
+    file = _file(rubric)
+    if not file.resolve().is_relative_to(path.parent.resolve()):
+        raise RubricError((f"{printable_path(file)}: the file of the answers must be in the rubric's folder",))
+    text, table = read_toml(read_capped(file, advice=""), file)
+    complain_of(_complaints(rubric, table), text, file)
+    return with_answers(rubric, table)
+
+
+def missing_answers(rubric: Rubric) -> str:
+    """Return what to say of a rubric whose file of model answers is not there; empty where it is, or where it names none."""
+    if not rubric.answers or _file(rubric).exists():
+        return ""
+    return f"{rubric.id}: the file of the model answers, {printable_path(_file(rubric))}, is not there: none are shown"
+
+
+def with_answers(rubric: Rubric, answers: Mapping[str, str]) -> Rubric:
+    """Return the rubric with these model answers, by the ids of their criteria, beside those that it has."""
+    criteria = (replace(each, answer=answers.get(each.id, each.answer)) for each in rubric.criteria)
+    return replace(rubric, criteria=tuple(criteria))
+
+
+def _file(rubric: Rubric) -> Path:
+    return rubric.path.parent / rubric.answers
+
+
+def _complaints(rubric: Rubric, table: Mapping[str, Any]) -> list[tuple[TomlPath, str]]:
+    questions = {each.id: each for each in rubric.criteria if each.check.function is answered}
+    complaints: list[tuple[TomlPath, str]] = []
+    for name, value in table.items():
+        if name not in questions:
+            guess = did_you_mean(name, questions) or f"; there are: {', '.join(questions) or 'none'}"
+            complaints.append(
+                ((name,), f"the rubric {rubric.id} has no criterion {name!r} that asks a question{guess}")
+            )
+        elif not isinstance(value, str):
+            complaints.append(((name,), f"the answer to {name} must be a text"))
+        elif questions[name].answer:
+            complaints.append(((name,), f"the answer to {name} is in the rubric already: keep one of the two"))
+    return complaints

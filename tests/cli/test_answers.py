@@ -1,0 +1,217 @@
+"""Model answers are shown to those who grade, and to nobody else."""
+
+import json
+import shutil
+import sqlite3
+from pathlib import Path
+
+import pytest
+
+from grader.classroom.schema import STEPS
+from grader.cli.formats import Format
+from grader.grading.rubric import load_rubric, shipped_rubrics
+from tests.classroom.gradebooks import batch, grader, lab_text, refusal
+from tests.golden.cases import CLASSROOM50
+from tests.samples import ROOT
+
+SECRET = "Because of the roots."
+INLINE = f', answer = "{SECRET}"'
+REFERENCE = ROOT / "submissions" / "reference"
+OF_LAB6 = ("The model vanishes", "joint_state_publisher_gui, publishes")
+
+
+def apart(top: Path, answers: str = f'essay = "{SECRET}"') -> Path:
+    """The small lab with its model answers in a file of its own."""
+    rubric = top / "small.toml"
+    text = lab_text().replace(INLINE, "").replace('id = "small"', 'id = "small"\nanswers = "small.answers.toml"', 1)
+    rubric.write_text(text, encoding="utf-8")
+    (top / "small.answers.toml").write_text(answers, encoding="utf-8")
+    return rubric
+
+
+@pytest.mark.parametrize("is_apart", [True, False])
+def test_no_report_of_grade_or_batch_holds_one(graded_class: Path, tmp_path: Path, is_apart: bool) -> None:
+    """In any format, saved or printed, in a job's summary or log, with the answer in the rubric or apart."""
+    top = tmp_path / "small"
+    shutil.copytree(graded_class / "class", top / "class")
+    shutil.copy(graded_class / "roster.csv", top)
+    rubric = apart(top) if is_apart else top / "small.toml"
+    if not is_apart:
+        rubric.write_text(lab_text(), encoding="utf-8")
+        assert SECRET in rubric.read_text(encoding="utf-8")
+    out = tmp_path / "out"
+    out.mkdir()
+    saves = [part for kind in Format for part in ("--save", f"{kind}={out / kind.ending}")]
+    summary = {"GITHUB_ACTIONS": "true", "GITHUB_STEP_SUMMARY": str(out / "summary")}
+    done = grader("grade", top / "class" / "anna", "--rubric", rubric, *saves, **CLASSROOM50, **summary)
+    assert done.returncode == 0, done.stderr
+    formats = [each for each in Format if each is not Format.CLASSROOM50]
+    wanted = [part for kind in formats for part in ("--report-format", kind)]
+    graded = batch(top, "--reports", out / "reports", *wanted, "--csv", out / "csv")
+    assert graded.returncode == 0, graded.stderr
+    said = [done.stdout, done.stderr, graded.stdout, graded.stderr]
+    for arguments in (
+        ("explain", "essay", "--rubric", rubric),
+        ("rubric", "show", rubric),
+        ("export", "json", "--gradebook", top / "book.db"),
+        ("export", "csv", "--gradebook", top / "book.db"),
+        ("stats", "--gradebook", top / "book.db", "--format", "json"),
+    ):
+        shown = grader(*arguments)
+        assert shown.returncode == 0, shown.stderr
+        said.append(shown.stdout + shown.stderr)
+    files = [path.read_text(encoding="utf-8") for path in out.rglob("*") if path.is_file()]
+    assert len(files) > 2 * len(Format)
+    assert any("The roots." in text for text in files)  # what the student has answered
+    assert all("of the roots" not in text for text in (*files, *said))
+
+
+def test_those_who_grade_are_shown_them(top: Path) -> None:
+    """By `rubric show --answers`, `grade --answers` in three formats, and `review`, also where the rubric is not at hand."""
+    rubric = apart(top)
+    assert f"    Model answer: {SECRET}\n" in grader("rubric", "show", rubric, "--answers").stdout
+    anna = ("grade", top / "class" / "anna", "--rubric", rubric, "--answers", "--format")
+    assert SECRET in grader(*anna, "terminal").stdout
+    assert f"\n  {SECRET}\n  ```\n" in grader(*anna, "markdown").stdout
+    (essay,) = [each for each in json.loads(grader(*anna, "json").stdout)["results"] if each["id"] == "essay"]
+    assert essay["expected"] == SECRET
+    assert batch(top, "--force").returncode == 0
+    for file in top.glob("*.toml"):
+        file.unlink()
+    done = grader("review", "--gradebook", top / "book.db", stdin="q\n")
+    assert f"Model answer:\n  {SECRET}\n" in done.stdout
+
+
+def test_formats_for_students_hold_none_with_answers_either(top: Path, tmp_path: Path) -> None:
+    """Neither Gradescope's result nor the summary of a job, which students read."""
+    summary = tmp_path / "summary"
+    shown = grader(
+        "grade", top / "class" / "anna", "--rubric", apart(top), "--answers", "--format", "gradescope",
+        GITHUB_ACTIONS="true", GITHUB_STEP_SUMMARY=str(summary),
+    )  # fmt: skip
+    assert shown.returncode == 0, shown.stderr
+    assert "About essay" in summary.read_text(encoding="utf-8")
+    assert "of the roots" not in shown.stdout + shown.stderr + summary.read_text(encoding="utf-8")
+
+
+def test_without_the_file_the_rubric_works(top: Path) -> None:
+    """It has the same hash, grades alike, and `rubric check` and `--answers` say that there are no model answers."""
+    rubric = apart(top)
+    before, shown = load_rubric(str(rubric)).sha256, grader("rubric", "show", rubric)
+    graded = grader("grade", top / "class" / "anna", "--rubric", rubric, "--format", "json")
+    (top / "small.answers.toml").unlink()
+    assert load_rubric(str(rubric)).sha256 == before
+    assert grader("rubric", "show", rubric).stdout == shown.stdout
+    anna = ("grade", top / "class" / "anna", "--rubric", rubric, "--format", "json")
+    assert grader(*anna).stdout == graded.stdout == grader(*anna, "--answers").stdout
+    note = f"grader: small: the file of the model answers, {top}/small.answers.toml, is not there: none are shown\n"
+    for arguments in (("rubric", "check", rubric), ("rubric", "show", rubric, "--answers"), (*anna, "--answers")):
+        assert grader(*arguments).stderr == note
+    assert batch(top, "--force").returncode == 0
+    done = grader("review", "--gradebook", top / "book.db", stdin="q\n")
+    assert (done.returncode, "Model answer" in done.stdout) == (0, False)
+
+
+@pytest.mark.parametrize(
+    ("answers", "why"),
+    [
+        (
+            "a = 1\n\nesay = ''",
+            "3: the rubric small has no criterion 'esay' that asks a question; did you mean 'essay'?",
+        ),
+        ("\nbox = ''", "2: the rubric small has no criterion 'box' that asks a question; there are: essay"),
+        ("essay = 3", "1: the answer to essay must be a text"),
+        ("essay = ", " not readable as TOML: Invalid value (at end of document)"),
+    ],
+)
+def test_mistakes_in_the_file_have_their_line(tmp_path: Path, answers: str, why: str) -> None:
+    """As those in the rubric have; what needs no model answers does not read the file."""
+    rubric = apart(tmp_path, answers)
+    done = grader("rubric", "check", rubric)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr.splitlines()[-1] == f"grader: {tmp_path}/small.answers.toml:{why}"
+    assert grader("rubric", "show", rubric).returncode == 0
+
+
+def test_an_answer_has_one_place(tmp_path: Path) -> None:
+    """One in the rubric and in the file is refused."""
+    rubric = apart(tmp_path)
+    rubric.write_text(rubric.read_text().replace('question = "Why?"', f'question = "Why?"{INLINE}'), encoding="utf-8")
+    why = f"{tmp_path}/small.answers.toml:1: the answer to essay is in the rubric already: keep one of the two"
+    assert refusal(grader("rubric", "check", rubric)) == why
+
+
+@pytest.mark.parametrize("name", ["/etc/a.toml", "../a.toml", "a/../../a.toml", "C:\\\\a.toml", "a", ""])
+def test_the_file_is_in_the_folder_of_the_rubric(tmp_path: Path, name: str) -> None:
+    """Nothing outside of it is read, whatever a rubric in a student's repository names."""
+    rubric = apart(tmp_path)
+    rubric.write_text(rubric.read_text().replace("small.answers.toml", name), encoding="utf-8")
+    assert f"{rubric}:2: answers must be a .toml file in the rubric's folder" in refusal(
+        grader("rubric", "show", rubric)
+    )
+
+
+def test_a_link_to_a_file_elsewhere_is_not_followed(tmp_path: Path) -> None:
+    """A rubric in a student's repository cannot have other files quoted."""
+    (tmp_path / "lab").mkdir()
+    rubric = apart(tmp_path / "lab")
+    (tmp_path / "lab" / "small.answers.toml").rename(tmp_path / "elsewhere.toml")
+    (tmp_path / "lab" / "small.answers.toml").symlink_to(tmp_path / "elsewhere.toml")
+    assert "must be in the rubric's folder" in refusal(grader("rubric", "show", rubric, "--answers"))
+
+
+def test_lab6_keeps_its_answers_apart() -> None:
+    """They are no rubric, are shown when asked for, and are not in the file that students may have."""
+    assert list(shipped_rubrics()) == ["lab6"]
+    shown = grader("rubric", "show", "lab6", "--answers").stdout
+    assert all(each in " ".join(shown.split()) for each in OF_LAB6)
+    text = " ".join((ROOT / "rubrics" / "lab6.toml").read_text(encoding="utf-8").split())
+    for arguments in (("rubric", "show", "lab6"), ("grade", REFERENCE), ("grade", REFERENCE, "--format", "json")):
+        text += " ".join(grader(*arguments).stdout.split())
+    assert not any(each in text for each in OF_LAB6)
+
+
+def test_a_gradebook_of_an_earlier_grader(top: Path) -> None:
+    """Its records hold the model answer and its marks an account: reports show neither, and `review` finds the former."""
+    book = sqlite3.connect(top / "book.db")
+    with book:
+        book.execute("DROP TRIGGER result_unchanged")
+        book.execute("DROP TABLE model_answer")
+        for column in ("mark DROP COLUMN signed", "student DROP COLUMN entry", "run DROP COLUMN assignment"):
+            book.execute(f"ALTER TABLE {column}")
+        book.execute("PRAGMA user_version = 1")
+        _as_it_was(book)
+        book.execute(
+            "INSERT INTO mark (student, criterion, points, comment, author, at, result)"
+            " SELECT id, 'picture', 10000, 'fine', 'jdoe', '2026-01-01T00:00:00+00:00', result FROM grade WHERE key = 'anna'"
+        )
+    book.close()
+    assert len(STEPS) > 1
+    reports = top / "reports"
+    done = batch(top, "--reports", reports, "--report-format", "json", "--report-format", "markdown")
+    assert done.returncode == 0, done.stderr
+    anna_has = json.loads((reports / "anna.json").read_text(encoding="utf-8"))
+    (picture,) = [each for each in anna_has["results"] if each["id"] == "picture"]
+    assert picture["mark"] == {"points": 1, "by": "", "comment": "fine"}
+    assert "Marked by hand: fine." in (reports / "anna.md").read_text(encoding="utf-8")
+    text = "".join(path.read_text(encoding="utf-8") for path in reports.iterdir())
+    assert "of the roots" not in text
+    assert "jdoe" not in text
+    shown = grader("review", "--gradebook", top / "book.db", stdin="q\n")
+    assert f"Model answer:\n  {SECRET}\n" in shown.stdout
+
+
+def _as_it_was(book: sqlite3.Connection) -> None:
+    """Put the model answer into the records, as version 0.1.0 has kept it."""
+    import zlib
+
+    rows = list(book.execute("SELECT id, record FROM result"))
+    changed = 0
+    for identity, record in rows:
+        data = json.loads(zlib.decompress(record))
+        for result in data["results"]:
+            if isinstance(result, list) and result[0] == 3 and isinstance(result[1][2], str):
+                result[1][3] = SECRET
+                changed += 1
+        book.execute("UPDATE result SET record = ? WHERE id = ?", (zlib.compress(json.dumps(data).encode()), identity))
+    assert changed
