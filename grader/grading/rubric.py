@@ -15,6 +15,8 @@ from grader.grading.toml_lines import key_lines, line_of
 from grader.robot.names import did_you_mean
 from grader.submission.files import printable_path, read_capped, sha256_of
 
+_MAX_COMPLAINTS = 1000  # lines about one rubric
+
 
 @dataclass(frozen=True, slots=True)
 class Part:
@@ -156,7 +158,9 @@ def read_rubric(data: bytes, path: Path) -> Rubric:
     if rows.complaints:
         lines = key_lines(text)
         found = sorted((line_of(lines, where), order, what) for order, (where, what) in enumerate(rows.complaints))
-        raise RubricError(tuple(f"{shown}:{line}: {what}" for line, _, what in found))
+        listed = tuple(f"{shown}:{line}: {what}" for line, _, what in found[:_MAX_COMPLAINTS])
+        more = len(found) - len(listed)
+        raise RubricError((*listed, f"{shown}: {more} more mistakes are not listed") if more else listed)
     return Rubric(
         table["id"],
         _line(table["title"]),
