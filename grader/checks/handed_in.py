@@ -16,7 +16,10 @@ def answered(
     """
     from grader.submission.answers import find_answer  # a URDF on its own has no answers
 
-    found = find_answer(submission.tree, files, places)
+    if submission.no_documents:
+        message = f"{question} The documents could not be read: {submission.no_documents}; needs manual grading"
+        return Outcome("pending", message, None, answer)
+    found = find_answer(submission.documents, files, places)
     if found.passage is not None:
         place = found.passage.location
         message = f"{question} The answer in {place.path}, from line {place.line}, is for a person to mark"

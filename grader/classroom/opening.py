@@ -37,12 +37,17 @@ class Opened(NamedTuple):
     data: bytes | None
     tree: Tree | None
 
-    def submission(self, rubric: Rubric) -> Submission:
-        """What is graded of it; raises InputError where there is nothing."""
+    def submission(self, rubric: Rubric, no_documents: str = "") -> Submission:
+        """What is graded of it; raises InputError where there is nothing. `no_documents` says why none is read."""
         if self.tree is None:
             return read_submission(self.data or b"", identity=self.name, path=self.shown)
         return submission_of(
-            with_inner(self.tree), self.name, wanted=rubric.urdf, package=rubric.package, shown=self.shown
+            with_inner(self.tree),
+            self.name,
+            wanted=rubric.urdf,
+            package=rubric.package,
+            shown=self.shown,
+            no_documents=no_documents,
         )
 
 

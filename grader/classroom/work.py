@@ -14,6 +14,7 @@ from typing import Literal, NamedTuple
 from grader.checks.outcome import Outcome, Status
 from grader.classroom.misses import kind_of_miss
 from grader.classroom.opening import fingerprint, open_hand_in
+from grader.classroom.pool import NO_MEMORY
 from grader.errors import InputError
 from grader.grading.grade import grade
 from grader.grading.record import Kept, Template, to_record
@@ -41,12 +42,16 @@ class Class(NamedTuple):
 
 
 class Task(NamedTuple):
-    """One hand-in: where it is, and its digest if it has been graded by the same rubric and grader before."""
+    """One hand-in: where it is, and its digest if it has been graded by the same rubric and grader before.
+
+    `no_documents` says why its documents are not read: grading it was lost with them.
+    """
 
     key: str
     paths: tuple[str, ...]
     names: tuple[str, ...] = ()
     graded: str = ""
+    no_documents: str = ""
 
 
 class Graded(NamedTuple):
@@ -93,12 +98,14 @@ def _grade_one(common: Class, task: Task) -> Graded:
         digest = opened.digest
         if digest == task.graded:
             return Graded(task.key, "unchanged", digest, mark)
-        submission = opened.submission(rubric)
+        submission = opened.submission(rubric, task.no_documents)
         report = grade(rubric, submission)
     except InputError as error:
         return failed(rubric, task, "unreadable", _of_class(str(error), common), digest, mark)
     except MemoryError:
-        return failed(rubric, task, "errored", "grading it needs more memory than a worker may have", digest, mark)
+        if not task.no_documents:
+            return _grade_one(common, task._replace(no_documents=NO_MEMORY))
+        return failed(rubric, task, "errored", NO_MEMORY, digest, mark)
     except (Exception, SystemExit) as error:  # noqa: BLE001  a fault of ours must cost nobody else anything
         return failed(
             rubric, task, "errored", f"the grader itself failed: {type(error).__name__}: {error}", digest, mark

@@ -3,12 +3,14 @@
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 
 _WORDS = re.compile(r"[^\W\d_]+|\d+")
 _TASKS = frozenset({"task", "tasks", "t", "tsk", "tast", "aufgabe", "teil"})
 _STEPS = frozenset(
     {"step", "steps", "s", "st", "stp", "question", "questions", "q", "que", "no", "nr", "schritt", "frage"}
 )
+_NAMING = _TASKS | _STEPS
 _LONGEST = 300
 
 
@@ -27,10 +29,11 @@ def read_label(text: str) -> Label:
     task: int | None = None
     steps: set[int] = set()
     for index, word in enumerate(words):
-        numbers = _numbers(words, index + 1)
-        if word in _TASKS and numbers:
+        if word not in _NAMING or not (numbers := _numbers(words, index + 1)):
+            continue
+        if word in _TASKS:
             task, steps = numbers[0], set(numbers[1:])
-        elif word in _STEPS and numbers:
+        else:
             steps |= set(numbers)
     return Label(task, frozenset(steps), words)
 
@@ -48,7 +51,10 @@ def is_meant(wanted: Label, found: Label, task: int | None = None) -> bool:
 def any_meant(patterns: Iterable[str], text: str, task: int | None = None) -> bool:
     """Whether a name or line speaks of one of several things."""
     found = read_label(text)
-    return any(is_meant(read_label(pattern), found, task) for pattern in patterns)
+    return any(is_meant(_wanted(pattern), found, task) for pattern in patterns)
+
+
+_wanted = lru_cache(maxsize=256)(read_label)  # the patterns of a rubric are asked for with every name
 
 
 def _numbers(words: tuple[str, ...], start: int) -> list[int]:

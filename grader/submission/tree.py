@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
-from pathlib import PurePosixPath
 from typing import NamedTuple, Protocol
 
 from grader.errors import InputError
@@ -45,7 +44,9 @@ class File:
     @property
     def suffix(self) -> str:
         """The ending of its name, in lower case: .png."""
-        return PurePosixPath(self.path).suffix.lower()
+        name = self.name
+        dot = name.rfind(".")
+        return name[dot:].lower() if 0 < dot < len(name) - 1 else ""
 
 
 @dataclass(frozen=True, slots=True, weakref_slot=True)
