@@ -64,7 +64,7 @@ def test_errors_come_back_as_they_are(pool: Processes) -> None:
 
 def test_no_more_memory_than_allowed(pool: Processes) -> None:
     """What needs more is lost, and its worker goes on."""
-    assert lost(pool.submit(_eat)) == "grading it needs more memory than a worker may have"
+    assert lost(pool.submit(_eat)) == "grading it needs more memory than a worker may have (2 GiB)"
     assert pool.submit(len, "abc").result(60) == 3
 
 
