@@ -38,13 +38,13 @@ def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
 
     `names` says how the file is named, however it is spelt: "task 3 step 3", or plain words such as "webcam". Always pending.
     """
-    from grader.submission.evidence import find_evidence, is_evidence
+    from grader.submission.evidence import find_evidence
 
-    found = find_evidence(submission.tree, names)
+    found = find_evidence(submission.proofs, names)
     if found:
         listed = ", ".join(exhibit.words for exhibit in found[:6])
         return Outcome("pending", f"a person looks at {listed}", tuple(exhibit.path for exhibit in found))
-    others = [file.path for file in submission.tree.files.values() if is_evidence(file)]
+    others = [proof.file.path for proof in submission.proofs]
     there = (
         f"; there {'are' if len(others) > 1 else 'is'} {', '.join(others[:6])}"
         if others

@@ -1,9 +1,7 @@
 """Which task and step a name or heading speaks of, however it is spelt: Task1_Step8, task 1 step 8, T1S8, lab6_task1_q8."""
 
 import re
-from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import lru_cache
 
 _WORDS = re.compile(r"[^\W\d_]+|\d+")
 _TASKS = frozenset({"task", "tasks", "t", "tsk", "tast", "aufgabe", "teil"})
@@ -46,15 +44,6 @@ def is_meant(wanted: Label, found: Label, task: int | None = None) -> bool:
             return False
         return wanted.steps <= found.steps if wanted.steps else own == wanted.task
     return bool(wanted.words) and _in_order(wanted.words, found.words)
-
-
-def any_meant(patterns: Iterable[str], text: str, task: int | None = None) -> bool:
-    """Whether a name or line speaks of one of several things."""
-    found = read_label(text)
-    return any(is_meant(_wanted(pattern), found, task) for pattern in patterns)
-
-
-_wanted = lru_cache(maxsize=256)(read_label)  # the patterns of a rubric are asked for with every name
 
 
 def _numbers(words: tuple[str, ...], start: int) -> list[int]:

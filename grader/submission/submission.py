@@ -16,6 +16,7 @@ from grader.submission.tree import PassedOver, Tree, make_tree
 
 if TYPE_CHECKING:
     from grader.submission.documents import Documents
+    from grader.submission.evidence import Proof
 
 Xacro = Literal["none", "expanded", "left"]
 
@@ -55,6 +56,13 @@ class Submission:
         from grader.submission.documents import Documents  # a URDF on its own has none
 
         return Documents(self.tree)
+
+    @cached_property
+    def proofs(self) -> "tuple[Proof, ...]":
+        """The pictures, films and PDF files in it."""
+        from grader.submission.evidence import read_proofs
+
+        return read_proofs(self.tree)
 
     @property
     def sha256(self) -> str | None:
