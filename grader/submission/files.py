@@ -9,6 +9,7 @@ from pathlib import Path
 from grader.errors import InputError
 
 URDF_LIMIT = 1024 * 1024  # bytes
+MAX_FILE_SIZE = 64 * 1024 * 1024  # bytes of one file of a submission: a larger one is ignored
 _MOST_BESIDE = 1000  # names in a folder that are compared with one that is not there
 _ADVICE = " for a URDF (--max-size raises it)"
 

@@ -107,10 +107,10 @@ def test_an_encrypted_member_is_left_out(tmp_path: Path) -> None:
 
 
 def test_a_bomb_costs_its_student_only(tmp_path: Path) -> None:
-    """What would unpack to far more than anyone hands in is refused before it is unpacked."""
+    """What would unpack to more than the limit is refused before it is unpacked."""
     zeros = bytes(64 * 1024 * 1024)
     opened = bulk(tmp_path, pack({"ann/b.zip": bomb(), "bea.zip": bomb(), "cal/a.urdf": b"a", "dan/zeros.urdf": zeros}))
-    with pytest.raises(InputError, match="would unpack to far more than anyone hands in"):
+    with pytest.raises(InputError, match=r"would unpack to more than [0-9]+ bytes, the limit for an archive"):
         opened.archive("bea.zip")
     assert set(opened.folder("ann").files) == {"b.zip"}
     assert opened.read("cal/a.urdf", 100) == b"a"
