@@ -17,7 +17,10 @@ def answered(
     del answer  # no outcome holds it: students read outcomes
     from grader.submission.answers import find_answer  # a URDF on its own has no answers
 
-    found = find_answer(submission.tree, files, places)
+    if submission.no_documents:
+        message = f"{question} The documents could not be read: {submission.no_documents}; needs manual grading"
+        return Outcome("pending", message)
+    found = find_answer(submission.documents, files, places)
     if found.passage is not None:
         place = found.passage.location
         message = f"{question} The answer in {place.path}, from line {place.line}, is for a person to mark"
@@ -36,13 +39,13 @@ def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
 
     `names` says how the file is named, however it is spelt: "task 3 step 3", or plain words such as "webcam". Always pending.
     """
-    from grader.submission.evidence import find_evidence, is_evidence
+    from grader.submission.evidence import find_evidence
 
-    found = find_evidence(submission.tree, names)
+    found = find_evidence(submission.proofs, names)
     if found:
         listed = ", ".join(exhibit.words for exhibit in found[:6])
         return Outcome("pending", f"a person looks at {listed}", tuple(exhibit.path for exhibit in found))
-    others = [file.path for file in submission.tree.files.values() if is_evidence(file)]
+    others = [proof.file.path for proof in submission.proofs]
     there = (
         f"; there {'are' if len(others) > 1 else 'is'} {', '.join(others[:6])}"
         if others

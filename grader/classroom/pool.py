@@ -15,6 +15,7 @@ from pebble import CONSTS, ProcessExpired, ProcessPool
 from grader.errors import GraderError
 
 MEMORY = 2 * 1024**3  # bytes that one worker may have
+NO_MEMORY = f"grading it needs more memory than a worker may have ({MEMORY // 1024**3} GiB)"
 _WATCHED = 0.5  # seconds between two looks at whether the pool still lives
 _TRIES = 3  # to have work taken by a pool, which may break at any moment
 _SPEAKING = 3.0  # seconds that a worker waits for its turn to speak, which one that was ended in its own turn keeps
@@ -124,14 +125,16 @@ class Processes(Executor):
         try:
             self._settle(done, result=inner.result())
         except TimeoutError:
-            self._settle(done, Lost(f"grading it took longer than {timeout:g} s, and was stopped"))
+            self._settle(
+                done, Lost(f"grading it took longer than {timeout:g} s, and was stopped (--timeout raises the limit)")
+            )
         except ProcessExpired as error:
             is_own_fault = error.exitcode != _MUTE
             self._settle(done, Lost(f"the process that graded it {_end_of(error.exitcode)}", is_own_fault=is_own_fault))
         except (BrokenProcessPool, CancelledError):
             self._settle(done, Lost("the processes that grade came to an end", is_own_fault=False))
         except MemoryError:
-            self._settle(done, Lost("grading it needs more memory than a worker may have"))
+            self._settle(done, Lost(NO_MEMORY))
         except Exception as error:  # noqa: BLE001  it is told, whatever it is
             self._settle(done, error)
 

@@ -17,7 +17,10 @@ _TRIES = 3
 
 
 class Queue:
-    """Hands tasks out and takes results in. A hand-in whose grading is lost is tried alone, and then is `errored`."""
+    """Hands tasks out and takes results in. A hand-in whose grading is lost is tried alone, then without its documents.
+
+    Where that is lost as well it is `errored`.
+    """
 
     def __init__(self, executor: Executor, workers: int, common: Callable[[], Class], rubric: Rubric) -> None:
         self._executor, self._workers, self._rubric = executor, workers, rubric
@@ -91,6 +94,8 @@ class Queue:
                 self._alone += [(task, 1) for task in tasks]
             elif isinstance(error, Lost) and not error.is_own_fault and tries < _TRIES:
                 self._alone.append((tasks[0], tries + 1))
+            elif isinstance(error, Lost) and not tasks[0].no_documents:  # a document may be what it was lost to
+                self._alone.append((tasks[0]._replace(no_documents=str(error)), 1))
             else:
                 reason = str(error) if isinstance(error, Lost) else f"{type(error).__name__}: {error}"
                 return [failed(self._rubric, tasks[0], "errored", reason)]

@@ -1,15 +1,17 @@
 """The rows of a rubric's TOML, checked: every mistake is noted with the path of the key that it is in."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from datetime import datetime
 from decimal import Decimal
+from functools import cache
+from itertools import islice
 from typing import Any
 
 from grader.checks.registry import Check, check_names, find_check
 from grader.errors import InputError
 from grader.grading.arguments import bind
 from grader.grading.toml_lines import Path
-from grader.robot.names import closest, did_you_mean
+from grader.robot.names import did_you_mean
 
 _TEXT, _NUMBER, _TEXTS, _TABLE = "a text", "a number", "a list of texts", "a table"
 _TIME = "a date and time with its offset, such as 2026-11-20T23:59:00+01:00"
@@ -30,6 +32,8 @@ _CRITERION = {
 _EVIDENCE = {"id": _TEXT, "part": _TEXT, "title": _TEXT, "names": _TEXTS}
 _LATE = {"due": _TIME, "grace_minutes": _NUMBER, "percent_per_day": _NUMBER, "floor_percent": _NUMBER}
 _MOST_POINTS = 1_000_000
+_MAX_GUESSES = 50  # searches for a similar name in one rubric: each takes its time
+_MAX_LISTED = 20  # names in one message
 _DECIMALS = 4  # of points: gradebooks keep them as whole numbers of ten-thousandths
 _NEEDS = ("urdf", "package", "files")
 _OPTIONAL = {"reference", "urdf", "package", "answers", "needs", "about", "with", "requires", "feedback"}
@@ -49,6 +53,8 @@ class Rows:
         self.table = table
         self.complaints: list[tuple[Path, str]] = []
         self.bound: list[Bound] = []
+        self._guesses = _MAX_GUESSES
+        self._check_named, self._check_names = cache(find_check), cache(check_names)
         self._keys(
             (),
             table,
@@ -63,9 +69,9 @@ class Rows:
                 self._complain(("part", index, "needs"), f"a part cannot need {needs!r}{_listed(_NEEDS)}")
         self._unique("part", parts)
         self._unique("criterion", rows)
-        part_ids = [row["id"] for row in parts if isinstance(row.get("id"), str)]
+        part_ids, positions = _positions(parts), _positions(rows)
         for index, row in enumerate(rows):
-            self._criterion(index, row, part_ids, rows)
+            self._criterion(index, row, part_ids, positions)
         for index, row in enumerate(self._rows("evidence") if "evidence" in table else []):
             self._keys(("evidence", index), row, _EVIDENCE, "piece of evidence")
             self._part(("evidence", index), row, part_ids)
@@ -80,16 +86,16 @@ class Rows:
             if _has_type(value, _NUMBER) and not (Decimal(value).is_finite() and 0 <= value <= most):
                 self._complain(("late", key), f"{key} must be a number from 0 to {most}, not {value}")
 
-    def _part(self, where: Path, row: dict[str, Any], parts: list[str]) -> None:
+    def _part(self, where: Path, row: dict[str, Any], parts: Collection[str]) -> None:
         part = row.get("part")
         if isinstance(part, str) and part not in parts:
-            self._complain((*where, "part"), f"there is no part {part!r}{did_you_mean(part, parts) or _listed(parts)}")
+            self._complain((*where, "part"), f"there is no part {part!r}{self._guess(part, parts) or _listed(parts)}")
 
-    def _criterion(self, index: int, row: dict[str, Any], parts: list[str], rows: list[dict[str, Any]]) -> None:
+    def _criterion(self, index: int, row: dict[str, Any], parts: Collection[str], positions: dict[str, int]) -> None:
         where: Path = ("criterion", index)
         self._keys(where, row, _CRITERION, "criterion")
         self._part(where, row, parts)
-        self._requires(index, row, rows)
+        self._requires(index, row, positions)
         name, given = row.get("check"), row.get("with", {})
         check = self._check((*where, "check"), name) if isinstance(name, str) else None
         if check is None or not isinstance(given, dict):
@@ -101,31 +107,33 @@ class Rows:
 
     def _check(self, where: Path, name: str) -> Check | None:
         try:
-            check = find_check(name)
+            check = self._check_named(name)
         except InputError as error:  # another package's
             self._complain(where, str(error))
             return None
         if check is None:
-            guess = did_you_mean(name, check_names()) or "; `grader rubric checks` lists them"
+            guess = self._guess(name, self._check_names()) or "; `grader rubric checks` lists them"
             self._complain(where, f"there is no check {name!r}{guess}")
         return check
 
-    def _requires(self, index: int, row: dict[str, Any], rows: list[dict[str, Any]]) -> None:
+    def _requires(self, index: int, row: dict[str, Any], positions: dict[str, int]) -> None:
         required = row.get("requires", [])
         if not isinstance(required, list):
             return
-        above = [each.get("id") for each in rows[:index]]
-        every = [each["id"] for each in rows if isinstance(each.get("id"), str)]
         for name in required:
-            if not isinstance(name, str) or name in above:
+            if not isinstance(name, str) or positions.get(name, index) < index:
                 continue
             if name == row.get("id"):
                 message = "requires itself"
-            elif name in every:
+            elif name in positions:
                 message = f"requires {name!r}, which stands below: a criterion can only require those above it"
             else:
-                message = f"requires {name!r}, which does not exist{did_you_mean(name, every)}"
+                message = f"requires {name!r}, which does not exist{self._guess(name, positions)}"
             self._complain(("criterion", index, "requires"), message)
+
+    def _guess(self, name: str, known: Iterable[str]) -> str:
+        self._guesses -= 1
+        return did_you_mean(name, known) if self._guesses >= 0 else ""
 
     def _rows(self, key: str) -> list[dict[str, Any]]:
         rows = self.table.get(key)
@@ -138,8 +146,7 @@ class Rows:
     def _keys(self, where: Path, row: dict[str, Any], known: Mapping[str, str], what: str) -> None:
         for key, value in row.items():
             if key not in known:
-                guess = closest(key, known)
-                hint = f"; did you mean {guess!r}?" if guess else f"; it has: {', '.join(known)}"
+                hint = self._guess(key, known) or f"; it has: {', '.join(known)}"
                 self._complain((*where, key), f"a {what} has no key {key!r}{hint}")
             elif not _has_type(value, known[key]):
                 self._complain((*where, key), f"{key} must be {known[key]}, not {_type_name(value, known[key])}")
@@ -179,9 +186,14 @@ class Rows:
         declared: list[tuple[Path, Any, str, list[Any]]] = [
             (("points",), self.table.get("points"), "the rubric", [value for _, value in points])
         ]
+        of_part: dict[str, list[Any]] = {}
+        for part, value in points:
+            if isinstance(part, str):
+                of_part.setdefault(part, []).append(value)
         for index, row in enumerate(parts):
-            own = [value for part, value in points if part == row.get("id")]
-            declared.append((("part", index, "points"), row.get("points"), f"part {row.get('id')!r}", own))
+            name = row.get("id")
+            own = of_part.get(name, []) if isinstance(name, str) else []
+            declared.append((("part", index, "points"), row.get("points"), f"part {name!r}", own))
         for where, total, what, values in declared:
             actual = sum(map(Decimal, values), Decimal(0))
             if _has_type(total, _NUMBER) and Decimal(total) != actual:
@@ -191,8 +203,18 @@ class Rows:
         self.complaints.append((where, what))
 
 
-def _listed(names: Iterable[str]) -> str:
-    return f"; there are: {', '.join(names) or 'none'}"
+def _positions(rows: list[dict[str, Any]]) -> dict[str, int]:
+    """Return the position of the first row with each id."""
+    positions: dict[str, int] = {}
+    for index, row in enumerate(rows):
+        if isinstance(row.get("id"), str):
+            positions.setdefault(row["id"], index)
+    return positions
+
+
+def _listed(names: Collection[str]) -> str:
+    more = f" and {len(names) - _MAX_LISTED} more" if len(names) > _MAX_LISTED else ""
+    return f"; there are: {', '.join(islice(names, _MAX_LISTED)) or 'none'}{more}"
 
 
 def _is_below(path: str) -> bool:

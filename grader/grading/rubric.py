@@ -17,6 +17,7 @@ from grader.grading.toml_lines import key_lines, line_of
 from grader.robot.names import did_you_mean
 from grader.submission.files import printable_path, read_capped, sha256_of
 
+_MAX_COMPLAINTS = 1000  # lines about one rubric
 _ANSWERS = ".answers.toml"  # how the files of model answers end that stand beside the shipped rubrics
 
 
@@ -195,7 +196,9 @@ def complain_of(complaints: Sequence[tuple[TomlPath, str]], text: str, path: Pat
     if complaints:
         lines = key_lines(text)
         found = sorted((line_of(lines, where), order, what) for order, (where, what) in enumerate(complaints))
-        raise RubricError(tuple(f"{printable_path(path)}:{line}: {what}" for line, _, what in found))
+        shown, more = printable_path(path), len(found) - _MAX_COMPLAINTS
+        listed = tuple(f"{shown}:{line}: {what}" for line, _, what in found[:_MAX_COMPLAINTS])
+        raise RubricError((*listed, f"{shown}: {more} more mistakes are not listed") if more > 0 else listed)
 
 
 def _line(title: str) -> str:

@@ -47,9 +47,9 @@ def exhibits_of(
     asked = [each for each in rubric.evidence if each.part in chosen]
     if not asked or submission.is_single:
         return (), ()
-    from grader.submission.evidence import describe, find_evidence, is_evidence  # a URDF on its own comes with none
+    from grader.submission.evidence import describe, find_evidence  # a URDF on its own comes with none
 
-    found = tuple(Exhibits(each, find_evidence(submission.tree, each.names)) for each in asked)
+    found = tuple(Exhibits(each, find_evidence(submission.proofs, each.names)) for each in asked)
     shown = {exhibit.path for each in found for exhibit in each.files}
-    left = [file for file in submission.tree.files.values() if is_evidence(file) and file.path not in shown]
-    return found, tuple(describe(file) for file in left[:_MOST_PICTURES])
+    left = [proof for proof in submission.proofs if proof.file.path not in shown]
+    return found, describe(left[:_MOST_PICTURES])

@@ -5,6 +5,8 @@ import tomllib
 
 Path = tuple[str | int, ...]
 
+_MAX_DEPTH = 20  # keys in a path: no rubric nests deeper, and the paths of a deeper key grow with its square
+
 _TOKEN = re.compile(
     r'''"""(?:\\.|[^\\])*?"""(?!")|\'\'\'.*?\'\'\'(?!\')|"(?:\\.|[^"\\\n])*"|'[^'\n]*'|\#[^\n]*|[\[\]{}\n=.]|[^\s"'\#\[\]{}=.]+|[ \t\r]+''',
     re.DOTALL,
@@ -66,4 +68,10 @@ def _statements(text: str) -> list[tuple[int, list[str]]]:
 
 
 def _names(tokens: list[str]) -> list[str]:
-    return [next(iter(tomllib.loads(f"{token}=0"))) for token in tokens if token != "."]
+    names = [token for token in tokens if token != "."][:_MAX_DEPTH]
+    return [_name(token) if token[0] in "\"'" else token for token in names]
+
+
+def _name(token: str) -> str:
+    """Return the key that a quoted token stands for."""
+    return next(iter(tomllib.loads(f"{token}=0")))

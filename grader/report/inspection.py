@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any
 
 from rich.console import Console
@@ -16,6 +17,7 @@ from grader.robot.model import Joint
 from grader.robot.reader import Reading
 from grader.robot.transforms import Transform
 
+_MAX_LISTED = 500  # links in the terminal
 _VERDICTS = {"clean": "green", "degraded": "yellow", "rejected": "bold red"}
 _SAYS = {
     "clean": "ROS 2 loads it",
@@ -94,13 +96,19 @@ def inspection_terminal(inspection: Inspection, console: Console) -> None:
     console.print()
     frame = printable(inspection.relative_to or "")
     console.print(Text(f"Poses in {frame!r} (x y z in m, roll pitch yaw in rad)", style="bold"))
-    for link, pose in inspection.poses():
+    for link, pose in islice(inspection.poses(), _MAX_LISTED):
         text = _pose_words(pose) if isinstance(pose, Transform) else printable(pose)
         wrapped(
             console,
             Text.assemble((f"{printable(link)}  ", ""), (text, "cyan" if isinstance(pose, Transform) else "red")),
             2,
         )
+    _show_rest(console, len(robot.robot.links))
+
+
+def _show_rest(console: Console, count: int) -> None:
+    if count > _MAX_LISTED:
+        console.print(Text(f"  ... and {count - _MAX_LISTED} more (--format json lists all)"))
 
 
 def _show_tree(robot: Configuration, console: Console) -> None:
@@ -109,10 +117,15 @@ def _show_tree(robot: Configuration, console: Console) -> None:
         below.setdefault(joint.parent, []).append(joint)
     branch, last = symbol(console, "\u251c\u2500 ", "|- "), symbol(console, "\u2514\u2500 ", "`- ")
     bar = symbol(console, "\u2502  ", "|  ")
+    left = _MAX_LISTED
     for root in robot.roots:
+        if not left:
+            break
+        left -= 1
         console.print(Text(f"  {printable(root)}"), overflow="ignore", no_wrap=True, crop=False)
         waiting: list[tuple[Joint, str, bool]] = _branches(below.get(root, []), "")
-        while waiting:
+        while waiting and left:
+            left -= 1
             joint, indent, is_last = waiting.pop()
             line = Text.assemble(
                 f"  {indent}{last if is_last else branch}{printable(joint.child)}  ",
@@ -120,6 +133,8 @@ def _show_tree(robot: Configuration, console: Console) -> None:
             )
             console.print(line, overflow="ignore", no_wrap=True, crop=False)
             waiting += _branches(below.get(joint.child, []), (indent + ("   " if is_last else bar))[-60:])
+    if not left:
+        _show_rest(console, len(robot.roots) + len(robot.holding))
 
 
 def _branches(joints: list[Joint], indent: str) -> list[tuple[Joint, str, bool]]:

@@ -16,10 +16,11 @@ _MOST_SHOWN = 30
 
 def wrapped(console: Console, text: Text, indent: int, head: Text | None = None) -> None:
     """Print text that keeps its indent when it wraps; `head` stands in the indent of the first line."""
-    for number, line in enumerate(text.wrap(console, max(8, console.width - indent))):
+    lines = text.wrap(console, max(8, console.width - indent))
+    for line in lines:
         line.rstrip()
-        start = head if head is not None and number == 0 else Text(" " * indent)
-        console.print(start + line, overflow="ignore", no_wrap=True, crop=False)
+    block = Text("\n" + " " * indent).join(lines)  # printed at once: a print costs more than a line
+    console.print((head or Text(" " * indent)) + block, overflow="ignore", no_wrap=True, crop=False)
 
 
 def show_excerpt(console: Console, source: Source, where: Location, indent: int, style: str = "red") -> None:

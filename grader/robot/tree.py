@@ -1,6 +1,7 @@
 """Whether links and joints form one tree (`model.h`: initTree, initRoot; kdl_parser: addChildrenToTree)."""
 
 from collections.abc import Iterable
+from itertools import islice
 
 from grader.robot import catalogue
 from grader.robot.holding import holding_joints
@@ -47,12 +48,11 @@ def _all_reached(root: str, joints: Iterable[Joint], count: int) -> bool:
 
 def _check_names(robot: Robot, links: dict[str, Element], notes: Notes) -> None:
     joints = [joint.name for joint in robot.joints]
+    listed = f"; the links are: {', '.join(map(quoted, islice(links, 12)))}"
     for joint in robot.joints:
         for role, name in (("parent", joint.parent), ("child", joint.child)):
             if name and not robot.has_link(name):
-                guess = (
-                    notes.did_you_mean(name, links) or f"; the links are: {', '.join(map(quoted, list(links)[:12]))}"
-                )
+                guess = notes.did_you_mean(name, links) or listed
                 message = (
                     f"the {role} link {quoted(name)} of joint {quoted(joint.name)} does not exist: {_REJECTED}{guess}"
                 )

@@ -7,6 +7,7 @@ import bz2
 import gzip
 import io
 import lzma
+import shutil
 import stat
 import struct
 import tarfile
@@ -16,11 +17,11 @@ import zipfile
 import zlib
 from collections.abc import Iterable, Iterator
 from functools import partial
-from typing import IO
+from typing import IO, Any
 
 from grader.errors import InputError
-from grader.submission.files import advice_for, capped
-from grader.submission.members import LONGEST_NAME, Links, Member
+from grader.submission.files import MAX_FILE_SIZE, advice_for, capped
+from grader.submission.members import LONGEST_NAME, Links, Member, Opener
 from grader.submission.tree import (
     MOST_FILES,
     File,
@@ -35,7 +36,8 @@ from grader.submission.tree import (
     too_many,
 )
 
-ARCHIVE_LIMIT = 512 * 1024 * 1024  # bytes of an archive, and of what is in it
+MAX_ARCHIVE_SIZE = 1024 * 1024 * 1024  # bytes of an archive, and of what is decompressed to read it
+ARCHIVE_LIMIT = 512 * 1024 * 1024  # bytes of the files in it, without those that are ignored because they are too large
 _DIRECTORY_LIMIT = 16 * 1024 * 1024  # bytes of a zip's table of contents
 _MOST_RATIO = 200  # what is in an archive, as a multiple of its own size
 _HARMLESS = 32 * 1024 * 1024  # bytes that are taken in whatever the ratio
@@ -66,17 +68,27 @@ _COMPRESSED = ("gz", "bz2", "xz")
 
 
 class Allowance:
-    """How many bytes an archive may unpack to, together with the archives in it."""
+    """How many bytes an archive may unpack to, together with the archives in it.
+
+    `streamed` counts what is decompressed: a compressed tar has to be, files that are ignored included.
+    """
 
     def __init__(self) -> None:
         self.left = ARCHIVE_LIMIT
+        self.streamed = MAX_ARCHIVE_SIZE
         self.archives = _MOST_ARCHIVES
 
     def spend(self, count: int, name: str) -> None:
         """Use up some of it; raises InputError where there is not enough."""
         self.left -= count
         if self.left < 0:
-            raise _too_much(name)
+            raise too_much(name, ARCHIVE_LIMIT)
+
+    def stream(self, count: int, name: str) -> None:
+        """Use up some of what may be decompressed; raises InputError where there is not enough."""
+        self.streamed -= count
+        if self.streamed < 0:
+            raise too_much(name, MAX_ARCHIVE_SIZE)
 
 
 def read_archive(file: IO[bytes], kind: str, name: str, allowance: Allowance | None = None) -> Tree:
@@ -86,11 +98,13 @@ def read_archive(file: IO[bytes], kind: str, name: str, allowance: Allowance | N
     try:
         limit = max(_HARMLESS, _MOST_RATIO * _checked_size(file, kind, name))
         if kind in _COMPRESSED:
-            opened.append(tempfile.SpooledTemporaryFile(max_size=_IN_MEMORY))  # noqa: SIM115  it lives as long as the tree
-            _decompress(file, kind, opened[1], name, limit, allowance)
-        tree = tree_of(bounded(zip_members(file) if kind == "zip" else _tar_members(opened[-1]), name, limit), name)
-        if kind not in _COMPRESSED:
-            allowance.spend(sum(member.size for member in tree.files.values()), name)
+            stored = tempfile.SpooledTemporaryFile(max_size=_IN_MEMORY)  # noqa: SIM115  it lives as long as the tree
+            opened.append(stored)
+            members = _streamed_members(file, kind, stored, name, limit, allowance)
+        else:
+            members = zip_members(file) if kind == "zip" else _tar_members(file)
+        tree = tree_of(bounded(members, name, limit), name)
+        allowance.spend(sum(each.size for each in tree.files.values() if each.size <= MAX_FILE_SIZE), name)
     except DAMAGED as error:
         _close(opened)
         raise InputError(f"{name} cannot be read as an archive: {words_of(error)}") from None
@@ -106,8 +120,8 @@ def _checked_size(file: IO[bytes], kind: str, name: str) -> int:
         raise InputError(f"{name} is a {kind} archive, which is not read: hand in a .zip or .tar.gz")
     size = file.seek(0, io.SEEK_END)
     file.seek(0)
-    if size > ARCHIVE_LIMIT:
-        raise InputError(f"{name} is larger than {ARCHIVE_LIMIT} bytes, the limit for an archive")
+    if size > MAX_ARCHIVE_SIZE:
+        raise InputError(f"{name} is larger than {MAX_ARCHIVE_SIZE} bytes, the limit for an archive")
     return size
 
 
@@ -117,21 +131,28 @@ def _close(files: list[IO[bytes]]) -> None:
 
 
 def bounded(members: Iterable[Member], name: str, limit: int) -> list[Member]:
-    """The members of an archive: no more of them, and not more in them, than there may be."""
+    """The members of an archive: no more of them, and not more in them, than there may be.
+
+    Those that are ignored because they are too large do not count.
+    """
     listed: list[Member] = []
     total = 0
     for member in members:
         listed.append(member)
-        total += member.size
+        total += member.size if member.size <= MAX_FILE_SIZE else 0
         if len(listed) > MOST_FILES:
             raise too_many(name)
         if total > min(limit, ARCHIVE_LIMIT):
-            raise _too_much(name)
+            raise too_much(name, min(limit, ARCHIVE_LIMIT))
     return listed
 
 
-def _too_much(name: str) -> InputError:
-    return InputError(f"{name} would unpack to far more than anyone hands in, and was not read")
+def too_much(name: str, limit: int) -> InputError:
+    """What to say of an archive that would unpack to more than a limit."""
+    ratio = f", {_MOST_RATIO} times its own size" if _HARMLESS < limit < ARCHIVE_LIMIT else ""
+    return InputError(
+        f"{name} would unpack to more than {limit} bytes, the limit for an archive{ratio}, and was not read"
+    )
 
 
 def tree_of(members: Iterable[Member], name: str) -> Tree:
@@ -227,20 +248,27 @@ def _zip_name(info: zipfile.ZipInfo) -> str:
 
 
 def _tar_members(file: IO[bytes]) -> Iterator[Member]:
+    for archive, info in _tar_headers(file):
+        yield _tar_member(info, partial(_open_tar, archive, info))
+
+
+def _tar_headers(file: Any) -> Iterator[tuple[tarfile.TarFile, tarfile.TarInfo]]:
     archive = tarfile.open(fileobj=file, mode="r:")  # noqa: SIM115  it is read from as long as its tree lives
     offset = -1
     while (info := archive.next()) is not None:
         if archive.offset <= offset or info.size < 0:
             raise tarfile.TarError("it leads back to its own beginning")
         offset = archive.offset
-        member = Member(info.name, "file", info.size, partial(_open_tar, archive, info))
-        if info.isdir():
-            member = member._replace(kind="folder", size=0)
-        elif info.issym() or info.islnk():
-            member = member._replace(kind="link", size=0, target=info.linkname, is_hard=info.islnk())
-        elif not info.isfile():
-            member = member._replace(kind="other", size=0, reason=_NO_FILE)
-        yield member
+        yield archive, info
+
+
+def _tar_member(info: tarfile.TarInfo, opened: Opener) -> Member:
+    member = Member(info.name, "file", info.size, opened)
+    if info.isdir():
+        return member._replace(kind="folder", size=0)
+    if info.issym() or info.islnk():
+        return member._replace(kind="link", size=0, target=info.linkname, is_hard=info.islnk())
+    return member if info.isfile() else member._replace(kind="other", size=0, reason=_NO_FILE)
 
 
 def _open_tar(archive: tarfile.TarFile, info: tarfile.TarInfo) -> IO[bytes]:
@@ -248,25 +276,100 @@ def _open_tar(archive: tarfile.TarFile, info: tarfile.TarInfo) -> IO[bytes]:
     return file if file is not None else io.BytesIO()
 
 
-def _unpacking(file: IO[bytes], kind: str) -> gzip.GzipFile | bz2.BZ2File | lzma.LZMAFile:
+_Unpacking = gzip.GzipFile | bz2.BZ2File | lzma.LZMAFile
+
+
+def _unpacking(file: IO[bytes], kind: str) -> _Unpacking:
     match kind:
         case "gz":
-            return gzip.GzipFile(fileobj=file)
+            return gzip.GzipFile(fileobj=file, mode="rb")
         case "bz2":
             return bz2.BZ2File(file)
         case _:
             return lzma.LZMAFile(file)
 
 
-def _decompress(file: IO[bytes], kind: str, plain: IO[bytes], name: str, limit: int, allowance: Allowance) -> None:
-    """Unpack a compressed tar into a file that is in memory or, where it is large, has no name."""
+def _streamed_members(
+    file: IO[bytes], kind: str, stored: IO[bytes], name: str, limit: int, allowance: Allowance
+) -> Iterator[Member]:
+    """The members of a compressed tar, decompressed once: files that are not too large are stored one behind the other."""
+    total = 0
     with _unpacking(file, kind) as source:
-        while chunk := source.read(_CHUNK):
-            plain.write(chunk)
-            allowance.spend(len(chunk), name)
-            if plain.tell() > limit:
-                raise _too_much(name)
-    plain.seek(0)
+        counted = _Counted(source, name, limit, allowance)
+        for archive, info in _tar_headers(counted):
+            member = _tar_member(info, partial(_piece, stored, stored.tell(), info.size))
+            if member.kind == "file" and member.size <= MAX_FILE_SIZE:
+                total += member.size
+                if total > ARCHIVE_LIMIT:  # a sparse file is larger than what is decompressed for it
+                    raise too_much(name, ARCHIVE_LIMIT)
+                if info.issparse():
+                    with _open_tar(archive, info) as content:
+                        shutil.copyfileobj(content, stored, _CHUNK)
+                else:  # a file object for each of 50,000 files would take a second
+                    counted.copy(info.size, stored)
+            yield member
+        while counted.read(_CHUNK):  # a fault behind the last file is a fault all the same
+            pass
+
+
+class _Counted(io.RawIOBase):
+    """What a compressed tar is decompressed to, up to a limit; it is read from its beginning to its end, once."""
+
+    def __init__(self, source: _Unpacking, name: str, limit: int, allowance: Allowance) -> None:
+        self._source, self._name, self._limit, self._allowance = source, name, limit, allowance
+        self._at = 0
+
+    def read(self, size: int = -1) -> bytes:
+        data = self._source.read(size)
+        self._at += len(data)
+        self._allowance.stream(len(data), self._name)
+        if self._at > self._limit:
+            raise too_much(self._name, self._limit)
+        return data
+
+    def copy(self, size: int, to: IO[bytes] | None = None) -> None:
+        """Copy so many bytes, or pass over them."""
+        while size > 0:
+            data = self.read(min(size, _CHUNK))
+            if not data:
+                raise EOFError("it ends too early")
+            size -= len(data)
+            if to is not None:
+                to.write(data)
+
+    def seek(self, offset: int, whence: int = 0) -> int:
+        if whence or offset < self._at:
+            raise tarfile.TarError("it leads back to its own beginning")
+        self.copy(offset - self._at)
+        return self._at
+
+    def tell(self) -> int:
+        return self._at
+
+    def readable(self) -> bool:
+        return True
+
+
+def _piece(file: IO[bytes], start: int, size: int) -> IO[bytes]:
+    return io.BufferedReader(_Piece(file, start, size))
+
+
+class _Piece(io.RawIOBase):
+    """Some bytes of a file as a file of their own."""
+
+    def __init__(self, file: IO[bytes], start: int, size: int) -> None:
+        self._file, self._at, self._left = file, start, size
+
+    def readinto(self, buffer: Any) -> int:
+        self._file.seek(self._at)
+        data = self._file.read(min(len(buffer), self._left))
+        buffer[: len(data)] = data
+        self._at += len(data)
+        self._left -= len(data)
+        return len(data)
+
+    def readable(self) -> bool:
+        return True
 
 
 class _Bounded(io.RawIOBase):

@@ -3,9 +3,10 @@
 import io
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from grader.errors import InputError
-from grader.submission.labels import any_meant
+from grader.submission.labels import Label, is_meant, read_label
 from grader.submission.tree import File, Tree
 
 _PICTURES = frozenset({".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".heic", ".svg"})
@@ -13,6 +14,8 @@ _OTHERS = frozenset({".pdf", ".mp4", ".mov", ".webm", ".mkv", ".avi"})
 # Formats whose size is in their first bytes; nothing else is given to the library.
 _SIGNATURES = (b"\x89PNG\r\n", b"\xff\xd8\xff", b"GIF8", b"BM", b"II*\0", b"MM\0*", b"RIFF")
 _START = 256 * 1024
+_EVIDENCE = _PICTURES | _OTHERS
+_MAX_OPENED = 50  # files at once whose dimensions are read
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,19 +35,31 @@ class Exhibit:
         return f"{self.path} ({dimensions}{size if self.size >= 1000 else f'{self.size} bytes'})"
 
 
-def is_evidence(file: File) -> bool:
-    """Whether a file is a picture, a film or a PDF."""
-    return file.suffix in _PICTURES or file.suffix in _OTHERS
+class Proof(NamedTuple):
+    """A picture, film or PDF, and the task and step that its path names."""
+
+    file: File
+    label: Label
 
 
-def find_evidence(tree: Tree, names: Sequence[str]) -> tuple[Exhibit, ...]:
+def read_proofs(tree: Tree) -> tuple[Proof, ...]:
+    """Return every picture, film and PDF of a submission, with its label."""
+    return tuple(Proof(file, read_label(stem(file.path))) for file in tree.files.values() if file.suffix in _EVIDENCE)
+
+
+def find_evidence(proofs: Sequence[Proof], names: Sequence[str]) -> tuple[Exhibit, ...]:
     """The files of evidence whose path speaks of one of these names: `task 1 step 8`, or plain words such as `webcam`."""
-    found = [file for file in tree.files.values() if is_evidence(file) and any_meant(names, stem(file.path))]
-    return tuple(map(describe, found))
+    wanted = [read_label(name) for name in names]
+    return describe([proof for proof in proofs if any(is_meant(each, proof.label) for each in wanted)])
 
 
-def describe(file: File) -> Exhibit:
-    """A file of evidence with what its first bytes tell."""
+def describe(proofs: Sequence[Proof]) -> tuple[Exhibit, ...]:
+    """Files of evidence with what their first bytes tell; of many, the dimensions of the first only."""
+    opened = [_described(proof.file) for proof in proofs[:_MAX_OPENED]]
+    return (*opened, *(Exhibit(proof.file.path, proof.file.size) for proof in proofs[_MAX_OPENED:]))
+
+
+def _described(file: File) -> Exhibit:
     dimensions = _dimensions(file) if file.suffix in _PICTURES else None
     return Exhibit(file.path, file.size, *(dimensions or (None, None)))
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from grader.errors import InputError
 
 URDF_LIMIT = 1024 * 1024  # bytes
+MAX_FILE_SIZE = 64 * 1024 * 1024  # bytes of one file of a submission: a larger one is ignored
 # A FIFO would block at open and a device could be endless: both are recognised without reading.
 _FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
 _FOLDER = os.O_RDONLY | getattr(os, "O_DIRECTORY", 0) | getattr(os, "O_CLOEXEC", 0)

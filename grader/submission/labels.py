@@ -1,7 +1,6 @@
 """Which task and step a name or heading speaks of, however it is spelt: Task1_Step8, task 1 step 8, T1S8, lab6_task1_q8."""
 
 import re
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 _WORDS = re.compile(r"[^\W\d_]+|\d+")
@@ -9,6 +8,7 @@ _TASKS = frozenset({"task", "tasks", "t", "tsk", "tast", "aufgabe", "teil"})
 _STEPS = frozenset(
     {"step", "steps", "s", "st", "stp", "question", "questions", "q", "que", "no", "nr", "schritt", "frage"}
 )
+_NAMING = _TASKS | _STEPS
 _LONGEST = 300
 
 
@@ -27,10 +27,11 @@ def read_label(text: str) -> Label:
     task: int | None = None
     steps: set[int] = set()
     for index, word in enumerate(words):
-        numbers = _numbers(words, index + 1)
-        if word in _TASKS and numbers:
+        if word not in _NAMING or not (numbers := _numbers(words, index + 1)):
+            continue
+        if word in _TASKS:
             task, steps = numbers[0], set(numbers[1:])
-        elif word in _STEPS and numbers:
+        else:
             steps |= set(numbers)
     return Label(task, frozenset(steps), words)
 
@@ -43,12 +44,6 @@ def is_meant(wanted: Label, found: Label, task: int | None = None) -> bool:
             return False
         return wanted.steps <= found.steps if wanted.steps else own == wanted.task
     return bool(wanted.words) and _in_order(wanted.words, found.words)
-
-
-def any_meant(patterns: Iterable[str], text: str, task: int | None = None) -> bool:
-    """Whether a name or line speaks of one of several things."""
-    found = read_label(text)
-    return any(is_meant(read_label(pattern), found, task) for pattern in patterns)
 
 
 def _numbers(words: tuple[str, ...], start: int) -> list[int]:

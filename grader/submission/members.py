@@ -13,6 +13,9 @@ _MOST_LINKS = 40  # in a chain
 _MOST_STEPS = 500_000  # for all links of an archive
 
 
+Opener = Callable[[], AbstractContextManager[IO[bytes]]]
+
+
 class Member(NamedTuple):
     """One entry. `reason` says why one of kind other is not read; `open` gives what is in a file.
 
@@ -22,7 +25,7 @@ class Member(NamedTuple):
     path: str
     kind: str  # file, folder, link or other
     size: int
-    open: Callable[[], AbstractContextManager[IO[bytes]]]
+    open: Opener
     target: str = ""
     is_hard: bool = False
     reason: str = ""

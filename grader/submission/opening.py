@@ -1,19 +1,18 @@
 """What a path leads to as a tree of files: a folder, an archive, or an archive in one of these."""
 
-import io
 import os
+import tempfile
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from grader.errors import InputError
-from grader.submission.files import not_there, open_regular, printable_path, read_start
+from grader.submission.files import MAX_FILE_SIZE, not_there, open_regular, printable_path, read_start
 from grader.submission.tree import MOST_FILES, File, Tree, make_tree, too_many
 
 if TYPE_CHECKING:
     from grader.submission.archive import Allowance
 
 ARCHIVES = (".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar")
-_INNER_LIMIT = 64 * 1024 * 1024  # bytes of an archive inside of what was handed in
 _MOST_NESTED = 3
 _WORTH_FINDING = ("package.xml", "setup.py")
 
@@ -115,12 +114,13 @@ def _inner(archive: File, allowance: "Allowance", depth: int) -> Tree:
     allowance.archives -= 1
     if allowance.archives < 0:
         raise InputError(f"{archive.path} was not opened: there are too many archives")
-    data = archive.read(_INNER_LIMIT)
-    allowance.spend(len(data), archive.path)
-    kind = archive_kind(data[:512])
+    kind = archive_kind(archive.read(512, first=True))
     if kind is None:
         raise InputError(f"{archive.path} is no archive that can be read, for all its name: it is damaged or empty")
-    return with_inner(read_archive(io.BytesIO(data), kind, archive.path, allowance), allowance, depth + 1)
+    allowance.spend(archive.size, archive.path)
+    stored = tempfile.TemporaryFile()  # noqa: SIM115  its tree closes it
+    stored.write(archive.read(MAX_FILE_SIZE))
+    return with_inner(read_archive(stored, kind, archive.path, allowance), allowance, depth + 1)
 
 
 def without_endings(path: str) -> str:

@@ -1,8 +1,9 @@
 """A submission: what was handed in, which URDF and which package of it are graded, and what was passed over."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from grader.errors import InputError, MissingElement, NotDecided
 from grader.robot.catalogue import RAW_XACRO
@@ -12,6 +13,10 @@ from grader.submission.files import URDF_LIMIT, printable_path, read_capped, rea
 from grader.submission.opening import open_tree, tree_name
 from grader.submission.package import NO_PACKAGE, Package
 from grader.submission.tree import PassedOver, Tree, make_tree
+
+if TYPE_CHECKING:
+    from grader.submission.documents import Documents
+    from grader.submission.evidence import Proof
 
 Xacro = Literal["none", "expanded", "left"]
 
@@ -30,6 +35,7 @@ class Submission:
     `is_single` tells a URDF on its own from a folder or archive. `packages` begins with the one that is graded. `xacro` tells
     whether the URDF is xacro that is expanded before ROS 2 reads it: `urdf` is then what it comes to, if that could be worked
     out, and left to a person if not. `unread` says why the URDF at `path` could not be read, where it is too large or damaged.
+    `no_documents` says why no document is read, where grading was lost with them.
     """
 
     id: str
@@ -42,6 +48,21 @@ class Submission:
     is_single: bool = True
     xacro: Xacro = "none"
     unread: str = ""
+    no_documents: str = ""
+
+    @cached_property
+    def documents(self) -> "Documents":
+        """The documents in it, each of which is read once."""
+        from grader.submission.documents import Documents  # a URDF on its own has none
+
+        return Documents(self.tree)
+
+    @cached_property
+    def proofs(self) -> "tuple[Proof, ...]":
+        """The pictures, films and PDF files in it."""
+        from grader.submission.evidence import read_proofs
+
+        return read_proofs(self.tree)
 
     @property
     def sha256(self) -> str | None:
@@ -156,7 +177,14 @@ def open_submission(path: str, *, wanted: str, package: str = "", limit: int = U
 
 
 def submission_of(
-    tree: Tree, identity: str, *, wanted: str, package: str = "", limit: int = URDF_LIMIT, shown: str = ""
+    tree: Tree,
+    identity: str,
+    *,
+    wanted: str,
+    package: str = "",
+    limit: int = URDF_LIMIT,
+    shown: str = "",
+    no_documents: str = "",
 ) -> Submission:
     """The submission that a tree of files makes; raises InputError, which calls it `shown`, where there are none."""
     if not tree.files and not tree.generated:
@@ -177,7 +205,17 @@ def submission_of(
         reading, xacro = _read(data, found.path, packages[0] if packages else None)
     passed_over = (*found.passed_over, *others)
     return Submission(
-        identity, found.path, data, reading, passed_over, tree, packages, is_single=False, xacro=xacro, unread=unread
+        identity,
+        found.path,
+        data,
+        reading,
+        passed_over,
+        tree,
+        packages,
+        is_single=False,
+        xacro=xacro,
+        unread=unread,
+        no_documents=no_documents,
     )
 
 

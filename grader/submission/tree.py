@@ -1,12 +1,12 @@
 """The files of a submission, wherever they come from: a folder or an archive looks the same from here on."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
-from pathlib import PurePosixPath
+from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import NamedTuple, Protocol
 
 from grader.errors import InputError
-from grader.submission.files import printable_path
+from grader.submission.files import MAX_FILE_SIZE, printable_path
 
 # Products of a build, tools' folders and other people's code: what a student wrote is not in them.
 BUILT = frozenset({"build", "install", "log"})
@@ -45,7 +45,9 @@ class File:
     @property
     def suffix(self) -> str:
         """The ending of its name, in lower case: .png."""
-        return PurePosixPath(self.path).suffix.lower()
+        name = self.name
+        dot = name.rfind(".")
+        return name[dot:].lower() if 0 < dot < len(name) - 1 else ""
 
 
 @dataclass(frozen=True, slots=True, weakref_slot=True)
@@ -92,8 +94,13 @@ def make_tree(
     unopened: Iterable[str] = (),
     kept: "tuple[Tree, ...]" = (),
 ) -> Tree:
-    """A tree of these files, its folders completed by those that the files stand in; raises InputError for too many."""
+    """A tree of these files, its folders completed by those that the files stand in; raises InputError for too many.
+
+    A file that is too large is named, and never read.
+    """
     by_path = {file.path: file for file in sorted(files, key=lambda each: each.path)}
+    large = {path: _too_large(file) for path, file in by_path.items() if file.size > MAX_FILE_SIZE}
+    by_path |= {path: replace(by_path[path], read=partial(_refuse, reason)) for path, reason in large.items()}
     given = set(folders)
     above = folders_above([*by_path, *given], name)
     everything = frozenset(above | given)
@@ -101,12 +108,21 @@ def make_tree(
         name,
         by_path,
         everything,
-        tuple(left_out),
+        tuple(dict.fromkeys([*left_out, *large.values()])),
         tuple(generated),
         frozenset(unseen) - everything,
         tuple(unopened),
         kept,
     )
+
+
+def _too_large(file: File) -> str:
+    return f"{file.path} ({file.size / 1e6:.0f} MB) is larger than {MAX_FILE_SIZE >> 20} MiB, the limit for one file, and was ignored"
+
+
+def _refuse(reason: str, limit: int, *, first: bool = False) -> bytes:
+    del limit, first
+    raise InputError(reason)
 
 
 def folders_above(paths: Iterable[str], name: str) -> set[str]:

@@ -2,15 +2,20 @@
 
 import io
 import sys
+import time
 from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
 from grader.checks.handed_in import answered, evidence_shown
 from grader.checks.outcome import Outcome
 from grader.robot.source import Location
+from grader.submission.documents import MAX_LINES
 from tests.checks.asking import ask
 from tests.checks.hand_ins import ANSWERS, REFERENCE, URDF, HandIn, gif, jpeg, png
+from tests.samples import ROOT
 
 PLACES = ["task 1 step 15", "step 15"]
 ANSWER = "There are two roots."
@@ -230,12 +235,61 @@ def test_without_the_readers_the_document_is_named(name: str, monkeypatch: pytes
     message = f"{name} could not be read on this machine: open it yourself"
     assert message in answer_in(ALONE.with_files({name: b""})).message
     monkeypatch.undo()
-    monkeypatch.setattr("grader.submission.answers._PATIENCE", 0)
-    assert f"{name} takes too long to read: open it yourself" in answer_in(ALONE.with_files({name: b""})).message
-    monkeypatch.undo()
     monkeypatch.setattr("grader.submission.document_text.MISSING", 1)  # as a damaged document ends
     message = f"{name} is read only with the grader's extra `documents`: open it yourself"
     assert message in answer_in(ALONE.with_files({name: b"no document"})).message
+
+
+SLOW = b"import time; time.sleep(60)"  # a converter that does not end
+TOO_LATE = "was not read: the Word and PDF files take longer than 0.5 s in all; needs manual grading"
+
+
+def converter(code: bytes, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let this code take the place of the converter."""
+    path.write_bytes(code)
+    monkeypatch.setattr("grader.submission.document_text.__file__", str(path))
+
+
+def test_all_documents_share_one_budget(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A document that takes too long uses up the time of those after it; texts are read all the same."""
+    converter(SLOW, tmp_path / "slow.py", monkeypatch)
+    monkeypatch.setattr("grader.submission.documents.MAX_SECONDS", 0.5)
+    began = time.monotonic()
+    hand_in = ALONE.with_files({f"{name}.pdf": b"" for name in "abcd"} | {"e.txt": "Task 1 step 15: It vanishes."})
+    outcome = answer_in(hand_in)
+    assert outcome.measured == "Task 1 step 15: It vanishes."
+    assert outcome.message.endswith(f"(not read: {'; '.join(f'{name}.pdf {TOO_LATE}' for name in 'abcd')})")
+    assert time.monotonic() - began < 15  # and not one of its 60 s
+
+
+def test_the_converter_bounds_its_own_processor_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the grader is not there to stop it, the system does."""
+    code = f"import sys; sys.argv[2] = '1'; sys.path.insert(0, {str(ROOT)!r})\n"
+    code += "from grader.submission import document_text\n"
+    code += "document_text._pdf = lambda data: str(sum(0 for _ in iter(int, 1)))\nsys.exit(document_text.main())"
+    converter(code.encode(), tmp_path / "busy.py", monkeypatch)
+    monkeypatch.setattr("grader.submission.documents.MAX_SECONDS", 60.0)
+    message = answer_in(ALONE.with_files({"a.pdf": b""})).message
+    assert "a.pdf was not read: the Word and PDF files take longer than 60 s in all" in message
+
+
+def test_a_document_is_converted_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two questions about the same document start one converter."""
+    log = tmp_path / "log"
+    text = "Step 15: It vanishes.\nStep 18: yes"
+    converter(f"open({str(log)!r}, 'a').write('x'); print({text!r})".encode(), tmp_path / "count.py", monkeypatch)
+    submission = ALONE.with_files({"a.pdf": b""}).submission
+    for place, text in (("step 15", "Step 15: It vanishes."), ("step 18", "Step 18: yes")):
+        assert answered(submission, question=QUESTION, answer=ANSWER, places=[place]).measured == text
+    assert log.read_text() == "x"
+
+
+def test_no_more_than_a_few_documents_are_converted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The limit is named with the first document beyond it."""
+    converter(b"print('none')", tmp_path / "none.py", monkeypatch)
+    message = answer_in(ALONE.with_files({f"{number}.pdf": b"" for number in range(10)})).message
+    assert "8.pdf was not read: at most 8 Word and PDF files are; needs manual grading; 9.pdf" in message
+    assert "7.pdf was not read" not in message
 
 
 @pytest.mark.parametrize("name", ["answers.doc", "answers.odt", "answers.rtf", "answers.pages"])
@@ -249,6 +303,31 @@ def test_a_text_that_is_too_large_is_named() -> None:
     """A text beyond all measure is not read."""
     message = answer_in(ALONE.with_files({"answers.txt": "Step 15: x\n" * 200_000})).message
     assert message == f"{NOT_FOUND}; a person decides (not read: answers.txt is larger than 1048576 bytes)"
+
+
+def test_the_lines_of_a_document_are_capped_with_a_note() -> None:
+    """What stands after the last line that is read is not found, and the report says so."""
+    end = "\n" * MAX_LINES + "Step 15: late\n"
+    cut = f"answers.md after line {MAX_LINES}, the limit for a document"
+    message = f"{NOT_FOUND}; looked through answers.md; a person decides (not read: {cut})"
+    assert answer_in(ALONE.with_files({"answers.md": end})).message == message
+    last = "\n" * (MAX_LINES - 1) + "Step 15: in time\n"
+    found = answer_in(ALONE.with_files({"answers.md": last}))
+    assert (found.measured, "not read" in found.message) == ("Step 15: in time", False)
+
+
+def test_the_number_of_documents_is_capped_with_a_note() -> None:
+    """Beyond forty documents the rest is counted."""
+    message = answer_in(ALONE.with_files({f"{number:02}.md": "" for number in range(45)})).message
+    assert message.endswith("(not read: 5 documents after the first 40, the limit)")
+
+
+def test_documents_that_grading_was_lost_with_are_left_to_a_person() -> None:
+    """The model answer stays beside the question, and nothing is converted."""
+    submission = replace(REFERENCE.submission, no_documents="it took long")
+    outcome = answered(submission, question=QUESTION, answer=ANSWER, places=PLACES)
+    message = "What happens? The documents could not be read: it took long; needs manual grading"
+    assert (outcome.status, outcome.message, outcome.expected) == ("pending", message, ANSWER)
 
 
 # --- Evidence ---------------------------------------------------------------------------------------------------------

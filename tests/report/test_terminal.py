@@ -114,11 +114,13 @@ def test_a_very_long_line_is_cut_around_what_is_meant() -> None:
     assert text[start:end] == 'c="d"'
 
 
-def test_a_tree_of_thousands_prints() -> None:
-    """A deep chain is drawn without recursion and without indenting out of sight."""
+def test_a_tree_of_thousands_is_listed_to_a_limit() -> None:
+    """A deep chain is drawn without recursion and without indenting out of sight; the rest is counted."""
     links = "".join(
         f'<link name="l{i}"/><joint name="j{i}" type="fixed"><parent link="l{i - 1}"/><child link="l{i}"/></joint>'
         for i in range(1, 3000)
     )
     text = printed(f'<robot name="r"><link name="l0"/>{links}</robot>'.encode())
-    assert "l2999" in text
+    assert "l499" in text
+    assert "l500" not in text
+    assert text.count("  ... and 2500 more (--format json lists all)\n") == 2

@@ -3,8 +3,8 @@
 import re
 
 _ENTITIES = {b"quot;": b'"', b"amp;": b"&", b"apos;": b"'", b"lt;": b"<", b"gt;": b">"}
+_REFERENCE = re.compile(rb"&(?:(quot;|amp;|apos;|lt;|gt;)|#)")
 _DECIMAL, _HEXADECIMAL = b"0123456789", b"0123456789abcdefABCDEF"
-_AMPERSAND = ord("&")
 _FIRST_SURROGATE, _LAST_SURROGATE, _LAST_CODE_POINT, _FIVE_BYTES = 0xD800, 0xDFFF, 0x10FFFF, 0x200000
 _ESCAPES = str.maketrans(
     {"&": "&amp;", "<": "&lt;", '"': "&quot;", "\t": "&#9;", "\n": "&#10;", "\r": "&#13;", "\v": "&#9;", "\f": "&#9;"}
@@ -22,22 +22,34 @@ def decode(raw: str) -> str:
         return raw
     source = raw.encode("utf-8", "surrogateescape")
     references = _References(source)
-    target = bytearray(source)  # TinyXML2 decodes in place: what it passes over without writing stays as it was
-    read = write = 0
-    while read < len(source):
-        if source[read] != _AMPERSAND:
-            target[write] = source[read]
-            read, write = read + 1, write + 1
-            continue
-        piece, width = references.at(read)
-        if piece is not None:
-            target[write : write + len(piece)] = piece
-        read, write = read + width, write + (1 if piece is None else len(piece))
-    return bytes(target[:write]).split(b"\0")[0].decode("utf-8", "surrogateescape")
+    decoded = bytearray()
+    read = 0
+    while (found := _REFERENCE.search(source, read)) is not None:
+        _copy(source, read, found.start(), decoded)
+        piece, width = (_ENTITIES[found[1]], len(found[0])) if found[1] else references.at(found.start())
+        decoded += piece
+        read = found.start() + width
+    _copy(source, read, len(source), decoded)
+    return bytes(decoded).split(b"\0")[0].decode("utf-8", "surrogateescape")
+
+
+def _copy(source: bytes, start: int, end: int, decoded: bytearray) -> None:
+    """Append what stands between two references.
+
+    TinyXML2 decodes in place and passes over an & that begins no reference without writing: what stood there before stays.
+    """
+    write = len(decoded)
+    decoded += source[start:end]
+    if write == start:
+        return
+    at = source.find(b"&", start, end)
+    while at >= 0:
+        decoded[write + at - start] = source[write + at - start]
+        at = source.find(b"&", at + 1, end)
 
 
 class _References:
-    """What each & of a value stands for (`XMLUtil::GetCharacterRef`), asked from left to right.
+    """What each &# of a value stands for (`XMLUtil::GetCharacterRef`), asked from left to right.
 
     A reference by number reaches to the next semicolon, and its digits are read backwards from there.
     """
@@ -48,14 +60,9 @@ class _References:
         self._hexadecimal: tuple[int, int] | None = None  # where the digits before the semicolon begin, and their value
         self._decimal: tuple[int, int] | None = None
 
-    def at(self, offset: int) -> tuple[bytes | None, int]:
-        """What the & at this offset stands for (None: it is passed over), and how many bytes it takes."""
+    def at(self, offset: int) -> tuple[bytes, int]:
+        """What the &# at this offset stands for, and how many bytes it takes."""
         source = self._source
-        for name, value in _ENTITIES.items():
-            if source.startswith(name, offset + 1):
-                return value, len(name) + 1
-        if not source.startswith(b"#", offset + 1):
-            return None, 1
         if len(source) == offset + 2:
             return b"", 1
         if self._semicolon < offset:

@@ -1,0 +1,127 @@
+"""A Word file that takes for ever: what it costs, what it does to a mark, and what is left of the process that reads it."""
+
+import io
+import os
+import shutil
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from grader.cli.app import run
+from grader.submission.document_text import __file__ as converter
+from tests.classroom.class_runs import eventually, grader, rows, session_of, started
+from tests.samples import ROOT
+
+REFERENCE = ROOT / "rubrics" / "lab6" / "my_robot"
+_SPAN = 100_000  # columns that a cell of the table declares: each costs as much as a cell
+
+
+def slow_docx() -> bytes:
+    """A Word file of a few kilobytes that takes minutes to read."""
+    module = pytest.importorskip("docx")
+    document = module.Document()
+    table = document.add_table(rows=500, cols=1)
+    for row in table.rows:
+        row._tr.tc_lst[0].grid_span = _SPAN
+    data = io.BytesIO()
+    document.save(data)
+    assert len(data.getvalue()) < 40_000
+    return data.getvalue()
+
+
+def hand_in(folder: Path) -> Path:
+    """The reference solution with a slow document beside it."""
+    shutil.copytree(REFERENCE, folder / "my_robot")
+    (folder / "answers.docx").write_bytes(slow_docx())
+    (folder / "notes.md").write_text("Task 1 step 15: It vanishes.\n")
+    return folder
+
+
+def test_a_slow_document_leaves_its_criteria_to_a_person(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It is not read, everything else has its result, and another document is read all the same."""
+    monkeypatch.setattr("grader.submission.documents.MAX_SECONDS", 1.0)
+    assert run(["grade", str(hand_in(tmp_path / "alice"))]) == 0
+    shown = " ".join(capsys.readouterr().out.split())
+    assert shown.count("the Word and PDF files take longer than 1 s in all; needs manual grading") == 2
+    assert "The answer in notes.md, from line 1, is for a person to mark" in shown
+    assert "90 / 100 points" in shown
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, -15), (signal.SIGKILL, -9)])
+def test_no_converter_outlives_a_grader_that_is_ended(number: signal.Signals, code: int, tmp_path: Path) -> None:
+    """However the grader ends, the process that reads a document for it ends, too."""
+    with started("grade", hand_in(tmp_path / "alice")) as process:
+        assert eventually(lambda: len(session_of(process)) > 1)
+        process.send_signal(number)  # to the grader alone
+        assert process.wait(20) == code
+        assert eventually(lambda: not session_of(process), 10)
+
+
+def test_no_converter_outlives_a_batch_that_is_ended(tmp_path: Path) -> None:
+    """A worker that is ended takes its converter with it."""
+    hand_in(tmp_path / "class" / "alice")
+    with started("batch", tmp_path / "class", "--gradebook", tmp_path / "lab.db", "--jobs", "1") as process:
+        assert eventually(lambda: any(b"document_text" in each for each in _commands(process)), 60)
+        process.kill()
+        assert eventually(lambda: not session_of(process), 10)
+
+
+def _commands(process: "subprocess.Popen[str]") -> list[bytes]:
+    found = []
+    for each in session_of(process):
+        try:
+            found.append(Path(f"/proc/{each}/cmdline").read_bytes())
+        except OSError:
+            continue
+    return found
+
+
+def test_a_converter_without_a_death_signal_watches_its_parent(tmp_path: Path) -> None:
+    """Where the kernel does not end it, a thread does: that of a system without PR_SET_PDEATHSIG."""
+    child = (
+        f"import sys, time; sys.path.insert(0, {str(ROOT)!r}); from grader.submission import document_text as it\n"
+        "it._has_death_signal = lambda: False\n"
+        "it.end_with_parent(int(sys.argv[1]), 600); print('ready', flush=True); time.sleep(600)"
+    )
+    parent = (
+        "import os, subprocess, sys\n"
+        f"child = subprocess.Popen([sys.executable, '-c', {child!r}, str(os.getpid())])\n"
+        "print(child.pid, flush=True); child.wait()"
+    )
+    with subprocess.Popen(
+        [sys.executable, "-c", parent], stdout=subprocess.PIPE, text=True, start_new_session=True
+    ) as process:
+        assert process.stdout is not None
+        lines = {process.stdout.readline(), process.stdout.readline()}
+        assert "ready\n" in lines
+        assert len(session_of(process)) == 2
+        process.kill()
+        assert eventually(lambda: not session_of(process), 10)
+
+
+def test_a_converter_whose_parent_is_gone_ends_at_once() -> None:
+    """A parent that ends before the kernel is told of it leaves nothing behind."""
+    other = os.getppid()  # not the parent of what is started here
+    done = subprocess.run([sys.executable, "-P", converter, "docx", "600", str(other)], timeout=60, check=False)
+    assert done.returncode == 1
+
+
+def test_a_mark_never_depends_on_a_document(tmp_path: Path) -> None:
+    """A submission whose grading is lost to a document is graded without it, and has the points of one that has none."""
+    hand_in(tmp_path / "class" / "alice")
+    shutil.copytree(REFERENCE, tmp_path / "class" / "bob" / "my_robot")
+    book = tmp_path / "lab.db"
+    done = grader("batch", tmp_path / "class", "--gradebook", book, "--timeout", "4", "--jobs", "2")
+    assert "2 graded, 0 unchanged" in done.stderr
+    found = dict(rows(book, "SELECT key, verdict || ' ' || score || ' ' || pending FROM grade"))
+    assert found == {"alice": "graded 900000 100000", "bob": "graded 900000 100000"}
+    again = grader("batch", tmp_path / "class", "--gradebook", book, "--reports", tmp_path / "reports")
+    assert "0 graded, 2 unchanged" in again.stderr
+    report = " ".join((tmp_path / "reports" / "alice.txt").read_text().split())
+    reason = "grading it took longer than 4 s, and was stopped (--timeout raises the limit)"
+    assert report.count(f"The documents could not be read: {reason}; needs manual grading") == 2
