@@ -30,7 +30,7 @@ from grader.classroom.gradebook import Gradebook
 from grader.classroom.intake.roster import Entry, Roster
 from grader.classroom.intake.taking import take_in
 from grader.classroom.marking import mark
-from grader.classroom.opening import open_hand_in
+from grader.classroom.opening import is_bulk, open_hand_in
 from grader.classroom.standings import Standing, Standings
 from grader.classroom.students import Student
 from grader.errors import InputError
@@ -187,12 +187,15 @@ class HostileClass(RuleBasedStateMachine):
         self._stack.close()
 
     @initialize(
-        layout=st.sampled_from(LAYOUTS), spelling=st.sampled_from(["login", "name", "email"]), has_roster=st.booleans()
+        layout=st.sampled_from(LAYOUTS),
+        spelling=st.sampled_from(["login", "name", "email"]),
+        has_roster=st.booleans(),
+        is_zip=st.booleans(),
     )
-    def grade_the_class(self, layout: str, spelling: str, has_roster: bool) -> None:
-        """Lay the class out, grade it, and give everybody a manual mark."""
+    def grade_the_class(self, layout: str, spelling: str, has_roster: bool, is_zip: bool) -> None:
+        """Lay the class out, as a folder or a zip, grade it, and give everybody a manual mark."""
         self.made = Class(layout, spelling, has_roster)
-        self.owner: dict[str, str] = {}
+        self.source = self.top / "class.zip" if is_zip else self.root
         for name in (*NAMES, MALLORY):
             self._submit(self.made.place(name), name)
         self.book = self._stack.enter_context(Gradebook(self.top / "g.db", create=True))
@@ -264,10 +267,12 @@ class HostileClass(RuleBasedStateMachine):
     def _grade(self) -> None:
         layout = "folders" if self.made.layout == "prefixed" else self.made.layout
         roster = self.made.roster
-        intake = take_in(self.root, roster, layout, rubric_id="lab6")
+        if self.source != self.root:
+            _pack(self.root, self.source)
+        intake = take_in(self.source, roster, layout, rubric_id="lab6")
         for hand_in in intake.hand_ins():
             self._check_files(hand_in.paths, hand_in.names, hand_in.student.key)
-        told = Settings(str(self.root), layout, len(intake), 1, roster=roster)
+        told = Settings(str(self.source), layout, len(intake), 1, roster=roster)
         Batch(self.book, RUBRIC, told, Here()).grade(intake)
 
     def _check_files(self, paths: tuple[str, ...], names: tuple[str, ...], key: str) -> None:
@@ -275,7 +280,7 @@ class HostileClass(RuleBasedStateMachine):
         owners = {next((name for name in NAMES if _is_below(path, self.made.place(name))), MALLORY) for path in paths}
         assert len(owners) == 1, (key, paths)
         try:
-            opened = open_hand_in(str(self.root), paths, names, key)
+            opened = open_hand_in(str(self.source), paths, names, key)
         except InputError:
             return
         read = [opened.data] if opened.data is not None else []
@@ -305,6 +310,20 @@ class HostileClass(RuleBasedStateMachine):
         if self.made.has_roster:
             return next((name for name in NAMES if standing.student.key == f"k{_NUMBER[name]}"), MALLORY)
         return next((name for name in NAMES if _is_below(standing.origin.paths[0], self.made.place(name))), MALLORY)
+
+
+def _pack(folder: Path, to: Path) -> None:
+    """A class folder as a zip, symlinks as such; what has a name that a zip cannot hold stays out."""
+    is_bulk.cache_clear()
+    with zipfile.ZipFile(to, "w") as archive:
+        for path in sorted(folder.rglob("*"), key=str):
+            member = zipfile.ZipInfo(path.relative_to(folder).as_posix())
+            with suppress(UnicodeEncodeError, OSError):
+                if path.is_symlink():
+                    member.create_system, member.external_attr = 3, 0o120777 << 16
+                    archive.writestr(member, os.readlink(path))
+                elif path.is_file():
+                    archive.writestr(member, path.read_bytes())
 
 
 def _is_below(path: str, place: str) -> bool:
