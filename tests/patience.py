@@ -9,7 +9,7 @@ from types import FrameType
 
 # The limits tell linear time from quadratic, which takes twenty seconds and more for a megabyte. A busy machine, and a
 # process that holds the objects of five thousand tests, take three times as long as a quiet one.
-_BUSY = 2.5
+BUSY = 2.5
 
 
 class TooSlow(AssertionError):
@@ -22,7 +22,7 @@ def processor_time(limit: float) -> Iterator[None]:
 
     The seconds are those of a quiet machine.
     """
-    limit *= _BUSY
+    limit *= BUSY
     start = process_time()
     if hasattr(signal, "setitimer") and current_thread() is main_thread():
 

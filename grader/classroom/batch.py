@@ -19,6 +19,7 @@ from grader.errors import InputError
 from grader.grading.record import to_record
 from grader.grading.reference import grade_reference
 from grader.grading.rubric import Rubric
+from grader.submission.files import URDF_LIMIT
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +50,7 @@ class Progress:
 
 
 class Settings(NamedTuple):
-    """How a run is done. `root` is the absolute path of the class."""
+    """How a run is done. `root` is the absolute path of the class, `max_size` the limit for a URDF in bytes."""
 
     root: str
     layout: str
@@ -58,6 +59,7 @@ class Settings(NamedTuple):
     force: bool = False
     roster: Roster | None = None
     due: str = ""
+    max_size: int = URDF_LIMIT
 
 
 class Batch:
@@ -89,7 +91,7 @@ class Batch:
         """What all tasks share: made when there is something to grade, for grading the reference takes longer than looking."""
         template = _template(self._rubric)
         self._book.keep_beside(template)
-        return Class(self._settings.root, self._rubric.data, str(self._rubric.path), template)
+        return Class(self._settings.root, self._rubric.data, str(self._rubric.path), template, self._settings.max_size)
 
     @property
     def has_begun(self) -> bool:
@@ -169,7 +171,8 @@ class Batch:
         return (
             known.fingerprint != ""
             and known.is_same(hand_in, self._enrolment(hand_in.student))
-            and fingerprint(self._settings.root, hand_in.paths, time.time_ns()) == known.fingerprint
+            and fingerprint(self._settings.root, hand_in.paths, time.time_ns(), self._settings.max_size)
+            == known.fingerprint
         )
 
     def _hand_out(self, hand_in: HandIn, known: Known | None) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 from hashlib import sha256
 from pathlib import Path, PurePosixPath
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import InputError
 from grader.grading.rubric import Rubric
@@ -16,6 +16,9 @@ from grader.submission.folder import file_at
 from grader.submission.opening import outer_tree, tree_name, with_inner, without_endings
 from grader.submission.submission import Submission, read_submission, submission_of
 from grader.submission.tree import Tree, clean, ignored_folder, is_generated, is_ignored, make_tree
+
+if TYPE_CHECKING:
+    import hashlib
 
 _ROBOTS = (".urdf", ".xacro")
 _NEITHER = "is neither a URDF nor a folder or archive"
@@ -36,6 +39,7 @@ class Opened(NamedTuple):
     digest: str
     data: bytes | None
     tree: Tree | None
+    limit: int = URDF_LIMIT  # bytes of the URDF
 
     def submission(self, rubric: Rubric, no_documents: str = "") -> Submission:
         """What is graded of it; raises InputError where there is nothing. `no_documents` says why none is read."""
@@ -46,21 +50,25 @@ class Opened(NamedTuple):
             self.name,
             wanted=rubric.urdf,
             package=rubric.package,
+            limit=self.limit,
             shown=self.shown,
             no_documents=no_documents,
         )
 
 
-def open_hand_in(root: str, paths: tuple[str, ...], names: tuple[str, ...], name: str) -> Opened:
+def open_hand_in(
+    root: str, paths: tuple[str, ...], names: tuple[str, ...], name: str, limit: int = URDF_LIMIT
+) -> Opened:
     """What stands at `paths` below a class folder, or in a zip; raises InputError.
 
-    Several files make one hand-in, which is called `name`, and stand in it side by side as `names`.
+    Several files make one hand-in, which is called `name`, and stand in it side by side as `names`. `limit` is that of a URDF
+    in bytes.
     """
     if len(paths) == 1:
-        return _in_bulk(root, paths[0]) if is_bulk(root) else _on_disk(f"{root}/{paths[0]}")
+        return _in_bulk(root, paths[0], limit) if is_bulk(root) else _on_disk(f"{root}/{paths[0]}", limit)
     given = dict(zip(paths, names or [PurePosixPath(path).name for path in paths], strict=True))
     tree = _bulk(root, _stamp(root)).files(given, name) if is_bulk(root) else _side_by_side(root, given, name)
-    return Opened(name, name, _digest_of_tree(name, tree), None, tree)
+    return Opened(name, name, _digest_of_tree(name, tree, limit), None, tree, limit)
 
 
 @lru_cache(maxsize=4)
@@ -69,36 +77,36 @@ def is_bulk(root: str) -> bool:
     return not Path(root).is_dir()
 
 
-def _on_disk(path: str) -> Opened:
+def _on_disk(path: str, limit: int) -> Opened:
     last = path.rpartition("/")[2]
     if last.lower().endswith(_ROBOTS):
         shown = printable_path(last)
-        data = capped(read_start(path, URDF_LIMIT + 1, shown), URDF_LIMIT, shown)
-        return Opened(shown.rpartition(".")[0], shown, _digest_of(shown, data), data, None)
+        data = capped(read_start(path, limit + 1, shown), limit, shown)
+        return Opened(shown.rpartition(".")[0], shown, _digest_of_urdf(shown, data, limit), data, None)
     place = Path(path)
     tree = outer_tree(place)
     if tree is None:
         raise InputError(f"{printable_path(place.name)} {_NEITHER}")
     name = tree_name(place)
-    digest = _digest_of_tree(name, tree) if place.is_dir() else _digest_of_file(name, place)
-    return Opened(name, printable_path(place), digest, None, tree)
+    digest = _digest_of_tree(name, tree, limit) if place.is_dir() else _digest_of_file(name, place, limit)
+    return Opened(name, printable_path(place), digest, None, tree, limit)
 
 
-def _in_bulk(root: str, path: str) -> Opened:
+def _in_bulk(root: str, path: str, limit: int) -> Opened:
     bulk = _bulk(root, _stamp(root))
     last = path.rpartition("/")[2]
     if bulk.is_folder(path):
         tree = bulk.folder(path)
-        return Opened(last, path, _digest_of_tree(last, tree), None, tree)
+        return Opened(last, path, _digest_of_tree(last, tree, limit), None, tree, limit)
     if last.lower().endswith(_ROBOTS):
-        data = bulk.read(path, URDF_LIMIT)
-        return Opened(last.rpartition(".")[0], last, _digest_of(last, data), data, None)
-    archive = None if last.lower().endswith(".xml") else bulk.archive(path)
-    if archive is None:
-        raise InputError(f"{last} {_NEITHER}")
-    data, tree = archive
+        data = bulk.read(path, limit)
+        return Opened(last.rpartition(".")[0], last, _digest_of_urdf(last, data, limit), data, None)
     name = without_endings(last)
-    return Opened(name, path, _digest_of(name, data), None, tree)
+    digest = _digest_of(name, limit)
+    opened = None if last.lower().endswith(".xml") else bulk.archive(path, digest)
+    if opened is None:
+        raise InputError(f"{last} {_NEITHER}")
+    return Opened(name, path, digest.hexdigest(), None, opened, limit)
 
 
 @lru_cache(maxsize=2)
@@ -118,13 +126,19 @@ def _side_by_side(root: str, named: dict[str, str], name: str) -> Tree:
     return make_tree(name, files, (), generated=generated, unseen=unseen)
 
 
-def _digest_of(name: str, data: bytes) -> str:
-    """The hash of a name, which stands in the report, and of some bytes."""
-    return sha256(repr(name).encode() + data).hexdigest()
+def _digest_of(name: str, limit: int) -> "hashlib._Hash":
+    """A hash that has begun with a name, which stands in the report, and the limit for a URDF where it is not the default."""
+    return sha256(repr(name if limit == URDF_LIMIT else (name, limit)).encode())
 
 
-def _digest_of_file(name: str, path: Path) -> str:
-    digest = sha256(repr(name).encode())
+def _digest_of_urdf(name: str, data: bytes, limit: int) -> str:
+    digest = _digest_of(name, limit)
+    digest.update(data)
+    return digest.hexdigest()
+
+
+def _digest_of_file(name: str, path: Path, limit: int) -> str:
+    digest = _digest_of(name, limit)
     try:
         with path.open("rb") as file:
             while chunk := file.read(_CHUNK):
@@ -134,12 +148,13 @@ def _digest_of_file(name: str, path: Path) -> str:
     return digest.hexdigest()
 
 
-def _digest_of_tree(name: str, tree: Tree) -> str:
+def _digest_of_tree(name: str, tree: Tree, limit: int) -> str:
     """The hash of all that a submission is read from: its name, its files with their paths, and what was left out.
 
     Folders of builds are unseen on disk; in a zip they are folders like others if they have an entry of their own.
     """
-    digest = sha256(repr((name, sorted(tree.folders | tree.unseen), tree.left_out, tree.generated)).encode())
+    seed = name if limit == URDF_LIMIT else (name, limit)
+    digest = sha256(repr((seed, sorted(tree.folders | tree.unseen), tree.left_out, tree.generated)).encode())
     for path, file in tree.files.items():
         digest.update(repr((path, file.size)).encode())
         try:
@@ -149,11 +164,17 @@ def _digest_of_tree(name: str, tree: Tree) -> str:
     return digest.hexdigest()
 
 
-def fingerprint(root: str, paths: tuple[str, ...], now: int) -> str:
+def fingerprint(root: str, paths: tuple[str, ...], now: int, limit: int = URDF_LIMIT) -> str:
     """What the file system says of a hand-in: as long as it says the same, the bytes are the same. Empty where nobody knows.
 
-    `now` is the time in nanoseconds: what has changed just then may change once more unseen.
+    `now` is the time in nanoseconds: what has changed just then may change once more unseen. With another `limit` for a URDF it
+    is another one: what was too large may not be so now.
     """
+    found = _fingerprint(root, paths, now)
+    return f"{found} {limit}" if found and limit != URDF_LIMIT else found
+
+
+def _fingerprint(root: str, paths: tuple[str, ...], now: int) -> str:
     if is_bulk(root):
         return _fingerprint_of_bulk(root, paths, now)
     digest = sha256()

@@ -20,6 +20,7 @@ from grader.grading.grade import grade
 from grader.grading.record import Kept, Template, to_record
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric, read_rubric
+from grader.submission.files import URDF_LIMIT
 from grader.submission.opening import ARCHIVES
 from grader.submission.submission import Submission
 
@@ -27,7 +28,6 @@ Verdict = Literal["graded", "unreadable", "errored", "unchanged"]
 UNITS = 10_000  # points are kept as whole numbers of ten-thousandths
 SIGNS: dict[Status, str] = {"passed": "p", "failed": "f", "skipped": "s", "pending": "?", "errored": "!"}
 NOT_GRADED = "-"
-_OF_GRADE = " (--max-size raises it)"
 # What a process is to have loaded before it forks, late imports included.
 PRELOAD = ("grader.classroom.work", "grader.robot.rims", "grader.submission.find", "grader.submission.remarks")
 
@@ -39,6 +39,7 @@ class Class(NamedTuple):
     rubric: bytes
     rubric_path: str
     template: str = ""  # the record that those of the class are kept beside
+    max_size: int = URDF_LIMIT  # bytes of a URDF
 
 
 class Task(NamedTuple):
@@ -91,10 +92,10 @@ def prepare(memory: int) -> None:
 
 def _grade_one(common: Class, task: Task) -> Graded:
     rubric, template = _rules(common.rubric, common.rubric_path, common.template)
-    mark = fingerprint(common.root, task.paths, time.time_ns())
+    mark = fingerprint(common.root, task.paths, time.time_ns(), common.max_size)
     digest = ""
     try:
-        opened = open_hand_in(common.root, task.paths, task.names, task.key)
+        opened = open_hand_in(common.root, task.paths, task.names, task.key, common.max_size)
         digest = opened.digest
         if digest == task.graded:
             return Graded(task.key, "unchanged", digest, mark)
@@ -138,8 +139,8 @@ def _nothing_readable(submission: Submission) -> str:
 
 
 def _of_class(reason: str, common: Class) -> str:
-    """A reason as a class is told it: with paths in the class, and without advice to use an option of `grader grade`."""
-    return reason.replace(f"{common.root}{os.sep}", "").replace(_OF_GRADE, "")
+    """A reason as a class is told it: with paths in the class."""
+    return reason.replace(f"{common.root}{os.sep}", "")
 
 
 def failed(rubric: Rubric, task: Task, verdict: Verdict, reason: str, digest: str = "", mark: str = "") -> Graded:

@@ -13,9 +13,11 @@ from grader.cli.options import (
     FormatOption,
     GradebookOption,
     Layout,
+    MaxSizeOption,
     RubricOption,
 )
 from grader.errors import GraderError
+from grader.submission.files import URDF_LIMIT
 
 
 def batch(
@@ -43,6 +45,7 @@ def batch(
     cluster: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="Grade on a Dask cluster: tcp://host:8786.")
     ] = None,
+    max_size: MaxSizeOption = URDF_LIMIT,
     output_format: FormatOption = ClassFormat.TERMINAL,
 ) -> int:
     """Grade a whole class into a gradebook, many at a time.
@@ -74,5 +77,6 @@ def batch(
         due=due,
         force=force,
         cluster=cluster,
+        max_size=max_size,
     )
     return 0

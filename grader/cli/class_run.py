@@ -55,6 +55,7 @@ def grade_class(
     due: str | None,
     force: bool,
     cluster: str | None,
+    max_size: int,
 ) -> None:
     """Grade a class into a gradebook, and write what is wanted of it. Raises InputError and RubricError."""
     gc.enable()  # unlike other commands this one may run for long
@@ -70,7 +71,7 @@ def grade_class(
     with Gradebook(gradebook, create=True) as book:
         with _executor(cluster, jobs, timeout, root) as (executor, workers):
             told = deadline.isoformat() if deadline is not None else ""
-            settings = Settings(str(root), intake.layout, len(intake), workers, force, known, told)
+            settings = Settings(str(root), intake.layout, len(intake), workers, force, known, told, max_size)
             done = _run(book, rules, intake, settings, executor)
         if wanted.reports is not None:
             with _processes(jobs, _REPORTING) as local:

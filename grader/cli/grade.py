@@ -7,7 +7,7 @@ import typer
 from grader.cli.ci import refusals_told
 from grader.cli.formats import Format
 from grader.cli.grade_run import Threshold, Wanted, grade_once, read_saves
-from grader.cli.options import DEFAULT_RUBRIC, RubricOption
+from grader.cli.options import DEFAULT_RUBRIC, MaxSizeOption, RubricOption
 from grader.cli.suggestions import part_ids, save_formats
 from grader.submission.files import URDF_LIMIT
 
@@ -43,7 +43,7 @@ def grade(
     fail_under: Annotated[
         str | None, typer.Option(metavar="N|N%", help="Exit 0 from this score on, in points or percent.")
     ] = None,
-    max_size: Annotated[int, typer.Option(metavar="BYTES", min=1, help="The largest URDF that is read.")] = URDF_LIMIT,
+    max_size: MaxSizeOption = URDF_LIMIT,
     is_watched: Annotated[
         bool, typer.Option("--watch", help="Grade again whenever a file changes, until Ctrl-C.")
     ] = False,

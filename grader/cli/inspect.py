@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from grader.cli.options import MaxSizeOption
 from grader.cli.output import complain, draw, emit
 from grader.errors import GraderError, InputError, MissingElement
 from grader.submission.files import URDF_LIMIT, printable_path
@@ -39,7 +40,7 @@ def inspect(
     output_format: Annotated[
         InspectFormat, typer.Option("--format", help="The format on standard output.")
     ] = InspectFormat.TERMINAL,
-    max_size: Annotated[int, typer.Option(metavar="BYTES", min=1, help="The largest URDF that is read.")] = URDF_LIMIT,
+    max_size: MaxSizeOption = URDF_LIMIT,
 ) -> int:
     """Show a URDF as ROS 2 reads it: problems, tree, joints, poses.
 

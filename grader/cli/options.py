@@ -33,6 +33,7 @@ RubricOption = Annotated[
     str, typer.Option(metavar="ID|FILE", help="The rubric: an id or a .toml file.", autocompletion=rubric_ids)
 ]
 GradebookOption = Annotated[Path, typer.Option("--gradebook", metavar="FILE", help="The gradebook, a SQLite file.")]
+MaxSizeOption = Annotated[int, typer.Option(metavar="BYTES", min=1, help="The largest URDF that is read.")]
 DueOption = Annotated[
     str | None, typer.Option("--due", metavar="TIME", help="When it was due, as 2026-11-20T23:59+01:00.")
 ]

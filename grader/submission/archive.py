@@ -282,7 +282,7 @@ _Unpacking = gzip.GzipFile | bz2.BZ2File | lzma.LZMAFile
 def _unpacking(file: IO[bytes], kind: str) -> _Unpacking:
     match kind:
         case "gz":
-            return gzip.GzipFile(fileobj=file)
+            return gzip.GzipFile(fileobj=file, mode="rb")
         case "bz2":
             return bz2.BZ2File(file)
         case _:

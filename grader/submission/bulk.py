@@ -1,16 +1,18 @@
 """A zip with the hand-ins of a whole class, as an LMS gives it: each is read from where it is."""
 
-import io
+import tempfile
 import weakref
+from bisect import bisect_left
 from contextlib import AbstractContextManager
 from functools import partial
 from pathlib import Path
-from typing import IO
+from typing import IO, TYPE_CHECKING
 
 from grader.errors import InputError
 from grader.submission.archive import (
     ARCHIVE_LIMIT,
     DAMAGED,
+    MAX_ARCHIVE_SIZE,
     bounded,
     inside,
     read_archive,
@@ -23,7 +25,12 @@ from grader.submission.members import Member
 from grader.submission.opening import ARCHIVES, archive_kind
 from grader.submission.tree import File, Tree
 
+if TYPE_CHECKING:
+    import hashlib
+
 _MOST_MEMBERS = 200_000
+_IN_MEMORY = 16 * 1024 * 1024
+_CHUNK = 1024 * 1024
 
 
 class Bulk:
@@ -41,15 +48,13 @@ class Bulk:
                     raise InputError(f"{self._shown} holds more than {_MOST_MEMBERS} files")
         except DAMAGED as error:
             raise InputError(f"{self._shown} cannot be read as an archive: {words_of(error)}") from None
+        self._names = sorted(self._members)
 
     def folder(self, path: str) -> Tree:
         """The files below a folder."""
         start = f"{path}/"
-        below = [
-            self._named(member, name.removeprefix(start))
-            for name, member in self._members.items()
-            if name.startswith(start)
-        ]
+        first, end = bisect_left(self._names, start), bisect_left(self._names, f"{path}0")  # 0 comes after /
+        below = [self._named(self._members[name], name.removeprefix(start)) for name in self._names[first:end]]
         return self._tree(below, path.rpartition("/")[2])
 
     def files(self, named: dict[str, str], name: str) -> Tree:
@@ -66,16 +71,30 @@ class Bulk:
         """The bytes of one file, of at most `limit` bytes; raises InputError."""
         return self._file_of(path).read(limit)
 
-    def archive(self, path: str) -> tuple[bytes, Tree] | None:
-        """The bytes and the files of an archive in it; None for a file that is none. Raises InputError where it cannot be read."""
-        file = self._file_of(path)
-        kind = archive_kind(file.read(512, first=True))
-        if kind is None:
-            if path.lower().endswith(ARCHIVES):
-                raise InputError(f"{path} is no archive that can be read, for all its name: it is damaged or empty")
-            return None
-        data = file.read(ARCHIVE_LIMIT)
-        return data, read_archive(io.BytesIO(data), kind, path)
+    def archive(self, path: str, digest: "hashlib._Hash") -> Tree | None:
+        """The files of an archive in it, whose bytes go into the digest; None for a file that is none.
+
+        Raises InputError where it cannot be read.
+        """
+        member, name = self._member(path), path.rpartition("/")[2]
+        if member.kind != "file":
+            raise InputError(f"{name} {member.reason or 'is not a regular file, and was not read'}")
+        if member.size > MAX_ARCHIVE_SIZE:
+            raise InputError(f"{name} is larger than {MAX_ARCHIVE_SIZE} bytes, the limit for an archive")
+        kind = None
+        stored = tempfile.SpooledTemporaryFile(max_size=_IN_MEMORY)  # noqa: SIM115  its tree closes it
+        try:
+            kind = _copied(member, stored, digest)
+            if kind is not None:
+                return read_archive(stored, kind, path)
+        except DAMAGED as error:
+            raise InputError(f"cannot read {name}: {words_of(error)}") from None
+        finally:
+            if kind is None:
+                stored.close()
+        if path.lower().endswith(ARCHIVES):
+            raise InputError(f"{path} is no archive that can be read, for all its name: it is damaged or empty")
+        return None
 
     def _file_of(self, path: str) -> File:
         tree = self.files({path: path.rpartition("/")[2]}, path)
@@ -101,3 +120,15 @@ class Bulk:
             return tree_of(bounded(members, name, ARCHIVE_LIMIT), name)
         except DAMAGED as error:
             raise InputError(f"{name} cannot be read: {words_of(error)}") from None
+
+
+def _copied(member: Member, to: IO[bytes], digest: "hashlib._Hash") -> str | None:
+    """Copy an archive, into a digest as well, and return its kind; None for a file that is none."""
+    with member.open() as content:
+        chunk = content.read(_CHUNK)
+        kind = archive_kind(chunk[:512])
+        while chunk and kind is not None:
+            digest.update(chunk)
+            to.write(chunk)
+            chunk = content.read(_CHUNK)
+    return kind

@@ -3,6 +3,7 @@
 import io
 import tempfile
 import zipfile
+from hashlib import sha256
 from pathlib import Path
 
 import pytest
@@ -62,17 +63,19 @@ def test_an_archive_in_a_bulk_is_read_as_one_alone(tmp_path: Path) -> None:
     tar = tarred([Item("my_robot/a.urdf", b"<robot/>")])
     opened = bulk(tmp_path, pack({"ann.zip": inner, "bea.tar.gz": tar, "cal.urdf": b"<robot/>", "dan.zip": b"nothing"}))
     for name, data, kind in (("ann.zip", inner, "zip"), ("bea.tar.gz", tar, "gz")):
-        found = opened.archive(name)
+        digest = sha256()
+        found = opened.archive(name, digest)
         assert found is not None
-        assert (found[0], told(found[1])) == (data, told(read_archive(io.BytesIO(data), kind, name)))
-    assert opened.archive("cal.urdf") is None
+        assert told(found) == told(read_archive(io.BytesIO(data), kind, name))
+        assert digest.digest() == sha256(data).digest()
+    assert opened.archive("cal.urdf", sha256()) is None
     assert opened.read("cal.urdf", 100) == b"<robot/>"
     with pytest.raises(InputError, match="larger than 3 bytes"):
         opened.read("cal.urdf", 3)
     with pytest.raises(InputError, match=r"dan\.zip is no archive that can be read"):
-        opened.archive("dan.zip")
+        opened.archive("dan.zip", sha256())
     with pytest.raises(InputError, match=r"eve\.zip is not in "):
-        opened.archive("eve.zip")
+        opened.archive("eve.zip", sha256())
 
 
 def test_several_files_get_the_names_they_had(tmp_path: Path) -> None:
@@ -111,7 +114,7 @@ def test_a_bomb_costs_its_student_only(tmp_path: Path) -> None:
     zeros = bytes(64 * 1024 * 1024)
     opened = bulk(tmp_path, pack({"ann/b.zip": bomb(), "bea.zip": bomb(), "cal/a.urdf": b"a", "dan/zeros.urdf": zeros}))
     with pytest.raises(InputError, match=r"would unpack to more than [0-9]+ bytes, the limit for an archive"):
-        opened.archive("bea.zip")
+        opened.archive("bea.zip", sha256())
     assert set(opened.folder("ann").files) == {"b.zip"}
     assert opened.read("cal/a.urdf", 100) == b"a"
     with pytest.raises(InputError, match="larger than"):

@@ -55,7 +55,7 @@ def graded(top: Path, *paths: str) -> Graded:
 @pytest.mark.parametrize("kind", UNREADABLE)
 @pytest.mark.parametrize("wrapped", ["", "ann/", "ann/src/lab/"])
 def test_the_folder_around_it_does_not_matter(kind: str, wrapped: str, tmp_path: Path) -> None:
-    """What cannot be read on its own cannot be read in a folder; the reason names it, and no option of another command."""
+    """What cannot be read on its own cannot be read in a folder; the reason names it."""
     name, data, reason = UNREADABLE[kind]
     place = tmp_path / "class" / wrapped / name
     place.parent.mkdir(parents=True)
@@ -63,7 +63,7 @@ def test_the_folder_around_it_does_not_matter(kind: str, wrapped: str, tmp_path:
     top = tmp_path / "class"
     result = graded(top, wrapped.partition("/")[0] or name)
     assert (result.verdict, reason in result.reason) == ("unreadable", True), result.reason
-    assert "max-size" not in result.reason
+    assert ("(--max-size raises it)" in result.reason) == kind.startswith("large")
     assert str(tmp_path) not in result.reason
 
 

@@ -1,0 +1,332 @@
+"""What one input may cost: processor time and memory of the whole command, and what a limit says of itself."""
+
+import gzip
+import io
+import json
+import random
+import subprocess
+import sys
+import tarfile
+import tempfile
+import zipfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from tests.classroom.class_runs import GRADER, PATIENCE, counted, environment, grader, reasons, verdicts
+from tests.patience import BUSY
+from tests.samples import ROOT
+
+MIB = 1024 * 1024
+URDF = (ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf").read_bytes()
+_SECONDS, _MEMORY = 1.0 * BUSY, 200 * MIB
+
+
+class Cost(NamedTuple):
+    """What a command took, and what it said."""
+
+    seconds: float
+    bytes: int
+    code: int
+    out: str
+    err: str
+
+
+# A process in between: what is measured of a child begins with the memory of the process that it was forked from.
+_MEASURED = """
+import json, os, subprocess, sys
+process = subprocess.Popen(sys.argv[2:])
+_, status, used = os.wait4(process.pid, 0)
+process.returncode = os.waitstatus_to_exitcode(status)
+with open(sys.argv[1], "w") as file:
+    json.dump([used.ru_utime + used.ru_stime, used.ru_maxrss * 1024, process.returncode], file)
+"""
+
+
+def cost(*arguments: str | Path) -> Cost:
+    """Run the command line in a process of its own."""
+    return measured(*GRADER, *arguments)
+
+
+def measured(*command: str | Path) -> Cost:
+    """Run a command."""
+    with tempfile.TemporaryDirectory() as folder:
+        figures = Path(folder) / "figures.json"
+        done = subprocess.run(
+            [sys.executable, "-c", _MEASURED, str(figures), *map(str, command)],
+            env=environment(),
+            capture_output=True,
+            text=True,
+            timeout=PATIENCE,
+            check=True,
+        )
+        seconds, size, code = json.loads(figures.read_text())
+        return Cost(seconds, size, code, done.stdout, done.stderr)
+
+
+def filled(piece: Callable[[int], str], size: int = MIB - 300) -> str:
+    """Pieces one behind the other, up to a size."""
+
+    def pieces() -> Iterator[str]:
+        left, number = size, 0
+        while left > 0:
+            text = piece(number)
+            left, number = left - len(text), number + 1
+            yield text
+
+    return "".join(pieces())[:size].rpartition(">")[0] + ">"
+
+
+def robot(body: str) -> str:
+    """A URDF with this body."""
+    return f'<robot name="r">{body}</robot>'
+
+
+_HALF = MIB // 2 - 300
+URDFS = {
+    "unknown attributes": robot(filled(lambda n: f'<link name="a{n}" nme="b"/>')),
+    "unknown attributes of one link": robot("<link " + "".join(f'a{n}="" ' for n in range(80_000)) + 'name="a"/>'),
+    "many links": robot(filled(lambda n: f'<link name="a{n}"/>')),
+    "joints without links": robot(
+        filled(lambda n: f'<link name="link{n}"/>', _HALF)
+        + filled(
+            lambda n: f'<joint name="j{n}" type="fixed"><parent link="link{n}x"/><child link="l{n}"/></joint>', _HALF
+        )
+    ),
+    "a million ampersands": robot('<link name="' + "&" * 1_000_000 + '"/>'),
+    "ampersands and references": robot('<link name="&lt;' + "&" * 500_000 + "&#" * 200_000 + '"/>'),
+}
+
+
+@pytest.mark.parametrize("command", ["inspect", "grade"])
+@pytest.mark.parametrize("kind", URDFS)
+def test_a_urdf_of_a_megabyte(kind: str, command: str, tmp_path: Path) -> None:
+    """Whatever it is made of, it takes less than a second."""
+    (tmp_path / "a.urdf").write_text(URDFS[kind])
+    used = cost(command, tmp_path / "a.urdf")
+    assert used.code in (0, 1), used.err
+    assert used.seconds < _SECONDS
+    assert used.bytes < _MEMORY
+
+
+ROW = '[[criterion]]\nid = "c{0}"\npart = "{1}"\ntitle = "t"\npoints = 1\ncheck = "{2}"\n'
+HEAD = 'id = "big"\ntitle = "b"\n[[part]]\nid = "p"\ntitle = "P"\n'
+RUBRICS = {
+    "criteria": HEAD + "".join(ROW.format(n, "p", "urdf_loads") for n in range(10_000)),
+    "requirements": HEAD
+    + "".join(
+        f'{ROW.format(n, "p", "urdf_loads")}requires = ["c{n - 1}"]\n'.replace('["c-1"]', "[]") for n in range(9_000)
+    ),
+    "unknown parts": HEAD + "".join(ROW.format(n, "q", "urdf_loads") for n in range(9_000)),
+    "unknown checks": HEAD + "".join(ROW.format(n, "p", "urdf_load") for n in range(9_000)),
+    "unknown requirements": HEAD
+    + "".join(f'{ROW.format(n, "p", "urdf_loads")}requires = ["x{n}"]\n' for n in range(9_000)),
+    "parts": 'id = "big"\ntitle = "b"\n'
+    + "".join(f'[[part]]\nid = "p{n}"\ntitle = "P"\npoints = 1\n' for n in range(7_000))
+    + "".join(ROW.format(n, f"p{n}", "urdf_loads") for n in range(7_000)),
+    "unknown keys": filled(lambda n: f"a{n} = 1\n").replace(">", ""),
+}
+
+
+@pytest.mark.parametrize("kind", RUBRICS)
+def test_a_rubric_of_thousands_of_rows(kind: str, tmp_path: Path) -> None:
+    """It is checked in less than a second, mistakes included."""
+    (tmp_path / "big.toml").write_text(RUBRICS[kind])
+    used = cost("rubric", "check", tmp_path / "big.toml")
+    assert used.code == (2 if kind.startswith("unknown") else 0), used.err
+    assert used.seconds < _SECONDS
+    assert used.bytes < _MEMORY
+
+
+DOCUMENTS = {
+    "blank lines": ("\n" * MIB, 1),
+    "many files of blank lines": ("\n" * MIB, 30),
+    "headings": ("# Task 1 Step 1\n" * 60_000, 1),
+    "many files of headings": ("# Task 1 Step 1\n" * 60_000, 30),
+    "headings that end nothing": ("foo bar step 15 and more words here so\n" * 26_000, 30),
+    "one line": ("a1 " * 340_000, 30),
+    "markup": ("- " * 500_000, 30),
+}
+
+
+@pytest.mark.parametrize("kind", DOCUMENTS)
+def test_documents_of_a_megabyte(kind: str, tmp_path: Path) -> None:
+    """Texts with answers take less than a second together."""
+    text, count = DOCUMENTS[kind]
+    (tmp_path / "my_robot.urdf").write_bytes(URDF)
+    for number in range(count):
+        (tmp_path / f"{number}.md").write_text(text)
+    used = cost("grade", tmp_path)
+    assert used.code == 1, used.err
+    assert used.seconds < _SECONDS
+    assert used.bytes < _MEMORY
+
+
+def tarred(place: Path, files: dict[str, bytes], links: dict[str, str]) -> Path:
+    """A tar.gz of some files and links."""
+    with tarfile.open(place, "w:gz") as archive:
+        for name, data in files.items():
+            info = tarfile.TarInfo(name)
+            info.size = len(data)
+            archive.addfile(info, io.BytesIO(data))
+        for name, target in links.items():
+            info = tarfile.TarInfo(name)
+            info.type, info.linkname = tarfile.SYMTYPE, target
+            archive.addfile(info)
+    return place
+
+
+@pytest.mark.parametrize(
+    "name", ["{0}.txt", "{0}/package.xml", "{0}.png", "{0}.urdf", "/".join("e" * 10 for _ in range(50)) + "/{0}"]
+)
+def test_links_to_one_folder(name: str, tmp_path: Path) -> None:
+    """240 links to a folder of 200 files take less than a second."""
+    files = {"my_robot.urdf": URDF} | {f"d/{name.format(n)}": b"x" for n in range(200)}
+    used = cost("grade", tarred(tmp_path / "lab6.tar.gz", files, {f"l{n}": "d" for n in range(240)}))
+    assert used.code == 1, used.err
+    assert used.seconds < _SECONDS * 1.5
+    assert used.bytes < _MEMORY
+
+
+def zipped(files: dict[str, bytes]) -> bytes:
+    """A zip whose members are stored as they are."""
+    data = io.BytesIO()
+    with zipfile.ZipFile(data, "w") as archive:
+        for name, content in files.items():
+            archive.writestr(name, content)
+    return data.getvalue()
+
+
+def test_archives_in_archives(tmp_path: Path) -> None:
+    """Neither their size nor how many there are decides how much memory it takes."""
+    noise = random.Random(1).randbytes(60 * MIB)
+    inner = zipped({"my_robot.urdf": URDF, "noise.bin": noise})
+    (tmp_path / "lab6.zip").write_bytes(zipped({f"{n}/in.zip": zipped({"in.zip": inner}) for n in range(3)}))
+    used = cost("grade", tmp_path / "lab6.zip")
+    assert used.code == 1, used.err
+    assert "0/in.zip/in.zip/my_robot.urdf" in used.out
+    assert used.seconds < _SECONDS
+    assert used.bytes < _MEMORY
+
+
+def test_a_class_zip_of_archives_is_read_in_pieces(tmp_path: Path) -> None:
+    """What a student has handed in is never in memory as a whole."""
+    noise = random.Random(1).randbytes(60 * MIB)
+    (tmp_path / "class.zip").write_bytes(
+        zipped({"ann.zip": zipped({"my_robot.urdf": URDF, **{f"{n}.bin": noise for n in range(4)}})})
+    )
+    code = (
+        "import sys; from grader.classroom.opening import open_hand_in\n"
+        "print(open_hand_in(sys.argv[1], ('ann.zip',), (), 'ann').digest)"
+    )
+    used = measured(sys.executable, "-c", code, tmp_path / "class.zip")
+    assert (used.code, len(used.out)) == (0, 65)
+    assert used.bytes < _MEMORY
+
+
+# --- One large file -----------------------------------------------------------------------------------------------------
+
+
+def sparse(place: Path, megabytes: int) -> Path:
+    """A file of so many megabytes that takes no room on the disk."""
+    with place.open("wb") as file:
+        file.truncate(megabytes * 1_000_000)
+    return place
+
+
+def large_hand_in(kind: str, place: Path, size: int) -> Path:
+    """The reference's URDF beside a video of so many bytes, none of which a test has to write where that can be."""
+    video = "Task3_Step3.mp4"
+    if kind == "folder":
+        place.mkdir()
+        (place / "my_robot.urdf").write_bytes(URDF)
+        sparse(place / video, size // 1_000_000)
+    elif kind == "zip":
+        with zipfile.ZipFile(place, "w") as archive:
+            archive.writestr(video, b"")
+            archive.writestr("my_robot.urdf", URDF)
+            archive.infolist()[0].file_size = size
+    else:
+        head, small = tarfile.TarInfo(video), tarfile.TarInfo("my_robot.urdf")
+        head.size, small.size = size, len(URDF)
+        with place.open("wb") as file:
+            file.write(head.tobuf())
+            file.seek(size + -size % 512, io.SEEK_CUR)
+            file.write(small.tobuf() + URDF + bytes(-len(URDF) % 512 + 1024))
+        if kind == "tar.gz":
+            place.write_bytes(gzip.compress(place.read_bytes(), 0))
+    return place
+
+
+@pytest.mark.parametrize("kind", ["folder", "zip", "tar", "tar.gz"])
+def test_a_video_is_ignored_by_name(kind: str, tmp_path: Path) -> None:
+    """The rest is graded, the report names the file with its size, and it is evidence all the same."""
+    size = 100_000_000 if kind == "tar.gz" else 600_000_000  # what is decompressed has to be written first
+    used = cost("grade", large_hand_in(kind, tmp_path / f"lab6.{kind}", size), "--part", "task1", "--part", "task3")
+    said = " ".join(used.out.split())
+    assert (
+        f"Task3_Step3.mp4 ({size // 1_000_000} MB) is larger than 64 MiB, the limit for one file, and was ignored"
+        in said
+    )
+    assert f"Task3_Step3.mp4 ({size // 1_000_000}.0 MB)" in said
+    assert (used.code, "70 / 72 points" in said) == (0, True), said
+    assert used.seconds < _SECONDS * 1.5
+    assert used.bytes < _MEMORY
+
+
+def test_a_compressed_tar_is_read_to_a_limit(tmp_path: Path) -> None:
+    """A file that is ignored has to be decompressed all the same: so much and no more; the message names the limit."""
+    place = large_hand_in("tar.gz", tmp_path / "plain.tar.gz", 80_000_000)
+    packed = tmp_path / "lab6.tar.gz"
+    packed.write_bytes(gzip.compress(gzip.decompress(place.read_bytes())))
+    used = cost("grade", packed)
+    assert used.code == 2
+    assert "would unpack to more than 33554432 bytes, the limit for an archive, and was not read" in used.err
+    assert used.seconds < _SECONDS
+    assert used.bytes < _MEMORY
+
+
+def test_a_bomb_in_a_zip_is_ignored_by_what_it_declares(tmp_path: Path) -> None:
+    """Nothing of it is unpacked."""
+    with zipfile.ZipFile(tmp_path / "lab6.zip", "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("bomb.txt", bytes(100 * MIB))
+        archive.writestr("my_robot.urdf", URDF)
+    used = cost("grade", tmp_path / "lab6.zip", "--part", "task1")
+    assert "bomb.txt (105 MB) is larger than 64 MiB" in " ".join(used.out.split())
+    assert used.code == 0
+    assert used.seconds < _SECONDS
+
+
+# --- --max-size for a class -----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("kind", ["file", "folder", "zip", "class.zip"])
+def test_a_class_has_a_limit_that_can_be_raised(kind: str, tmp_path: Path) -> None:
+    """What was too large is graded again when --max-size is raised, and nothing twice for the same limit."""
+    large = URDF + b"<!--" + b" " * MIB + b"-->"
+    folder = tmp_path / "class"
+    (folder / "ann").mkdir(parents=True)
+    match kind:
+        case "file":
+            (folder / "ann").rmdir()
+            (folder / "ann.urdf").write_bytes(large)
+        case "folder":
+            (folder / "ann" / "my_robot.urdf").write_bytes(large)
+        case "zip":
+            (folder / "ann" / "lab6.zip").write_bytes(zipped({"my_robot.urdf": large}))
+        case _:
+            folder = tmp_path / "class.zip"
+            folder.write_bytes(zipped({"ann/my_robot.urdf": large, "bob/my_robot.urdf": URDF}))
+    book = tmp_path / "lab.db"
+    command = ("batch", folder, "--gradebook", book, "--jobs", "1")
+    grader(*command)
+    assert verdicts(book)["ann"] == "unreadable"
+    assert "is larger than 1048576 bytes, the limit for a URDF (--max-size raises it)" in reasons(book)["ann"]
+    for _ in range(2):
+        done = grader(*command, "--max-size", "3000000")
+        assert verdicts(book)["ann"] == "graded", done.stderr
+    assert counted(done).startswith("0 graded, ")
+    grader(*command)
+    assert verdicts(book)["ann"] == "unreadable"
