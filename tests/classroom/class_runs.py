@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from grader.cli.app import run as run_here
+from tests.command_line import GRADER, run, run_process, surroundings
 from tests.samples import ROOT
 
 sys.path.insert(0, str(ROOT / "benchmarks"))  # a folder of scripts
@@ -21,32 +22,24 @@ import class_generator as made_up
 
 bomb, tarred, Item = made_up.bomb, made_up.tarred, made_up.Item
 
-GRADER = (sys.executable, "-W", "error", "-m", "grader")
 HOSTILE = Path(__file__).parent / "hostile"
 WITH_HOSTILE = {"PYTHONPATH": str(HOSTILE)}
 HOSTILE_RUBRIC = str(HOSTILE / "hostile.toml")
-PATIENCE = 120.0  # seconds that one command may take on the slowest machine
 
 Done = subprocess.CompletedProcess[str]
 _SKIPPED = ("latin-name", "links-out", "deep-folders")  # what a zip holds otherwise than a folder does
 
 
-def grader(*arguments: str | Path, cwd: str = ".", **variables: str) -> Done:
+def grader(*arguments: str | Path, cwd: str = "", **variables: str) -> Done:
     """Run the command line; its standard output and standard error."""
-    return subprocess.run(
-        [*GRADER, *map(str, arguments)],
-        cwd=cwd,
-        env=environment(**variables),
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=PATIENCE,
-    )
+    words = [*map(str, arguments)]
+    done = run_process(words, variables=variables, folder=Path(cwd)) if cwd else run(words, **variables)
+    return Done(done.args, done.returncode, done.stdout.decode(), done.stderr.decode())
 
 
 def environment(**variables: str) -> dict[str, str]:
     """The environment of a command, 80 columns wide."""
-    return {**os.environ, "COLUMNS": "80", "PYTHONIOENCODING": "utf-8", **variables}
+    return {**surroundings(), **variables}
 
 
 @contextmanager

@@ -11,7 +11,6 @@ import pytest
 from grader.classroom.gradebook import Gradebook
 from grader.classroom.standings import Standings
 from tests.classroom.class_runs import (
-    GRADER,
     class_with_roster,
     contents,
     counted,
@@ -22,6 +21,7 @@ from tests.classroom.class_runs import (
     urdf_class,
     verdicts,
 )
+from tests.command_line import GRADER
 from tests.samples import ROOT, SAMPLES, opened
 
 JSON = ("--report-format", "json")

@@ -10,7 +10,6 @@ import pytest
 
 from tests.classroom.class_runs import (
     HOSTILE_RUBRIC,
-    PATIENCE,
     WITH_HOSTILE,
     counted,
     eventually,
@@ -24,6 +23,7 @@ from tests.classroom.class_runs import (
     urdf_class,
     verdicts,
 )
+from tests.command_line import PATIENCE
 
 GOOD = tuple(f"fine-{number}" for number in range(150))
 SLOW = r"grading it took longer than 4 s, and was stopped"

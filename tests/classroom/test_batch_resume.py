@@ -14,8 +14,6 @@ from random import Random
 import pytest
 
 from tests.classroom.class_runs import (
-    GRADER,
-    PATIENCE,
     Done,
     contents,
     counted,
@@ -30,6 +28,7 @@ from tests.classroom.class_runs import (
     urdf_class,
     verdicts,
 )
+from tests.command_line import GRADER, PATIENCE
 
 KILLS, SIZE = 30, 700
 JSON = ("--report-format", "json")

@@ -16,7 +16,6 @@ import pytest
 
 from tests.classroom.class_runs import (
     HOSTILE_RUBRIC,
-    PATIENCE,
     WITH_HOSTILE,
     contents,
     counted,
@@ -33,6 +32,7 @@ from tests.classroom.class_runs import (
     urdf_class,
     verdicts,
 )
+from tests.command_line import PATIENCE
 from tests.samples import ROOT
 
 pytest.importorskip("distributed")
