@@ -10,9 +10,11 @@ from typing import Any
 
 import yaml
 
+from tests.command_line import PATIENCE
+
 Step = dict[str, Any]
 _EXPRESSION = re.compile(r"\$\{\{\s*(.+?)\s*\}\}")
-_KEPT = ("HOME", "PATH", "LANG", "TMPDIR", "PIP_INDEX_URL", "PIP_CONFIG_FILE", "SSL_CERT_FILE", "GIT_SSL_CAINFO")
+_KEPT = ("HOME", "PATH", "LANG", "TMPDIR", "PIP_NO_INDEX", "PIP_FIND_LINKS", "PIP_CONFIG_FILE", "GIT_CONFIG_GLOBAL")
 
 
 def load(path: Path) -> dict[str, Any]:
@@ -74,7 +76,7 @@ class Runner:
             capture_output=True,
             text=True,
             check=False,
-            timeout=300,
+            timeout=PATIENCE,
         )
         self._take(step.get("id", ""), files)
         return Done(ran.returncode, ran.stdout, ran.stderr)

@@ -12,14 +12,11 @@ import pytest
 
 from tests.ci.conftest import git, repository
 from tests.ci.runner import Done, Runner, composite, load
+from tests.command_line import PATIENCE, ROOT
 
-ROOT = Path(__file__).parent.parent.parent
 WORKFLOWS = ROOT / "docs" / "ci"
 
-pytestmark = [
-    pytest.mark.xdist_group("steps"),  # what is installed once is used by all of them
-    pytest.mark.skipif(os.name == "nt" or shutil.which("bash") is None, reason="the action's steps are for bash"),
-]
+pytestmark = pytest.mark.skipif(os.name == "nt" or shutil.which("bash") is None, reason="the steps are for bash")
 
 
 def instead_of_github(host: Path) -> dict[str, str]:
@@ -245,7 +242,7 @@ def test_the_classroom50_autograder(tmp_path: Path, published: Path) -> None:
         env={**os.environ, **variables},
         capture_output=True,
         check=False,
-        timeout=300,
+        timeout=PATIENCE,
     )
     assert done.returncode == 0, done.stderr
     result = json.loads((work / "result.json").read_text(encoding="utf-8"))
