@@ -30,16 +30,18 @@ def run(arguments: Sequence[object], **variables: str) -> Done:
     return run_with_input(arguments, b"", variables)
 
 
-def run_with_input(arguments: Sequence[object], stdin: bytes, variables: Mapping[str, str] = {}) -> Done:
-    """As `run`, with something on standard input."""
+def run_with_input(
+    arguments: Sequence[object], stdin: bytes, variables: Mapping[str, str] = {}, folder: Path = ROOT
+) -> Done:
+    """As `run`, with something on standard input, or from another folder."""
     words = [os.fsdecode(each) if isinstance(each, bytes) else str(each) for each in arguments]
     own = any(each in words for each in _OWN_PROCESS) or any(each.startswith(_READ_AT_START) for each in variables)
     if own or current_thread() is not main_thread():  # the streams, the variables and the folder are the process's
-        return run_process(words, stdin, variables)
+        return run_process(words, stdin, variables, folder)
     with TemporaryFile() as given, TemporaryFile() as out, TemporaryFile() as err:
         given.write(stdin)
         given.seek(0)
-        with _process_state(words, {**surroundings(), **variables}, (given, out, err)):
+        with chdir(folder), _process_state(words, {**surroundings(), **variables}, (given, out, err)):
             code = _exit_code()
         texts = []
         for each in (out, err):
@@ -79,9 +81,8 @@ def _exit_code() -> int:
 
 @contextmanager
 def _process_state(words: list[str], variables: Mapping[str, str], files: tuple[IO[bytes], ...]) -> Iterator[None]:
-    """Set what a process is started with: arguments, variables, folder and standard streams; put everything back."""
+    """Set what a process is started with: arguments, variables and standard streams; put everything back."""
     with (
-        chdir(ROOT),
         patch.dict(os.environ, variables, clear=True),
         patch.object(sys, "argv", ["grader", *words]),
         _redirected(0, files[0]),

@@ -1,5 +1,6 @@
 """What holds for all tests: they depend on no variable of the machine, and files with slow tests are started first."""
 
+import gc
 import os
 import signal
 
@@ -30,3 +31,9 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Start with the files that hold slow tests: each file is run by one worker, and none shall wait for it in the end."""
     slow = {each.path for each in items if each.get_closest_marker("slow")}
     items.sort(key=lambda each: each.path not in slow)
+
+
+def pytest_collection_finish() -> None:
+    """Take the objects of ten thousand tests out of the garbage collector, which would look through them again and again."""
+    gc.collect()
+    gc.freeze()
