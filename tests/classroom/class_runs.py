@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from grader.cli.app import run as run_here
-from tests.command_line import GRADER, run, run_process, surroundings
+from tests.command_line import GRADER, PATIENCE, run, run_process, surroundings
 from tests.samples import ROOT
 
 sys.path.insert(0, str(ROOT / "benchmarks"))  # a folder of scripts
@@ -75,14 +75,22 @@ def session_of(process: "subprocess.Popen[str]") -> list[int]:
     return found
 
 
-def eventually(condition: Callable[[], Any], seconds: float = 20.0) -> bool:
-    """Whether a condition comes true in time."""
-    end = time.monotonic() + seconds
+def eventually(condition: Callable[[], Any]) -> bool:
+    """Whether a condition comes true before everything counts as hanging."""
+    end = time.monotonic() + PATIENCE
     while not condition():
         if time.monotonic() > end:
             return False
         time.sleep(0.005)
     return True
+
+
+def shell_code(code: int) -> int:
+    """The exit code as a shell tells it: 130 as well where CPython ends itself by the signal of Ctrl-C.
+
+    It does so where Ctrl-C comes while it runs a text as code, as dataclasses do when they are imported.
+    """
+    return 128 - code if code < 0 else code
 
 
 def rows(gradebook: Path, query: str, *values: Any) -> list[tuple[Any, ...]]:

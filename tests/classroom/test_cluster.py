@@ -6,7 +6,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
@@ -85,7 +84,7 @@ class Cluster:
         """The process ids of the workers, in which tasks run."""
         from distributed import Client
 
-        with Client(self.address, timeout=20, set_as_default=False) as client:  # type: ignore[no-untyped-call]
+        with Client(self.address, timeout=PATIENCE, set_as_default=False) as client:  # type: ignore[no-untyped-call]
             return list(client.run(os.getpid).values())
 
     @contextmanager
@@ -94,7 +93,7 @@ class Cluster:
         shape = ("--nworkers", str(count), "--nthreads", str(threads), "--host", "127.0.0.1")
         place = ("--scheduler-file", str(self.file), "--local-directory", str(self._place))
         with service(self._place / "worker.log", "worker", *place, *shape, "--no-dashboard"):
-            assert eventually(lambda: self.log.count("Registered to:") >= count, PATIENCE), self.log
+            assert eventually(lambda: self.log.count("Registered to:") >= count), self.log
             yield self
 
 
@@ -105,7 +104,7 @@ def scheduler(place: Path) -> Iterator[Cluster]:
     arguments = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(cluster.file))
     with service(place / "scheduler.log", "scheduler", *arguments) as process:
         cluster.process = process.pid
-        assert eventually(lambda: cluster.file.exists() and cluster.file.read_text().endswith("}"), PATIENCE)
+        assert eventually(lambda: cluster.file.exists() and cluster.file.read_text().endswith("}"))
         yield cluster
 
 
@@ -187,13 +186,13 @@ def test_a_worker_that_is_killed(cluster: Cluster, tmp_path: Path) -> None:
     victims = cluster.workers()
     with started("batch", folder, "--gradebook", book, "--cluster", cluster.address) as process:
         for count, victim in zip((50, 250), victims, strict=True):
-            assert eventually(lambda at=count: len(verdicts(book)) > at, PATIENCE)  # type: ignore[misc]
+            assert eventually(lambda at=count: len(verdicts(book)) > at)  # type: ignore[misc]
             os.kill(victim, signal.SIGKILL)
         _, said = process.communicate(timeout=PATIENCE)
         assert process.returncode == 0, said
     assert verdicts(book) == dict.fromkeys((path.stem for path in folder.iterdir()), "graded")
     assert (doubled(book), is_sound(book)) == ([], True)
-    assert eventually(lambda: len(cluster.workers()) == 2, PATIENCE)
+    assert eventually(lambda: len(cluster.workers()) == 2)
 
 
 def test_ctrl_c_leaves_the_cluster_alone(cluster: Cluster, tmp_path: Path) -> None:
@@ -201,9 +200,9 @@ def test_ctrl_c_leaves_the_cluster_alone(cluster: Cluster, tmp_path: Path) -> No
     folder, book = urdf_class(tmp_path / "class", 600), tmp_path / "lab6.db"
     command = ("batch", folder, "--gradebook", book, "--cluster", cluster.address)
     with started(*command) as process:
-        assert eventually(lambda: len(verdicts(book)) > 20, PATIENCE)
+        assert eventually(lambda: len(verdicts(book)) > 20)
         os.killpg(process.pid, signal.SIGINT)
-        _, said = process.communicate(timeout=30)
+        _, said = process.communicate(timeout=PATIENCE)
         assert process.returncode == 130
     first, stopped, last = said.splitlines()
     assert (first, last) == ("grader: 600 hand-ins, laid out as folders", "grader: interrupted")
@@ -218,7 +217,7 @@ def test_a_scheduler_that_is_lost(tmp_path: Path) -> None:
     with scheduler(tmp_path) as found, found.with_workers(1):
         address = found.address
         with started("batch", folder, "--gradebook", book, "--cluster", address) as process:
-            assert eventually(lambda: len(verdicts(book)) > 20, PATIENCE)
+            assert eventually(lambda: len(verdicts(book)) > 20)
             os.kill(found.process, signal.SIGKILL)
             _, said = process.communicate(timeout=PATIENCE)
             assert process.returncode == 2, said
@@ -234,10 +233,8 @@ def test_a_scheduler_that_is_lost(tmp_path: Path) -> None:
 def test_no_scheduler(address: str, tmp_path: Path) -> None:
     """Whatever address is written where there is none."""
     folder = urdf_class(tmp_path / "class", 2)
-    began = time.monotonic()
     line = refused("batch", folder, "--gradebook", tmp_path / "lab6.db", "--cluster", address)
     assert line.startswith(f"there is no Dask scheduler at {address or repr('')}: ")
-    assert time.monotonic() - began < 30
 
 
 def test_no_workers(tmp_path: Path) -> None:
@@ -272,7 +269,7 @@ def test_a_worker_that_cannot_grade_this_class(start: str, said: str, tmp_path: 
     with scheduler(tmp_path) as found:
         arguments = ("--scheduler-file", str(found.file), "--host", "127.0.0.1", "--no-dashboard", "--no-nanny")
         with service(tmp_path / "worker.log", "worker", *arguments, "--preload", str(tmp_path / "start.py")):
-            assert eventually(lambda: "Registered to:" in found.log, PATIENCE)
+            assert eventually(lambda: "Registered to:" in found.log)
             line = refused("batch", folder, "--gradebook", tmp_path / "lab6.db", "--cluster", found.address)
     assert said.format(folder=folder) in line
     assert rows(tmp_path / "lab6.db", "SELECT * FROM run") == []

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.jobs import MISTAKEN, Job
-from tests.command_line import run_with_input
+from tests.command_line import PATIENCE, run_with_input
 from tests.samples import ROOT
 
 REFERENCE = ROOT / "submissions/reference"
@@ -118,6 +118,6 @@ def test_a_folder_that_is_gone(tmp_path: Path) -> None:
         cwd=gone,
         capture_output=True,
         check=False,
-        timeout=60,
+        timeout=PATIENCE,
     )
     assert (done.returncode, done.stderr) == (1, b"")
