@@ -162,7 +162,7 @@ def test_the_student_workflow(tmp_path: Path, temp: Path) -> None:
         runner = Runner(tmp_path / sample, temp)
         runner.actions = {
             "actions/checkout@v6": nothing,
-            "YOUR-ORG/grader@v1": composite(ROOT),
+            "YOUR-ORG/grader@v1": composite(ROOT, but="Install the grader"),
             "actions/upload-artifact@v6": upload,
         }
         assert runner.job(workflow["jobs"]["grade"]["steps"]) == code, runner.done

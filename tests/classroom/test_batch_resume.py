@@ -32,7 +32,7 @@ from tests.classroom.class_runs import (
 )
 from tests.command_line import GRADER, PATIENCE
 
-KILLS, SIZE = 30, 700
+KILLS, SIZE = 20, 700
 JSON = ("--report-format", "json")
 
 
@@ -61,7 +61,7 @@ def _visible(folder: Path) -> dict[str, bytes]:
     return {name: data for name, data in contents(folder).items() if not name.startswith(".")}
 
 
-def test_killed_thirty_times(folder: Path, undisturbed: tuple[dict[str, bytes], float], tmp_path: Path) -> None:
+def test_killed_twenty_times(folder: Path, undisturbed: tuple[dict[str, bytes], float], tmp_path: Path) -> None:
     """With kill -9 while it starts, grades and writes: every result is there once, and the reports are those of a run at one go."""
     reports, seconds = undisturbed
     out, dice = tmp_path / "out", Random(7)

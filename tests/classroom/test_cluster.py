@@ -237,12 +237,18 @@ def test_no_scheduler(address: str, tmp_path: Path) -> None:
     assert line.startswith(f"there is no Dask scheduler at {address or repr('')}: ")
 
 
-def test_no_workers(tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def lonely(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
+    """A scheduler that each test finds, and leaves, without workers."""
+    with scheduler(tmp_path_factory.mktemp("lonely")) as found:
+        yield found
+
+
+def test_no_workers(lonely: Cluster, tmp_path: Path) -> None:
     """A scheduler alone grades nothing; the line says how to start a worker."""
     folder = urdf_class(tmp_path / "class", 2)
-    with scheduler(tmp_path) as found:
-        line = refused("batch", folder, "--gradebook", tmp_path / "lab6.db", "--cluster", found.address)
-        assert line == f"the Dask cluster at {found.address} has no workers yet: dask worker {found.address}"
+    line = refused("batch", folder, "--gradebook", tmp_path / "lab6.db", "--cluster", lonely.address)
+    assert line == f"the Dask cluster at {lonely.address} has no workers yet: dask worker {lonely.address}"
 
 
 _BLIND = """
@@ -262,15 +268,16 @@ _WITHOUT = "import sys\nsys.modules['grader'] = None\n"
         (_WITHOUT, "cannot grade: "),
     ],
 )
-def test_a_worker_that_cannot_grade_this_class(start: str, said: str, tmp_path: Path) -> None:
+def test_a_worker_that_cannot_grade_this_class(start: str, said: str, lonely: Cluster, tmp_path: Path) -> None:
     """One that does not see the folder, has another grader or none is found out before anything is graded."""
     folder = urdf_class(tmp_path / "class", 2)
     (tmp_path / "start.py").write_text(start)
-    with scheduler(tmp_path) as found:
-        arguments = ("--scheduler-file", str(found.file), "--host", "127.0.0.1", "--no-dashboard", "--no-nanny")
-        with service(tmp_path / "worker.log", "worker", *arguments, "--preload", str(tmp_path / "start.py")):
-            assert eventually(lambda: "Registered to:" in found.log)
-            line = refused("batch", folder, "--gradebook", tmp_path / "lab6.db", "--cluster", found.address)
+    arguments = ("--scheduler-file", str(lonely.file), "--host", "127.0.0.1", "--no-dashboard", "--no-nanny")
+    log = tmp_path / "worker.log"
+    with service(log, "worker", *arguments, "--preload", str(tmp_path / "start.py")):
+        assert eventually(lambda: "Registered to:" in log.read_text())
+        line = refused("batch", folder, "--gradebook", tmp_path / "lab6.db", "--cluster", lonely.address)
+    assert eventually(lambda: not lonely.workers())
     assert said.format(folder=folder) in line
     assert rows(tmp_path / "lab6.db", "SELECT * FROM run") == []
 
