@@ -35,6 +35,7 @@ def set_up(source: Path, start: Path, **variables: str) -> subprocess.CompletedP
     )
 
 
+@pytest.mark.slow
 def test_from_the_zip_to_a_grade(bundle: Path, tmp_path: Path) -> None:
     """pip installs what is needed, for which wheels stand that need no network, and the reference gets its points."""
     root = tmp_path / "auto grader"

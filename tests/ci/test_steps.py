@@ -69,6 +69,7 @@ def job(tmp_path: Path, temp: Path) -> Job:
     return Job(tmp_path / "work", temp)
 
 
+@pytest.mark.slow
 def test_a_green_check(job: Job) -> None:
     """A robot without mistakes ends with 0, and gives score, summary and reports."""
     done = job.grade()
@@ -148,6 +149,7 @@ def test_modules_in_the_repository_are_not_imported(job: Job, tmp_path: Path) ->
     assert (done.code, job.output("score")) == (0, "90"), done.stderr
 
 
+@pytest.mark.slow
 def test_the_student_workflow(tmp_path: Path, temp: Path) -> None:
     """The template for student repositories runs from checkout to artifact, green and red."""
     workflow = load(WORKFLOWS / "student-repository.yml")
@@ -169,6 +171,7 @@ def test_the_student_workflow(tmp_path: Path, temp: Path) -> None:
     assert kept == ["junit.xml", "report.md", "report.sarif"] * 2
 
 
+@pytest.mark.slow
 def test_a_version_is_taken_from_the_repository(tmp_path: Path, published: Path) -> None:
     """The input `version` installs that tag; what is no tag is refused before anything is installed."""
     action = load(ROOT / "action.yml")
@@ -186,6 +189,7 @@ def test_a_version_is_taken_from_the_repository(tmp_path: Path, published: Path)
     assert not (tmp_path / "owned").exists()
 
 
+@pytest.mark.slow
 def test_the_class_workflow(tmp_path: Path, published: Path) -> None:
     """The template for a class organisation fetches every student's repository and grades it, whoever broke what."""
     host = tmp_path / "host"
@@ -229,6 +233,7 @@ def test_the_class_workflow(tmp_path: Path, published: Path) -> None:
     assert {path.name for path in (runner.temp / "reports").iterdir()} == {"ada.md", "grace.md", "none.md"}
 
 
+@pytest.mark.slow
 def test_the_classroom50_autograder(tmp_path: Path, published: Path) -> None:
     """The autograder for Classroom 50 writes both files in the student's checkout, and ends well with a bad mark."""
     work = tmp_path / "work"

@@ -64,6 +64,7 @@ def mixed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return mixed_class(tmp_path_factory.mktemp("mixed") / "class", 120)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["samples", "mixed"])
 def test_a_class_is_graded_as_each_submission_alone(name: str, request: pytest.FixtureRequest, tmp_path: Path) -> None:
     """With 1, 2 and 8 workers the reports are those of `grader grade`, byte for byte; what it refuses is refused for the same reason."""

@@ -61,6 +61,7 @@ def _visible(folder: Path) -> dict[str, bytes]:
     return {name: data for name, data in contents(folder).items() if not name.startswith(".")}
 
 
+@pytest.mark.slow
 def test_killed_twenty_times(folder: Path, undisturbed: tuple[dict[str, bytes], float], tmp_path: Path) -> None:
     """With kill -9 while it starts, grades and writes: every result is there once, and the reports are those of a run at one go."""
     reports, seconds = undisturbed

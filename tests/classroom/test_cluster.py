@@ -146,6 +146,7 @@ def test_a_cluster_gives_the_same_marks(kind: str, cluster: Cluster, tmp_path: P
     assert counted(grader(*command)).startswith("0 graded, ")
 
 
+@pytest.mark.slow
 def test_misdeeds_end_no_worker(cluster: Cluster, tmp_path: Path) -> None:
     """Each costs one submission, for the reason that it would have here; the cluster's workers live on, and log nothing."""
     names = ("hangs", "hangs_in_c", "dies", "crashes", "leaves", "leaves_loudly", "exits", "raises", "fine", "fine-2")
@@ -211,6 +212,7 @@ def test_ctrl_c_leaves_the_cluster_alone(cluster: Cluster, tmp_path: Path) -> No
     assert counted(grader(*command)) == f"{600 - kept} graded, {kept} unchanged"
 
 
+@pytest.mark.slow
 def test_a_scheduler_that_is_lost(tmp_path: Path) -> None:
     """The run ends with a line, nobody is called errored for it, and it goes on elsewhere."""
     folder, book = urdf_class(tmp_path / "class", 1_000), tmp_path / "lab6.db"
@@ -229,6 +231,7 @@ def test_a_scheduler_that_is_lost(tmp_path: Path) -> None:
     assert (len(verdicts(book)), doubled(book)) == (1_000, [])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "foo", "", "http://127.0.0.1:1", "tls://127.0.0.1:1"])
 def test_no_scheduler(address: str, tmp_path: Path) -> None:
     """Whatever address is written where there is none."""

@@ -77,6 +77,7 @@ def written(texts: Mapping[str, str]) -> Report:
         return report
 
 
+@pytest.mark.slow
 @given(TEXTS)
 @example(EVERYWHERE)
 @example(FENCES)
