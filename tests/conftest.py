@@ -1,8 +1,10 @@
-"""What holds for all tests: a machine under load is no failure, Ctrl-C is heard wherever they are run, and a CI job is no job of theirs."""
+"""What holds for all tests: they depend on no variable of the machine, and files with slow tests are started first."""
 
+import gc
 import os
 import signal
 
+import pytest
 from hypothesis import settings
 
 settings.register_profile("patient", settings(), deadline=None)  # examples have no time limit of their own
@@ -12,6 +14,26 @@ settings.load_profile("patient")
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-# On a CI system the grader annotates, and takes the checkout for the repository: tests that want it so say so.
-for name in [each for each in os.environ if each in ("CI", "CI_PROJECT_DIR") or each.startswith("GITHUB_")]:
+# On a CI system the grader annotates, and takes the checkout for the repository; in a git hook git is told of another
+# repository; colours and widths change what is printed; pip may be told to install elsewhere. Tests that want it so say so.
+_NAMES = (
+    "CI", "CI_PROJECT_DIR", "CLICOLOR_FORCE", "COLUMNS", "FORCE_COLOR", "NO_COLOR", "PYTHONDONTWRITEBYTECODE",
+    "PYTHONHASHSEED", "PYTHONOPTIMIZE", "PYTHONWARNINGS", "TTY_COMPATIBLE", "TTY_INTERACTIVE",
+)  # fmt: skip
+_BEGINNINGS = ("GITHUB_", "GIT_", "GRADER_", "PIP_", "_TYPER_")
+for name in [each for each in os.environ if each in _NAMES or each.startswith(_BEGINNINGS)]:
     del os.environ[name]
+# Nor do the settings of a user's git count.
+os.environ |= {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_NOSYSTEM": "1"}
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Start with the files that hold slow tests: each file is run by one worker, and none shall wait for it in the end."""
+    slow = {each.path for each in items if each.get_closest_marker("slow")}
+    items.sort(key=lambda each: each.path not in slow)
+
+
+def pytest_collection_finish() -> None:
+    """Take the objects of ten thousand tests out of the garbage collector, which would look through them again and again."""
+    gc.collect()
+    gc.freeze()

@@ -12,6 +12,7 @@ from typing import Any
 
 import jsonschema
 
+from tests.command_line import PATIENCE
 from tests.samples import ROOT
 
 SCHEMA = json.loads((ROOT / "tests/report/schemas/gradescope.json").read_text())
@@ -67,7 +68,7 @@ class Autograder:
             stderr=subprocess.STDOUT,
             text=True,
             check=False,
-            timeout=120,
+            timeout=PATIENCE,
         )
 
 

@@ -3,19 +3,25 @@
 import os
 import shutil
 import subprocess
+from collections.abc import Iterator
 from pathlib import Path
+from unittest.mock import patch
 
 import pytest
 
-ROOT = Path(__file__).parent.parent.parent
+from tests.command_line import PATIENCE, ROOT
+from tests.wheels import offline
+
 PUBLISHED = ("pyproject.toml", "README.md", "LICENSE", "action.yml", ".pre-commit-hooks.yaml", "grader", "rubrics")
 
 
 def git(folder: Path, *arguments: str) -> None:
-    """Run git with a name of its own, whatever the machine's settings are."""
+    """Run git with a name of its own."""
     named = {f"GIT_{who}_{what}": "test@example.org" for who in ("AUTHOR", "COMMITTER") for what in ("NAME", "EMAIL")}
-    environment = {**os.environ, **named, "GIT_CONFIG_GLOBAL": os.devnull}
-    done = subprocess.run(["git", *arguments], cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        ["git", *arguments], cwd=folder, env={**os.environ, **named}, capture_output=True, text=True, check=False,
+        timeout=PATIENCE,
+    )  # fmt: skip
     assert done.returncode == 0, done.stderr
 
 
@@ -27,6 +33,13 @@ def repository(folder: Path, *, tag: str = "") -> Path:
     if tag:
         git(folder, "tag", tag)
     return folder
+
+
+@pytest.fixture(scope="package", autouse=True)
+def installed_offline(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Have pip install the grader for real, and for what it needs wheels that lead to what is installed here."""
+    with patch.dict(os.environ, offline(tmp_path_factory.mktemp("wheels"))):
+        yield
 
 
 @pytest.fixture(scope="session")

@@ -6,7 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-from tests.ci.conftest import ROOT, git, repository
+from tests.ci.conftest import git, repository
+from tests.command_line import PATIENCE, ROOT
 
 
 def test_a_commit_is_held_back(tmp_path: Path, published: Path) -> None:
@@ -34,9 +35,9 @@ def _commit(work: Path, home: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-m", "pre_commit", "run", "--all-files"],
         cwd=work,
-        env={**os.environ, "PRE_COMMIT_HOME": str(home), "GIT_CONFIG_GLOBAL": os.devnull},
+        env={**os.environ, "PRE_COMMIT_HOME": str(home)},
         capture_output=True,
         text=True,
         check=False,
-        timeout=300,
+        timeout=PATIENCE,
     )

@@ -13,17 +13,14 @@ import pytest
 
 from tests.ci.conftest import git, repository
 from tests.ci.runner import Done, Runner, composite, load
+from tests.command_line import PATIENCE, ROOT
 
-ROOT = Path(__file__).parent.parent.parent
 CHECKOUT = "actions/checkout@de0fac2e4500dabe0009e67214ff5f5447ce83dd"
 PYTHON = "actions/setup-python@a309ff8b426b58ec0e2a45f0f869d46889d02405"
 UPLOAD = "actions/upload-artifact@b7c566a772e6b6bfb58ed0dc250532a479d7789f"
 WORKFLOWS = ROOT / "docs" / "ci"
 
-pytestmark = [
-    pytest.mark.xdist_group("steps"),  # what is installed once is used by all of them
-    pytest.mark.skipif(os.name == "nt" or shutil.which("bash") is None, reason="the action's steps are for bash"),
-]
+pytestmark = pytest.mark.skipif(os.name == "nt" or shutil.which("bash") is None, reason="the steps are for bash")
 
 
 def instead_of_github(host: Path) -> dict[str, str]:
@@ -76,6 +73,7 @@ def job(tmp_path: Path, temp: Path) -> Job:
     return Job(tmp_path / "work", temp)
 
 
+@pytest.mark.slow
 def test_a_green_check(job: Job) -> None:
     """A robot without mistakes ends with 0, and gives score, summary and reports."""
     done = job.grade()
@@ -155,6 +153,7 @@ def test_modules_in_the_repository_are_not_imported(job: Job, tmp_path: Path) ->
     assert (done.code, job.output("score")) == (0, "90"), done.stderr
 
 
+@pytest.mark.slow
 def test_the_student_workflow(tmp_path: Path, temp: Path) -> None:
     """The template for student repositories runs from checkout to artifact, green and red."""
     workflow = load(WORKFLOWS / "student-repository.yml")
@@ -169,13 +168,14 @@ def test_the_student_workflow(tmp_path: Path, temp: Path) -> None:
         runner = Runner(tmp_path / sample, temp)
         runner.actions = {
             CHECKOUT: nothing,
-            "YOUR-ORG/grader@v1": composite(ROOT),
+            "YOUR-ORG/grader@v1": composite(ROOT, but="Install the grader"),
             UPLOAD: upload,
         }
         assert runner.job(workflow["jobs"]["grade"]["steps"]) == code, runner.done
     assert kept == ["junit.xml", "report.json", "report.md", "report.sarif"] * 2
 
 
+@pytest.mark.slow
 def test_a_version_is_taken_from_the_repository(tmp_path: Path, published: Path) -> None:
     """The input `version` installs that tag; what is no tag is refused before anything is installed."""
     action = load(ROOT / "action.yml")
@@ -205,6 +205,7 @@ def too_large(host: Path) -> None:
         repository(host / name)
 
 
+@pytest.mark.slow
 def test_the_class_workflow(tmp_path: Path, published: Path) -> None:
     """The template for a class organisation fetches every student's repository and grades it, whoever broke what."""
     host = tmp_path / "host"
@@ -256,6 +257,7 @@ def test_the_class_workflow(tmp_path: Path, published: Path) -> None:
     assert {path.name for path in (runner.temp / "reports").iterdir()} == {"ada.md", "grace.md", "none.md"}
 
 
+@pytest.mark.slow
 def test_the_classroom50_autograder(tmp_path: Path, published: Path) -> None:
     """The autograder for Classroom 50 writes both files in the student's checkout, and ends well with a bad mark."""
     work = tmp_path / "work"
@@ -272,7 +274,7 @@ def test_the_classroom50_autograder(tmp_path: Path, published: Path) -> None:
         env={**os.environ, **variables},
         capture_output=True,
         check=False,
-        timeout=300,
+        timeout=PATIENCE,
     )
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "victim").read_text() == "precious"

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from grader.cli.app import run as run_here
+from tests.command_line import GRADER, PATIENCE, run, run_process, surroundings
 from tests.samples import ROOT
 
 sys.path.insert(0, str(ROOT / "benchmarks"))  # a folder of scripts
@@ -21,27 +22,19 @@ import class_generator as made_up
 
 bomb, tarred, Item = made_up.bomb, made_up.tarred, made_up.Item
 
-GRADER = (sys.executable, "-W", "error", "-m", "grader")
 HOSTILE = Path(__file__).parent / "hostile"
 WITH_HOSTILE = {"PYTHONPATH": str(HOSTILE)}
 HOSTILE_RUBRIC = str(HOSTILE / "hostile.toml")
-PATIENCE = 120.0  # seconds that one command may take on the slowest machine
 
 Done = subprocess.CompletedProcess[str]
 _SKIPPED = ("latin-name", "links-out", "deep-folders")  # what a zip holds otherwise than a folder does
 
 
-def grader(*arguments: str | Path, cwd: str = ".", **variables: str) -> Done:
+def grader(*arguments: str | Path, cwd: str = "", **variables: str) -> Done:
     """Run the command line; its standard output and standard error."""
-    return subprocess.run(
-        [*GRADER, *map(str, arguments)],
-        cwd=cwd,
-        env=environment(**variables),
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=PATIENCE,
-    )
+    words = [*map(str, arguments)]
+    done = run_process(words, variables=variables, folder=Path(cwd)) if cwd else run(words, **variables)
+    return Done(done.args, done.returncode, done.stdout.decode(), done.stderr.decode())
 
 
 def here(*arguments: str | Path) -> Done:
@@ -54,7 +47,7 @@ def here(*arguments: str | Path) -> Done:
 
 def environment(**variables: str) -> dict[str, str]:
     """The environment of a command, 80 columns wide."""
-    return {**os.environ, "COLUMNS": "80", "PYTHONIOENCODING": "utf-8", **variables}
+    return {**surroundings(), **variables}
 
 
 @contextmanager
@@ -90,14 +83,22 @@ def session_of(process: "subprocess.Popen[str]") -> list[int]:
     return found
 
 
-def eventually(condition: Callable[[], Any], seconds: float = 20.0) -> bool:
-    """Whether a condition comes true in time."""
-    end = time.monotonic() + seconds
+def eventually(condition: Callable[[], Any]) -> bool:
+    """Whether a condition comes true before everything counts as hanging."""
+    end = time.monotonic() + PATIENCE
     while not condition():
         if time.monotonic() > end:
             return False
         time.sleep(0.005)
     return True
+
+
+def shell_code(code: int) -> int:
+    """The exit code as a shell tells it: 130 as well where CPython ends itself by the signal of Ctrl-C.
+
+    It does so where Ctrl-C comes while it runs a text as code, as dataclasses do when they are imported.
+    """
+    return 128 - code if code < 0 else code
 
 
 def rows(gradebook: Path, query: str, *values: Any) -> list[tuple[Any, ...]]:

@@ -1,8 +1,6 @@
 """A small lab, gradebooks in which its hand-ins came out as asked, and a class of it on the disk."""
 
-import os
 import subprocess
-import sys
 from collections.abc import Iterable
 from decimal import Decimal
 from pathlib import Path
@@ -14,6 +12,7 @@ from grader.classroom.work import NOT_GRADED, SIGNS, Graded, Task, Verdict, _of
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric, read_rubric
 from grader.submission.files import sha256_of
+from tests.command_line import run_with_input, surroundings
 from tests.samples import ROOT
 
 POINTS = {"loads": "3", "box": "2.5", "tall": "0.5", "essay": "4", "picture": "1"}
@@ -29,7 +28,7 @@ _CRITERIA = {
     "picture": 'part = "report"\ncheck = "evidence_shown"\nwith = { names = ["screen"] }',
 }
 _STATUSES = {sign: status for status, sign in SIGNS.items()}
-ENVIRONMENT = {**os.environ, "COLUMNS": "80", "PYTHONIOENCODING": "utf-8"}
+ENVIRONMENT = surroundings()
 HOSTILE = ROOT / "tests" / "classroom" / "hostile"
 
 
@@ -86,17 +85,8 @@ def units(points: str | Decimal) -> int:
 
 
 def grader(*arguments: object, stdin: str | bytes = "", **variables: str) -> subprocess.CompletedProcess[str]:
-    """Run the command line as a user does, from the project's root."""
-    given = stdin if isinstance(stdin, bytes) else stdin.encode()
-    done = subprocess.run(
-        [sys.executable, "-m", "grader", *(each if isinstance(each, bytes) else str(each) for each in arguments)],
-        cwd=ROOT,
-        env={**ENVIRONMENT, **variables},
-        input=given,
-        capture_output=True,
-        check=False,
-        timeout=120,
-    )
+    """Run the command line from the project's root."""
+    done = run_with_input(arguments, stdin if isinstance(stdin, bytes) else stdin.encode(), variables)
     out, err = done.stdout.decode(), done.stderr.decode()
     return subprocess.CompletedProcess(done.args, done.returncode, out, err)
 

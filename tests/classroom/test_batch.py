@@ -11,7 +11,6 @@ import pytest
 from grader.classroom.gradebook import Gradebook
 from grader.classroom.standings import Standings
 from tests.classroom.class_runs import (
-    GRADER,
     class_with_roster,
     contents,
     counted,
@@ -22,6 +21,7 @@ from tests.classroom.class_runs import (
     urdf_class,
     verdicts,
 )
+from tests.command_line import GRADER
 from tests.samples import ROOT, SAMPLES, opened
 
 JSON = ("--report-format", "json")
@@ -64,6 +64,7 @@ def mixed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return mixed_class(tmp_path_factory.mktemp("mixed") / "class", 120)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["samples", "mixed"])
 def test_a_class_is_graded_as_each_submission_alone(name: str, request: pytest.FixtureRequest, tmp_path: Path) -> None:
     """With 1, 2 and 8 workers the reports are those of `grader grade`, byte for byte; what it refuses is refused for the same reason."""

@@ -3,14 +3,12 @@
 import os
 import re
 import signal
-import time
 from pathlib import Path
 
 import pytest
 
 from tests.classroom.class_runs import (
     HOSTILE_RUBRIC,
-    PATIENCE,
     WITH_HOSTILE,
     counted,
     eventually,
@@ -24,6 +22,7 @@ from tests.classroom.class_runs import (
     urdf_class,
     verdicts,
 )
+from tests.command_line import PATIENCE
 
 GOOD = tuple(f"fine-{number}" for number in range(150))
 SLOW = r"grading it took longer than 4 s, and was stopped \(--timeout raises the limit\)"
@@ -45,15 +44,14 @@ ENDED = ("dies", "crashes", "leaves", "leaves_loudly", "eats")
 RUBRIC = ("--rubric", HOSTILE_RUBRIC)
 
 
+@pytest.mark.slow
 def test_each_misdeed_costs_one_submission(tmp_path: Path) -> None:
     """All of them at once among many others: each is errored with its reason, and only these are tried again."""
     folder = hostile_class(tmp_path / "class", *REASONS, *GOOD)
     book = tmp_path / "lab.db"
     command = ("batch", folder, "--gradebook", book, *RUBRIC, "--timeout", "4", "--jobs", "4")
-    began = time.monotonic()
     done = grader(*command, **WITH_HOSTILE)
     assert done.returncode == 0, done.stderr
-    assert time.monotonic() - began < PATIENCE / 2
     assert counted(done) == f"{len(REASONS) + len(GOOD)} graded, {len(REASONS)} of them errored, 0 unchanged"
     assert "Traceback" not in done.stderr
     assert verdicts(book) == {**dict.fromkeys(REASONS, "errored"), **dict.fromkeys(GOOD, "graded")}
@@ -100,16 +98,16 @@ HANGING = ("hangs", "hangs-2", "hangs_in_c", "fine")
 def test_no_process_outlives_a_command_that_is_ended(number: signal.Signals, code: int, tmp_path: Path) -> None:
     """Not even those that hang in the midst of a submission, where the interpreter gets no turn."""
     folder, book = hostile_class(tmp_path / "class", *HANGING), tmp_path / "lab.db"
-    command = ("batch", folder, "--gradebook", book, *RUBRIC, "--timeout", "60", "--jobs", "4")
+    command = ("batch", folder, "--gradebook", book, *RUBRIC, "--timeout", "3600", "--jobs", "4")
     with started(*command, **WITH_HOSTILE) as process:
-        assert eventually(lambda: "fine" in verdicts(book), PATIENCE)
+        assert eventually(lambda: "fine" in verdicts(book))
         assert eventually(lambda: len(session_of(process)) >= 1 + 2 + 4)  # beside the workers two that serve them
         if number is signal.SIGINT:
             os.killpg(process.pid, number)  # as a terminal does
         else:
             process.send_signal(number)
-        assert process.wait(20) == code
-        assert eventually(lambda: not session_of(process), 10)
+        assert process.wait(PATIENCE) == code
+        assert eventually(lambda: not session_of(process))
     assert verdicts(book) == {"fine": "graded"}
 
 
@@ -118,7 +116,7 @@ def test_workers_that_somebody_ends_are_replaced(tmp_path: Path) -> None:
     folder, book = urdf_class(tmp_path / "class", 1_000), tmp_path / "lab.db"
     with started("batch", folder, "--gradebook", book, "--jobs", "3") as process:
         for count in (30, 200, 350, 500, 700):
-            assert eventually(lambda at=count: rows(book, "SELECT 1 FROM result LIMIT 1 OFFSET ?", at), PATIENCE)  # type: ignore[misc]
+            assert eventually(lambda at=count: rows(book, "SELECT 1 FROM result LIMIT 1 OFFSET ?", at))  # type: ignore[misc]
             workers = [each for each in session_of(process) if each > process.pid][2:]
             if workers:
                 os.kill(workers[-1], signal.SIGKILL)

@@ -3,7 +3,6 @@
 import os
 import sys
 import tempfile
-import time
 import tracemalloc
 import zipfile
 from pathlib import Path
@@ -18,8 +17,9 @@ from grader.classroom.intake.taking import LAYOUTS, take_in
 from grader.classroom.students import Student
 from grader.errors import InputError
 from tests.classroom.class_folders import lay_out, pack, taken
+from tests.patience import processor_time
 
-LARGE = 100_000
+LARGE = 30_000
 ANN = Student("100", "Ann Ash", "ann@example.org", "aash")
 BEA = Student("200", "Bea Birch", "bea@example.org", "bbirch")
 CAL = Student("300", "Cal Cedar", "cal@example.org", "ccedar", canvas="33")
@@ -214,14 +214,11 @@ def test_any_names_are_taken_in(names: list[str]) -> None:
 
 
 def test_a_very_large_class_costs_little(tmp_path: Path) -> None:
-    """100,000 submissions take a second or two, and each hardly more memory than its name."""
+    """Each submission takes hardly more time than a look at its name, and hardly more memory than the name."""
     folder = large_class(tmp_path / "class", LARGE)
-    start = time.process_time()
-    intake = take_in(folder)
-    count = sum(1 for _ in intake.hand_ins())
-    spent = time.process_time() - start
-    assert count == LARGE
-    assert spent < 30e-6 * LARGE  # three times of what it takes
+    with processor_time(30e-6 * LARGE):  # three times of what it takes
+        intake = take_in(folder)
+        assert sum(1 for _ in intake.hand_ins()) == LARGE
     folder = large_class(tmp_path / "smaller", LARGE // 10)
     tracemalloc.start()
     try:

@@ -1,12 +1,10 @@
 """A job of GitHub Actions: a checkout, what the runner says of it in variables, and a file for the summary."""
 
-import os
 import shutil
-import subprocess
-import sys
 from collections.abc import Mapping
 from pathlib import Path
 
+from tests.command_line import Done, run_with_input
 from tests.report.workflow_commands import commands
 from tests.samples import ROOT
 
@@ -24,23 +22,14 @@ class Job:
         shutil.copy(MISTAKEN, self.checkout)
         self.summary = folder / "summary.md"
 
-    def run(
-        self, *arguments: str, start: Path | None = None, around: Mapping[str, str] = ON_GITHUB
-    ) -> subprocess.CompletedProcess[bytes]:
+    def run(self, *arguments: str, start: Path | None = None, around: Mapping[str, str] = ON_GITHUB) -> Done:
         """Run the command line in the checkout, as a step does; `around` are variables that are otherwise than there."""
         job = {
             "GITHUB_ACTIONS": "true",
             "GITHUB_WORKSPACE": str(self.checkout),
             "GITHUB_STEP_SUMMARY": str(self.summary),
         }
-        return subprocess.run(
-            [sys.executable, "-m", "grader", *arguments],
-            cwd=start or self.checkout,
-            env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1", **job, **around},
-            capture_output=True,
-            check=False,
-            timeout=60,
-        )
+        return run_with_input(arguments, b"", {**job, **around}, start or self.checkout)
 
     def files(self, path: str, start: Path | None = None, around: Mapping[str, str] = ON_GITHUB) -> set[str | None]:
         """The files that a path's annotations are put on."""

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.command_line import PATIENCE, run_with_input
 from tests.golden.cases import ROOT, run
 
 REFERENCE = ROOT / "submissions/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
@@ -193,7 +194,7 @@ def test_closed_standard_output(form: str) -> None:
     """One line on standard error and exit code 2, whether it was closed before or breaks on the way."""
     command = f'"{sys.executable}" -m grader grade submissions/reference --format {form}'
     for redirected in (f"{command} >&-", f"({command}; echo $? >&2) | true", f"{command} > /dev/full"):
-        done = subprocess.run(["bash", "-c", redirected], cwd=ROOT, capture_output=True, check=False, timeout=60)
+        done = subprocess.run(["bash", "-c", redirected], cwd=ROOT, capture_output=True, check=False, timeout=PATIENCE)
         assert b"standard output" in done.stderr or b"| true" in redirected.encode(), done.stderr
         assert b"Traceback" not in done.stderr
         if "|" not in redirected:
@@ -203,7 +204,6 @@ def test_closed_standard_output(form: str) -> None:
 
 def test_standard_input() -> None:
     """A URDF can come from a pipe."""
-    command = [sys.executable, "-m", "grader", "grade", "-", "--format", "json"]
-    done = subprocess.run(command, input=REFERENCE.read_bytes(), cwd=ROOT, capture_output=True, check=False, timeout=60)
+    done = run_with_input(("grade", "-", "--format", "json"), REFERENCE.read_bytes())
     assert done.returncode == 0
     assert b'"id": "stdin", "path": "-"' in done.stdout

@@ -2,10 +2,12 @@
 
 import io
 import os
+import re
 import shutil
 import signal
 import subprocess
 import sys
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -13,6 +15,7 @@ import pytest
 from grader.cli.app import run
 from grader.submission.document_text import __file__ as converter
 from tests.classroom.class_runs import eventually, grader, rows, session_of, started
+from tests.command_line import PATIENCE
 from tests.samples import ROOT
 
 REFERENCE = ROOT / "rubrics" / "lab6" / "my_robot"
@@ -56,28 +59,34 @@ def test_a_slow_document_leaves_its_criteria_to_a_person(
 def test_no_converter_outlives_a_grader_that_is_ended(number: signal.Signals, code: int, tmp_path: Path) -> None:
     """However the grader ends, the process that reads a document for it ends, too."""
     with started("grade", hand_in(tmp_path / "alice")) as process:
-        assert eventually(lambda: len(session_of(process)) > 1)
+        _stop_converter(process)
         process.send_signal(number)  # to the grader alone
-        assert process.wait(20) == code
-        assert eventually(lambda: not session_of(process), 10)
+        assert process.wait(PATIENCE) == code
+        assert eventually(lambda: not session_of(process))
 
 
 def test_no_converter_outlives_a_batch_that_is_ended(tmp_path: Path) -> None:
     """A worker that is ended takes its converter with it."""
     hand_in(tmp_path / "class" / "alice")
     with started("batch", tmp_path / "class", "--gradebook", tmp_path / "lab.db", "--jobs", "1") as process:
-        assert eventually(lambda: any(b"document_text" in each for each in _commands(process)), 60)
+        _stop_converter(process)
         process.kill()
-        assert eventually(lambda: not session_of(process), 10)
+        assert eventually(lambda: not session_of(process))
 
 
-def _commands(process: "subprocess.Popen[str]") -> list[bytes]:
+def _stop_converter(process: "subprocess.Popen[str]") -> None:
+    """Wait for the converter, and stop it: it must be ended from outside, and not end by its own limits."""
+    assert eventually(lambda: _converters(process))
+    os.kill(_converters(process)[0], signal.SIGSTOP)
+
+
+def _converters(process: "subprocess.Popen[str]") -> list[int]:
+    """The processes that have limited their processor time, which they do after all else is set up."""
     found = []
     for each in session_of(process):
-        try:
-            found.append(Path(f"/proc/{each}/cmdline").read_bytes())
-        except OSError:
-            continue
+        with suppress(OSError):
+            if not re.search(r"Max cpu time +unlimited", Path(f"/proc/{each}/limits").read_text()):
+                found.append(each)
     return found
 
 
@@ -101,13 +110,13 @@ def test_a_converter_without_a_death_signal_watches_its_parent(tmp_path: Path) -
         assert "ready\n" in lines
         assert len(session_of(process)) == 2
         process.kill()
-        assert eventually(lambda: not session_of(process), 10)
+        assert eventually(lambda: not session_of(process))
 
 
 def test_a_converter_whose_parent_is_gone_ends_at_once() -> None:
     """A parent that ends before the kernel is told of it leaves nothing behind."""
     other = os.getppid()  # not the parent of what is started here
-    done = subprocess.run([sys.executable, "-P", converter, "docx", "600", str(other)], timeout=60, check=False)
+    done = subprocess.run([sys.executable, "-P", converter, "docx", "600", str(other)], timeout=PATIENCE, check=False)
     assert done.returncode == 1
 
 

@@ -15,7 +15,8 @@ from typing import NamedTuple
 
 import pytest
 
-from tests.classroom.class_runs import GRADER, PATIENCE, counted, environment, grader, reasons, verdicts
+from tests.classroom.class_runs import counted, environment, grader, reasons, verdicts
+from tests.command_line import GRADER, PATIENCE
 from tests.patience import BUSY
 from tests.samples import ROOT
 

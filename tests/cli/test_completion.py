@@ -11,6 +11,7 @@ import pytest
 from grader.cli.app import COMMANDS
 from grader.cli.formats import Format
 from grader.report.rubrics import EVERY_KIND
+from tests.command_line import PATIENCE
 from tests.golden.cases import ROOT, run
 
 PARTS = ["task1", "task2", "task3", "questions"]
@@ -108,7 +109,7 @@ def test_a_shell_that_does_not_listen() -> None:
     asked = {**os.environ, "_GRADER_COMPLETE": "complete_bash", "COMP_WORDS": "grader g", "COMP_CWORD": "1"}
     for redirected in (">&-", "> /dev/full"):
         command = ["bash", "-c", f'"{sys.executable}" -m grader {redirected}']
-        done = subprocess.run(command, cwd=ROOT, env=asked, capture_output=True, check=False, timeout=60)
+        done = subprocess.run(command, cwd=ROOT, env=asked, capture_output=True, check=False, timeout=PATIENCE)
         assert (done.returncode, done.stderr) == (0, b"")
 
 
@@ -160,7 +161,7 @@ def sourced(tmp_path: Path, *lines: str) -> list[str]:
         env={**os.environ, "PATH": path, "HOME": str(tmp_path)},
         capture_output=True,
         check=False,
-        timeout=60,
+        timeout=PATIENCE,
     )
     assert done.stderr == b""
     return done.stdout.decode().splitlines()
@@ -202,7 +203,7 @@ def test_the_script_is_read_by_its_shell(shell: str) -> None:
     assert b"grader" in script
     if shutil.which(shell) is None:
         pytest.skip(f"there is no {shell} here")
-    done = subprocess.run([shell, "-n"], input=script, capture_output=True, check=False, timeout=60)
+    done = subprocess.run([shell, "-n"], input=script, capture_output=True, check=False, timeout=PATIENCE)
     assert (done.returncode, done.stderr) == (0, b"")
 
 
@@ -252,5 +253,5 @@ def test_the_shell_is_found_out(tmp_path: Path) -> None:
     for shell, words in (("bash", "_grader_completion() {"), ("sh", "grader --show-completion bash (or zsh or fish)")):
         program = tmp_path / shell
         program.symlink_to(shutil.which("bash") or "bash")
-        done = subprocess.run([program, "-c", command], cwd=ROOT, capture_output=True, check=False, timeout=60)
+        done = subprocess.run([program, "-c", command], cwd=ROOT, capture_output=True, check=False, timeout=PATIENCE)
         assert words in (done.stdout + done.stderr).decode()

@@ -18,6 +18,7 @@ from grader.cli.formats import Format
 from grader.cli.options import ClassFormat
 from grader.report.schemas import REPORT_SCHEMA
 from tests.classroom.gradebooks import ENVIRONMENT, HOSTILE, batch, grader, hand_in, lab_text, refusal, urdf
+from tests.command_line import PATIENCE
 from tests.samples import ROOT
 
 GRADE = ("score", "max_score", "pending")
@@ -223,7 +224,7 @@ def test_marks_at_the_same_time(top: Path) -> None:
     ]
     done = batch(top, "--force")
     assert done.returncode == 0, done.stderr
-    assert [each.wait(60) for each in started] == [0] * len(wanted)
+    assert [each.wait(PATIENCE) for each in started] == [0] * len(wanted)
     assert len(marks(top)) == len(wanted)
     assert student(top, "anna")["score"] == 2.5
     assert student(top, "emil")["score"] == 2

@@ -2,13 +2,12 @@
 
 import re
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from grader.cli.app import COMMANDS
+from tests.command_line import Done, run_with_input
 from tests.samples import ROOT
 
 SAMPLE = ROOT / "submissions/lidar-offset-in-visual/my_robot.urdf"
@@ -28,10 +27,9 @@ def place(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def typed(line: str, place: Path) -> subprocess.CompletedProcess[bytes]:
+def typed(line: str, place: Path) -> Done:
     """What comes of a line that is typed there."""
-    command = [sys.executable, "-m", "grader", *line.split()]
-    return subprocess.run(command, cwd=place, capture_output=True, check=False, timeout=60)
+    return run_with_input(line.split(), b"", folder=place)
 
 
 def refused(line: str, place: Path) -> str:

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.jobs import MISTAKEN, Job
+from tests.command_line import PATIENCE, run_with_input
 from tests.samples import ROOT
 
 REFERENCE = ROOT / "submissions/reference"
@@ -103,14 +104,7 @@ def test_on_gitlab(job: Job) -> None:
 
 def test_standard_input(job: Job) -> None:
     """It has no file that an annotation could be put on but the one that everyone calls so."""
-    done = subprocess.run(
-        [sys.executable, "-m", "grader", "grade", "-", "--format", "sarif"],
-        input=MISTAKEN.read_bytes(),
-        cwd=job.checkout,
-        capture_output=True,
-        check=False,
-        timeout=60,
-    )
+    done = run_with_input(("grade", "-", "--format", "sarif"), MISTAKEN.read_bytes(), folder=job.checkout)
     places = [each["locations"][0]["physicalLocation"] for each in json.loads(done.stdout)["runs"][0]["results"]]
     assert {place["artifactLocation"]["uri"] for place in places} == {"-"}
 
@@ -124,6 +118,6 @@ def test_a_folder_that_is_gone(tmp_path: Path) -> None:
         cwd=gone,
         capture_output=True,
         check=False,
-        timeout=60,
+        timeout=PATIENCE,
     )
     assert (done.returncode, done.stderr) == (1, b"")

@@ -14,6 +14,7 @@ from grader.classroom.gradebook import Gradebook
 from grader.classroom.marking import NewerMarkError, Waiting, mark, pending
 from grader.classroom.standings import Standings
 from tests.classroom.gradebooks import ENVIRONMENT, grader
+from tests.command_line import PATIENCE
 from tests.samples import ROOT
 
 HELP = "points and a comment, or s to skip, q to stop (everything is kept), ? for this line"
@@ -120,7 +121,7 @@ def test_without_standard_input(graded_class: Path) -> None:
     """It stops at the first question."""
     command = [sys.executable, "-m", "grader", "review", "--gradebook", str(graded_class / "book.db")]
     closed = ["sh", "-c", 'exec "$@" <&-', "sh", *command]
-    done = subprocess.run(closed, cwd=ROOT, env=ENVIRONMENT, capture_output=True, check=False, timeout=60)
+    done = subprocess.run(closed, cwd=ROOT, env=ENVIRONMENT, capture_output=True, check=False, timeout=PATIENCE)
     assert (done.returncode, done.stderr) == (0, b"")
     assert done.stdout.endswith(b"0 marked, 4 still wait\n")
 
@@ -136,7 +137,7 @@ def test_two_people_at_once(top: Path) -> None:
         while "in " not in (line := slow.stdout.readline()):  # the last line before the first question
             assert line
         review(top, "s\n4\n1\nq\n")
-        out, _ = slow.communicate("2\ns\n", timeout=60)
+        out, _ = slow.communicate("2\ns\n", timeout=PATIENCE)
     assert "Anna Ek (anna): About picture" not in out
     assert "Ben Oh (emil): About picture" in out
     assert out.endswith("1 marked, 1 still wait\n")
@@ -209,7 +210,7 @@ def test_ctrl_c_keeps_what_was_given(top: Path) -> None:
         while text.count(b"points, 0 to 4") < 2:
             text += os.read(asked.stdout.fileno(), 4096)
         asked.send_signal(2)
-        assert asked.wait(60) == 130
+        assert asked.wait(PATIENCE) == 130
     os.close(ours)
     os.close(theirs)
     assert marks(top) == [("anna", "essay", 3.0, "good")]

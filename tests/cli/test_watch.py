@@ -17,6 +17,7 @@ import pytest
 from grader.cli.listening import Watched, _filter, _place, rounds
 from grader.errors import InputError
 from grader.submission.folder import is_looked_at, read_folder
+from tests.command_line import PATIENCE
 from tests.golden.cases import ROOT, run
 
 watchfiles = pytest.importorskip("watchfiles")
@@ -28,7 +29,6 @@ WORSE = "\n70 -> 64 of 70 points (-6)\nnow failed: lidar-frame (-6)\n\n64 / 70 p
 END = "shows the\nwhole robot.\n"  # of a report on a robot with a mistake
 FLAWLESS_END = "down to the ground, z = 0 of\n          base_footprint\n"
 FOLDER_END = "Task3_Step3.png (320 x 240\n    pixels, 584 bytes)\n"
-DEADLINE = 60.0  # seconds that anything may take on a busy machine
 
 
 class Reader:
@@ -53,7 +53,7 @@ class Reader:
     def until(self, words: str) -> str:
         """Everything up to these words, which have to come."""
         with self._news:
-            self._news.wait_for(lambda: self._is_over or words in self._text[self._read :], DEADLINE)
+            self._news.wait_for(lambda: self._is_over or words in self._text[self._read :], PATIENCE)
             found = self._text.find(words, self._read)
             assert found >= 0, f"{words!r} is not in {self._text[self._read :]!r}"
             start, self._read = self._read, found + len(words)
@@ -62,7 +62,7 @@ class Reader:
     def rest(self) -> str:
         """Everything that is still to come, up to the end."""
         with self._news:
-            assert self._news.wait_for(lambda: self._is_over, DEADLINE)
+            assert self._news.wait_for(lambda: self._is_over, PATIENCE)
             return self._text[self._read :]
 
 
@@ -91,14 +91,14 @@ class Watch:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.process.kill()
-        self.process.wait(DEADLINE)
+        self.process.wait(PATIENCE)
         for reader in filter(None, (self._out, self.err)):
-            reader.thread.join(DEADLINE)
+            reader.thread.join(PATIENCE)
 
     def interrupt(self) -> int:
         """Press Ctrl-C: the exit code."""
         self.process.send_signal(signal.SIGINT)
-        return self.process.wait(DEADLINE)
+        return self.process.wait(PATIENCE)
 
 
 @pytest.fixture
@@ -248,7 +248,7 @@ def test_closed_standard_output(robot: Path) -> None:
             text += os.read(ours, 65536)
         os.close(ours)
         put(URDF, robot)
-        assert watch.process.wait(DEADLINE) == 2
+        assert watch.process.wait(PATIENCE) == 2
         assert watch.err.rest() == "grader: cannot write the report: standard output: Broken pipe\n"
 
 
@@ -283,7 +283,7 @@ def test_without_the_extra(robot: Path) -> None:
     """The command to type is said."""
     code = "import sys; sys.modules['watchfiles'] = None; from grader.__main__ import main; main()"
     command = [sys.executable, "-P", "-c", code, "grade", "--watch", str(robot)]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, check=False, timeout=DEADLINE)
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, check=False, timeout=PATIENCE)
     assert (done.returncode, done.stdout) == (2, b"")
     assert done.stderr == b"grader: --watch needs watchfiles: pip install 'grader[watch]'\n"
 

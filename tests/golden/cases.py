@@ -1,14 +1,13 @@
 """Golden cases: a command line, and beside it what it must print, byte for byte."""
 
-import os
-import subprocess
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from tests.command_line import ROOT, run
+
+__all__ = ["CLASSROOM50", "GOLDEN", "ROOT", "Golden", "run"]
 HERE = Path(__file__).parent
-ROOT = HERE.parent.parent
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,16 +75,3 @@ GOLDEN = (
     Golden("rubric-show", ("rubric", "show", "lab6"), 0),
     *_in_every_format("several-mistakes", "submissions/several-mistakes/my_robot.urdf", 1),
 )
-
-
-def run(arguments: tuple[str, ...], **variables: str) -> subprocess.CompletedProcess[bytes]:
-    """Run the command line as a user does, 80 columns wide, from the project's root."""
-    environment = {**os.environ, "COLUMNS": "80", "PYTHONIOENCODING": "utf-8", **variables}
-    return subprocess.run(
-        [sys.executable, "-m", "grader", *arguments],
-        cwd=ROOT,
-        env=environment,
-        capture_output=True,
-        check=False,
-        timeout=60,
-    )

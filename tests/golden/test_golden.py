@@ -2,13 +2,14 @@
 
 import pytest
 
-from tests.golden.cases import GOLDEN, Golden, run
+from tests.command_line import run_process
+from tests.golden.cases import GOLDEN, Golden
 
 
 @pytest.mark.parametrize("case", GOLDEN, ids=lambda case: case.name)
 def test_a_command_prints_what_it_always_printed(case: Golden) -> None:
     """Output and exit code are those that were approved; standard error stays empty."""
-    done = run(case.arguments, **case.variables)
+    done = run_process(case.arguments, variables=case.variables)
     assert done.stdout.decode() == case.file.read_text(encoding="utf-8")
     assert (done.returncode, done.stderr) == (case.exit_code, b"")
 
@@ -16,6 +17,6 @@ def test_a_command_prints_what_it_always_printed(case: Golden) -> None:
 def test_the_same_run_gives_the_same_bytes() -> None:
     """Hash seeds, time zones and locales change nothing."""
     arguments = ("grade", "submissions/several-mistakes/my_robot.urdf", "--format", "json")
-    one = run(arguments, PYTHONHASHSEED="1", TZ="UTC", LANG="C")
-    other = run(arguments, PYTHONHASHSEED="2", TZ="Asia/Tokyo", LANG="C.UTF-8")
+    one = run_process(arguments, variables={"PYTHONHASHSEED": "1", "TZ": "UTC", "LANG": "C"})
+    other = run_process(arguments, variables={"PYTHONHASHSEED": "2", "TZ": "Asia/Tokyo", "LANG": "C.UTF-8"})
     assert one.stdout == other.stdout

@@ -15,7 +15,7 @@ def test_verdict_is_that_of_ros(path: Path) -> None:
     """`check_urdf` and the reader agree; every problem that is found has its place in the file."""
     data = path.read_bytes()
     read = read_urdf(data, path.name)
-    oracle = check_urdf(data, timeout=20)
+    oracle = check_urdf(data, seconds=20)
     assert read.verdict == oracle.verdict, f"{oracle.stderr}\n{[problem.message for problem in read.problems]}"
     lines = data.decode().split("\n")
     for problem in read.problems:

@@ -59,6 +59,7 @@ def test_reports_are_valid(name: str) -> None:
         assert result["status"] == "failed" or result["feedback"] == ""
 
 
+@pytest.mark.slow
 def test_reports_and_inspections_of_every_edge_case_are_valid() -> None:
     """Whatever the file: no exception, no NaN, no invalid Unicode."""
     report_schema, inspect_schema = (jsonschema.Draft202012Validator(each) for each in (REPORT_SCHEMA, INSPECT_SCHEMA))

@@ -129,7 +129,7 @@ def assert_same_if_plain(text: str) -> None:
         assert tree(root) == tree(etree.fromstring(translate(text).xml, _PARSER))
 
 
-@settings(max_examples=600, deadline=None)
+@settings(max_examples=300, deadline=None)
 @given(text=_robots)
 def test_plain_text_means_the_same_to_lxml(text: str) -> None:
     """Where no translation is needed, lxml reads the same tags and attributes from the text and the translation."""
@@ -171,7 +171,7 @@ def test_plain_soup_means_the_same_to_lxml(raw: bytes) -> None:
         assert {name: value for name, value in attributes.items() if name.isascii() and name.isalnum()} == others
 
 
-@settings(max_examples=700, deadline=None)
+@settings(max_examples=400, deadline=None)
 @given(text=_robots)
 def test_both_ways_to_read_give_the_same_robot(text: str) -> None:
     """An empty CDATA section sends a file through the translation: robot, problems and places stay as they are."""
