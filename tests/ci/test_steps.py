@@ -254,7 +254,7 @@ def test_the_class_workflow(tmp_path: Path, published: Path) -> None:
     assert "::warning title=lab6-none::This repository is empty." in said
     grades = (runner.temp / "grades.csv").read_text(encoding="utf-8")
     assert len(grades.splitlines()) == 5  # a header, the roster, and the empty one
-    assert {path.name for path in (runner.temp / "reports").iterdir()} == {"ada.md", "grace.md", "none.md"}
+    assert {path.name for path in (runner.temp / "reports").iterdir()} == {"ada.md", "grace.md", "index.csv", "none.md"}
 
 
 @pytest.mark.slow
