@@ -137,10 +137,10 @@ class Batch:
             for known in self._passed:
                 if known.student not in self._renamed and known.key not in contested:
                     self._book.see_gone(known, self._run)
+                if settings.roster is not None and settings.roster.entry(known.key) is None and known.is_expected:
+                    self._book.leave_roster(known.student)
             for student in (*intake.absent, *intake.contested):
                 self._book.keep_student(student, self._enrolment(student))
-            if settings.roster is not None:
-                self._book.leave_roster({student.key for student in settings.roster.students})
         self._book.finish(self._run)
         return self._progress
 

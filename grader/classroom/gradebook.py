@@ -2,7 +2,7 @@
 
 import sqlite3
 import zlib
-from collections.abc import Container, Iterator
+from collections.abc import Iterator
 from contextlib import closing, contextmanager, suppress
 from datetime import UTC, datetime
 from pathlib import Path
@@ -197,11 +197,9 @@ class Gradebook:
         row = (known.student, run, known.result, known.place, "", known.is_late, known.submitted, 1)
         self.connection.execute("INSERT INTO seen VALUES (?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING", row)
 
-    def leave_roster(self, keys: Container[str]) -> None:
-        """Note of everybody who was on the roster, and is not in `keys`, that they no longer are."""
-        for identity, key in self.connection.execute("SELECT id, key FROM student WHERE expected = 1").fetchall():
-            if key not in keys:
-                self.connection.execute("UPDATE student SET expected = 0, entry = '' WHERE id = ?", (identity,))
+    def leave_roster(self, student: int) -> None:
+        """Note of a student who was on the roster that they no longer are."""
+        self.connection.execute("UPDATE student SET expected = 0, entry = '' WHERE id = ?", (student,))
 
     def rename(self, student: int, key: str) -> bool:
         """Give a student another key, with all that there is of them; False where it is that of another who has something."""

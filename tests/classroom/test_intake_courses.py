@@ -67,7 +67,11 @@ def test_a_roster_makes_students_sure(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("group", "words"), [("blue", "whose group is 'blue'"), ("", "who has no group in the roster")]
+    ("group", "words"),
+    [
+        ("blue", "whose group is 'blue'"),
+        ("", "who has no group in the roster (its column group names the team folders)"),
+    ],
 )
 @pytest.mark.parametrize("name", ["ash", "ASH", "Ann Ash", "1"])
 def test_a_team_names_only_its_own_members(tmp_path: Path, name: str, group: str, words: str) -> None:

@@ -97,6 +97,32 @@ def test_marks_never_leave_the_roster(tmp_path: Path) -> None:
     assert after["alice"]["marks_by_hand"] == 0
 
 
+def test_sections_with_rosters_of_their_own(tmp_path: Path) -> None:
+    """A second class that is added leaves those of the first on their roster; who is taken off it is no longer expected."""
+    for name in ("ann", "bea"):
+        submit(tmp_path / "class" / name, BAD)
+    batch(tmp_path, roster="id\nann\nbea\nabe\n")
+    submit(tmp_path / "second/cal", BAD)
+    (tmp_path / "second.csv").write_text("id\ncal\n")
+    added = (
+        "batch",
+        tmp_path / "second",
+        "--gradebook",
+        tmp_path / "g.db",
+        "--roster",
+        tmp_path / "second.csv",
+        "--add",
+    )
+    assert here(*added).returncode == 0
+    listed = here("export", "csv", "--gradebook", tmp_path / "g.db").stdout
+    assert [line.split(",")[0] for line in listed.splitlines()[1:]] == ["abe", "ann", "bea", "cal"]
+    assert "not on the roster" not in batch(tmp_path).stdout
+    shutil.rmtree(tmp_path / "class/bea")
+    done = batch(tmp_path, roster="id\nann\nabe\n")
+    assert "bea: not in the class folder any more; not on the roster" in done.stdout
+    assert "cal" not in done.stdout
+
+
 def test_contested_submissions_change_nothing(tmp_path: Path) -> None:
     """Once a second folder claims the same student by name only, neither counts, and what was there before stays."""
     submit(tmp_path / "class/Alice Ash", BAD)

@@ -107,7 +107,11 @@ class Roster:
         elsewhere = self._people.find(claims, OF_TEAM_FOLDERS).people if student.team else ()
         if elsewhere:
             entry = self.entries[elsewhere[0]]
-            group_words = f"whose group is {entry.section!r}" if entry.section else "who has no group in the roster"
+            group_words = (
+                f"whose group is {entry.section!r}"
+                if entry.section
+                else "who has no group in the roster (its column group names the team folders)"
+            )
             return Match(None, found.clue, doubt=f"is named like {entry.student.key}, {group_words}")
         return Match(None)
 
