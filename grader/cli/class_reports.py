@@ -1,8 +1,6 @@
 """A report for each student of a class, from the gradebook, in files of their own."""
 
-import csv
 import hashlib
-import io
 import re
 import unicodedata
 from collections import Counter
@@ -12,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from grader.classroom.lms.spreadsheet import neutral, write_table
+from grader.classroom.lms.spreadsheet import neutral, rows_of_table, write_table
 from grader.cli.formats import Format, render
 from grader.cli.saving import save
 from grader.errors import InputError
@@ -108,8 +106,8 @@ def file_names(keys: Sequence[str]) -> dict[str, str]:
 def _record_names(index: Path, names: dict[str, str]) -> None:
     """Write down whose each report is; raises InputError where a report of another student would be written over."""
     try:
-        before = dict(list(csv.reader(io.StringIO(index.read_text(encoding="utf-8"))))[1:]) if index.exists() else {}
-    except (OSError, ValueError):
+        before = {row[0]: row[1] for row in rows_of_table(index.read_text(encoding="utf-8"))} if index.exists() else {}
+    except (OSError, ValueError, IndexError):
         raise InputError(
             f"cannot read {index}, which says whose each report is: remove it, or name another folder"
         ) from None

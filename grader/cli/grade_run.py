@@ -91,8 +91,9 @@ def grade_once(wanted: Wanted) -> tuple["Report", int]:
     save_reports(wanted, done, modes)
     text = render(done.report, wanted.format, done.base, to_file=False)
     emit(text if wanted.format is Format.TERMINAL else text.encode("utf-8", "backslashreplace"))
-    _complain_of_undecided(done)
-    if on_github():
+    if not on_github():
+        _complain_of_undecided(done)
+    else:
         tell_github(done.report, done.base, annotate=wanted.format is not Format.GITHUB)
     return done.report, done.code
 

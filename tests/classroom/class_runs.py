@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from grader.cli.app import run as run_here
+from grader.cli.class_reports import INDEX
 from tests.command_line import GRADER, PATIENCE, run, run_process, surroundings
 from tests.samples import ROOT
 
@@ -141,8 +142,8 @@ def counted(done: Done) -> str:
 
 
 def contents(folder: Path) -> dict[str, bytes]:
-    """All files of a folder by name."""
-    return {path.name: path.read_bytes() for path in folder.iterdir()}
+    """All files of a folder by name, but for the index of reports."""
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.name != INDEX}
 
 
 def report_here(path: Path, to: Path) -> tuple[int, bytes | str]:

@@ -34,9 +34,9 @@ REASONS = {
     "crashes": "the process that graded it was ended by signal 11",
     "leaves": "the process that graded it ended in the midst of it",
     "leaves_loudly": "the process that graded it ended with exit code 7",
-    "exits": "the grader itself failed: SystemExit: out",
+    "exits": "the check behaves of the package hostile-checks is faulty: SystemExit: out",
     "eats": r".*(MemoryError|more memory than a worker may have).*",
-    "raises": r".*\(RuntimeError\); please report it",
+    "raises": "the check behaves of the package hostile-checks is faulty: RuntimeError: as asked",
 }
 # Where a process ends before anybody has heard that it had begun, its task is missed only when its time is over; and memory is
 # not eaten up at once everywhere.

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from grader.classroom.schema import STEPS
-from tests.classroom.class_runs import counted, grader, rows, urdf_class, verdicts
+from tests.classroom.class_runs import contents, counted, grader, rows, urdf_class, verdicts
 from tests.samples import ROOT
 
 
@@ -241,4 +241,4 @@ def test_a_short_time_is_for_submissions_and_not_for_reports(tmp_path: Path) -> 
     command = ("batch", folder, "--gradebook", tmp_path / "lab6.db", "--reports", reports, "--timeout", "0.1")
     done = grader(*command, "--report-format", "terminal", "--report-format", "json")
     assert done.returncode == 0, done.stderr
-    assert len(list(reports.iterdir())) == 400
+    assert len(contents(reports)) == 400

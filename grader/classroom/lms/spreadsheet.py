@@ -28,6 +28,11 @@ def write_table(header: Sequence[str], rows: Iterable[Sequence[CellValue]]) -> s
     return text.getvalue()
 
 
+def rows_of_table(text: str) -> list[list[str]]:
+    """The rows below the header of a table that `write_table` has made."""
+    return list(csv.reader(io.StringIO(text, newline="")))[1:]
+
+
 def neutral(text: str) -> str:
     """Text that no spreadsheet takes for a formula: an apostrophe goes before what would start one."""
     safe = _INSIDE.sub(r"\1'", spelt_out(text))
