@@ -67,36 +67,30 @@ def place(
     if roster is None:
         return Placement(range(len(shelf)))
     joined = _join(shelf, roster)
-    whose, notes = joined.whose, joined.notes
     shared = _share(shelf, roster, joined, holds_students)
     taken = {plain_word(entry.student.key) for entry in roster.entries}
-    renamed: dict[int, str] = {}
-    unmatched: list[str] = []
-    for index, owner in enumerate(whose):
-        if owner == _NOBODY and index not in shared:
-            key = shelf.student(index).key
-            if plain_word(key) in taken:  # it must not be mistaken for the student's own
-                key = renamed[index] = place_key(shelf.place(index))
-            unmatched.append(key)
-
-    def final_key(placed: tuple[int, int]) -> str:
-        index, owner = placed
-        return roster.entries[owner].student.key if owner != _NOBODY else renamed.get(index) or shelf.student(index).key
-
-    placed = [(index, owner) for index, owner in enumerate(whose) if index not in shared]
-    placed += [(index, member) for index, members in shared.items() for member in members]
-    placed.sort(key=final_key)
-    there = {owner for _, owner in placed} | joined.contested
-    shown = sorted(notes)[:_MAX_NOTES]
+    open_ones = [index for index, owner in enumerate(joined.whose) if owner == _NOBODY and index not in shared]
+    keys = {index: shelf.student(index).key for index in open_ones}
+    # It must not be mistaken for the student's own.
+    renamed = {index: place_key(shelf.place(index)) for index, key in keys.items() if plain_word(key) in taken}
+    keys |= renamed
+    placed = [
+        (roster.entries[owner].student.key, index, owner) for index, owner in enumerate(joined.whose) if owner >= 0
+    ]
+    placed += [(key, index, _NOBODY) for index, key in keys.items()]
+    placed += [(roster.entries[each].student.key, index, each) for index, members in shared.items() for each in members]
+    placed.sort()
+    there = {owner for *_, owner in placed} | joined.contested
+    shown, more = sorted(joined.notes)[:_MAX_NOTES], len(joined.notes) - _MAX_NOTES
     return Placement(
-        array("l", (index for index, _ in placed)),
-        array("l", (owner for _, owner in placed)),
+        array("l", (index for _, index, _ in placed)),
+        array("l", (owner for *_, owner in placed)),
         shared,
         renamed,
-        tuple(sorted(unmatched)),
+        tuple(sorted(keys.values())),
         tuple(entry.student for index, entry in enumerate(roster.entries) if index not in there),
         tuple(roster.entries[index].student for index in sorted(joined.contested)),
-        (*shown, f"and {len(notes) - len(shown)} more") if len(notes) > len(shown) else tuple(shown),
+        (*shown, f"and {more} more") if more > 0 else tuple(shown),
     )
 
 
