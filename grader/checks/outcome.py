@@ -1,7 +1,8 @@
 """What a check found, and the ways to say it: measured against expected, how far off, in which unit and frame."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import lru_cache
+from math import isfinite
 from typing import Literal, NamedTuple
 
 from grader.robot.source import Location, Mark, Spot
@@ -34,18 +35,37 @@ def fault_of(returned: object) -> str:
         return f"it returned {type(returned).__name__}, not an Outcome"
     if returned.status not in ("passed", "failed", "pending"):
         return f"it returned the status {returned.status!r}; a check says passed, failed or pending"
-    wrong = [name for name, kinds in _TYPES.items() if not isinstance(getattr(returned, name), kinds)]
-    return f"it returned an Outcome whose {wrong[0]} is {type(getattr(returned, wrong[0])).__name__}" if wrong else ""
+    wrong = [name for name, holds in _HOLDS.items() if not holds(getattr(returned, name))]
+    return f"it returned an Outcome whose {wrong[0]} no report can hold" if wrong else ""
 
 
-_VALUES = (bool, int, float, str, tuple, Mapping, type(None))
-_TYPES: Mapping[str, tuple[type, ...]] = {
-    "message": (str,),
-    "measured": _VALUES,
-    "expected": _VALUES,
-    "tolerance": (int, float, type(None)),
-    "unit": (str, type(None)),
-    "location": (Location, type(None)),
+def _is_text(value: object) -> bool:
+    return isinstance(value, str)
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and isfinite(value)
+
+
+def _is_value(value: object) -> bool:
+    match value:
+        case None | str():
+            return True
+        case tuple():
+            return all(map(_is_number, value)) or all(map(_is_text, value))
+        case Mapping():
+            return all(map(_is_text, (*value, *value.values())))
+        case _:
+            return _is_number(value)
+
+
+_HOLDS: Mapping[str, Callable[[object], bool]] = {
+    "message": _is_text,
+    "measured": _is_value,
+    "expected": _is_value,
+    "tolerance": lambda value: value is None or _is_number(value),
+    "unit": lambda value: value is None or _is_text(value),
+    "location": lambda value: value is None or isinstance(value, Location),
 }
 
 

@@ -104,7 +104,7 @@ def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:
     """
     hints = get_type_hints(function)
     subject, *rest = inspect.signature(function).parameters.values()
-    for each in rest:
+    for each in (subject, *rest):
         if each.kind not in (each.KEYWORD_ONLY, each.POSITIONAL_OR_KEYWORD):
             raise InputError(f"its argument {each} cannot be given by name")
         if each.name not in hints:

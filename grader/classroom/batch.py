@@ -1,5 +1,6 @@
 """Grade a class: what is new or changed is handed out, what comes back goes into the gradebook at once."""
 
+import json
 import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Executor
@@ -10,6 +11,8 @@ from grader import __version__
 from grader.classroom.belonging import assignments_text, check_belongs
 from grader.classroom.gradebook import Gradebook
 from grader.classroom.identity import Identities
+from grader.classroom.intake.layouts.attempts import home_of
+from grader.classroom.intake.layouts.shelf import place_key
 from grader.classroom.intake.roster import Entry, Roster, entry_to_json
 from grader.classroom.intake.taking import Intake
 from grader.classroom.known import Enrolment, Known
@@ -121,8 +124,15 @@ class Batch:
         self._before = self._book.all_known()
         self._next = next(self._before, None)
         self._has_others = self._next is not None
+        contested = {student.key for student in intake.contested}
         for hand_in in intake.hand_ins():
-            known = self._known(hand_in)
+            before = self._known(hand_in)
+            if before is not None and self._is_doubtful(hand_in, before):
+                self.notes.append(f"{hand_in.paths[0]} may be of {before.key}, who had another before: left unassigned")
+                contested.add(before.key)
+                self._tell(("unchanged",))
+                continue
+            known = self._still_valid(before)
             if known is not None and self._is_unchanged(hand_in, known):
                 self._tell(("unchanged",))
             else:
@@ -132,7 +142,6 @@ class Batch:
         while len(self._queue):
             self._take(all_in=True)
         self._pass_to(None)
-        contested = {student.key for student in intake.contested}
         with self._book.transaction():
             for known in self._passed:
                 if known.student not in self._renamed and known.key not in contested:
@@ -167,14 +176,38 @@ class Batch:
         return known
 
     def _known(self, hand_in: HandIn) -> Known | None:
-        """The result of this student that may still hold: of the same rubric and grader, and no failure of ours."""
+        """What the gradebook has of this student."""
         key = hand_in.student.key
         self._pass_to(key)
         known = self._next if self._next is not None and self._next.key == key else None
         if known is not None:
             self._next = next(self._before, None)
-        elif self._has_others:
+        if (known is None and self._has_others) or (known is not None and self._gives_way(known, hand_in)):
             known = self._same_person(hand_in)
+        return known
+
+    def _gives_way(self, known: Known, hand_in: HandIn) -> bool:
+        """Whether a key was only that of a folder until the roster gave it to somebody else, who is known as well.
+
+        The folder's results and marks then get the key of its place.
+        """
+        root, roster = self._settings.root, self._settings.roster
+        if roster is None or known.is_expected or known.source != root or self._identities is None:
+            return False
+        path = json.loads(known.place)[0][0]
+        if home_of(path) == home_of(hand_in.paths[0]) or self._identities.of(hand_in) is None:
+            return False
+        self._passed.append(known)
+        return self._book.rename(known.student, place_key(path))
+
+    def _is_doubtful(self, hand_in: HandIn, known: Known) -> bool:
+        """Whether a submission only may be of a student who had another one in this class before."""
+        if hand_in.is_certain or known.source != self._settings.root:
+            return False
+        return home_of(json.loads(known.place)[0][0]) != home_of(hand_in.paths[0])
+
+    def _still_valid(self, known: Known | None) -> Known | None:
+        """A result that may still hold: of the same rubric and grader, and no failure of ours."""
         if known is None or (known.rubric, known.version) != (self._sha256, __version__):
             return None
         return None if known.verdict == "errored" or self._settings.force else known

@@ -23,6 +23,12 @@ def check_belongs(book: Gradebook, intake: Intake, identities: Identities, rubri
         theirs, ours = ({each for each in some if each.startswith(kind)} for some in (before, intake.assignments))
         if theirs and ours and theirs.isdisjoint(ours):
             raise _refusal(book, f"it was graded for {_some(theirs)}, not {_some(ours)}")
+    for name in ("canvas", "moodle"):
+        theirs, ours = (
+            {getattr(each, name) for each in some} - {""} for some in (book.students(), intake.named_students())
+        )
+        if theirs and ours and theirs.isdisjoint(ours):
+            raise _refusal(book, f"{name.title()} gives the students of this class other numbers")
     if next(book.students(), None) is not None and not _has_common_student(book, intake, identities):
         raise _refusal(book, "no student of this class is in it")
 

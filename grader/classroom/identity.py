@@ -5,7 +5,8 @@ from functools import cached_property
 from json import dumps, loads
 
 from grader.classroom.gradebook import Gradebook
-from grader.classroom.intake.roster import Roster
+from grader.classroom.intake.layouts.shelf import is_place_key
+from grader.classroom.intake.roster import Entry, Roster, entry_from_json
 from grader.classroom.known import Known
 from grader.classroom.matching import NUMBERS, Clue, Clues, People, clues_of, numbers_of
 from grader.classroom.students import HandIn, Student
@@ -43,12 +44,18 @@ class Identities:
         told = clues_of(entry.student, entry.aliases) if entry is not None else {}
         found = self._people.find({**told, **numbers_of(student)}, (*NUMBERS, Clue.WORD))
         if not (found.people or found.contradicted) and (self._roster is None or entry is not None):
-            words = clues_of(Student(student.key, login=student.login, canvas=student.canvas, moodle=student.moodle))
+            # Another folder may have the same name: in another team, or where the name could not be the key.
+            login = "" if student.team or is_place_key(student.key) else student.login
+            words = clues_of(Student(student.key, login=login, canvas=student.canvas, moodle=student.moodle))
             claims = {**words, Clue.PLACE: (dumps(hand_in.paths),)}
             found = self._people.find(claims, (*NUMBERS, Clue.WORD, Clue.PLACE), self._never_on_roster)
         return self._known[found.only] if found.only is not None else None
 
 
 def _clues(known: Known, root: str) -> Clues:
+    """What identifies a student of the gradebook: what a roster said; else the key and the place, for a login may be a folder's name."""
+    if known.is_expected:
+        entry = entry_from_json(known.entry) if known.entry else Entry(known.record)
+        return {**clues_of(entry.student, entry.aliases), **numbers_of(known.record)}
     place = (dumps(loads(known.place)[0]),) if known.source == root else ()
-    return {**clues_of(known.record), Clue.PLACE: place}
+    return {**clues_of(Student(known.key)), **numbers_of(known.record), Clue.PLACE: place}

@@ -62,6 +62,11 @@ class Known(NamedTuple):
         return Student(*self.told[: len(_STUDENT)])
 
     @property
+    def entry(self) -> str:
+        """The row of the roster, as JSON; empty for one who is not on it."""
+        return str(self.told[len(_STUDENT) + Enrolment._fields.index("entry")])
+
+    @property
     def is_expected(self) -> bool:
         """Whether the student was on the roster."""
         return bool(self.told[len(_STUDENT)])

@@ -93,13 +93,13 @@ class People:
 def clues_of(student: Student, aliases: Iterable[str] = ()) -> Clues:
     """The clues in a record of a student: a row of a roster or LMS file, or a student of the gradebook."""
     local_part, at, _ = student.email.partition("@")
-    words = _words(student.key, student.login, student.sis, student.email, *aliases)
+    words = {_composed(word.strip()) for word in (student.key, student.login, student.sis, student.email, *aliases)}
     return _present(
         {
             Clue.CANVAS: (student.canvas,),
             Clue.MOODLE: (student.moodle,),
             Clue.WORD: words,
-            Clue.ANY_CASE: {word.casefold() for word in words},
+            Clue.ANY_CASE: {plain_word(word) for word in words},
             Clue.LOCAL_PART: {plain_word(local_part)} if at else (),
             Clue.CANVAS_NAME: set(canvas_names(student.name)),
             Clue.NAME: {plain_name(student.name), plain_name(printable_path(student.name))},
@@ -110,8 +110,8 @@ def clues_of(student: Student, aliases: Iterable[str] = ()) -> Clues:
 
 def claims_of(student: Student) -> Clues:
     """The clues in the name of a submission, or in what a person types: a word may be anything that identifies a student."""
-    words = _words(student.key, student.login, student.name if student.team else "")
-    lower = {word.casefold() for word in words}
+    words = {_composed(word) for word in (student.key, student.login, student.name if student.team else "")}
+    lower = {plain_word(word) for word in words}
     in_canvas = student.key.rpartition("_")[0] if student.canvas or student.maybe_canvas else ""
     return _present(
         {
@@ -136,10 +136,6 @@ def _present(clues: Mapping[Clue, Collection[str]]) -> Clues:
     return {clue: kept for clue, values in clues.items() if (kept := {value for value in values if value})}
 
 
-def _words(*words: str) -> set[str]:
-    return {" ".join(_composed(word).split()) for word in words}
-
-
 def _composed(word: str) -> str:
     return word if word.isascii() else unicodedata.normalize("NFC", word)
 
@@ -154,8 +150,8 @@ def _contradict(left: Clues, right: Clues) -> bool:
 
 
 def plain_word(word: str) -> str:
-    """A login, number or address for comparison: case does not count, nor how an accent is encoded."""
-    return _composed(word).casefold()
+    """A login, number or address for comparison: case and spaces do not count, nor how an accent is encoded."""
+    return " ".join(_composed(word).casefold().split())
 
 
 def plain_name(name: str) -> str:

@@ -29,7 +29,8 @@ class HandIn:
 
     `paths` lead from the top of the class folder (or archive) to one folder, one file, or the several files that an LMS has
     saved side by side; with forward slashes. `names` says what the student called each of these, where the LMS has renamed
-    them. `submitted` is a time as ISO 8601, empty where nobody says.
+    them. `submitted` is a time as ISO 8601, empty where nobody says. `is_certain` is False where a roster assigns it by something
+    less than the student's own number, key or login.
     """
 
     student: Student
@@ -39,3 +40,4 @@ class HandIn:
     attempt: int = 1
     earlier: tuple[str, ...] = ()
     names: tuple[str, ...] = ()
+    is_certain: bool = True

@@ -67,7 +67,7 @@ def grade_class(
         raise InputError(f"--timeout takes a number of seconds, not {timeout}")
     rules = load_with_answers(rubric)  # for the gradebook, so that `review` has them on any machine
     deadline = read_time(due) if due else None
-    known = read_roster(roster) if roster is not None else _kept_roster(gradebook)
+    known = _roster(roster, gradebook)
     root = path.resolve()
     _check(wanted, gradebook, root)
     intake = take_in(path, known, layout, assignment, rules.id)
@@ -86,12 +86,14 @@ def grade_class(
         emit(class_text(Standings(book, deadline), wanted.output, done))
 
 
-def _kept_roster(gradebook: Path) -> Roster | None:
-    """The roster that an earlier run into this gradebook was given."""
+def _roster(file: Path | None, gradebook: Path) -> Roster | None:
+    """The roster, or the one that an earlier run into this gradebook was given; with the LMS's numbers that the gradebook knows."""
+    roster = read_roster(file) if file is not None else None
     if not gradebook.exists():
-        return None
+        return roster
     with Gradebook(gradebook) as book:
-        return roster_from_json(book.roster_entries())
+        roster = roster or roster_from_json(book.roster_entries())
+        return roster.knowing(book.students()) if roster is not None else None
 
 
 @contextmanager

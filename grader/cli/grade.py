@@ -6,7 +6,7 @@ import typer
 
 from grader.cli.ci import refusals_told
 from grader.cli.formats import Format
-from grader.cli.grade_run import Threshold, Wanted, grade_once, read_saves
+from grader.cli.grade_run import Wanted, grade_once, read_saves
 from grader.cli.options import DEFAULT_RUBRIC, MaxSizeOption, RubricOption
 from grader.cli.suggestions import part_ids, save_formats
 from grader.submission.files import URDF_LIMIT
@@ -74,7 +74,7 @@ def grade(
             tuple(part or ()),
             output_format,
             read_saves(save_as or ()),
-            Threshold.read(fail_under) if fail_under is not None else None,
+            fail_under,
             max_size,
             answers,
         )

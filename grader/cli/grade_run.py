@@ -54,9 +54,14 @@ class Wanted:
     parts: tuple[str, ...]
     format: Format
     saves: tuple[tuple[Format, Path], ...]
-    threshold: Threshold | None
+    fail_under: str | None
     max_size: int
     answers: bool = False
+
+    @property
+    def threshold(self) -> Threshold | None:
+        """The score from which on the exit code is 0, if there is one; raises GraderError."""
+        return Threshold.read(self.fail_under) if self.fail_under is not None else None
 
 
 class Graded(NamedTuple):
@@ -100,6 +105,7 @@ def grade_once(wanted: Wanted) -> tuple["Report", int]:
 
 def graded(wanted: Wanted) -> Graded:
     """Grade what is wanted, and report nothing but faults of ours. Raises GraderError."""
+    threshold = wanted.threshold  # refused before anything is graded
     from grader.grading.grade import grade
     from grader.report.text import printable
     from grader.submission.submission import open_submission
@@ -115,7 +121,7 @@ def graded(wanted: Wanted) -> Graded:
         if result.traceback:
             complain(printable(f"{result.criterion.id}: {result.traceback.strip().splitlines()[-1]}"))
     base = base_of(wanted.path, is_single=submission.is_single)
-    return Graded(report, base, _exit_code(report, wanted.threshold))
+    return Graded(report, base, _exit_code(report, threshold))
 
 
 def _complain_of_undecided(done: Graded) -> None:
@@ -134,10 +140,19 @@ def make_room(wanted: Wanted) -> dict[Path, int]:
     If the run is refused after that, no forged report is taken for its own. A robot stays: it may be what is graded. Raises
     InputError where a report would replace what is graded, or would be written through a symlink of the submission.
     """
-    for _, file in wanted.saves:
-        refuse_links(file, (wanted.path,))
     _refuse_graded(wanted, wanted.path, wanted.rubric)
-    modes = {file: clear(file) for _, file in wanted.saves if Path(os.path.realpath(file)).suffix.lower() not in ROBOTS}
+    refusals: list[InputError] = []
+    modes: dict[Path, int | None] = {}
+    for _, file in wanted.saves:
+        try:
+            refuse_links(file, (wanted.path,))
+        except InputError as error:  # the others are removed all the same
+            refusals.append(error)
+            continue
+        if Path(os.path.realpath(file)).suffix.lower() not in ROBOTS:
+            modes[file] = clear(file)
+    if refusals:
+        raise refusals[0]
     return {file: mode for file, mode in modes.items() if mode is not None}
 
 

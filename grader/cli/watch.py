@@ -37,6 +37,7 @@ def watch(wanted: Wanted) -> int:
     """
     rounds = _rounds(wanted)
     modes = make_room(wanted)
+    _ = wanted.threshold  # which no change of a file would correct
     gc.enable()  # unlike other commands this one may run for hours
     code: int | None = None
     last: _Told | None = None

@@ -105,7 +105,7 @@ class _Run:
         except BaseException as error:  # noqa: BLE001  a faulty check, even one that exits, costs the student nothing else
             from traceback import format_exc  # only ever needed here
 
-            fault = f"{type(error).__name__}: {error}"
+            fault = _words_of(error)
             return Result(criterion, _errored(criterion.check, fault), traceback=format_exc())
 
     def _missing(self, name: Subject) -> object:
@@ -145,6 +145,16 @@ class _Run:
 
 def _skipped(cause: str) -> Outcome:
     return Outcome("skipped", f"not decided, because {cause} failed")
+
+
+def _words_of(error: BaseException) -> str:
+    """What an exception says, even one whose text cannot be made."""
+    try:
+        return f"{type(error).__name__}: {error}"
+    except KeyboardInterrupt:
+        raise
+    except BaseException:  # noqa: BLE001  another package's code
+        return type(error).__name__
 
 
 def _errored(check: Check, fault: str) -> Outcome:

@@ -90,14 +90,17 @@ def test_a_number_of_the_lms_is_stronger_than_a_place(tmp_path: Path) -> None:
     assert {key: each["marks_by_hand"] for key, each in students(tmp_path).items()} == {"101": 1}
 
 
-def test_two_who_both_have_results_stay_apart(top: Path) -> None:
-    """Where both keys have something of their own nothing is thrown together, and it is said."""
+def test_a_key_that_was_a_folders_goes_to_whom_the_roster_gives_it(top: Path) -> None:
+    """The results of a folder that was named like a student's id stay with that folder, and the student's own move along."""
     shutil.copytree(ROOT / "submissions" / "wheels-black", top / "class" / "101")
     batch(top)
+    assert grader("mark", "101", "lidar-frame", "0", "--gradebook", top / "g.db").returncode == 0
     shutil.rmtree(top / "class" / "101")
     done = batch(top, roster=BOTH)
-    assert "alice and 101 seem to be the same" in done.stderr or students(top)["alice"]["marks_by_hand"] == 1
-    assert sum(each["marks_by_hand"] for each in students(top).values()) == 1
+    assert "alice is 101 now" in done.stderr
+    assert {key: each["marks_by_hand"] for key, each in students(top).items()} == {"101": 1, "102": 0, "./101": 1}
+    assert students(top)["101"]["score"] == 93.5
+    assert "./101: not in the class folder any more" in done.stdout
 
 
 def test_who_is_not_there_any_more_gets_no_grade(top: Path) -> None:

@@ -236,7 +236,93 @@ def test_another_assignment_of_moodle_is_refused(tmp_path: Path) -> None:
         place.rename(tmp_path / "class" / f"Jane Doe {number}_{number + 70}_assignsubmission_file")
     done = batch(tmp_path)
     assert done.returncode == 2
-    assert "no student of this class is in it" in done.stderr
+    assert "Moodle gives the students of this class other numbers" in done.stderr
+
+
+@pytest.mark.parametrize("layout", ["moodle", "canvas"])
+def test_a_display_name_takes_nothing_over_later(tmp_path: Path, layout: str) -> None:
+    """The gradebook knows the number of a student whom the roster has by name only: the same name with another is not theirs."""
+    places = {
+        "moodle": ("Bob Birch_12_assignsubmission_file", "Bob Birch_99_assignsubmission_file"),
+        "canvas": ("birchbob_12_1001_robot", "birchbob_99_1002_robot"),
+    }[layout]
+    submit(tmp_path / "class" / places[0], BAD)
+    submit(tmp_path / "class" / places[0].replace("12", "13").replace("Bob", "Eve").replace("bob", "eve"), BAD)
+    batch(tmp_path, "--layout", layout, roster="id,name\nbob,Bob Birch\neve,Eve Birch\n")
+    mark(tmp_path, "bob")
+    before = students(tmp_path)["bob"]
+    (tmp_path / "class" / places[0]).rename(tmp_path / "away")
+    submit(tmp_path / "class" / places[1])
+    done = batch(tmp_path, "--layout", layout)
+    assert "has the name of bob, but another number: left unassigned" in done.stderr
+    after = students(tmp_path)["bob"]
+    assert (after["score"], after["marks_by_hand"]) == (before["score"], 1)
+
+
+def test_a_display_name_removes_nobody(tmp_path: Path) -> None:
+    """Where the files of two users of Canvas can be read as each other's, neither is graded, and the grade so far stays."""
+    (tmp_path / "class").mkdir()
+    shutil.copy(BAD / "my_robot.urdf", tmp_path / "class/doejane_12_1001_6_robot.urdf")
+    shutil.copy(BAD / "my_robot.urdf", tmp_path / "class/roerick_13_1002_robot.urdf")
+    batch(tmp_path, "--layout", "canvas")
+    before = students(tmp_path)["doejane_12"]
+    shutil.copy(BAD / "my_robot.urdf", tmp_path / "class/mallory_12_14_1003_robot.urdf")
+    done = batch(tmp_path, "--layout", "canvas")
+    assert "may be of another user" in done.stderr
+    assert students(tmp_path)["doejane_12"] == before
+
+
+@pytest.mark.parametrize("roster", ["", "id,login\nalice,alice\n", "id,login,group\nalice,alice,team2\n"])
+def test_marks_stay_in_their_team(tmp_path: Path, roster: str) -> None:
+    """A folder of the same name in another team gets nothing of a team that is gone, with a roster or without."""
+    for place in ("team1/Lab6/mallory", "team1/Lab6/dave", "team2/Lab6/alice", "team2/Lab6/bob"):
+        submit(tmp_path / "class" / place, BAD)
+    batch(tmp_path)
+    mark(tmp_path, "team2/alice")
+    (tmp_path / "class/team2").rename(tmp_path / "away")
+    submit(tmp_path / "class/team1/Lab6/alice")
+    done = batch(tmp_path, "--layout", "teams", roster=roster)
+    assert "now, with all" not in done.stderr
+    found = students(tmp_path)
+    assert found["team2/alice"]["marks_by_hand"] == 1
+    assert found["team1/alice"]["marks_by_hand"] == 0
+
+
+def test_two_exact_claims_are_contested(tmp_path: Path) -> None:
+    """A login that is equal to another student's id does not win over that student's own login."""
+    submit(tmp_path / "class/lab6-alice-gh", BAD)
+    roster = "id,name,github\ns123456,Alice Ash,alice-gh\n"
+    batch(tmp_path, roster=roster)
+    before = students(tmp_path)["s123456"]
+    submit(tmp_path / "class/lab6-s123456")
+    assert "left unassigned" in batch(tmp_path, roster=roster).stderr
+    assert students(tmp_path)["s123456"] == before
+
+
+def test_a_case_variant_takes_no_key_over_later(tmp_path: Path) -> None:
+    """Once alice's folder is gone, ALICE still is nobody's: her grade and marks stay as they were."""
+    submit(tmp_path / "class/alice", BAD)
+    submit(tmp_path / "class/ALICE")
+    roster = "id\nalice\n"
+    batch(tmp_path, roster=roster)
+    mark(tmp_path, "alice")
+    before = students(tmp_path)["alice"]
+    shutil.rmtree(tmp_path / "class/alice")
+    done = batch(tmp_path, roster=roster)
+    assert "ALICE may be of alice, who had another before: left unassigned" in done.stderr
+    assert students(tmp_path)["alice"] == before
+
+
+def test_a_folder_without_the_prefix_takes_nothing_over(tmp_path: Path) -> None:
+    """In a class of `lab6-...`, a folder `alice` is not the one that was graded as alice's."""
+    for name in ("lab6-alice", "lab6-carl"):
+        submit(tmp_path / "class" / name, BAD)
+    batch(tmp_path)
+    mark(tmp_path, "alice")
+    submit(tmp_path / "class/alice")
+    batch(tmp_path)
+    marked = [each for each in students(tmp_path).values() if each["marks_by_hand"]]
+    assert [each["score"] for each in marked] == [65.5]
 
 
 def test_another_assignment_of_nbgrader_is_refused(tmp_path: Path) -> None:

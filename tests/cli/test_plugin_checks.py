@@ -31,8 +31,11 @@ def robot(folder: Path, name: str) -> str:
         ("returns_a_tuple", "it returned tuple, not an Outcome"),
         ("returns_another_status", "it returned the status 'fine'; a check says passed, failed or pending"),
         ("returns_skipped", "it returned the status 'skipped'; a check says passed, failed or pending"),
-        ("returns_no_message", "it returned an Outcome whose message is NoneType"),
-        ("returns_a_value_of_no_report", "it returned an Outcome whose measured is set"),
+        ("returns_no_message", "it returned an Outcome whose message no report can hold"),
+        ("raises_without_words", "Wordless"),
+        ("returns_nan", "it returned an Outcome whose measured no report can hold"),
+        ("returns_objects", "it returned an Outcome whose expected no report can hold"),
+        ("returns_a_value_of_no_report", "it returned an Outcome whose measured no report can hold"),
     ],
 )
 @pytest.mark.parametrize("threshold", [(), ("--fail-under", "0")])
@@ -60,6 +63,7 @@ def test_a_check_that_works_decides(tmp_path: Path) -> None:
             "without_annotation",
             "hostile_checks.without_annotation) cannot be used: its argument at_least has no annotation",
         ),
+        ("without_subject", "hostile_checks.without_subject) cannot be used: its argument robot has no annotation"),
         (
             "without_names",
             "hostile_checks.without_names) cannot be used: its argument *values: float cannot be given by name",

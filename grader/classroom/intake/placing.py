@@ -1,7 +1,7 @@
 """Submissions and a roster brought together: whose each of them is, which are unmatched, and who has submitted nothing."""
 
 from array import array
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -21,6 +21,7 @@ class Placement:
     `order` has an index into the shelf for each of them; a team's submission is there once for each member, and in `shared`.
     `whose` has beside each an index into the roster, or -1; `renamed` the keys of unmatched submissions that have an odd name.
     `contested` are students whom several submissions may belong to: none is assigned, and what the gradebook has of them stays.
+    `uncertain` has the indices of submissions that do not bear their student's own number, key or login exactly.
     """
 
     order: Sequence[int]
@@ -30,6 +31,7 @@ class Placement:
     unmatched: tuple[str, ...] = ()
     absent: tuple[Student, ...] = ()
     contested: tuple[Student, ...] = ()
+    uncertain: Collection[int] = ()
     notes: tuple[str, ...] = ()
 
     def key(self, roster: Roster | None, position: int, student: Student) -> str:
@@ -47,7 +49,7 @@ class Placement:
         if index in self.shared:  # the names and numbers are the team's, not its member's
             hand_in = replace(hand_in, student=roster.entries[owner].student)
         if owner != _NOBODY:
-            return roster.complete(owner, hand_in)
+            return replace(roster.complete(owner, hand_in), is_certain=index not in self.uncertain)
         key = self.renamed.get(index)
         return replace(hand_in, student=replace(hand_in.student, key=key)) if key else hand_in
 
@@ -60,12 +62,12 @@ def place(
 ) -> Placement:
     """Whose each submission is.
 
-    Of several that may belong to one student, the one that bears the student's own number, key or login counts; without one, none
-    does, and the student is contested. What belongs to no student, but is named like a group, counts for each member who has
+    Of several that may belong to one student, the only one that bears the student's own number, key or login exactly counts; without
+    it none does, and the student is contested. What belongs to no student, but is named like a group, counts for each member who has
     submitted nothing else, unless its folder `holds_students`: then the group is a section.
     """
     if roster is None:
-        return Placement(range(len(shelf)))
+        return Placement(range(len(shelf)), contested=shelf.contested)
     joined = _join(shelf, roster)
     shared = _share(shelf, roster, joined, holds_students)
     taken = {plain_word(entry.student.key) for entry in roster.entries}
@@ -90,40 +92,39 @@ def place(
         tuple(sorted(keys.values())),
         tuple(entry.student for index, entry in enumerate(roster.entries) if index not in there),
         tuple(roster.entries[index].student for index in sorted(joined.contested)),
+        joined.uncertain,
         (*shown, f"and {more} more") if more > 0 else tuple(shown),
     )
 
 
 class _Claim(NamedTuple):
-    """A submission that may belong to a student, and how surely: the least is the surest."""
+    """A submission that may belong to a student, and by which clue."""
 
     clue: Clue
-    is_other_word: bool
     at: int
-
-    @property
-    def rank(self) -> tuple[Clue, bool]:
-        """How surely it is the student's."""
-        return self.clue, self.is_other_word
 
 
 class _Joined(NamedTuple):
-    """What the names of submissions say: whose each is, which may be a group's, and which students are contested."""
+    """What the names of submissions say: whose each is, which may be a group's, and which students are contested.
+
+    `uncertain` are submissions that do not bear the student's own number, key or login exactly.
+    """
 
     whose: "array[int]"
     open: list[int]
     contested: set[int]
+    uncertain: set[int]
     notes: list[str]
 
 
 def _join(shelf: Shelf, roster: Roster) -> _Joined:
-    joined = _Joined(array("l", [_NOBODY]) * len(shelf), [], set(), [])
+    joined = _Joined(array("l", [_NOBODY]) * len(shelf), [], set(), set(), [])
     claims: dict[int, list[_Claim]] = {}
     for index in range(len(shelf)):
         student = shelf.student(index)
         match = roster.match(student)
         if match.place is not None:
-            claims.setdefault(match.place, []).append(_Claim(match.clue, not match.is_key, index))
+            claims.setdefault(match.place, []).append(_Claim(match.clue, index))
         elif match.doubt:
             joined.notes.append(f"{student.key} {match.doubt}: left unassigned")
             joined.contested.update(match.several)
@@ -132,17 +133,21 @@ def _join(shelf: Shelf, roster: Roster) -> _Joined:
     for owner, claimants in claims.items():
         first, *others = sorted(claimants)
         key = roster.entries[owner].student.key
-        if others and (first.clue > CERTAIN or others[0].rank == first.rank):
+        if others and (first.clue > CERTAIN or others[0].clue == first.clue):
             names = ", ".join(shelf.student(each.at).key for each in (first, *others))
             joined.contested.add(owner)
             joined.notes.append(f"{names} may each be of {key}: left unassigned, and what {key} had before stays")
             continue
         joined.whose[first.at] = owner
+        if first.clue > CERTAIN:
+            joined.uncertain.add(first.at)
         theirs = shelf.student(first.at).key
         joined.notes.extend(
             f"{shelf.student(each.at).key} may be of {key} as well, whose {theirs} counts: left unassigned"
             for each in others
         )
+    for student in shelf.contested:
+        joined.contested.update(roster.candidates(student))
     joined.contested.difference_update(joined.whose)
     return joined
 

@@ -30,13 +30,11 @@ class Entry:
 class Match(NamedTuple):
     """Whose submission it is: the position in the entries, or None. `clue` says how it was found.
 
-    `is_key` tells that the submission is named exactly as the student's key. `doubt` says in words why nobody was taken although
-    somebody might be meant, and `several` has the positions of those who might be.
+    `doubt` says in words why nobody was taken although somebody might be meant, and `several` has the positions of those who might be.
     """
 
     place: int | None
     clue: Clue = Clue.SURNAME
-    is_key: bool = False
     doubt: str = ""
     several: tuple[int, ...] = ()
 
@@ -57,6 +55,13 @@ class Roster:
         for index, entry in enumerate(self.entries):
             if group := plain_group(entry.section):
                 self._groups.setdefault(group, []).append(index)
+
+    def knowing(self, students: Iterable[Student]) -> "Roster":
+        """The roster with the numbers by which an LMS knows these students, by key, where it does not say them itself."""
+        known = {each.key: each for each in students if each.canvas or each.moodle}
+        return Roster(
+            (_knowing(each, known.get(each.student.key)) for each in self.entries), self.notes, self.assignments
+        )
 
     @property
     def students(self) -> tuple[Student, ...]:
@@ -89,6 +94,10 @@ class Roster:
             return ()
         return self._groups.get(plain_group(team.key)) or self._groups.get(plain_group(team.name)) or ()
 
+    def candidates(self, student: Student) -> tuple[int, ...]:
+        """The positions of everybody whom the number or name of a submission may mean."""
+        return self._people.find(claims_of(student)).people
+
     def match(self, student: Student) -> Match:
         """Whose a submission is, given what its name says.
 
@@ -98,7 +107,7 @@ class Roster:
         group = self._groups.get(plain_group(student.team), ()) if student.team else None
         found = self._people.find(claims, OF_TEAM_FOLDERS if student.team else OF_FOLDERS, group)
         if found.only is not None:
-            return Match(found.only, found.clue, self.entries[found.only].student.key == (student.name or student.key))
+            return Match(found.only, found.clue)
         if found.people:
             return Match(None, found.clue, doubt="may be of several in the roster", several=found.people)
         if found.contradicted:
@@ -132,6 +141,14 @@ class Roster:
         )
 
 
+def _knowing(entry: Entry, known: Student | None) -> Entry:
+    if known is None:
+        return entry
+    own = entry.student
+    numbered = replace(own, canvas=own.canvas or known.canvas, moodle=own.moodle or known.moodle)
+    return replace(entry, student=numbered)
+
+
 def entry_to_json(entry: Entry) -> str:
     """A row of a roster as a gradebook keeps it."""
     return json.dumps(asdict(entry), sort_keys=True)
@@ -139,6 +156,12 @@ def entry_to_json(entry: Entry) -> str:
 
 def roster_from_json(entries: Iterable[str]) -> Roster | None:
     """The roster that a gradebook has kept; None where there is none."""
-    rows = [json.loads(each) for each in entries]
-    kept = (Entry(**{**row, "student": Student(**row["student"]), "aliases": tuple(row["aliases"])}) for row in rows)
-    return Roster(kept) if rows else None
+    rows = [entry_from_json(each) for each in entries]
+    return Roster(rows) if rows else None
+
+
+def entry_from_json(text: str) -> Entry:
+    """A row of a roster that a gradebook has kept."""
+    row = json.loads(text)
+    student = {**row["student"], "maybe_canvas": ()}
+    return Entry(**{**row, "student": Student(**student), "aliases": tuple(row["aliases"])})

@@ -53,6 +53,10 @@ class Intake:
         for position, index in enumerate(self._placement.order):
             yield self._placement.key(self._roster, position, self._shelf.student(index))
 
+    def named_students(self) -> Iterator[Student]:
+        """Who has submitted, as the names of the submissions say."""
+        yield from map(self._shelf.student, range(len(self._shelf)))
+
     def hand_ins(self) -> Iterator[HandIn]:
         """The hand-ins in the order of their students' keys, made one by one; it may be called again."""
         for position, index in enumerate(self._placement.order):

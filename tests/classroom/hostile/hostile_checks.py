@@ -17,12 +17,21 @@ _RETURNED: dict[str, Any] = {
     "returns_another_status": Outcome("fine", "fine"),  # type: ignore[arg-type]
     "returns_skipped": Outcome("skipped", "because"),
     "returns_no_message": Outcome("passed", None),  # type: ignore[arg-type]
+    "returns_nan": Outcome("passed", "fine", measured=float("nan")),
+    "returns_objects": Outcome("passed", "fine", expected=(object(),)),  # type: ignore[arg-type]
     "returns_a_value_of_no_report": Outcome("passed", "fine", measured={1, 2}),  # type: ignore[arg-type]
 }
 
 
 class Unusual(BaseException):
     """What no `except Exception` catches."""
+
+
+class Wordless(Exception):
+    """Ends the process that asks what it says."""
+
+    def __str__(self) -> str:  # noqa: PLE0307
+        sys.exit(0)
 
 
 def behaves(robot: Configuration) -> Outcome:
@@ -47,6 +56,8 @@ def behaves(robot: Configuration) -> Outcome:
             sys.exit(0)
         case "raises_unusually":
             raise Unusual("as asked")
+        case "raises_without_words":
+            raise Wordless
         case name if name in _RETURNED:
             returned: Outcome = _RETURNED[name]
             return returned
@@ -61,10 +72,15 @@ def behaves(robot: Configuration) -> Outcome:
     return passed("nothing bad was asked for")
 
 
-def without_annotation(robot, *, at_least):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN201
+def without_annotation(robot: Configuration, *, at_least):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN201
     """A check whose argument has no annotation."""
 
 
 def without_names(robot: Configuration, *values: float) -> Outcome:
     """A check whose arguments cannot be given by name."""
+    raise NotImplementedError
+
+
+def without_subject(robot) -> Outcome:  # type: ignore[no-untyped-def]  # noqa: ANN001
+    """A check whose first argument has no annotation."""
     raise NotImplementedError

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from grader.classroom.intake.layouts.shelf import LeftOut
 from grader.classroom.intake.listing import Listing
-from grader.classroom.intake.names import ENDINGS, ending_of
+from grader.classroom.intake.names import ENDINGS, ending_of, without_copy
 from grader.submission.files import printable_path
 
 _ATTEMPT = re.compile(r"(?:attempt|submission|try|versuch|abgabe)[ _-]?([0-9]{1,6})", re.IGNORECASE)
@@ -38,6 +38,15 @@ def attempts_in(listing: Listing, folder: str) -> Attempts | None:
         return None
     *earlier, last = sorted(found)
     return Attempts(last[2], last[0], tuple(path for *_, path in earlier))
+
+
+def home_of(path: str) -> str:
+    """What the path of a submission has in common with its other attempts, copies and endings."""
+    folder, _, name = path.rpartition("/")
+    if folder and _number(name) is not None:
+        return home_of(folder)
+    ending = ending_of(name)
+    return f"{folder}/{without_copy(name.removesuffix(ending), ending)[0]}"
 
 
 def _number(name: str) -> int | None:

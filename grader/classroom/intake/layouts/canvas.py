@@ -8,6 +8,7 @@ in again under the same name is saved with `-1`, `-2` behind its stem (attachmen
 import re
 from collections import defaultdict
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import NamedTuple
 
 from grader.classroom.intake.layouts.shelf import LeftOut, Listed, listed
@@ -64,9 +65,10 @@ def shelve(children: Children, start: str, left_out: LeftOut) -> Listed:
         else:
             by_user[saved.is_anonymous, saved.user].append(saved)
     left_out.add_all((start + name, reason) for name, reason in children.refused)
-    return listed(
-        _hand_in(certain, start) for saved in by_user.values() if (certain := _certain(saved, start, left_out))
-    )
+    known = {user: _certain(saved, start, left_out) for user, saved in by_user.items()}
+    shelf = listed(_hand_in(saved, start) for saved in known.values() if saved)
+    contested = (_student(each) for user, saved in by_user.items() if not known[user] for each in saved)
+    return replace(shelf, contested=tuple(dict.fromkeys(contested)))
 
 
 def _certain(saved: list[_Saved], start: str, left_out: LeftOut) -> list[_Saved]:
@@ -111,17 +113,26 @@ def _saved(name: str) -> _Saved | None:
 
 def _hand_in(saved: Iterable[_Saved], start: str) -> HandIn:
     last, earlier = _attempts(saved)
-    first = min(last, key=lambda each: each.name)
-    maybe = () if any(len(each.maybe_users) < 2 for each in last) else first.maybe_users
-    canvas = "" if first.is_anonymous or maybe else first.user
+    first = min(
+        last, key=lambda each: (len(each.maybe_users) > 1, each.name)
+    )  # one that can be read in one way, if there is
     return HandIn(
-        Student(f"{first.name}_{first.user}", canvas=canvas, maybe_canvas=maybe),
+        _student(first),
         tuple(start + each.path for each in last),
         is_late=any(each.is_late for each in last),
         attempt=1 + max((len(each) for each in earlier), default=0),
         earlier=tuple(start + each.path for attempts in earlier for each in attempts),
         names=tuple(each.file for each in last),
     )
+
+
+def _student(saved: _Saved) -> Student:
+    """Whose a file is; where its name can be read in several ways, with all the numbers that may be the user's."""
+    is_certain = len(saved.maybe_users) < 2
+    key = f"{saved.name}_{saved.user}"
+    if saved.is_anonymous or not is_certain:
+        return Student(key, maybe_canvas=() if is_certain else saved.maybe_users)
+    return Student(key, canvas=saved.user)
 
 
 def _attempts(saved: Iterable[_Saved]) -> tuple[list[_Saved], list[list[_Saved]]]:

@@ -43,6 +43,7 @@ class FolderShelf:
         self._names: list[str] = []
         self._copies: dict[str, _Copy] = {}
         self._keys: dict[str, str] = {}  # of names that cannot be keys
+        self.contested: tuple[Student, ...] = ()
 
     def __len__(self) -> int:
         return len(self._names)
@@ -110,6 +111,7 @@ class FolderShelf:
         if not self._prefix and not self._copies and all(name.isprintable() for name in self._names):
             return
         counts = Counter(map(self._key, self._names))
+        self.contested = tuple(Student(key) for key, count in sorted(counts.items()) if count > 1 and key.isprintable())
         self._keys = {
             name: place_key(self._start + name)
             for name in self._names

@@ -10,14 +10,19 @@ _LAB = re.compile(r"lab-?\d+-", re.IGNORECASE)
 def class_prefix(names: Sequence[str], rubric_id: str, knows: Callable[[str], bool] | None) -> str:
     """The prefix to remove from the names that have it, in lower case; empty where there is none.
 
-    That is the rubric's id, or `lab` and a number, with a hyphen, where every name has it. With a roster, whose students `knows`
-    recognises, it is the prefix behind which the most names are in the roster: one more folder cannot change what the others mean.
+    That is the rubric's id with a hyphen, or `lab` and a number where most names have it. With a roster, whose students `knows`
+    recognises, it can be any prefix behind which the most names are in the roster. One more folder cannot change what the others mean.
     """
     if not names or (knows and all(map(knows, names))):
         return ""
-    found = _LAB.match(names[0])
-    for prefix in (f"{rubric_id.lower()}-", found[0].lower() if found else ""):
-        if len(prefix) > 1 and all(has_prefix(name, prefix) for name in names):
+    own = f"{rubric_id.lower()}-"
+    if len(own) > 1 and any(has_prefix(name, own) for name in names):
+        return own
+    labs = Counter(
+        found[0].lower() for name in names if (found := _LAB.match(name)) and has_prefix(name, found[0].lower())
+    )
+    for prefix, count in labs.most_common(1):
+        if count * 2 > len(names):
             return prefix
     return _prefix_of_most(names, knows) if knows is not None else ""
 

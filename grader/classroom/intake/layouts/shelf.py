@@ -11,6 +11,7 @@ from grader.classroom.students import HandIn, Student
 from grader.submission.files import printable_path
 
 MOST_LINES = 200
+_HERE = "./"  # with which no name begins
 
 
 class Shelf(Protocol):
@@ -19,6 +20,10 @@ class Shelf(Protocol):
     @property
     def assignments(self) -> frozenset[str]:
         """What an LMS calls the assignment."""
+
+    @property
+    def contested(self) -> tuple[Student, ...]:
+        """Students of whom something was ignored because it may be another's."""
 
     def __len__(self) -> int:
         """How many there are."""
@@ -39,6 +44,7 @@ class Listed:
 
     hand_ins: Sequence[HandIn]
     assignments: frozenset[str] = frozenset()
+    contested: tuple[Student, ...] = ()
 
     def __len__(self) -> int:
         return len(self.hand_ins)
@@ -79,8 +85,13 @@ def place_key(path: str) -> str:
     It begins with `./`, as no name does, so no student can take such a key over by naming a folder after it.
     """
     if path.isprintable():
-        return f"./{path}"
-    return f"./{printable_path(path)}-{sha256(os.fsencode(path)).hexdigest()}"
+        return f"{_HERE}{path}"
+    return f"{_HERE}{printable_path(path)}-{sha256(os.fsencode(path)).hexdigest()}"
+
+
+def is_place_key(key: str) -> bool:
+    """Whether a key is that of a place."""
+    return key.startswith(_HERE)
 
 
 class LeftOut:

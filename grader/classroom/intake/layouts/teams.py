@@ -79,7 +79,7 @@ def shelve(
     for lab, team in labs.items():
         shelf = shelve_folders(listing, listing.children(lab), f"{lab}/", left_out)
         hand_ins += (_of_team(shelf.hand_in(index), team) for index in range(len(shelf)))
-    return listed(hand_ins)
+    return replace(listed(hand_ins), contested=alone.contested)
 
 
 def _of_team(hand_in: HandIn, team: str) -> HandIn:
