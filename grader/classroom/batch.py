@@ -207,7 +207,7 @@ class Batch:
         return home_of(json.loads(known.place)[0][0]) != home_of(hand_in.paths[0])
 
     def _still_valid(self, known: Known | None) -> Known | None:
-        """A result that may still hold: of the same rubric and grader, and no failure of ours."""
+        """A result that may still hold: of the same rubric and grader, and not errored."""
         if known is None or (known.rubric, known.version) != (self._sha256, __version__):
             return None
         return None if known.verdict == "errored" or self._settings.force else known

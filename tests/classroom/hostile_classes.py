@@ -123,7 +123,7 @@ class Class:
     def is_own(self, name: str) -> bool:
         """Whether a folder of this name is a student's own by the roster: a key, login or address, exactly as it is there.
 
-        The instructor or the platform names these folders. What lies in a team's folder, and files that an LMS names, are not so.
+        The instructor or the platform names these folders, but not what lies in a team's folder or what an LMS names.
         """
         words = {each for owner in NAMES for each in (owner, f"k{_NUMBER[owner]}", f"{owner}@example.org")}
         is_named_by_instructor = self.layout in ("folders", "prefixed", "nbgrader")

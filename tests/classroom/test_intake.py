@@ -73,7 +73,7 @@ def test_a_layout_that_is_told_finds_nothing_or_something(tmp_path: Path, layout
 
 
 def test_no_symlink_is_a_submission(tmp_path: Path) -> None:
-    """A symlink in the class folder is left out and named, wherever it leads: another student's work is nobody else's."""
+    """A symlink in the class folder is ignored and named, wherever it leads."""
     lay_out(tmp_path / "class", "ann/my_robot.urdf")
     lay_out(tmp_path / "outside", "secret.urdf")
     os.symlink(tmp_path / "outside", tmp_path / "class" / "bea")

@@ -236,7 +236,7 @@ def test_a_symlink_that_comes_late_is_not_followed(
     place = tmp_path / swapped
     place.rename(tmp_path / "away")
     place.symlink_to(tmp_path / swapped.replace("ann", "bob", 1))
-    for file in found[: 1 if swapped == "ann" else 2]:  # whoever names a folder trusts what it leads to
+    for file in found[: 1 if swapped == "ann" else 2]:  # a folder that is named on the command line is trusted
         with pytest.raises(InputError, match=r"urdf/my_robot\.urdf is a symlink, and was not followed"):
             file.read(1000)
     with pytest.raises(InputError, match="is a symlink, and was not followed") if swapped == "ann" else nullcontext():

@@ -347,7 +347,7 @@ def test_a_fresh_download_is_not_refused(tmp_path: Path, roster: str) -> None:
 
 
 def test_hostile_display_names_of_moodle_are_refused(tmp_path: Path) -> None:
-    """A full name that imitates a participant's number is left out: it could be read as either."""
+    """A full name that imitates a participant's number is ignored: it could be read as either."""
     submit(tmp_path / "class/Bob_7_assignsubmission_file/my_robot", BAD)
     submit(tmp_path / "class/Mallory_7_assignsubmission_file__9_assignsubmission_file/my_robot")
     done = batch(tmp_path)
@@ -356,7 +356,7 @@ def test_hostile_display_names_of_moodle_are_refused(tmp_path: Path) -> None:
 
 
 def test_hostile_display_names_of_canvas_are_refused(tmp_path: Path) -> None:
-    """A name that ends in another user's number could be read as theirs: beside the user's own files it is left out."""
+    """A name that ends in another user's number could be read as theirs: beside the user's own files it is ignored."""
     (tmp_path / "class").mkdir()
     shutil.copy(BAD / "my_robot.urdf", tmp_path / "class/smithbob_77_100_my_robot.urdf")
     shutil.copy(ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf", tmp_path / "class/mallory_77_99_101_my_robot.urdf")

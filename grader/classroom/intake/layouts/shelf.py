@@ -63,7 +63,7 @@ class Listed:
 
 
 def listed(hand_ins: Iterable[HandIn]) -> Listed:
-    """A shelf of these hand-ins. A key that is not printable, or that several have, gives way to the key of their places."""
+    """A shelf of these submissions. A key that is not printable, or that several have, is replaced by the key of the place."""
     given = list(hand_ins)
     counts = Counter(each.student.key for each in given)
     keys = [
