@@ -148,7 +148,7 @@ class Batch:
                     self._book.see_gone(known, self._run)
                 if settings.roster is not None and settings.roster.entry(known.key) is None and known.is_expected:
                     self._book.leave_roster(known.student)
-            for student in (*intake.absent, *intake.contested):
+            for student in (*intake.absent, *(intake.contested if settings.roster is not None else ())):
                 self._book.keep_student(student, self._enrolment(student))
         self._book.finish(self._run)
         return self._progress

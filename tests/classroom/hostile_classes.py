@@ -127,11 +127,8 @@ class Class:
         """
         words = {each for owner in NAMES for each in (owner, f"k{_NUMBER[owner]}", f"{owner}@example.org")}
         is_named_by_instructor = self.layout in ("folders", "prefixed", "nbgrader")
-        return (
-            self.has_roster
-            and is_named_by_instructor
-            and name.removeprefix("lab6-").split(".urdf")[0].split(".zip")[0] in words
-        )
+        stem = name.removeprefix("./").removeprefix("lab6-").split(".urdf")[0].split(".zip")[0]
+        return self.has_roster and is_named_by_instructor and stem in words
 
     @staticmethod
     def in_canvas(name: str) -> str:

@@ -321,8 +321,12 @@ def test_a_folder_without_the_prefix_takes_nothing_over(tmp_path: Path) -> None:
     mark(tmp_path, "alice")
     submit(tmp_path / "class/alice")
     batch(tmp_path)
-    marked = [each for each in students(tmp_path).values() if each["marks_by_hand"]]
-    assert [each["score"] for each in marked] == [65.5]
+    found = students(tmp_path)
+    assert {key: (each["score"], each["marks_by_hand"]) for key, each in found.items()} == {
+        "./alice": (90, 0),
+        "./lab6-alice": (65.5, 1),
+        "carl": (62, 0),
+    }
 
 
 def test_another_assignment_of_nbgrader_is_refused(tmp_path: Path) -> None:
