@@ -1,7 +1,7 @@
 """Whether a class belongs into a gradebook: the grades of another class must not end up in it by mistake."""
 
 from collections.abc import Iterable
-from itertools import islice
+from itertools import chain, islice
 from json import dumps, loads
 
 from grader.classroom.gradebook import Gradebook
@@ -40,7 +40,7 @@ def assignments_text(assignments: Iterable[str]) -> str:
 
 
 def _has_common_student(book: Gradebook, intake: Intake, identities: Identities) -> bool:
-    keys = (key for some in (intake.keys(), (each.key for each in intake.expected)) for key in some)
+    keys = chain(intake.keys(), (student.key for student in intake.contested))
     if any(next(book.rows("SELECT 1 FROM student WHERE key = ?", key), None) for key in keys):
         return True
     return any(identities.of(hand_in) for hand_in in intake.hand_ins())

@@ -178,15 +178,16 @@ def test_a_symlink_in_a_submission_stays_in_it(tmp_path: Path, target: str) -> N
     assert "src is a link that leads out of the submission" in (tmp_path / "reports/mallory.txt").read_text()
 
 
-def test_another_class_is_refused(tmp_path: Path) -> None:
+@pytest.mark.parametrize("roster", ["", "id\nann\nbea\ncal\ndee\n"])
+def test_another_class_is_refused(tmp_path: Path, roster: str) -> None:
     """A class with no student in common is refused with a line that says what the gradebook holds, unless --add."""
     for name in ("ann", "bea", "cal", "dee"):
         submit(tmp_path / "class" / name)
-    batch(tmp_path)
+    batch(tmp_path, roster=roster)
     before = (tmp_path / "g.db").read_bytes()
     (tmp_path / "class").rename(tmp_path / "first")
     submit(tmp_path / "class/zoe")
-    done = batch(tmp_path)
+    done = batch(tmp_path, roster=roster)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.splitlines()[-1].endswith(
         "g.db is the gradebook of another class: no student of this class is in it (it holds ann, bea, cal, ...);"

@@ -27,7 +27,7 @@ class Intake:
     With a roster, `unmatched` are the keys of submissions that belong to nobody in it (they are graded all the same), `absent`
     are those who have submitted nothing, `contested` those whom several submissions may belong to, and `notes` says where the
     roster leaves it open whose a submission is. A submission that is named like a group of the roster, and like nobody in it,
-    counts once for each member of the group. `expected` are all students of the roster, `assignments` what nbgrader or Canvas call it.
+    counts once for each member of the group. `assignments` are what nbgrader or Canvas call it.
     """
 
     def __init__(
@@ -38,7 +38,6 @@ class Intake:
         self.unmatched = placement.unmatched
         self.absent: tuple[Student, ...] = placement.absent
         self.contested: tuple[Student, ...] = placement.contested
-        self.expected: tuple[Student, ...] = roster.students if roster is not None else ()
         self.assignments = shelf.assignments | (roster.assignments if roster is not None else frozenset())
         self.notes = (*(roster.notes if roster else ()), *placement.notes)
         self._shelf = shelf
