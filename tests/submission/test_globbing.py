@@ -115,11 +115,10 @@ def test_glob_with_an_absolute_path(tree: Tree, pattern: str) -> None:
     """What is looked for by its full path is found with it."""
     with on_disk(tree) as root:
         found = value_of(f"glob(os.path.join(os.getcwd(), {pattern!r}), recursive=True)", tree, root)
-        real = pythons_glob(os.path.join(root, pattern), root)
-    if isinstance(found, Unknown):
-        assert ".." in pattern
-    else:
-        assert sorted(found) == real
+        if isinstance(found, Unknown):  # Python would look through all that the machine has
+            assert ".." in pattern
+        else:
+            assert sorted(found) == pythons_glob(os.path.join(root, pattern), root)
 
 
 @settings(max_examples=400)
