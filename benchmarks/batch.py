@@ -21,11 +21,11 @@ from typing import NamedTuple
 from class_generator import make_class
 from run import check_urdf, in_turn, once
 
-from grader.classroom.batch import Batch, Progress, Settings
-from grader.classroom.gradebook import Gradebook
-from grader.classroom.intake.taking import take_in
-from grader.classroom.pool import Processes, processors
-from grader.classroom.work import PRELOAD, Class, Task, grade_all, prepare
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.intake.intake import take_in
+from grader.classroom.run.batch import Batch, Progress, Settings
+from grader.classroom.run.pool import Processes, processors
+from grader.classroom.run.worker import PRELOAD, Class, Task, grade_all, prepare
 from grader.grading.rubric import load_rubric
 
 _TIMEOUT = 60.0  # seconds for one hand-in

@@ -28,7 +28,7 @@ def problems() -> str:
     lines = [
         "# Problems",
         "",
-        "<!-- made by docs/make.py from grader/robot/catalogue.py and grader/submission/catalogue.py -->",
+        "<!-- made by docs/make.py from grader/robot/catalogue.py and grader/package/catalogue.py -->",
         "",
         "What `grader grade` and `grader inspect` can say of a URDF (`URDF`), a package (`PKG`), a launch file (`LCH`) and an RViz",
         "file (`RVZ`). Codes never change their meaning. An *error* keeps ROS 2 (Jazzy) from loading the file, or a build or launch",

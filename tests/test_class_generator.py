@@ -10,9 +10,10 @@ from pathlib import Path
 
 import pytest
 
+from grader.classroom.gradebook.result import Graded
+from grader.classroom.intake.intake import take_in
 from grader.classroom.intake.roster_file import read_roster
-from grader.classroom.intake.taking import take_in
-from grader.classroom.work import Class, Graded, Task, grade_all
+from grader.classroom.run.worker import Class, Task, grade_all
 from grader.grading.grade import grade
 from grader.submission.submission import read_submission
 from tests.samples import LAB6, ROOT

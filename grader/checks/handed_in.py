@@ -15,7 +15,7 @@ def answered(
     15" or "question 15"; `files` are patterns for the names of documents. Always pending.
     """
     del answer  # no outcome holds it: students read outcomes
-    from grader.submission.answers import find_answer  # a URDF on its own has no answers
+    from grader.documents.answers import find_answer  # a URDF on its own has no answers
 
     if submission.no_documents:
         message = f"{question} The documents could not be read: {submission.no_documents}; needs manual grading"
@@ -39,7 +39,7 @@ def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
 
     `names` says how the file is named, however it is spelt: "task 3 step 3", or plain words such as "webcam". Always pending.
     """
-    from grader.submission.evidence import find_evidence
+    from grader.documents.evidence import find_evidence
 
     found = find_evidence(submission.proofs, names)
     if found:

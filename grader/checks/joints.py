@@ -4,10 +4,10 @@ from collections.abc import Mapping
 
 from grader.checks.outcome import Outcome, failed, listing, passed, place
 from grader.errors import MissingElement
+from grader.names import did_you_mean
 from grader.robot.joints import JOINT_TYPES, MOVING_TYPES, JointType
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
-from grader.robot.names import did_you_mean
 
 
 def held_by(robot: Configuration, *, link: str, parent: str, joint_type: JointType) -> Outcome:

@@ -5,12 +5,12 @@ from typing import TYPE_CHECKING
 
 from grader.checks.outcome import Outcome, judged_as, passed
 from grader.errors import MissingElement, NotDecided
-from grader.robot.names import closest
-from grader.submission.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER, is_launch_named, is_of_one_machine
-from grader.submission.package import Package
+from grader.names import closest
+from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER, is_launch_named, is_of_one_machine
+from grader.package.package import Package
 
 if TYPE_CHECKING:
-    from grader.submission.launch.model import Launch, Reference, StartedNode
+    from grader.package.launch.model import Launch, Reference, StartedNode
 
 _WORDS = {"urdf": "URDF", "rviz": "RViz file", "include": "launch file", "launch": "launch file"}
 _ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".py", ".xml", ".yaml", ".yml")}

@@ -8,8 +8,8 @@ from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Cylinder, Joint
 from grader.robot.shapes import extent, farthest, volume
-from grader.robot.source import Spot
 from grader.robot.transforms import Vector, cross, dot, minus, unit
+from grader.source import Spot
 
 _SMALL_ANGLE = 1e-3  # rad; also metres for a sliding joint
 _STANDSTILL = 1e-9  # metres

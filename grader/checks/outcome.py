@@ -5,8 +5,8 @@ from functools import lru_cache
 from math import isfinite
 from typing import Literal, NamedTuple
 
-from grader.robot.source import Location, Mark, Spot
 from grader.robot.transforms import Vector
+from grader.source import Location, Mark, Spot
 
 Status = Literal["passed", "failed", "skipped", "pending", "errored"]
 Value = bool | float | str | tuple[float, ...] | tuple[str, ...] | Mapping[str, str] | None

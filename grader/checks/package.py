@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Literal
 
 from grader.checks.outcome import Outcome, judged_as, listing, passed
 from grader.errors import MissingElement, NotDecided
-from grader.robot.names import closest
-from grader.submission.package import MANIFEST, Package
+from grader.names import closest
+from grader.package.package import MANIFEST, Package
 from grader.submission.submission import Submission
 
 if TYPE_CHECKING:
-    from grader.submission.data_files import Copy
-    from grader.submission.manifest import Manifest
-    from grader.submission.python.lookup import EmptyGlob
-    from grader.submission.setup_py import Setup
+    from grader.package.data_files import Copy
+    from grader.package.file_functions import EmptyGlob
+    from grader.package.manifest import Manifest
+    from grader.package.setup_py import Setup
 
 Kind = Literal["urdf", "launch", "rviz"]
 
@@ -123,7 +123,7 @@ def _readable_manifest(package: Package) -> "Manifest":
 
 
 def _is_readable(manifest: "Manifest") -> bool:
-    from grader.submission.catalogue import BAD_MANIFEST
+    from grader.package.catalogue import BAD_MANIFEST
 
     return all(problem.kind is not BAD_MANIFEST for problem in manifest.problems)
 

@@ -24,8 +24,8 @@ from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Geometry, Mesh, Visual
 from grader.robot.separation import penetration
 from grader.robot.shapes import UnknownShape, extent
-from grader.robot.source import Spot
 from grader.robot.transforms import Transform, Vector, dot, minus, unit
+from grader.source import Spot
 
 _AHEAD: Vector = (1.0, 0.0, 0.0)
 _LEFT: Vector = (0.0, 1.0, 0.0)

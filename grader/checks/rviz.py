@@ -4,13 +4,13 @@ from typing import TYPE_CHECKING
 
 from grader.checks.outcome import Outcome, Status, judged_as, passed
 from grader.errors import MissingElement, NotDecided
-from grader.robot.names import did_you_mean
-from grader.submission.package import Package
+from grader.names import did_you_mean
+from grader.package.package import Package
 from grader.submission.submission import Submission
 
 if TYPE_CHECKING:
-    from grader.submission.launch.model import Launch
-    from grader.submission.rviz import Display, RvizFile
+    from grader.package.launch.model import Launch
+    from grader.package.rviz import Display, RvizFile
 
 _PLUGINS = "rviz_default_plugins"
 

@@ -11,7 +11,7 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from grader.classroom.students import Student
-from grader.submission.files import printable_path
+from grader.text import printable_path
 
 _SUFFIX = re.compile(r"(sn?r|senior|jn?r|junior|i{2,3}|iv|vi?|esq|esquire)\.?", re.IGNORECASE)
 _UNWRITTEN = str.maketrans("", "", "&<>\"`|':\\/")

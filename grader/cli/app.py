@@ -10,7 +10,7 @@ import typer
 
 from grader.cli.output import complain
 from grader.errors import GraderError, RubricError
-from grader.report.text import printable
+from grader.text import printable
 
 FAULT_OF_USE, FAULT_OF_OURS, INTERRUPTED = 2, 3, 130
 

@@ -17,7 +17,7 @@ from grader.cli.options import (
     RubricOption,
 )
 from grader.errors import GraderError
-from grader.submission.files import URDF_LIMIT
+from grader.files.reading import URDF_LIMIT
 
 
 def batch(
@@ -62,7 +62,7 @@ def batch(
 
       grader batch class/ --gradebook lab6.db --reports reports --csv grades.csv
     """
-    from grader.cli.class_run import Wanted, grade_class  # what grades a class is loaded only for one
+    from grader.usecases.grade_class import Wanted, grade_class  # what grades a class is loaded only for one
 
     if Format.CLASSROOM50 in (report_format or ()):
         raise GraderError("classroom50 is the result of one repository: `grader grade` writes it there")

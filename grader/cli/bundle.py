@@ -8,8 +8,8 @@ import typer
 
 from grader.cli.options import DEFAULT_RUBRIC, RubricOption
 from grader.cli.output import emit
-from grader.cli.saving import save_bytes
 from grader.errors import GraderError
+from grader.usecases.writing import save_bytes
 
 if TYPE_CHECKING:
     from grader.grading.rubric import Rubric
@@ -52,7 +52,7 @@ def _next_step(rubric: "Rubric", output: Path) -> str:
 
     from grader.checks.handed_in import JUDGED_BY_A_PERSON
     from grader.report.points import points_words
-    from grader.report.text import printable
+    from grader.text import printable
 
     by_hand = [each for each in rubric.criteria if each.check.function in JUDGED_BY_A_PERSON]
     points = sum((each.points for each in by_hand), Decimal(0))

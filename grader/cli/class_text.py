@@ -2,9 +2,9 @@
 
 from functools import partial
 
-from grader.classroom.batch import Progress
-from grader.classroom.standings import Standings
-from grader.classroom.statistics import statistics
+from grader.classroom.gradebook.grades import Standings
+from grader.classroom.gradebook.statistics import statistics
+from grader.classroom.run.batch import Progress
 from grader.cli.options import ClassFormat
 from grader.cli.output import draw
 

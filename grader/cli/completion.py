@@ -12,10 +12,10 @@ import typer
 from typer.main import get_command
 
 from grader.cli.output import emit
-from grader.cli.saving import save
 from grader.cli.suggestions import SHELLS
 from grader.errors import GraderError, InputError
-from grader.submission.files import printable_path
+from grader.text import printable_path
+from grader.usecases.writing import save
 
 _VARIABLE = "_GRADER_COMPLETE"
 # Of typer's own script for bash two things would be seen: an error of the program, and a space behind `--save json=`.

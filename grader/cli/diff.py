@@ -32,8 +32,8 @@ def diff(
 
       grader diff before.db after.db --format json
     """
-    from grader.classroom.changes import changes, last_two, newest
-    from grader.classroom.gradebook import Gradebook
+    from grader.classroom.gradebook.changes import changes, last_two, newest
+    from grader.classroom.gradebook.gradebook import Gradebook
 
     if other is not None and (before or after):
         raise GraderError("--from and --to are runs of one gradebook: name one, or leave them out")

@@ -8,12 +8,12 @@ import typer
 
 from grader.cli.options import DueOption, GradebookOption
 from grader.cli.output import complain, emit
-from grader.cli.saving import is_output, is_same, not_over, refuse_links, save_bytes
 from grader.errors import GraderError
-from grader.submission.files import printable_path
+from grader.text import printable_path
+from grader.usecases.writing import is_output, is_same, not_over, refuse_links, save_bytes
 
 if TYPE_CHECKING:
-    from grader.classroom.standings import Standings
+    from grader.classroom.gradebook.grades import Standings
 
 
 class Target(StrEnum):
@@ -60,9 +60,9 @@ def export(
 
       grader export canvas --gradebook lab6.db --into canvas.csv > upload.csv
     """
-    from grader.classroom.gradebook import Gradebook
-    from grader.classroom.lateness import read_time
-    from grader.classroom.standings import Standings
+    from grader.classroom.gradebook.gradebook import Gradebook
+    from grader.classroom.gradebook.grades import Standings
+    from grader.classroom.gradebook.lateness import read_time
 
     if (into is None) == (target in (Target.CANVAS, Target.MOODLE)):
         raise GraderError(
@@ -84,7 +84,7 @@ def export(
         if into is None:
             data = _plain(target, standings)
         else:
-            from grader.cli.class_export import Filling, fill, preflight_lines
+            from grader.usecases.export import Filling, fill, preflight_lines
 
             filling = Filling(into, column, feedback_column, pending_as_zero, any_maximum)
             filled = fill(target is Target.MOODLE, standings, filling)
@@ -103,7 +103,7 @@ def export(
 
 def _plain(target: Target, standings: "Standings") -> bytes:
     if target is Target.CSV:
-        from grader.cli.class_export import grades_csv
+        from grader.usecases.export import grades_csv
 
         return grades_csv(standings).encode()
     from grader.cli.class_text import class_text

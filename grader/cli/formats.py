@@ -47,7 +47,7 @@ def render(report: "Report", kind: Format, base: "Base | None" = None, *, to_fil
     Nothing is loaded but the format that is asked for. Raises InputError for Classroom 50 where nobody says whose result it is.
     """
     from grader.report.places import Base
-    from grader.report.text import without_commands
+    from grader.text import without_commands
 
     base = base or Base()
     match kind:

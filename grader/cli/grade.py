@@ -4,12 +4,12 @@ from typing import Annotated
 
 import typer
 
-from grader.cli.ci import refusals_told
 from grader.cli.formats import Format
-from grader.cli.grade_run import Wanted, grade_once, read_saves
 from grader.cli.options import DEFAULT_RUBRIC, MaxSizeOption, RubricOption
 from grader.cli.suggestions import part_ids, save_formats
-from grader.submission.files import URDF_LIMIT
+from grader.files.reading import URDF_LIMIT
+from grader.usecases.github import refusals_told
+from grader.usecases.grade import Wanted, grade_once, read_saves
 
 
 def grade(
@@ -79,7 +79,7 @@ def grade(
             answers,
         )
         if is_watched:
-            from grader.cli.watch import watch
+            from grader.usecases.watch import watch
 
             return watch(wanted)
         return grade_once(wanted)[1]

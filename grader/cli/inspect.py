@@ -9,7 +9,8 @@ import typer
 from grader.cli.options import MaxSizeOption
 from grader.cli.output import complain, draw, emit
 from grader.errors import GraderError, InputError, MissingElement
-from grader.submission.files import URDF_LIMIT, printable_path
+from grader.files.reading import URDF_LIMIT
+from grader.text import printable_path
 
 if TYPE_CHECKING:
     from grader.robot.kinematics import Configuration

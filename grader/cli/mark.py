@@ -30,13 +30,13 @@ def mark(
 
       grader mark alice lidar-frame - --gradebook lab6.db
     """
-    from grader.classroom.gradebook import Gradebook
-    from grader.classroom.marking import criterion_of, read_points
-    from grader.classroom.marking import mark as add_mark
-    from grader.classroom.standings import Standings
+    from grader.classroom.gradebook.gradebook import Gradebook
+    from grader.classroom.gradebook.grades import Standings
+    from grader.classroom.gradebook.marks import criterion_of, read_points
+    from grader.classroom.gradebook.marks import mark as add_mark
     from grader.report.points import points_words
     from grader.report.review import mark_words
-    from grader.report.text import printable
+    from grader.text import printable
 
     with Gradebook(gradebook) as book:
         standings = Standings(book)

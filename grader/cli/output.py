@@ -8,7 +8,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from grader.errors import InputError
-from grader.report.text import without_commands
+from grader.text import without_commands
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -10,7 +10,7 @@ from grader.cli.output import complain
 if TYPE_CHECKING:
     from rich.progress import Progress as Bar
 
-    from grader.classroom.batch import Progress
+    from grader.classroom.run.batch import Progress
 
 _EVERY = 10.0  # seconds between plain lines
 

@@ -14,8 +14,8 @@ from grader.errors import InputError
 if TYPE_CHECKING:
     from decimal import Decimal
 
-    from grader.classroom.marking import Pending
-    from grader.classroom.standings import Standings
+    from grader.classroom.gradebook.grades import Standings
+    from grader.classroom.gradebook.marks import Pending
 
 _KEEP = "k to keep that mark, r to replace it with yours: "
 _HELP = "points and a comment, or s to skip, q to stop (everything is kept), ? for this line"
@@ -37,9 +37,9 @@ def review(
 
       grader review --gradebook lab6.db --criterion answer-floating-link
     """
-    from grader.classroom.gradebook import Gradebook
-    from grader.classroom.marking import criterion_of, pending, waiting
-    from grader.classroom.standings import Standings
+    from grader.classroom.gradebook.gradebook import Gradebook
+    from grader.classroom.gradebook.grades import Standings
+    from grader.classroom.gradebook.marks import criterion_of, pending, waiting
 
     if isinstance(sys.stdin, io.TextIOWrapper):
         sys.stdin.reconfigure(errors="backslashreplace")  # a terminal in another encoding
@@ -64,7 +64,7 @@ def review(
 
 def _ask(standings: "Standings", pending: "Pending", place: str, by: str) -> int | None:
     """Ask until there is an answer: how many marks came of it, None to stop."""
-    from grader.classroom.marking import read_points
+    from grader.classroom.gradebook.marks import read_points
     from grader.report.review import render_pending
 
     emit(draw(lambda console: render_pending(pending, place, console)))
@@ -92,7 +92,7 @@ def _ask(standings: "Standings", pending: "Pending", place: str, by: str) -> int
 
 def _mark(standings: "Standings", pending: "Pending", points: "Decimal", by: str, comment: str) -> int | None:
     """Mark, unless somebody else has meanwhile and their mark is to be kept: how many marks came of it, None to stop."""
-    from grader.classroom.marking import NewerMarkError, mark
+    from grader.classroom.gradebook.marks import NewerMarkError, mark
     from grader.report.review import mark_words
 
     shown = pending.newest

@@ -98,7 +98,7 @@ def check_rubric(
     """
     from grader.grading.reference import grade_reference
     from grader.report.points import points_words
-    from grader.report.text import printable
+    from grader.text import printable
 
     rules = _with_answers(file)
     summary = f"{rules.id}: {len(rules.criteria)} criteria, {points_words(rules.points)} points, no mistakes found"

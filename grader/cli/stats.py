@@ -15,9 +15,9 @@ def stats(gradebook: GradebookOption, due: DueOption = None, output_format: Form
 
       grader stats --gradebook lab6.db --format json
     """
-    from grader.classroom.gradebook import Gradebook
-    from grader.classroom.lateness import read_time
-    from grader.classroom.standings import Standings
+    from grader.classroom.gradebook.gradebook import Gradebook
+    from grader.classroom.gradebook.grades import Standings
+    from grader.classroom.gradebook.lateness import read_time
     from grader.cli.class_text import class_text
 
     with Gradebook(gradebook) as book:

@@ -7,10 +7,11 @@ from typing import Any
 
 from grader.checks.handed_in import answered
 from grader.errors import RubricError
+from grader.files.reading import read_capped
 from grader.grading.rubric import Rubric, complain_of, find_rubric, read_rubric, read_toml
 from grader.grading.toml_lines import Path as TomlPath
-from grader.robot.names import did_you_mean
-from grader.submission.files import printable_path, read_capped
+from grader.names import did_you_mean
+from grader.text import printable_path
 
 
 def load_with_answers(name: str) -> Rubric:

@@ -8,7 +8,7 @@ from types import GenericAlias, UnionType
 from typing import Any, Literal, get_args, get_origin
 
 from grader.checks.registry import Check
-from grader.robot.names import did_you_mean
+from grader.names import did_you_mean
 
 Fault = tuple[tuple[str, ...], str]
 

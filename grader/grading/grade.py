@@ -8,6 +8,7 @@ from grader.errors import MissingElement, NotDecided
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Criterion, Rubric
 from grader.grading.scope import chosen_parts, exhibits_of
+from grader.problems import Problem
 from grader.robot.catalogue import (
     BAD_COLOUR,
     BAD_INERTIAL,
@@ -17,13 +18,12 @@ from grader.robot.catalogue import (
     DEGREES,
     RAW_XACRO,
     UNDEFINED_MATERIAL,
-    Problem,
 )
 from grader.robot.kinematics import Configuration
-from grader.robot.names import quoted
 from grader.robot.shapes import UnknownShape
-from grader.robot.source import Location, Spot
+from grader.source import Location, Spot
 from grader.submission.submission import Submission
+from grader.text import quoted
 
 # Problems that say why a measurement came out as it did.
 _TELLING = (BAD_COLOUR, COLOUR_COUNT, DEGREES, UNDEFINED_MATERIAL)
@@ -40,7 +40,7 @@ def grade(rubric: Rubric, submission: Submission, parts: Sequence[str] = ()) -> 
     if submission.xacro == "left":
         problems = tuple(problem for problem in problems if problem.kind is RAW_XACRO)
     if submission.package is not None and any(rubric.part(each).needs == "package" for each in chosen):
-        from grader.submission.remarks import remarks  # a URDF on its own needs none of what reads a package
+        from grader.package.linting import remarks  # a URDF on its own needs none of what reads a package
 
         problems += remarks(submission.package)
     exhibits, others = exhibits_of(rubric, submission, chosen)

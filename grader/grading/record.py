@@ -7,13 +7,13 @@ from typing import Any, NamedTuple
 
 from grader.checks.handed_in import answered
 from grader.checks.outcome import Outcome
+from grader.documents.evidence import Exhibit
+from grader.files.tree import PassedOver
 from grader.grading.report import Exhibits, Report, Result
 from grader.grading.rubric import Rubric
-from grader.robot.catalogue import Kind, Problem
+from grader.problems import Kind, Problem
 from grader.robot.reader import Verdict
-from grader.robot.source import Location, Source
-from grader.submission.evidence import Exhibit
-from grader.submission.tree import PassedOver
+from grader.source import Location, Source
 
 Quote = Callable[[str], Source | None]  # the text of one file of a submission; None where it cannot be read
 

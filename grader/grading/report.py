@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from grader import __version__
 from grader.checks.outcome import Outcome
+from grader.files.tree import PassedOver
 from grader.grading.rubric import Criterion, Evidence, Rubric
-from grader.robot.catalogue import Problem
+from grader.problems import Problem
 from grader.robot.reader import Verdict
-from grader.robot.source import Source
-from grader.submission.tree import PassedOver
+from grader.source import Source
 
 if TYPE_CHECKING:
-    from grader.submission.evidence import Exhibit
+    from grader.documents.evidence import Exhibit
 
 _NOTHING = Decimal(0)
 

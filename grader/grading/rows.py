@@ -11,7 +11,7 @@ from grader.checks.registry import Check, check_names, find_check
 from grader.errors import InputError
 from grader.grading.arguments import bind
 from grader.grading.toml_lines import Path
-from grader.robot.names import did_you_mean
+from grader.names import did_you_mean
 
 _TEXT, _NUMBER, _TEXTS, _TABLE = "a text", "a number", "a list of texts", "a table"
 _TIME = "a date and time with its offset, such as 2026-11-20T23:59:00+01:00"

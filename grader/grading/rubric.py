@@ -11,11 +11,12 @@ from typing import Any
 from grader.checks.handed_in import answered
 from grader.checks.registry import Check
 from grader.errors import InputError, RubricError
+from grader.files.reading import read_capped, sha256_of
 from grader.grading.rows import Rows
 from grader.grading.toml_lines import Path as TomlPath
 from grader.grading.toml_lines import key_lines, line_of
-from grader.robot.names import did_you_mean
-from grader.submission.files import printable_path, read_capped, sha256_of
+from grader.names import did_you_mean
+from grader.text import printable_path
 
 _MAX_COMPLAINTS = 1000  # lines about one rubric
 _ANSWERS = ".answers.toml"  # how the files of model answers end that stand beside the shipped rubrics

@@ -9,7 +9,7 @@ from grader.grading.rubric import Rubric
 from grader.submission.submission import Submission
 
 if TYPE_CHECKING:
-    from grader.submission.evidence import Exhibit
+    from grader.documents.evidence import Exhibit
 
 _MOST_PICTURES = 50
 _XACRO = "the URDF is xacro: its properties and numbers were worked out, as xacro does before ROS 2 reads it"
@@ -47,7 +47,7 @@ def exhibits_of(
     asked = [each for each in rubric.evidence if each.part in chosen]
     if not asked or submission.is_single:
         return (), ()
-    from grader.submission.evidence import describe, find_evidence  # a URDF on its own comes with none
+    from grader.documents.evidence import describe, find_evidence  # a URDF on its own comes with none
 
     found = tuple(Exhibits(each, find_evidence(submission.proofs, each.names)) for each in asked)
     shown = {exhibit.path for each in found for exhibit in each.files}

@@ -6,7 +6,7 @@ from grader.grading.report import Exhibits, HandedIn, Report, Result
 from grader.report.plain import exact, location, problem, rounded, to_json
 
 if TYPE_CHECKING:
-    from grader.submission.evidence import Exhibit
+    from grader.documents.evidence import Exhibit
 
 
 def render_json(report: Report) -> str:

@@ -7,12 +7,12 @@ from typing import Any
 from rich.console import Console
 from rich.text import Text
 
-from grader.classroom.changes import Change, Step
-from grader.classroom.gradebook import Run
+from grader.classroom.gradebook.changes import Change, Step
+from grader.classroom.gradebook.gradebook import Run
 from grader.report.layout import wrapped
 from grader.report.plain import exact, to_json
 from grader.report.points import points_words
-from grader.report.text import printable
+from grader.text import printable
 
 _MOST_NAMED, _MOST_LINES = 3, 12
 

@@ -7,11 +7,11 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from grader.classroom.standings import Looks
-from grader.classroom.statistics import ClassStatistics, CriterionStatistics
+from grader.classroom.gradebook.grades import Looks
+from grader.classroom.gradebook.statistics import ClassStatistics, CriterionStatistics
 from grader.report.layout import wrapped
 from grader.report.points import points_words
-from grader.report.text import printable
+from grader.text import printable
 
 _BAR = 40
 _MOST_FAILURES = 10

@@ -4,8 +4,8 @@ from collections.abc import Iterable
 from typing import Any
 
 from grader import __version__
-from grader.classroom.standings import Looks, Standing
-from grader.classroom.statistics import ClassStatistics, CriterionStatistics
+from grader.classroom.gradebook.grades import Looks, Standing
+from grader.classroom.gradebook.statistics import ClassStatistics, CriterionStatistics
 from grader.grading.rubric import Rubric
 from grader.report.plain import exact, rounded, to_json
 

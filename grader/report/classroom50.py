@@ -14,7 +14,7 @@ from grader.grading.report import Report, Result
 from grader.report.findings import is_lost
 from grader.report.plain import to_json
 from grader.report.plain_text import criterion_lines
-from grader.report.text import printable
+from grader.text import printable
 
 _NEEDED = ("CLASSROOM", "ASSIGNMENT", "SUBMISSION_TAG", "USERNAME", "COMMIT_URL", "RELEASE_URL")
 _KINDS = ("individual", "group", "team")

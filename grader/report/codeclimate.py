@@ -8,7 +8,7 @@ from grader.report.findings import Level, findings
 from grader.report.places import Base
 from grader.report.plain import to_json_list
 from grader.report.points import so_many_points
-from grader.report.text import printable
+from grader.text import printable
 
 _SEVERITIES: dict[Level, str] = {"error": "major", "warning": "minor", "note": "info"}
 

@@ -10,9 +10,9 @@ from typing import Literal, NamedTuple
 from grader.grading.report import Report, Result
 from grader.report.places import Base, Place, archive_around, placed
 from grader.report.points import so_many_points
-from grader.report.text import printable
 from grader.report.words import place_words, sentence, told, undecided, untold
-from grader.robot.source import Location, Source
+from grader.source import Location, Source
+from grader.text import printable
 
 Level = Literal["error", "warning", "note"]
 _ORDER: tuple[Level, ...] = ("error", "warning", "note")

@@ -12,8 +12,8 @@ from grader.report.findings import Finding, Level, findings
 from grader.report.places import Base, Place
 from grader.report.plain_text import beside, core, provenance
 from grader.report.points import so_many_points
-from grader.report.text import printable
 from grader.report.words import score_words
+from grader.text import printable
 
 _MOST = 10  # of a type
 _LONGEST = 4000  # characters of a message

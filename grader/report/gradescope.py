@@ -11,7 +11,7 @@ from grader.report.findings import is_lost
 from grader.report.markdown import criterion_markdown, whole_markdown
 from grader.report.plain import exact, to_json
 from grader.report.points import so_many_points
-from grader.report.text import printable
+from grader.text import printable
 
 
 def render_gradescope(report: Report) -> str:

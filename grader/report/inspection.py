@@ -11,11 +11,11 @@ from rich.text import Text
 from grader.errors import MissingElement
 from grader.report.layout import show_problems, symbol, wrapped
 from grader.report.plain import problem, rounded, to_json
-from grader.report.text import printable
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
 from grader.robot.reader import Reading
 from grader.robot.transforms import Transform
+from grader.text import printable
 
 _MAX_LISTED = 500  # links in the terminal
 _VERDICTS = {"clean": "green", "degraded": "yellow", "rejected": "bold red"}

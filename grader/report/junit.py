@@ -14,8 +14,8 @@ from grader.report.findings import is_lost
 from grader.report.places import Base, archive_around
 from grader.report.plain_text import criterion_lines, headline, problem_line, provenance
 from grader.report.points import points_words
-from grader.report.text import printable
 from grader.report.words import score_words, told, untold
+from grader.text import printable
 
 
 def render_junit(report: Report, base: Base) -> str:

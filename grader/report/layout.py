@@ -5,10 +5,10 @@ from collections.abc import Callable
 from rich.console import Console
 from rich.text import Text
 
+from grader.problems import Problem
 from grader.report.places import excerpt
-from grader.report.text import printable
-from grader.robot.catalogue import Problem
-from grader.robot.source import Location, Source
+from grader.source import Location, Source
+from grader.text import printable
 
 SEVERITY_STYLES = {"error": "bold red", "warning": "yellow", "note": "cyan"}
 _MOST_SHOWN = 30

@@ -8,7 +8,6 @@ from grader.grading.report import Report, Result
 from grader.report.markdown_text import code, escaped, fenced
 from grader.report.plain_text import problem_line, provenance, quoted_lines
 from grader.report.points import points_words
-from grader.report.text import printable
 from grader.report.words import (
     advice,
     asides,
@@ -24,6 +23,7 @@ from grader.report.words import (
     told,
     untold,
 )
+from grader.text import printable
 
 _MARKS = {"passed": "\u2713", "failed": "\u2717", "skipped": "\u2212", "pending": "?", "errored": "!"}
 _CUT = "**The report is cut off here: it is longer than can be shown.** A report that is saved to a file is whole.\n"

@@ -3,8 +3,8 @@
 import re
 from typing import NamedTuple
 
-from grader.report.text import printable
-from grader.robot.source import Location, Source
+from grader.source import Location, Source
+from grader.text import printable
 
 _MEANT = re.compile(r"""[^\s=<>"'/]+\s*=\s*(?:"[^"]*"?|'[^']*'?)|<[^\s>]*[^>]*>?|[\w.]+""")
 _INSIDE = re.compile(r"(?i)(.*?\.(?:zip|tar|tgz|tar\.gz))/", re.DOTALL)  # the archives that are looked into

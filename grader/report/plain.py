@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from decimal import Decimal
 from typing import Any
 
-from grader.robot.catalogue import Problem
-from grader.robot.source import Location
+from grader.problems import Problem
+from grader.source import Location
 
 _ENCODER = json.JSONEncoder(ensure_ascii=False, allow_nan=False)
 _UNUSUAL = re.compile(r"[^\n -~]+")  # all but ASCII

@@ -3,11 +3,11 @@
 from collections.abc import Iterator
 
 from grader.grading.report import Report, Result
+from grader.problems import Problem
 from grader.report.places import excerpt
-from grader.report.text import printable
 from grader.report.words import asides, evidence, notes, package_words, pending_words, place_words, summary, told
-from grader.robot.catalogue import Problem
-from grader.robot.source import Location
+from grader.source import Location
+from grader.text import printable
 
 _ROOM = 120  # characters of a quoted line
 

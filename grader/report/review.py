@@ -5,10 +5,10 @@ from pathlib import Path
 from rich.console import Console
 from rich.text import Text
 
-from grader.classroom.marking import Mark, Pending
+from grader.classroom.gradebook.marks import Mark, Pending
 from grader.report.layout import wrapped
 from grader.report.points import points_words, so_many_points
-from grader.report.text import printable
+from grader.text import printable
 
 _INDENT = 2
 

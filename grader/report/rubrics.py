@@ -7,11 +7,12 @@ from grader.checks.registry import Check, check_names, find_check
 from grader.errors import InputError
 from grader.grading.arguments import type_words
 from grader.grading.rubric import Criterion, Rubric
+from grader.names import did_you_mean
+from grader.package.catalogue import PACKAGE_CATALOGUE
+from grader.problems import Kind
 from grader.report.points import points_words
-from grader.report.text import printable
-from grader.robot.catalogue import CATALOGUE, Kind
-from grader.robot.names import did_you_mean
-from grader.submission.catalogue import PACKAGE_CATALOGUE
+from grader.robot.catalogue import CATALOGUE
+from grader.text import printable
 
 _WIDTH = 80
 EVERY_KIND = (*CATALOGUE, *PACKAGE_CATALOGUE)

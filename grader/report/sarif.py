@@ -12,8 +12,8 @@ from grader.report.places import Base, Place
 from grader.report.plain import exact, to_json
 from grader.report.plain_text import criterion_lines, headline
 from grader.report.rubrics import EVERY_KIND
-from grader.report.text import printable
 from grader.report.words import explain_command
+from grader.text import printable
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
 _MOST = 5000  # results of a run that GitHub shows

@@ -5,7 +5,7 @@ from decimal import Decimal
 
 from grader.grading.report import Report, Result
 from grader.report.points import points_words
-from grader.report.text import printable
+from grader.text import printable
 
 _STATUSES = {
     "passed": "now passed",

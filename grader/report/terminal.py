@@ -9,7 +9,6 @@ from rich.text import Text
 from grader.grading.report import Report, Result
 from grader.report.layout import show_excerpt, show_problems, symbol, wrapped
 from grader.report.points import points_words
-from grader.report.text import printable
 from grader.report.words import (
     Told,
     advice,
@@ -26,6 +25,7 @@ from grader.report.words import (
     told,
     untold,
 )
+from grader.text import printable
 
 _STYLES = {"passed": "green", "failed": "bold red", "skipped": "yellow", "pending": "cyan", "errored": "bold magenta"}
 _SYMBOLS = {

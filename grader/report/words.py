@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 from grader.checks.handed_in import JUDGED_BY_A_PERSON
 from grader.grading.report import Exhibits, Report, Result
+from grader.problems import Problem
 from grader.report.points import points_words, so_many_points
-from grader.report.text import printable
-from grader.robot.catalogue import Problem
-from grader.robot.source import Location
+from grader.source import Location
+from grader.text import printable
 
 _VERDICTS = {
     "clean": "ROS 2 loads the file",

@@ -2,13 +2,13 @@
 
 from typing import Literal, get_args
 
+from grader.problems import Kind
 from grader.robot import catalogue
-from grader.robot.catalogue import Kind
+from grader.robot.diagnostics import Notes, Part, children
 from grader.robot.model import Joint, Limit, Mimic
-from grader.robot.names import quoted
-from grader.robot.notes import Notes, Part, children
 from grader.robot.transforms import Vector, unit
-from grader.robot.xml import Element
+from grader.text import quoted
+from grader.xml.parsing import Element
 
 JointType = Literal["fixed", "continuous", "revolute", "prismatic", "floating", "planar"]
 JOINT_TYPES: tuple[str, ...] = get_args(JointType)

@@ -5,12 +5,12 @@ from math import isfinite
 from typing import NamedTuple
 
 from grader.errors import MissingElement
-from grader.robot.holding import holding_joints
 from grader.robot.model import Joint, Link, Robot, Visual
 from grader.robot.motion import Position, check_position, motion_of, past
-from grader.robot.names import quoted
-from grader.robot.source import Spot
+from grader.robot.parent_joints import holding_joints
 from grader.robot.transforms import IDENTITY, Transform, Vector, unit
+from grader.source import Spot
+from grader.text import quoted
 
 
 class Configuration:

@@ -1,10 +1,10 @@
 """Links as urdfdom reads them (`link.cpp`): what a bad part costs, and which material a visual ends up with."""
 
 from grader.robot import catalogue
+from grader.robot.diagnostics import Notes, Part, children
 from grader.robot.materials import Materials
 from grader.robot.model import Box, Collision, Cylinder, Geometry, Inertial, Link, Mesh, Sphere, Visual
-from grader.robot.notes import Notes, Part, children
-from grader.robot.xml import Element
+from grader.xml.parsing import Element
 
 _SHAPES = ("box", "cylinder", "sphere", "mesh")
 _VISUAL_LOST = "ROS 2 drops this visual of link {}, those behind it and all its collisions"

@@ -1,11 +1,11 @@
 """Which colour a visual ends up with (`model.cpp`: assignMaterial, `link.cpp`: parseMaterial)."""
 
 from grader.robot import catalogue
+from grader.robot.diagnostics import Notes, children, shown
 from grader.robot.model import Material
-from grader.robot.names import quoted
-from grader.robot.notes import Notes, children, shown
 from grader.robot.numbers import NumberError, rgba
-from grader.robot.xml import Element
+from grader.text import quoted
+from grader.xml.parsing import Element
 
 _BLACK = (0.0, 0.0, 0.0, 1.0)
 

@@ -8,8 +8,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 from grader.errors import MissingElement
-from grader.robot.names import did_you_mean, quoted
-from grader.robot.source import Mark
+from grader.names import did_you_mean
+from grader.source import Mark
+from grader.text import quoted
 
 Vector = tuple[float, float, float]
 

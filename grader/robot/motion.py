@@ -5,8 +5,8 @@ from math import atan2, isfinite
 
 from grader.robot.joints import MOVING_TYPES
 from grader.robot.model import Joint, Origin
-from grader.robot.names import quoted
 from grader.robot.transforms import IDENTITY, Transform, Vector, cross, dot, rotation_about, rotation_from_rpy, unit
+from grader.text import quoted
 
 Position = float | Sequence[float]
 

@@ -8,8 +8,8 @@ import re
 from functools import lru_cache
 from math import isinf
 
-from grader.robot.names import quoted
 from grader.robot.transforms import Vector
+from grader.text import quoted
 
 _NUMBER = re.compile(r"[ \t\n\v\f\r]*[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 _KEPT_LENGTH = 64  # longer texts are read anew each time, so that what is kept stays small

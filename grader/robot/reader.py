@@ -7,19 +7,20 @@ from typing import Literal
 
 from lxml import etree
 
-from grader.robot import catalogue, dialect
-from grader.robot.catalogue import Problem
+from grader.problems import Problem
+from grader.robot import catalogue
+from grader.robot.diagnostics import Notes
 from grader.robot.joints import read_joint
 from grader.robot.links import read_link
 from grader.robot.materials import Materials
 from grader.robot.model import Joint, Link, Robot
-from grader.robot.names import quoted
-from grader.robot.notes import Notes
 from grader.robot.numbers import is_version_one
-from grader.robot.source import Source
 from grader.robot.spelling import check_spelling
 from grader.robot.tree import check_tree
-from grader.robot.xml import Element, XMLSyntaxError, parse_xml
+from grader.source import Source
+from grader.text import quoted
+from grader.xml import tinyxml2 as dialect
+from grader.xml.parsing import Element, XMLSyntaxError, parse_xml
 
 Verdict = Literal["clean", "degraded", "rejected"]
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from itertools import product
 from math import copysign, hypot
 
-from grader.robot.gap import widest_gap
+from grader.robot.gjk import widest_gap
 from grader.robot.model import Box, Cylinder, Sphere
 from grader.robot.shapes import Shape, half_width, straight_edges
 from grader.robot.transforms import Transform, Vector, cross, dot, minus, unit
@@ -134,7 +134,7 @@ def _least_overlap(a: Shape, b: Shape, T_a_b: Transform) -> Vector:
     best = min(_likely_directions(a, b, T_a_b), key=overlap)
     leaning = overlap(best) > _ROUNDING and _rims_matter(a, b, T_a_b)
     if leaning and not isinstance(a, Sphere) and not isinstance(b, Sphere):
-        from grader.robot.rims import least_overlap_at_rims  # late: it loads numpy
+        from grader.robot.edge_overlap import least_overlap_at_rims  # late: it loads numpy
 
         best = min(best, least_overlap_at_rims(a, b, T_a_b), key=overlap)
     x, y, z = best

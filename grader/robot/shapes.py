@@ -7,8 +7,8 @@ symmetric about its centre does not change when it is mirrored.
 from math import hypot, pi
 
 from grader.robot.model import Box, Cylinder, Geometry, Mesh, Sphere
-from grader.robot.names import quoted
 from grader.robot.transforms import Transform, Vector, dot, unit
+from grader.text import quoted
 
 Shape = Box | Cylinder | Sphere
 

@@ -1,9 +1,9 @@
 """Names that ROS 2 does not know and skips in silence, where they look like misspelt ones; and elements given twice."""
 
 from grader.robot import catalogue
-from grader.robot.names import quoted
-from grader.robot.notes import Notes
-from grader.robot.xml import Element
+from grader.robot.diagnostics import Notes
+from grader.text import quoted
+from grader.xml.parsing import Element
 
 # What urdfdom reads: the attributes of each element, and the elements that may stand in it.
 _ATTRIBUTES: dict[str, tuple[str, ...]] = {

@@ -4,11 +4,11 @@ from collections.abc import Iterable
 from itertools import islice
 
 from grader.robot import catalogue
-from grader.robot.holding import holding_joints
+from grader.robot.diagnostics import Notes
 from grader.robot.model import Joint, Robot
-from grader.robot.names import quoted
-from grader.robot.notes import Notes
-from grader.robot.xml import Element
+from grader.robot.parent_joints import holding_joints
+from grader.text import quoted
+from grader.xml.parsing import Element
 
 _REJECTED = "ROS 2 loads nothing of the file"
 _MOST_PATHS = 10_000_000

@@ -4,11 +4,11 @@ import re
 from typing import NamedTuple
 
 from grader.errors import InputError
-from grader.robot.names import closest
-from grader.robot.source import Location, Source
-from grader.submission.manifest import Manifest, read_manifest
-from grader.submission.package import MANIFEST, SETUP, Package
-from grader.submission.tree import File, PassedOver, Tree
+from grader.files.tree import File, PassedOver, Tree
+from grader.names import closest
+from grader.package.manifest import Manifest, read_manifest
+from grader.package.package import MANIFEST, SETUP, Package
+from grader.source import Location, Source
 
 _SNIFFED = 4096  # bytes in which <robot has to stand
 _MOST_SNIFFED = 400

@@ -6,17 +6,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from grader.errors import InputError, MissingElement, NotDecided
+from grader.files.opening import open_tree, tree_name
+from grader.files.reading import URDF_LIMIT, read_capped, read_standard_input, sha256_of
+from grader.files.tree import PassedOver, Tree, make_tree
+from grader.package.package import NO_PACKAGE, Package
 from grader.robot.catalogue import RAW_XACRO
 from grader.robot.reader import Reading, Verdict, read_urdf
-from grader.robot.source import Source
-from grader.submission.files import URDF_LIMIT, printable_path, read_capped, read_standard_input, sha256_of
-from grader.submission.opening import open_tree, tree_name
-from grader.submission.package import NO_PACKAGE, Package
-from grader.submission.tree import PassedOver, Tree, make_tree
+from grader.source import Source
+from grader.text import printable_path
 
 if TYPE_CHECKING:
-    from grader.submission.documents import Documents
-    from grader.submission.evidence import Proof
+    from grader.documents.documents import Documents
+    from grader.documents.evidence import Proof
 
 Xacro = Literal["none", "expanded", "left"]
 
@@ -53,14 +54,14 @@ class Submission:
     @cached_property
     def documents(self) -> "Documents":
         """The documents in it, each of which is read once."""
-        from grader.submission.documents import Documents  # a URDF on its own has none
+        from grader.documents.documents import Documents  # a URDF on its own has none
 
         return Documents(self.tree)
 
     @cached_property
     def proofs(self) -> "tuple[Proof, ...]":
         """The pictures, films and PDF files in it."""
-        from grader.submission.evidence import read_proofs
+        from grader.documents.evidence import read_proofs
 
         return read_proofs(self.tree)
 
@@ -145,7 +146,7 @@ def _read(data: bytes, path: str, package: Package | None) -> tuple[Reading, Xac
     readers = package.readers(name) if package is not None else set()
     if (readers and readers != {"xacro"}) or (not readers and (".xacro" not in name or name.endswith(".urdf"))):
         return reading, "none"
-    from grader.submission.xacro import expand
+    from grader.xacro.properties import expand
 
     expanded = expand(reading.source.text)
     if expanded is None:

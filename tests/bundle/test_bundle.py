@@ -21,10 +21,10 @@ from grader.checks.outcome import Outcome
 from grader.checks.registry import describe
 from grader.cli import bundle as command
 from grader.errors import InputError
+from grader.files.reading import sha256_of
 from grader.grading.grade import grade
 from grader.grading.rubric import load_rubric
 from grader.robot.kinematics import Configuration
-from grader.submission.files import sha256_of
 from tests.bundle.platform import Autograder, environment_for, unpacked
 from tests.classroom.gradebooks import grader, hand_in, lab_text, refusal
 from tests.samples import LAB6, ROOT, opened

@@ -13,7 +13,7 @@ from grader.checks.registry import describe
 from grader.errors import MissingElement
 from grader.grading.grade import grade
 from grader.grading.rubric import Criterion, Part, Rubric
-from grader.robot.source import Location
+from grader.source import Location
 from grader.submission.submission import read_submission
 from tests.checks.hand_ins import HandIn
 from tests.checks.robots import PATH, Scene

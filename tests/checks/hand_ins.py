@@ -8,10 +8,10 @@ from functools import cached_property
 from pathlib import Path
 
 from grader.errors import InputError
-from grader.robot.source import Location
-from grader.submission.package import Package
+from grader.files.tree import File, make_tree
+from grader.package.package import Package
+from grader.source import Location
 from grader.submission.submission import Submission, submission_of
-from grader.submission.tree import File, make_tree
 
 FOLDER = "my_robot"
 MANIFEST = "my_robot/package.xml"

@@ -7,7 +7,7 @@ from math import radians
 
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading, read_urdf
-from grader.robot.source import Location
+from grader.source import Location
 
 PATH = "urdf/robot.urdf"
 

@@ -11,8 +11,8 @@ import pytest
 
 from grader.checks.handed_in import answered, evidence_shown
 from grader.checks.outcome import Outcome
-from grader.robot.source import Location
-from grader.submission.documents import MAX_LINES
+from grader.documents.documents import MAX_LINES
+from grader.source import Location
 from tests.checks.asking import ask
 from tests.checks.hand_ins import ANSWERS, REFERENCE, URDF, HandIn, gif, jpeg, png
 from tests.samples import ROOT
@@ -235,7 +235,7 @@ def test_without_the_readers_the_document_is_named(name: str, monkeypatch: pytes
     message = f"{name} could not be read on this machine: open it yourself"
     assert message in answer_in(ALONE.with_files({name: b""})).message
     monkeypatch.undo()
-    monkeypatch.setattr("grader.submission.document_text.MISSING", 1)  # as a damaged document ends
+    monkeypatch.setattr("grader.documents.converter.MISSING", 1)  # as a damaged document ends
     message = f"{name} is read only with the grader's extra `documents`: open it yourself"
     assert message in answer_in(ALONE.with_files({name: b"no document"})).message
 
@@ -247,13 +247,13 @@ TOO_LATE = "was not read: the Word and PDF files take longer than 0.5 s in all; 
 def converter(code: bytes, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Let this code take the place of the converter."""
     path.write_bytes(code)
-    monkeypatch.setattr("grader.submission.document_text.__file__", str(path))
+    monkeypatch.setattr("grader.documents.converter.__file__", str(path))
 
 
 def test_all_documents_share_one_budget(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A document that takes too long uses up the time of those after it; texts are read all the same."""
     converter(SLOW, tmp_path / "slow.py", monkeypatch)
-    monkeypatch.setattr("grader.submission.documents.MAX_SECONDS", 0.5)
+    monkeypatch.setattr("grader.documents.documents.MAX_SECONDS", 0.5)
     began = time.monotonic()
     hand_in = ALONE.with_files({f"{name}.pdf": b"" for name in "abcd"} | {"e.txt": "Task 1 step 15: It vanishes."})
     outcome = answer_in(hand_in)
@@ -268,7 +268,7 @@ def test_the_converter_bounds_its_own_processor_time(tmp_path: Path, monkeypatch
     code += "from grader.submission import document_text\n"
     code += "document_text._pdf = lambda data: str(sum(0 for _ in iter(int, 1)))\nsys.exit(document_text.main())"
     converter(code.encode(), tmp_path / "busy.py", monkeypatch)
-    monkeypatch.setattr("grader.submission.documents.MAX_SECONDS", 60.0)
+    monkeypatch.setattr("grader.documents.documents.MAX_SECONDS", 60.0)
     message = answer_in(ALONE.with_files({"a.pdf": b""})).message
     assert "a.pdf was not read: the Word and PDF files take longer than 60 s in all" in message
 

@@ -3,7 +3,7 @@
 import pytest
 
 from grader.checks.package import build_installs, installs_files, package_found, package_type, setup_imports
-from grader.robot.source import Location
+from grader.source import Location
 from tests.checks.asking import finds, lacks
 from tests.checks.hand_ins import (
     FOLDER,

@@ -3,7 +3,7 @@
 import pytest
 
 from grader.checks.rviz import rviz_display_on, rviz_fixed_frame, rviz_found, rviz_shows_robot
-from grader.robot.source import Location
+from grader.source import Location
 from tests.checks.asking import Finding, finds, lacks
 from tests.checks.hand_ins import LAUNCH, REFERENCE, RVIZ, SETUP, URDF, HandIn, png, start_of
 

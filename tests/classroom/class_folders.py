@@ -4,7 +4,7 @@ import zipfile
 from collections.abc import Iterable
 from pathlib import Path
 
-from grader.classroom.intake.taking import Intake
+from grader.classroom.intake.intake import Intake
 
 
 def lay_out(top: Path, *paths: str) -> Path:

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from grader.cli.app import run as run_here
-from grader.cli.class_reports import INDEX
+from grader.usecases.class_reports import INDEX
 from tests.command_line import GRADER, PATIENCE, run, run_process, surroundings
 from tests.samples import ROOT
 

@@ -6,12 +6,13 @@ from decimal import Decimal
 from pathlib import Path
 
 from grader.checks.outcome import Outcome
-from grader.classroom.gradebook import Gradebook
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.result import NOT_GRADED, SIGNS, Graded, Verdict
+from grader.classroom.run.worker import Task, _of
 from grader.classroom.students import HandIn, Student
-from grader.classroom.work import NOT_GRADED, SIGNS, Graded, Task, Verdict, _of
+from grader.files.reading import sha256_of
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric, read_rubric
-from grader.submission.files import sha256_of
 from tests.command_line import run_with_input, surroundings
 from tests.samples import ROOT
 

@@ -25,13 +25,13 @@ from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_state_machine_as_test
 
-from grader.classroom.batch import Batch, Settings
-from grader.classroom.gradebook import Gradebook
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.grades import Standing, Standings
+from grader.classroom.gradebook.marks import mark
+from grader.classroom.intake.intake import take_in
+from grader.classroom.intake.opening import is_bulk, open_hand_in
 from grader.classroom.intake.roster import Entry, Roster
-from grader.classroom.intake.taking import take_in
-from grader.classroom.marking import mark
-from grader.classroom.opening import is_bulk, open_hand_in
-from grader.classroom.standings import Standing, Standings
+from grader.classroom.run.batch import Batch, Settings
 from grader.classroom.students import Student
 from grader.errors import InputError
 from grader.grading.rubric import read_rubric

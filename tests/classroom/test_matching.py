@@ -8,12 +8,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.gradebook import Gradebook
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.grades import Standings
 from grader.classroom.intake.roster import Entry, Roster
 from grader.classroom.lms.grades import Grade
 from grader.classroom.lms.matching import Person, join
 from grader.classroom.matching import Clue, People, canvas_name, canvas_names, clues_of, plain_name, surname
-from grader.classroom.standings import Standings
 from grader.classroom.students import Student
 from grader.errors import InputError
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.schema import STEPS
+from grader.classroom.gradebook.schema import STEPS
 from grader.cli.formats import Format
 from grader.grading.rubric import load_rubric, shipped_rubrics
 from tests.classroom.gradebooks import batch, grader, lab_text, refusal

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from grader.cli.app import run
-from grader.submission.document_text import __file__ as converter
+from grader.documents.converter import __file__ as converter
 from tests.classroom.class_runs import eventually, grader, rows, session_of, started
 from tests.command_line import PATIENCE
 from tests.samples import ROOT
@@ -47,7 +47,7 @@ def test_a_slow_document_leaves_its_criteria_to_a_person(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """It is not read, everything else has its result, and another document is read all the same."""
-    monkeypatch.setattr("grader.submission.documents.MAX_SECONDS", 1.0)
+    monkeypatch.setattr("grader.documents.documents.MAX_SECONDS", 1.0)
     assert run(["grade", str(hand_in(tmp_path / "alice"))]) == 0
     shown = " ".join(capsys.readouterr().out.split())
     assert shown.count("the Word and PDF files take longer than 1 s in all; needs manual grading") == 2

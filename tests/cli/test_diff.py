@@ -8,7 +8,7 @@ from typing import Any
 
 import jsonschema
 
-from grader.classroom.gradebook import Gradebook
+from grader.classroom.gradebook.gradebook import Gradebook
 from tests.classroom.gradebooks import batch, came_out, graded_into, grader, hand_in, lab, lab_text, refusal, urdf
 
 

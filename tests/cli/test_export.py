@@ -16,18 +16,18 @@ from typing import Any, NamedTuple
 import jsonschema
 import pytest
 
-from grader.classroom.gradebook import Gradebook
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.grades import Standings
+from grader.classroom.gradebook.marks import criterion_of
+from grader.classroom.gradebook.marks import mark as add_mark
+from grader.classroom.intake.intake import take_in
 from grader.classroom.intake.roster_file import read_roster
-from grader.classroom.intake.taking import take_in
 from grader.classroom.lms.preflight import Conflict, Left, Preflight
-from grader.classroom.marking import criterion_of
-from grader.classroom.marking import mark as add_mark
-from grader.classroom.standings import Standings
 from grader.classroom.students import HandIn
-from grader.cli.class_export import preflight_lines
 from grader.errors import InputError
+from grader.files.opening import ARCHIVES
 from grader.grading.grade import grade
-from grader.submission.opening import ARCHIVES
+from grader.usecases.export import preflight_lines
 from tests.classroom.gradebooks import batch, came_out, graded_into, grader, hand_in, lab, lab_text, make_class, refusal
 from tests.samples import LAB6, ROOT, opened
 

@@ -11,8 +11,8 @@ from typing import Any
 import jsonschema
 import pytest
 
-from grader.classroom.gradebook import Gradebook
-from grader.classroom.standings import Standings
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.grades import Standings
 from grader.cli.class_text import class_text
 from grader.cli.formats import Format
 from grader.cli.options import ClassFormat

@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 
-from grader.classroom.gradebook import Gradebook
-from grader.classroom.marking import NewerMarkError, Waiting, mark, pending
-from grader.classroom.standings import Standings
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.grades import Standings
+from grader.classroom.gradebook.marks import NewerMarkError, Waiting, mark, pending
 from tests.classroom.gradebooks import ENVIRONMENT, grader
 from tests.command_line import PATIENCE
 from tests.samples import ROOT

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from grader.cli.formats import Format
-from grader.cli.saving import save
+from grader.usecases.writing import save
 from tests.golden.cases import CLASSROOM50, run
 from tests.samples import ROOT
 

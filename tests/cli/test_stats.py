@@ -7,7 +7,7 @@ from typing import Any
 import jsonschema
 import pytest
 
-from grader.classroom.gradebook import Gradebook
+from grader.classroom.gradebook.gradebook import Gradebook
 from tests.classroom.gradebooks import batch, came_out, graded_into, grader, hand_in, lab, refusal
 
 

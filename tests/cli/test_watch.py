@@ -14,9 +14,9 @@ from typing import IO, Self
 
 import pytest
 
-from grader.cli.listening import Watched, _filter, _place, rounds
 from grader.errors import InputError
-from grader.submission.folder import is_looked_at, read_folder
+from grader.files.folder import is_looked_at, read_folder
+from grader.usecases.file_events import Watched, _filter, _place, rounds
 from tests.command_line import PATIENCE
 from tests.golden.cases import ROOT, run
 
@@ -352,8 +352,8 @@ def test_what_no_event_has_told_is_seen_all_the_same(tmp_path: Path, monkeypatch
             time.sleep(0.01)
             yield set()
 
-    monkeypatch.setattr("grader.cli.listening.watch", deaf)
-    monkeypatch.setattr("grader.cli.listening._ONCE_MORE", 0.02)
+    monkeypatch.setattr("grader.usecases.file_events.watch", deaf)
+    monkeypatch.setattr("grader.usecases.file_events._ONCE_MORE", 0.02)
     folder = rounds(Watched(tmp_path))
     assert [next(folder), next(folder)] == [True, False]
     robot = tmp_path / "my_robot.urdf"
@@ -370,7 +370,7 @@ def test_nothing_is_listened_to_where_nothing_can_be(tmp_path: Path, monkeypatch
     def refused(*_paths: str, **_options: object) -> Iterator[set[object]]:
         raise RuntimeError("OS file watch limit reached.")
 
-    monkeypatch.setattr("grader.cli.listening.watch", refused)
+    monkeypatch.setattr("grader.usecases.file_events.watch", refused)
     with pytest.raises(InputError, match=r"limit reached\.; with WATCHFILES_FORCE_POLLING=1 in the"):
         next(rounds(Watched(tmp_path)))
 

@@ -6,12 +6,12 @@ from itertools import groupby
 from typing import Any
 
 from grader.cli.formats import Format
+from grader.files.tree import PassedOver
 from grader.grading.report import HandedIn, Report, Result
-from grader.report.text import printable
 from grader.report.words import untold
 from grader.robot.reader import Verdict
-from grader.robot.source import Location, Source
-from grader.submission.tree import PassedOver
+from grader.source import Location, Source
+from grader.text import printable
 from tests.report.readers import read_as_github, read_commands, read_json, read_junit, read_markdown
 
 Words = Callable[[], str]

@@ -8,12 +8,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.grading.report import Report
+from grader.problems import Problem
 from grader.report.findings import findings
 from grader.report.github import command, render_github
 from grader.report.places import Base, Place
-from grader.report.text import printable
-from grader.robot.catalogue import UNDEFINED_MATERIAL, Problem
-from grader.robot.source import Location
+from grader.robot.catalogue import UNDEFINED_MATERIAL
+from grader.source import Location
+from grader.text import printable
 from tests.report.readers import read_commands
 from tests.report.workflow_commands import Command
 from tests.samples import ROOT, SAMPLES

@@ -13,8 +13,8 @@ import pytest
 from grader.cli.formats import Format, render
 from grader.grading.report import Report, Result
 from grader.report.points import points_words
-from grader.report.text import printable
 from grader.report.words import untold
+from grader.text import printable
 from tests.report.readers import read_as_github, read_commands, read_junit
 from tests.samples import SAMPLES
 

@@ -11,11 +11,12 @@ import pytest
 
 from grader.grading.grade import grade
 from grader.grading.report import Report
+from grader.problems import Problem
 from grader.report.findings import findings
 from grader.report.places import Base
 from grader.report.sarif import render_sarif
-from grader.robot.catalogue import UNDEFINED_MATERIAL, Problem
-from grader.robot.source import Location
+from grader.robot.catalogue import UNDEFINED_MATERIAL
+from grader.source import Location
 from grader.submission.submission import read_submission
 from tests.report.readers import read_sarif
 from tests.report.recast import recast

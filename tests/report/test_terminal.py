@@ -13,10 +13,10 @@ from grader.grading.rubric import load_rubric
 from grader.report.inspection import Inspection, inspection_terminal, main_root
 from grader.report.layout import show_excerpt
 from grader.report.terminal import render_terminal
-from grader.report.text import printable
 from grader.robot.kinematics import Configuration
-from grader.robot.source import Location, Source
+from grader.source import Location, Source
 from grader.submission.submission import read_submission
+from grader.text import printable
 from tests.samples import SAMPLES
 
 ROOT = Path(__file__).parent.parent.parent

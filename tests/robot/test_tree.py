@@ -4,9 +4,9 @@ from itertools import permutations
 
 import pytest
 
-from grader.robot.holding import holding_joints
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint, Link, Robot
+from grader.robot.parent_joints import holding_joints
 from grader.robot.reader import read_urdf
 
 

@@ -7,10 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.errors import InputError
+from grader.files.tree import File, PassedOver, Tree, make_tree
+from grader.package.package import Package
 from grader.submission.find import Found, find_packages, find_urdf, read_packages
-from grader.submission.package import Package
 from grader.submission.submission import submission_of
-from grader.submission.tree import File, PassedOver, Tree, make_tree
 from tests.patience import processor_time
 
 WANTED = "urdf/my_robot.urdf"

@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import NamedTuple, Protocol
 
 from grader.errors import InputError
-from grader.submission.files import printable_path, read_start
+from grader.files.reading import read_start
+from grader.text import printable_path
 
 _SILENT = frozenset({"__MACOSX", "__pycache__", "node_modules", "site-packages", "Thumbs.db", "desktop.ini", "Icon\r"})
 _LINK = "is a symlink, and was not followed"

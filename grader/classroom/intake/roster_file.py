@@ -8,7 +8,8 @@ from grader.classroom.intake.roster import Entry, Roster
 from grader.classroom.intake.roster_cells import Row, canvas_assignments, rows_of, text_of
 from grader.classroom.students import Student
 from grader.errors import InputError
-from grader.submission.files import printable_path, read_capped
+from grader.files.reading import read_capped
+from grader.text import printable_path
 
 _LIMIT = 16 * 1024 * 1024  # bytes
 _YES = frozenset({"yes", "y", "true", "late", "x", "ja"})

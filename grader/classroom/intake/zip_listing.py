@@ -5,9 +5,9 @@ from pathlib import Path
 
 from grader.classroom.intake.listing import Children, is_silent
 from grader.errors import InputError
-from grader.submission.archive import DAMAGED, inside, words_of, zip_members
-from grader.submission.files import printable_path
-from grader.submission.members import Member
+from grader.files.archive import DAMAGED, inside, words_of, zip_members
+from grader.files.members import Member
+from grader.text import printable_path
 
 MOST_MEMBERS = 200_000
 _DEEPEST = 20  # folders: what lies deeper does not tell who handed in

@@ -13,7 +13,7 @@ from decimal import Decimal
 
 from grader.classroom.lms.grades import cut, exact_words
 from grader.classroom.lms.spreadsheet import FORMULA_BEHIND_SEMICOLON, spelt_out
-from grader.submission.files import sha256_of
+from grader.files.reading import sha256_of
 
 LIMIT = 4_000  # characters
 _ONE_TEXT = 600

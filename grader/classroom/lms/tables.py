@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 from grader.errors import InputError
-from grader.submission.files import capped
+from grader.files.reading import capped
 
 SIZE_LIMIT = 16 * 1024 * 1024  # bytes
 ROW_LIMIT = 100_000

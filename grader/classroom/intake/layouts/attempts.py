@@ -4,10 +4,10 @@ import re
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
-from grader.classroom.intake.layouts.shelf import LeftOut
+from grader.classroom.intake.layouts.layout import LeftOut
 from grader.classroom.intake.listing import Listing
 from grader.classroom.intake.names import ENDINGS, ending_of, without_copy
-from grader.submission.files import printable_path
+from grader.text import printable_path
 
 _ATTEMPT = re.compile(r"(?:attempt|submission|try|versuch|abgabe)[ _-]?([0-9]{1,6})", re.IGNORECASE)
 _MOST_ATTEMPTS = 1_000

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import NamedTuple
 
-from grader.classroom.intake.layouts.shelf import LeftOut, Listed, listed
+from grader.classroom.intake.layouts.layout import LeftOut, Listed, listed
 from grader.classroom.intake.listing import Children
 from grader.classroom.intake.names import ending_of
 from grader.classroom.matching import is_word

@@ -11,12 +11,12 @@ from itertools import groupby
 from typing import NamedTuple
 
 from grader.classroom.intake.layouts.attempts import attempts_in, last_copy
+from grader.classroom.intake.layouts.layout import LeftOut, place_key
 from grader.classroom.intake.layouts.prefix import class_prefix, has_prefix
-from grader.classroom.intake.layouts.shelf import LeftOut, place_key
 from grader.classroom.intake.listing import Children, Listing
 from grader.classroom.intake.names import ending_of, without_copy
 from grader.classroom.students import HandIn, Student
-from grader.submission.tree import BUILT
+from grader.files.tree import BUILT
 
 _NO_SUBMISSION = "is not a folder, an archive or a URDF"
 _BUILT = "is a folder of a build"

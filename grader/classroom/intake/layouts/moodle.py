@@ -12,7 +12,7 @@ import re
 from collections import defaultdict
 from typing import NamedTuple
 
-from grader.classroom.intake.layouts.shelf import LeftOut, Listed, listed
+from grader.classroom.intake.layouts.layout import LeftOut, Listed, listed
 from grader.classroom.intake.listing import Children, Listing
 from grader.classroom.intake.names import ending_of
 from grader.classroom.students import HandIn, Student

@@ -6,12 +6,12 @@ nbgrader writes that time as `%Y-%m-%d %H:%M:%S.%f %Z`, in UTC unless it is conf
 from collections import defaultdict
 from dataclasses import replace
 
-from grader.classroom.intake.layouts.shelf import LeftOut, Listed, listed
+from grader.classroom.intake.layouts.layout import LeftOut, Listed, listed
 from grader.classroom.intake.listing import Children, Listing
 from grader.classroom.intake.names import utc_time
 from grader.classroom.students import HandIn, Student
 from grader.errors import InputError
-from grader.submission.files import printable_path
+from grader.text import printable_path
 
 _SUBMITTED = "submitted"
 _STAMP = "timestamp.txt"

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from grader.classroom.intake.layouts.folders import shelve as shelve_folders
-from grader.classroom.intake.layouts.shelf import LeftOut, Listed, listed
+from grader.classroom.intake.layouts.layout import LeftOut, Listed, listed
 from grader.classroom.intake.listing import Children, Listing
 from grader.classroom.intake.names import ending_of
 from grader.classroom.students import HandIn

@@ -1,0 +1,1 @@
+"""The gradebook: its tables, the grades, the marks and the statistics made from them."""

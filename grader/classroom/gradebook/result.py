@@ -1,0 +1,26 @@
+"""The result of grading one submission, as plain data that fits a process boundary and a row of the gradebook."""
+
+from typing import Literal, NamedTuple
+
+from grader.checks.outcome import Status
+
+Verdict = Literal["graded", "unreadable", "errored", "unchanged"]
+UNITS = 10_000  # points are kept as whole numbers of ten-thousandths
+SIGNS: dict[Status, str] = {"passed": "p", "failed": "f", "skipped": "s", "pending": "?", "errored": "!"}
+NOT_GRADED = "-"
+
+
+class Graded(NamedTuple):
+    """What came of one hand-in. `signs` has a letter for each criterion of the rubric; points are in ten-thousandths."""
+
+    key: str
+    verdict: Verdict
+    digest: str
+    fingerprint: str
+    score: int = 0
+    out_of: int = 0
+    pending: int = 0
+    signs: str = ""
+    misses: str = "[]"
+    record: bytes = b""
+    reason: str = ""

@@ -1,0 +1,1 @@
+"""Written answers and evidence: Markdown, text, docx, PDF and pictures."""

@@ -1,0 +1,192 @@
+"""The documents of a submission as lines of text: each is read once, and Word and PDF files share one budget of time."""
+
+import os
+import re
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from fnmatch import translate
+from math import ceil
+from typing import NamedTuple
+
+from grader.documents import converter as document_text
+from grader.documents.evidence import stem
+from grader.documents.labels import Label, read_label
+from grader.errors import InputError
+from grader.files.tree import File, Tree
+
+MAX_SECONDS = 20.0  # for all Word and PDF files of a submission
+MAX_LINES = 2000  # of one document
+_TEXT_LIMIT, _DOCUMENT_LIMIT = 1024 * 1024, 32 * 1024 * 1024  # bytes
+_MAX_FILES, _MAX_CONVERTED = 40, 8
+_LONGEST_LINE = 1000  # characters in which a heading says what it is about
+_HEADING_WORDS = 6  # a label that begins a passage stands among the first words of its line
+_MARKUP = re.compile(r"^[\s#>*\-_+|`]+")
+_DIGIT = re.compile(r"\d")
+# Numbers that stand for a step: 1.15, or 15) and 15. where they are no count of a short list.
+_DOTTED = re.compile(r"^\(?([1-9])\.(\d{1,2})\b[.):]?\s*")
+_NUMBERED = re.compile(r"^\(?([1-9]\d)[.):]\s+")
+_NO_ANSWERS = frozenset(
+    {"CMakeLists.txt", "requirements.txt", "LICENSE.txt", "LICENSE.md", "top_level.txt", "SOURCES.txt"}
+)
+# How a file begins that holds no answers: one of another kind, or a report of the grader, which repeats questions and answers.
+_OTHER = re.compile(
+    r"\s*<(?:\?xml|!--|robot|launch|package)|(?:# )?[\d.]+ / [\d.]+ points(?:  |: )|::notice title=[\d.]+ / "
+)
+
+
+class Heading(NamedTuple):
+    """A line that names a task or step: its index, what it names, and the index of the line that ends its passage.
+
+    `task` is that of the label, or of the headings above.
+    """
+
+    start: int
+    label: Label
+    task: int | None
+    end: int
+
+
+class Document(NamedTuple):
+    """The first lines of a document and the headings among them; `is_cut` tells whether there are more lines."""
+
+    file: File
+    lines: list[str]
+    headings: tuple[Heading, ...]
+    is_cut: bool
+
+
+class Documents:
+    """The documents of a submission."""
+
+    def __init__(self, tree: Tree) -> None:
+        self._tree = tree
+        self._seconds = MAX_SECONDS
+        self._converted = 0
+        self._known: dict[str, Document | str | None] = {}
+
+    def named(self, patterns: Sequence[str]) -> tuple[list[Document], list[str]]:
+        """Return the documents whose names match one of the patterns, and what of them was not read, and why."""
+        read: list[Document] = []
+        unread: list[str] = []
+        chosen = self._matching(patterns)
+        for file in chosen[:_MAX_FILES]:
+            if file.path not in self._known:
+                self._known[file.path] = self._read(file)
+            document = self._known[file.path]
+            if isinstance(document, str):
+                unread.append(document)
+            elif document is not None:
+                read.append(document)
+                if document.is_cut:
+                    unread.append(f"{file.path} after line {MAX_LINES}, the limit for a document")
+        if len(chosen) > _MAX_FILES:
+            unread.append(f"{len(chosen) - _MAX_FILES} documents after the first {_MAX_FILES}, the limit")
+        return read, unread
+
+    def _matching(self, patterns: Sequence[str]) -> list[File]:
+        wanted = re.compile("|".join(translate(pattern.lower()) for pattern in patterns))
+        files = self._tree.files.values()
+        return [file for file in files if file.name not in _NO_ANSWERS and wanted.match(file.name.lower())]
+
+    def _read(self, file: File) -> Document | str | None:
+        """Return a document, the reason why it was not read, or None for a file that holds no answers."""
+        try:
+            text = self._text(file)
+        except InputError as error:
+            return str(error)
+        if _OTHER.match(text):
+            return None
+        # Lines as git and editors count them: `splitlines` also breaks at form feeds and separators of Unicode.
+        text = text.replace("\r\n", "\n").replace("\r", "\n").removesuffix("\n")
+        lines = text.split("\n", MAX_LINES)
+        is_cut = len(lines) > MAX_LINES
+        return Document(file, lines[:MAX_LINES], _headings(lines[:MAX_LINES], stem(file.name)), is_cut)
+
+    def _text(self, file: File) -> str:
+        match file.suffix:
+            case ".docx" | ".pdf":
+                return self._convert(file)
+            case ".doc" | ".odt" | ".rtf" | ".pages" | ".ipynb":
+                raise InputError(f"{file.path} is of a kind that is not read: open it yourself")
+            case _:
+                data = file.read(_TEXT_LIMIT)
+        if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+            return data.decode("utf-16", "replace")
+        try:
+            return data.decode("utf-8-sig")
+        except UnicodeDecodeError:
+            return data.decode("cp1252", "replace")
+
+    def _convert(self, file: File) -> str:
+        """Return the text of a Word or PDF file, converted by a process of its own within what is left of the budget."""
+        self._converted += 1
+        if self._converted > _MAX_CONVERTED:
+            raise InputError(
+                f"{file.path} was not read: at most {_MAX_CONVERTED} Word and PDF files are; needs manual grading"
+            )
+        late = InputError(
+            f"{file.path} was not read: the Word and PDF files take longer than {MAX_SECONDS:g} s in all; needs manual grading"
+        )
+        if self._seconds <= 0:
+            raise late
+        data = file.read(_DOCUMENT_LIMIT)
+        began = time.monotonic()
+        try:
+            done = _run_converter(file.suffix[1:], data, self._seconds)
+        except subprocess.TimeoutExpired:
+            raise late from None
+        except OSError:
+            raise InputError(f"{file.path} could not be read on this machine: open it yourself") from None
+        finally:
+            self._seconds -= time.monotonic() - began
+        if document_text.is_out_of_time(done.returncode):
+            raise late
+        if done.returncode == document_text.MISSING:
+            raise InputError(f"{file.path} is read only with the grader's extra `documents`: open it yourself")
+        if done.returncode:
+            raise InputError(f"{file.path} cannot be read; it may be damaged: open it yourself")
+        return done.stdout.decode("utf-8", "replace")
+
+
+def _run_converter(kind: str, data: bytes, seconds: float) -> "subprocess.CompletedProcess[bytes]":
+    # -P: neither the current folder, which may be the student's, nor our own is where modules are looked for.
+    command = [sys.executable, "-P", document_text.__file__, kind, str(ceil(seconds)), str(os.getpid())]
+    return subprocess.run(  # which kills it when it is interrupted
+        command, input=data, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, timeout=seconds, check=False
+    )
+
+
+def _headings(lines: list[str], name: str) -> tuple[Heading, ...]:
+    """Return the headings among some lines; `name` is that of their file, which may name a task."""
+    found: list[tuple[int, Label, int | None, list[str]]] = []
+    task = read_label(name).task
+    for index, line in enumerate(lines):
+        if not _DIGIT.search(line, 0, _LONGEST_LINE):
+            continue
+        words = _words(line[:_LONGEST_LINE])
+        label = read_label(" ".join(words[:_HEADING_WORDS]))
+        if label.steps or label.task is not None:
+            task = label.task if label.task is not None else task
+            found.append((index, label, task, words))
+    headings: list[Heading] = []
+    end = end_of_marked = len(lines)
+    for index, label, task, words in reversed(found):
+        is_marked = lines[index].startswith("#")
+        headings.append(Heading(index, label, task, end_of_marked if is_marked else end))
+        # A sentence that mentions a step ends no passage. Below a heading that is marked as one, only such a heading does,
+        # or a line that names task and step at once.
+        begins = read_label(" ".join(words[:2]))
+        if len(words) <= _HEADING_WORDS or begins.steps or begins.task is not None:
+            end = index
+        if is_marked or (begins.task is not None and read_label(" ".join(words[:4])).steps):
+            end_of_marked = index
+    return tuple(reversed(headings))
+
+
+def _words(line: str) -> list[str]:
+    plain = _MARKUP.sub("", line)
+    plain = _DOTTED.sub(r"task \1 step \2 ", plain)
+    plain = _NUMBERED.sub(r"step \1 ", plain)
+    return [word for word in plain.split() if any(map(str.isalnum, word))]

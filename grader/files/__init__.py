@@ -1,0 +1,1 @@
+"""Read untrusted files: folders, archives and limits. Nothing else opens a student's file."""

@@ -1,0 +1,134 @@
+"""A zip with the hand-ins of a whole class, as an LMS gives it: each is read from where it is."""
+
+import tempfile
+import weakref
+from bisect import bisect_left
+from contextlib import AbstractContextManager
+from functools import partial
+from pathlib import Path
+from typing import IO, TYPE_CHECKING
+
+from grader.errors import InputError
+from grader.files.archive import (
+    ARCHIVE_LIMIT,
+    DAMAGED,
+    MAX_ARCHIVE_SIZE,
+    bounded,
+    inside,
+    read_archive,
+    tree_of,
+    words_of,
+    zip_members,
+)
+from grader.files.members import Member
+from grader.files.opening import ARCHIVES, archive_kind
+from grader.files.tree import File, Tree
+from grader.text import printable_path
+
+if TYPE_CHECKING:
+    import hashlib
+
+_MOST_MEMBERS = 200_000
+_IN_MEMORY = 16 * 1024 * 1024
+_CHUNK = 1024 * 1024
+
+
+class Bulk:
+    """An open zip of many hand-ins. Its paths are those of its members, with forward slashes. Raises InputError."""
+
+    def __init__(self, path: Path) -> None:
+        self._shown = printable_path(path)
+        self._members: dict[str, Member] = {}
+        try:
+            file = path.open("rb")
+            weakref.finalize(self, file.close)
+            for member in zip_members(file):
+                self._members[inside(member.path) or ""] = member
+                if len(self._members) > _MOST_MEMBERS:
+                    raise InputError(f"{self._shown} holds more than {_MOST_MEMBERS} files")
+        except DAMAGED as error:
+            raise InputError(f"{self._shown} cannot be read as an archive: {words_of(error)}") from None
+        self._names = sorted(self._members)
+
+    def folder(self, path: str) -> Tree:
+        """The files below a folder."""
+        start = f"{path}/"
+        first, end = bisect_left(self._names, start), bisect_left(self._names, f"{path}0")  # 0 comes after /
+        below = [self._named(self._members[name], name.removeprefix(start)) for name in self._names[first:end]]
+        return self._tree(below, path.rpartition("/")[2])
+
+    def files(self, named: dict[str, str], name: str) -> Tree:
+        """Some files as one tree, each under the name that it is given there."""
+        chosen = [self._named(self._member(path), given) for path, given in named.items()]
+        return self._tree(chosen, name)
+
+    def is_folder(self, path: str) -> bool:
+        """Whether a path is that of a folder, or of nothing."""
+        member = self._members.get(path)
+        return member is None or member.kind == "folder"
+
+    def read(self, path: str, limit: int) -> bytes:
+        """The bytes of one file, of at most `limit` bytes; raises InputError."""
+        return self._file_of(path).read(limit)
+
+    def archive(self, path: str, digest: "hashlib._Hash") -> Tree | None:
+        """The files of an archive in it, whose bytes go into the digest; None for a file that is none.
+
+        Raises InputError where it cannot be read.
+        """
+        member, name = self._member(path), path.rpartition("/")[2]
+        if member.kind != "file":
+            raise InputError(f"{name} {member.reason or 'is not a regular file, and was not read'}")
+        if member.size > MAX_ARCHIVE_SIZE:
+            raise InputError(f"{name} is larger than {MAX_ARCHIVE_SIZE} bytes, the limit for an archive")
+        kind = None
+        stored = tempfile.SpooledTemporaryFile(max_size=_IN_MEMORY)  # noqa: SIM115  its tree closes it
+        try:
+            kind = _copied(member, stored, digest)
+            if kind is not None:
+                return read_archive(stored, kind, path)
+        except DAMAGED as error:
+            raise InputError(f"cannot read {name}: {words_of(error)}") from None
+        finally:
+            if kind is None:
+                stored.close()
+        if path.lower().endswith(ARCHIVES):
+            raise InputError(f"{path} is no archive that can be read, for all its name: it is damaged or empty")
+        return None
+
+    def _file_of(self, path: str) -> File:
+        tree = self.files({path: path.rpartition("/")[2]}, path)
+        for file in tree.files.values():
+            return file
+        raise InputError(tree.left_out[0] if tree.left_out else f"{path} cannot be read")
+
+    def _member(self, path: str) -> Member:
+        member = self._members.get(path)
+        if member is None:
+            raise InputError(f"{path} is not in {self._shown}")
+        return member
+
+    def _named(self, member: Member, path: str) -> Member:
+        """A member as it is called in a tree, which keeps the zip open."""
+        return member._replace(path=path, open=partial(self._open, member))
+
+    def _open(self, member: Member) -> AbstractContextManager[IO[bytes]]:
+        return member.open()
+
+    def _tree(self, members: list[Member], name: str) -> Tree:
+        try:
+            return tree_of(bounded(members, name, ARCHIVE_LIMIT), name)
+        except DAMAGED as error:
+            raise InputError(f"{name} cannot be read: {words_of(error)}") from None
+
+
+def _copied(member: Member, to: IO[bytes], digest: "hashlib._Hash") -> str | None:
+    """Copy an archive, into a digest as well, and return its kind; None for a file that is none."""
+    with member.open() as content:
+        chunk = content.read(_CHUNK)
+        kind = archive_kind(chunk[:512])
+        while chunk and kind is not None:
+            digest.update(chunk)
+            to.write(chunk)
+            chunk = content.read(_CHUNK)
+    return kind

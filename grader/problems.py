@@ -1,0 +1,69 @@
+"""Problems of files: their kinds, each with a stable code, and one problem at its place."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+from grader.source import Location
+
+Severity = Literal["error", "warning", "note"]
+Effect = Literal["rejects", "drops", "loads", "other"]
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """One kind of problem: a code that never changes, its title, what ROS 2 does and how to mend the file.
+
+    The effect of a URDF's problems decides the verdict: ROS 2 rejects the file, drops content of it, or loads it all the same.
+    A problem of another file has an effect of its `other` kind.
+    """
+
+    code: str
+    severity: Severity
+    effect: Effect
+    title: str
+    explanation: str
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """One problem of one file, in a sentence."""
+
+    kind: Kind
+    message: str
+    location: Location
+
+    @property
+    def code(self) -> str:
+        """The kind's stable code, such as URDF012."""
+        return self.kind.code
+
+    @property
+    def severity(self) -> Severity:
+        """How bad it is: an error keeps ROS 2 from loading the file."""
+        return self.kind.severity
+
+
+def rejects(code: str, title: str, explanation: str) -> Kind:
+    """Return a kind of problem with which ROS 2 loads nothing of the file."""
+    return Kind(code, "error", "rejects", title, explanation)
+
+
+def drops(code: str, title: str, explanation: str) -> Kind:
+    """Return a kind of problem with which ROS 2 loads the file without part of its content."""
+    return Kind(code, "warning", "drops", title, explanation)
+
+
+def warns(code: str, title: str, explanation: str) -> Kind:
+    """Return a kind of problem that deserves a warning although ROS 2 loads everything."""
+    return Kind(code, "warning", "loads", title, explanation)
+
+
+def notes(code: str, title: str, explanation: str) -> Kind:
+    """Return a kind of problem that is worth a note."""
+    return Kind(code, "note", "loads", title, explanation)
+
+
+def kinds_in(namespace: Iterable[object]) -> tuple[Kind, ...]:
+    """Return the kinds among the values of a module, in the order of their codes."""
+    return tuple(sorted((value for value in namespace if isinstance(value, Kind)), key=lambda kind: kind.code))

@@ -1,0 +1,70 @@
+"""Python text to a syntax tree, by Python's own parser, with a bound on what it is given."""
+
+import ast
+import sys
+import tokenize
+import warnings
+from codecs import lookup
+from dataclasses import dataclass
+from io import BytesIO
+
+from grader.source import Location, Source
+
+_SLOW = ("idna", "punycode")  # encodings of names, whose time grows with the square of the length
+_JAZZY = (3, 12)  # the Python that ROS 2 Jazzy runs
+
+
+@dataclass(frozen=True, slots=True)
+class Code:
+    """A parsed file with its text."""
+
+    source: Source
+    tree: ast.Module
+
+
+@dataclass(frozen=True, slots=True)
+class SyntaxFault:
+    """A file that Python cannot read, in Python's own words; `sure` is False where a newer Python may well read it."""
+
+    source: Source
+    message: str
+    location: Location
+    sure: bool = True
+
+
+def parse(data: bytes, path: str) -> Code | SyntaxFault:
+    """Parse the bytes of a Python file. Never raises: what Python refuses, also for its depth, is a SyntaxFault."""
+    try:
+        encoding, _ = tokenize.detect_encoding(BytesIO(data).readline)
+        if lookup(encoding).name in _SLOW:
+            place = Location(path, 1, 1)
+            return SyntaxFault(Source(path, ""), f"the encoding {encoding} is not followed", place, sure=False)
+        text = data.decode(encoding)
+    except (SyntaxError, ValueError, LookupError) as error:
+        source = Source(path, data.decode("utf-8", "replace"))
+        return SyntaxFault(source, f"not readable as text: {error}", Location(path, 1, 1))
+    text = text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
+    source = Source(path, text)
+    if "\0" in text:
+        line = text.count("\n", 0, text.index("\0")) + 1
+        return SyntaxFault(source, "source code cannot contain null bytes", Location(path, line, 1))
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # such as an invalid escape, which Python accepts
+            tree = _tree(text)
+            compile(tree, path, "exec", dont_inherit=True)  # only made, never run: it finds what the grammar allows
+            return Code(source, tree)
+    except SyntaxError as error:
+        place = Location(path, max(error.lineno or 1, 1), max(error.offset or 1, 1))
+        newer = sys.version_info < _JAZZY and error.msg.startswith("f-string")
+        return SyntaxFault(source, error.msg, place, sure=not newer)
+    except (RecursionError, MemoryError, ValueError, OverflowError):
+        return SyntaxFault(source, "too deeply nested for Python to read", Location(path, 1, 1))
+
+
+def _tree(text: str) -> ast.Module:
+    """The tree of a text. CPython 3.11 loses count where its garbage collector runs in the midst of making one: then once more."""
+    try:
+        return ast.parse(text)
+    except SystemError:  # AST constructor recursion depth mismatch
+        return ast.parse(text)

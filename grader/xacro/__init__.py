@@ -1,0 +1,1 @@
+"""xacro text to URDF text, without running anything."""

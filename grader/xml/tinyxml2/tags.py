@@ -1,0 +1,146 @@
+"""One tag as TinyXML2 reads it (`XMLElement::ParseDeep`, `ParseAttributes`), or why it cannot."""
+
+import re
+from collections.abc import Callable
+from typing import Literal, NamedTuple
+
+from grader.xml.tinyxml2.values import decode
+
+Note = Callable[[str, str, int], None]  # a kind of difference from XML, what it is, and its offset
+
+_BLANK = re.compile(r"[ \t\n\v\f\r]*")
+_NAME = re.compile(r"[A-Za-z_:\u0080-\U0010ffff][A-Za-z0-9_:.\-\u0080-\U0010ffff]*")
+_MEANT = {"parent": "link", "child": "link", "origin": "xyz", "axis": "xyz", "box": "size", "color": "rgba"}
+
+# A bare & or an entity that XML does not know.
+REFERENCE = re.compile(r"&(?!(?:amp|lt|gt|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)")
+
+
+class Tag(NamedTuple):
+    """One tag; attribute values are decoded."""
+
+    name: str
+    form: Literal["open", "close", "empty"]
+    attributes: dict[str, str]
+    offset: int
+
+
+class MalformedTagError(Exception):
+    """A tag that TinyXML2 refuses, with the offset to look at, and the one from which reading may go on."""
+
+    def __init__(self, message: str, offset: int, resume: int) -> None:
+        super().__init__(message)
+        self.offset = offset
+        self.resume = resume
+
+
+def skip_blank(text: str, position: int) -> int:
+    """The first offset from here on that holds no white space, as C's isspace knows it."""
+    match = _BLANK.match(text, position)
+    return match.end() if match else position
+
+
+def read_tag(text: str, start: int, note: Note) -> tuple[Tag, int]:
+    """The tag whose < stands at `start`, and the offset behind it; raises MalformedTagError."""
+    position = skip_blank(text, start + 1)
+    closing = text.startswith("/", position)
+    if position > start + 1:
+        note("space", "white space behind <", start)
+    found = _NAME.match(text, position + closing)
+    if found is None:
+        raise MalformedTagError("a tag's name must follow < at once", start, behind(text, start))
+    name = found[0]
+    attributes, position = _read_attributes(text, start, found.end(), name, note)
+    form: Literal["open", "close", "empty"] = "close" if closing else "open"
+    if text.startswith("/", position):
+        form, position = "empty", position + 1
+    if closing and (attributes or form == "empty"):
+        note("closing", "a closing tag with more than its name", start)
+    return Tag(name, form, attributes, start), position + 1
+
+
+def behind(text: str, position: int) -> int:
+    """Where to go on behind a broken tag: after its > or before the next <."""
+    closed, opened = text.find(">", position), text.find("<", position + 1)
+    if closed >= 0 and (opened < 0 or closed < opened):
+        return closed + 1
+    return opened if opened >= 0 else len(text)
+
+
+def short(text: str) -> str:
+    """A name for a message, cut where it is very long; bytes that are no UTF-8 are spelt out."""
+    cut = text if len(text) <= 40 else text[:37] + "..."
+    return cut.encode("utf-8", "backslashreplace").decode()
+
+
+def _read_attributes(text: str, start: int, position: int, tag: str, note: Note) -> tuple[dict[str, str], int]:
+    """The attributes of a tag, and the offset of the > or /> that ends it."""
+    attributes: dict[str, str] = {}
+    while True:
+        at = skip_blank(text, position)
+        if text.startswith((">", "/>"), at):
+            return attributes, at
+        try:
+            end = _read_attribute(text, start, at, tag, attributes, note)
+        except MalformedTagError as error:
+            raise _unclosed_quote(text, start, tag, attributes) or error from None
+        if at == position and len(attributes) > 1:
+            note("attributes", "no space between two attributes", at)
+        position = end
+
+
+def _unclosed_quote(text: str, start: int, tag: str, attributes: dict[str, str]) -> MalformedTagError | None:
+    """The likelier reason for an error: a value that has swallowed the next tag, because its quote is not closed."""
+    swallowed = next((each for each, value in attributes.items() if "\n" in value and "<" in value), None)
+    if swallowed is None:
+        return None
+    message = f"the quote of {short(swallowed)!r} in <{short(tag)}> is not closed before the next tag"
+    return MalformedTagError(message, start, max(text.find("\n", start), start + 1))
+
+
+def _read_attribute(text: str, start: int, position: int, tag: str, attributes: dict[str, str], note: Note) -> int:
+    """Put the attribute that stands here to the others; the offset behind it."""
+    name = _NAME.match(text, position)
+    if name is None:
+        raise _misfit(text, start, position, tag)
+    shown, offset = f"{short(name[0])!r} in <{short(tag)}>", name.start()
+    at = skip_blank(text, name.end())
+    if not text.startswith("=", at):
+        message = f"<{short(tag)}> holds {short(name[0])!r} without a value"
+        raise MalformedTagError(message, offset, behind(text, name.end()))
+    at = skip_blank(text, at + 1)
+    quote = text[at : at + 1]
+    if quote not in ('"', "'"):
+        raise MalformedTagError(f"the value of {shown} is not in plain quotes", offset, behind(text, at))
+    end = text.find(quote, at + 1)
+    if end < 0:
+        raise MalformedTagError(f"the quote of {shown} is never closed", offset, behind(text, at))
+    raw = text[at + 1 : end]
+    if "<" in raw:
+        note("less", "< inside a value (it is written &lt;)", offset)
+    if "&" in raw and REFERENCE.search(raw):
+        note("reference", "a bare & or an unknown entity (& is written &amp;)", offset)
+    if name[0] in attributes:
+        message = f"the attribute {short(name[0])!r} is given twice in <{short(tag)}>"
+        raise MalformedTagError(message, offset, behind(text, end + 1))
+    attributes[name[0]] = decode(raw)
+    return end + 1
+
+
+def _misfit(text: str, start: int, at: int, name: str) -> MalformedTagError:
+    """The error for what stands where an attribute should: said of the likely culprit."""
+    shown = short(name)
+    if at == len(text):
+        return MalformedTagError(f"the file ends inside the tag <{shown}>", start, at)
+    match text[at]:
+        case "=":
+            message = f'<{shown}= has no attribute name; it is written <{shown} {_MEANT.get(name, "name")}="...">'
+            return MalformedTagError(message, start, behind(text, at))
+        case "<":
+            return MalformedTagError(f"<{shown}> is not closed with > before the next tag", start, at)
+        case ",":
+            message = f"a comma stands between the attributes of <{shown}>; a space is enough"
+        case _:
+            word = text[at : at + 12].split(" ", maxsplit=1)[0]
+            message = f"{word!r} in <{shown}> is not an attribute"
+    return MalformedTagError(message, at, behind(text, at))

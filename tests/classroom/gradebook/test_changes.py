@@ -1,0 +1,190 @@
+"""What changed between two runs or gradebooks: who, by how much, in which criteria, and why."""
+
+from decimal import Decimal
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from grader.classroom.gradebook import gradebook as module
+from grader.classroom.gradebook.changes import Change, Step, changes, last_two, newest
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.grades import Standings
+from grader.classroom.gradebook.marks import criterion_of, mark
+from grader.errors import InputError
+from tests.classroom.gradebooks import came_out, graded_into, lab
+
+LAB = lab()
+OTHER = lab(box="5")
+
+
+@pytest.fixture
+def book(tmp_path: Path) -> Any:
+    """An empty gradebook."""
+    with Gradebook(tmp_path / "book.db", create=True) as opened:
+        yield opened
+
+
+def run(book: Gradebook, rubric: Any = LAB, digest: str = "a", **signs: str) -> int:
+    """Grade hand-ins that came out like this."""
+    return graded_into(book, rubric, [came_out(rubric, key, each, digest) for key, each in signs.items()])
+
+
+def put(book: Gradebook, key: str, name: str, points: str | None) -> None:
+    """Mark by hand."""
+    given = None if points is None else Decimal(points)
+    mark(book, Standings(book).find(key), criterion_of(LAB, name), given, "me", "")
+
+
+def found(book: Gradebook, before: int | None = None, after: int | None = None) -> list[Change]:
+    """What changed between two runs."""
+    return changes(*last_two(book, before, after))
+
+
+def why(book: Gradebook) -> dict[str, tuple[str, ...]]:
+    """Why, for each student."""
+    return {each.key: each.why for each in found(book)}
+
+
+def test_nothing_changed(book: Gradebook) -> None:
+    """The same again is no change, nor is another submission with the same points."""
+    run(book, anna="ppp?f", ben="pfs?f")
+    run(book, anna="ppp?f")
+    run(book, digest="b", ben="pfs?f")
+    assert found(book) == []
+
+
+def test_another_submission(book: Gradebook) -> None:
+    """The criteria that came out otherwise, and by how much."""
+    run(book, anna="pfs?f", ben="ppppp")
+    run(book, digest="b", anna="pppfp")
+    (change,) = found(book)
+    steps = (
+        Step("box", Decimal(0), Decimal("2.5")),
+        Step("tall", Decimal(0), Decimal("0.5")),
+        Step("essay", None, Decimal(0)),
+        Step("picture", Decimal(0), Decimal(1)),
+    )
+    assert change == Change("anna", Decimal(3), Decimal(7), steps, ("the submission changed",))
+
+
+def test_another_rubric(book: Gradebook) -> None:
+    """Points of the same criteria, criteria that are new, and those that are gone."""
+    run(book, anna="ppppp", ben="pfspp")
+    bigger = lab(box="5", extra="7")
+    run(book, bigger, anna="pppppp", ben="pfsppf")
+    assert why(book) == {"anna": ("the rubric changed",), "ben": ("the rubric changed",)}
+    assert found(book)[0].steps == (Step("box", Decimal("2.5"), Decimal(5)), Step("extra", None, Decimal(7)))
+    run(book, anna="ppppp")
+    assert found(book)[0].steps[-1] == Step("extra", Decimal(7), None)
+
+
+def test_another_grader(book: Gradebook, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The version that decided."""
+    run(book, anna="ppppp")
+    monkeypatch.setattr(module, "__version__", "99.0")
+    run(book, anna="ppppf")
+    assert why(book) == {"anna": ("the grader changed",)}
+
+
+def test_marks_by_hand(book: Gradebook) -> None:
+    """Given, given anew, and taken back: since the older run began, until the one after the newer began."""
+    first = run(book, anna="ppp??", ben="ppp??", cleo="ppp??", dora="ppp??")
+    put(book, "anna", "essay", "2")
+    put(book, "ben", "essay", "2")
+    second = run(book, anna="ppp??")
+    put(book, "ben", "essay", None)
+    put(book, "cleo", "picture", "0")
+    third = run(book, anna="ppp??")
+    put(book, "dora", "box", "0")
+
+    def seen(before: int, after: int) -> dict[str, list[Step]]:
+        assert all(each.why == ("marked by hand",) for each in found(book, before, after))
+        return {each.key: list(each.steps) for each in found(book, before, after)}
+
+    two, none = Decimal(2), Decimal(0)
+    anna = {"anna": [Step("essay", None, two)]}
+    assert seen(first, second) == anna | {"cleo": [Step("picture", None, none)]}
+    assert seen(second, third) == {
+        "ben": [Step("essay", two, None)],
+        "cleo": [Step("picture", None, none)],
+        "dora": [Step("box", Decimal("2.5"), none)],
+    }
+    assert seen(first, third) == anna | {
+        "cleo": [Step("picture", None, none)],
+        "dora": [Step("box", Decimal("2.5"), none)],
+    }
+
+
+def test_several_reasons(book: Gradebook) -> None:
+    """All that was another is named."""
+    run(book, anna="ppppp")
+    run(book, OTHER, digest="b", anna="ppp!f")
+    put(book, "anna", "picture", "0.5")
+    words = (
+        "the submission changed", "the rubric changed", "marked by hand", "it was graded, and is errored",
+    )  # fmt: skip
+    assert why(book) == {"anna": words}
+
+
+def test_who_came_and_who_went(tmp_path: Path) -> None:
+    """Of two gradebooks, and of one in which somebody hands in later."""
+    with Gradebook(tmp_path / "a.db", create=True) as one, Gradebook(tmp_path / "b.db", create=True) as two:
+        run(one, anna="ppppp", ben="ppppp")
+        run(two, anna="ppppp", cleo="fffff")
+        assert changes(newest(one), newest(two)) == [
+            Change("ben", LAB.points, None, (), ("not there any more",)),
+            Change("cleo", None, Decimal(0), (), ("handed in for the first time",)),
+        ]
+        run(one, dora="ppppp")
+        assert why(one) == {"dora": ("handed in for the first time",)}
+
+
+def test_which_runs(book: Gradebook) -> None:
+    """The last two, or those that are named; in front of one that is named alone stands the one before it."""
+    with pytest.raises(InputError, match="no two runs to compare"):
+        last_two(book)
+    run(book, anna="fffff")
+    with pytest.raises(InputError, match="no two runs to compare"):
+        last_two(book)
+    for signs in ("pffff", "ppfff", "pppff"):
+        run(book, digest=signs, anna=signs)
+
+    def runs(before: int | None = None, after: int | None = None) -> tuple[int, ...]:
+        return tuple(side.run for side in last_two(book, before, after))
+
+    assert (runs(), runs(1), runs(None, 2), runs(1, 3)) == ((3, 4), (1, 4), (1, 2), (1, 3))
+    assert found(book, 1, 3)[0].after == Decimal("5.5")
+    for named in ((9, None), (None, 9), (0, None)):
+        with pytest.raises(InputError, match=r"there is no run [09]; there are: 1, 2, 3, 4"):
+            runs(*named)
+    for turned in ((4, None), (None, 1), (3, 2), (2, 2)):
+        with pytest.raises(InputError, match="is not before run"):
+            runs(*turned)
+
+
+SIGNS = st.text("pfs?!-", min_size=5, max_size=5)
+
+
+@settings(max_examples=40)
+@given(
+    SIGNS, SIGNS, st.lists(st.tuples(st.sampled_from([each.id for each in LAB.criteria]), st.booleans()), max_size=4)
+)
+def test_steps_add_up(before: str, after: str, marks: list[tuple[str, bool]]) -> None:
+    """The difference of the scores is the sum of the steps, and the newer score is the one that counts."""
+    from tempfile import TemporaryDirectory
+
+    with TemporaryDirectory() as folder, Gradebook(Path(folder, "book.db"), create=True) as book:
+        run(book, anna=before)
+        run(book, OTHER, anna=after)
+        for name, is_given in marks:
+            put(book, "anna", name, "0.25" if is_given else None)
+        for change in found(book):
+            assert change.before is not None
+            assert change.after is not None
+            assert change.why
+            total = sum(((each.after or 0) - (each.before or 0) for each in change.steps), Decimal(0))
+            assert change.after - change.before == total
+            assert change.after == Standings(book).find("anna").score

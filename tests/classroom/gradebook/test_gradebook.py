@@ -1,0 +1,324 @@
+"""The gradebook: one file in which nothing that a check or a person has said is ever lost, and the current grade is a view."""
+
+import sqlite3
+import threading
+from collections.abc import Iterator
+from contextlib import closing
+from decimal import Decimal
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from grader.classroom.gradebook import database as module
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.grades import Standings
+from grader.classroom.gradebook.marks import mark
+from grader.classroom.gradebook.schema import APPLICATION_ID, STEPS
+from grader.errors import InputError
+from grader.grading.rubric import Rubric
+from tests.classroom.gradebooks import came_out, graded_into, grader, lab, refusal, units
+
+LABS = (lab(), lab(loads="2", box="5", essay="1.2345"), lab(extra="7.5"), lab(picture="0"))
+STUDENTS = ("anna", "ben", "cleo")
+NAMES = ("loads", "box", "tall", "essay", "picture", "extra")
+
+
+@pytest.fixture
+def book(tmp_path: Path) -> Iterator[Gradebook]:
+    """A gradebook with one hand-in and one mark."""
+    with Gradebook(tmp_path / "book.db", create=True) as opened:
+        graded_into(opened, LABS[0], [came_out(LABS[0], "anna", "pps??")])
+        put(opened, "anna", "essay", Decimal(3), "good")
+        yield opened
+
+
+def put(book: Gradebook, key: str, name: str, points: Decimal | None, why: str = "") -> None:
+    """Mark a criterion by hand."""
+    standings = Standings(book)
+    standing = standings.find(key)
+    criterion = next(each for each in standings.rubric(standing.rubric).criteria if each.id == name)
+    mark(book, standing, criterion, points, "me", why)
+
+
+def all_of(book: Gradebook, table: str) -> list[tuple[Any, ...]]:
+    """All rows of a table, the oldest first."""
+    return list(book.rows(f"SELECT * FROM {table} ORDER BY id"))
+
+
+def test_what_a_new_file_is(book: Gradebook) -> None:
+    """Write-ahead log, foreign keys, a version, and a number by which the file says what it is."""
+    settings_of = {
+        name: next(book.rows(f"PRAGMA {name}"))[0]
+        for name in ("journal_mode", "foreign_keys", "user_version", "application_id")
+    }
+    assert settings_of == {
+        "journal_mode": "wal",
+        "foreign_keys": 1,
+        "user_version": len(STEPS),
+        "application_id": APPLICATION_ID,
+    }
+    with pytest.raises(InputError, match="FOREIGN KEY"), book.complaining():
+        book.connection.execute("INSERT INTO mark VALUES (9, 99, 'essay', 1, '', '', '', 99, '')")
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "UPDATE mark SET points = 40000",
+        "UPDATE mark SET comment = ''",
+        "DELETE FROM mark",
+        "INSERT OR REPLACE INTO mark SELECT id, student, criterion, 0, '', '', '', result, '' FROM mark",
+        "REPLACE INTO mark SELECT * FROM mark",
+        "UPDATE result SET score = 0",
+        "DELETE FROM result",
+        "INSERT OR REPLACE INTO result SELECT * FROM result",
+        "DELETE FROM student",
+    ],
+)
+def test_what_was_said_cannot_be_unsaid(book: Gradebook, statement: str) -> None:
+    """SQLite itself refuses to change or delete a mark or a result, from any program."""
+    before = all_of(book, "mark"), all_of(book, "result")
+    with closing(sqlite3.connect(book.path)) as other:
+        other.execute("PRAGMA foreign_keys = ON")
+        with pytest.raises(sqlite3.IntegrityError):
+            other.execute(statement)
+    assert (all_of(book, "mark"), all_of(book, "result")) == before
+
+
+# --- The current grade ------------------------------------------------------------------------------------------------
+
+SIGNS = st.text("pfs?!-", min_size=6, max_size=6)
+RUN = st.tuples(
+    st.just("run"),
+    st.integers(0, len(LABS) - 1),
+    st.dictionaries(
+        st.sampled_from(STUDENTS), st.tuples(SIGNS, st.sampled_from("ab"), st.sampled_from(["", "broken"]))
+    ),
+)
+MARK = st.tuples(
+    st.just("mark"),
+    st.sampled_from(STUDENTS),
+    st.sampled_from(NAMES),
+    st.one_of(st.none(), st.integers(0, 12_345), st.just(10**9)),
+)
+
+
+class Model:
+    """What the gradebook has to say, worked out in the plainest way."""
+
+    def __init__(self) -> None:
+        self.results: dict[str, tuple[Rubric, str, str]] = {}
+        self.marks: dict[tuple[str, str], int] = {}
+
+    def grade(self, key: str) -> tuple[int, int, int, int]:
+        """Score, out of, pending, faults."""
+        rubric, signs, _ = self.results[key]
+        score = out_of = pending = faults = 0
+        for criterion, sign in zip(rubric.criteria, signs, strict=True):
+            by_hand = self.marks.get((key, criterion.id))
+            worth = units(criterion.points)
+            score += by_hand if by_hand is not None else worth * (sign == "p")
+            out_of += worth * (sign != "-" or by_hand is not None)
+            pending += worth * (sign == "?" and by_hand is None)
+            faults += sign == "!" and by_hand is None
+        return score, out_of, pending, faults
+
+
+@settings(max_examples=120)
+@given(st.lists(st.one_of(RUN, MARK, MARK), min_size=2, max_size=14))
+def test_the_view_is_the_sum_over_the_report(steps: list[tuple[Any, ...]]) -> None:
+    """After any runs, changed hand-ins, changed rubrics, marks and takings back: view, standing, report and a plain model agree."""
+    model = Model()
+    with TemporaryDirectory() as folder, Gradebook(Path(folder, "book.db"), create=True) as book:
+        kept: list[list[tuple[Any, ...]]] = [[], []]
+        for step in steps:
+            play(book, model, step)
+            now = [all_of(book, "mark"), all_of(book, "result")]
+            for before, after in zip(kept, now, strict=True):
+                assert after[: len(before)] == before  # nothing that was there is another or gone
+            kept = now
+        check(book, model)
+
+
+def play(book: Gradebook, model: Model, step: tuple[Any, ...]) -> None:
+    """One step, in the gradebook and in the model."""
+    match step:
+        case ("run", index, found):
+            rubric = LABS[index]
+            count = len(rubric.criteria)
+            graded_into(
+                book,
+                rubric,
+                [came_out(rubric, key, signs[:count], digest, why) for key, (signs, digest, why) in found.items()],
+            )
+            model.results |= {key: (rubric, signs[:count], digest) for key, (signs, digest, _) in found.items()}
+        case ("mark", key, name, points):
+            names = [each.id for each in model.results[key][0].criteria] if key in model.results else []
+            if name in names:
+                put(book, key, name, None if points is None else Decimal(points) / 10_000)
+                if points is None:
+                    model.marks.pop((key, name), None)
+                else:
+                    model.marks[key, name] = points
+
+
+def check(book: Gradebook, model: Model) -> None:
+    """Everyone's grade, asked in four ways."""
+    standings = Standings(book)
+    assert {each.student.key for each in standings.all()} == model.results.keys()
+    for key in model.results:
+        wanted = model.grade(key)
+        ((score, out_of, pending, faults),) = book.rows(
+            "SELECT score, out_of, pending, faults FROM grade WHERE key = ?", key
+        )
+        assert (score, out_of, pending, faults) == wanted
+        standing = standings.find(key)
+        assert (*map(units, (standing.score, standing.out_of, standing.pending)), standing.faults) == wanted
+        report = standings.report(standing)
+        open_faults = sum(each.outcome.status == "errored" and each.ruling is None for each in report.results)
+        assert (*map(units, (report.score, report.max_score, report.pending)), open_faults) == wanted
+        decided = {each.criterion.id: each.points for each in report.results if is_decided(each)}
+        assert standings.points(standing) == decided
+
+
+def is_decided(result: Any) -> bool:
+    """Whether a check or a person has said what a criterion earns."""
+    return result.ruling is not None or result.outcome.status in ("passed", "failed", "skipped")
+
+
+def test_a_student_without_a_hand_in_has_no_points(book: Gradebook) -> None:
+    """Whoever is only on the roster is missing, with nothing to add up."""
+    from grader.classroom.gradebook.known import Enrolment
+    from grader.classroom.students import Student
+
+    with book.transaction():
+        book.keep_student(Student("dora"), Enrolment(1))
+    ((score, verdict, faults),) = book.rows("SELECT score, verdict, faults FROM grade WHERE key = 'dora'")
+    assert (score, verdict, faults or 0) == (None, "missing", 0)
+    assert Standings(book).find("dora").why_not_final == "nothing was handed in"
+
+
+# --- Versions ---------------------------------------------------------------------------------------------------------
+
+NEXT = """
+ALTER TABLE student ADD COLUMN nickname TEXT NOT NULL DEFAULT 'none';
+CREATE TABLE pet (name TEXT NOT NULL);
+INSERT INTO pet VALUES ('cat; dog');
+"""
+
+
+def test_an_older_file_is_brought_up_to_date(book: Gradebook, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A later grader's steps are taken at once, in order, and all that was in the file is still there."""
+    before = all_of(book, "mark"), all_of(book, "result")
+    book.close()
+    monkeypatch.setattr(module, "STEPS", (*STEPS, NEXT, "CREATE VIEW pets AS SELECT count(*) AS many FROM pet;\n"))
+    for _ in range(2):  # a second time there is nothing to do
+        with Gradebook(book.path) as newer:
+            assert next(newer.rows("PRAGMA user_version")) == (len(STEPS) + 2,)
+            assert list(newer.rows("SELECT key, nickname, many FROM student, pets")) == [("anna", "none", 1)]
+            assert (all_of(newer, "mark"), all_of(newer, "result")) == before
+    monkeypatch.undo()
+    with pytest.raises(InputError, match=r"was made by a newer grader: install that one"):
+        Gradebook(book.path)
+
+
+def test_half_a_step_leaves_no_trace(book: Gradebook, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where a step fails, the file is as it was, and the grader that made it opens it."""
+    book.close()
+    with monkeypatch.context() as patched:
+        patched.setattr(module, "STEPS", (*STEPS, NEXT, "CREATE TABLE one (x);\nINSERT INTO nowhere VALUES (1);\n"))
+        with pytest.raises(InputError, match="no such table: nowhere"):
+            Gradebook(book.path)
+    with Gradebook(book.path) as again:
+        tables = {row[0] for row in again.rows("SELECT name FROM sqlite_master")}
+        assert not tables & {"pet", "one", "pets"}
+        assert next(again.rows("PRAGMA user_version")) == (len(STEPS),)
+        assert Standings(again).find("anna").score == Decimal("8.5")
+
+
+def test_many_may_make_the_same_gradebook_at_once(tmp_path: Path) -> None:
+    """Whoever comes second finds it made."""
+    failed: list[Exception] = []
+    start = threading.Barrier(8)
+
+    def make() -> None:
+        start.wait()
+        try:
+            Gradebook(tmp_path / "book.db", create=True).close()
+        except Exception as error:  # noqa: BLE001
+            failed.append(error)
+
+    threads = [threading.Thread(target=make) for _ in range(8)]
+    for each in threads:
+        each.start()
+    for each in threads:
+        each.join()
+    assert failed == []
+
+
+# --- What is no gradebook ---------------------------------------------------------------------------------------------
+
+
+def spoil(kind: str, path: Path) -> None:
+    """Put something at a path that is no gradebook of ours."""
+    match kind:
+        case "none":
+            return
+        case "text":
+            path.write_text("id,name\n" * 100)
+        case "folder":
+            path.mkdir()
+        case "of-others":
+            with closing(sqlite3.connect(path)) as made, made:
+                made.execute("CREATE TABLE mark (x)")
+        case "newer":
+            Gradebook(path, create=True).close()
+            with closing(sqlite3.connect(path)) as made, made:
+                made.execute("PRAGMA user_version = 1000")
+        case "hollow":
+            with closing(sqlite3.connect(path)) as made, made:
+                made.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+                made.execute(f"PRAGMA user_version = {len(STEPS)}")
+                made.execute("CREATE TABLE mark (x)")
+        case "damaged":
+            with Gradebook(path, create=True) as book:
+                graded_into(book, LABS[0], [came_out(LABS[0], f"s{number}", "pps??") for number in range(200)])
+            data = bytearray(path.read_bytes())
+            data[4096:] = b"\xa5" * (len(data) - 4096)
+            path.write_bytes(data)
+
+
+WHY = {
+    "none": "there is no gradebook",
+    "text": "file is not a database",
+    "folder": "unable to open database file",
+    "of-others": "is a database, but no gradebook",
+    "newer": "was made by a newer grader",
+    "hollow": "no such table",
+    "damaged": "malformed",
+}
+COMMANDS = {
+    "mark": ("mark", "anna", "essay", "1", "--gradebook"),
+    "review": ("review", "--gradebook"),
+    "csv": ("export", "csv", "--gradebook"),
+    "json": ("export", "json", "--gradebook"),
+    "stats": ("stats", "--gradebook"),
+    "diff": ("diff",),
+}
+
+
+@pytest.mark.parametrize("kind", WHY)
+def test_what_is_no_gradebook_is_refused_in_one_line(kind: str, tmp_path: Path) -> None:
+    """And is not touched."""
+    path = tmp_path / "book.db"
+    spoil(kind, path)
+    before = path.read_bytes() if path.is_file() else None
+    commands = COMMANDS if kind == "damaged" else {name: COMMANDS[name] for name in ("mark", "diff")}
+    for command in commands.values():
+        assert WHY[kind] in refusal(grader(*command, path))
+    if kind in ("text", "of-others", "newer"):
+        assert path.read_bytes() == before

@@ -1,0 +1,173 @@
+"""Who is meant by a name, whose grade is final, and who needs a look."""
+
+from collections.abc import Iterator
+from decimal import Decimal
+from pathlib import Path
+
+import pytest
+
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.grades import Standings
+from grader.classroom.gradebook.known import Enrolment
+from grader.classroom.gradebook.marks import criterion_of, mark
+from grader.classroom.students import HandIn, Student
+from grader.errors import InputError
+from grader.grading.rubric import Rubric
+from tests.classroom.gradebooks import came_out, graded_into, lab
+
+LAB = lab()
+PEOPLE = (
+    Student("anna", "Anna Ek", "anna@example.org", "ae1", "S1", "101", "9001"),
+    Student("ben", "Ben Oh", "ben@example.org", "bo2", "S2", "102", "9002"),
+    Student("emil", "Ben Oh", "emil@example.org", "eo5", "S5", "105", "101"),  # his number in Moodle is hers in Canvas
+    Student("S1", "Sven", login="s1"),  # his key is the number that the university gives her
+)
+
+
+@pytest.fixture
+def book(tmp_path: Path) -> Iterator[Gradebook]:
+    """A gradebook with a few people."""
+    with Gradebook(tmp_path / "book.db", create=True) as opened:
+        with opened.transaction():
+            for person in PEOPLE:
+                opened.keep_student(person, None)
+        yield opened
+
+
+def test_people_are_known_by_all_that_names_one_of_them(book: Gradebook) -> None:
+    """Key, login, address, numbers, name; a key goes before the rest."""
+    for name in ("anna", "ae1", "anna@example.org", "9001", "Anna Ek"):
+        assert Standings(book).find(name).student.key == "anna"
+    assert Standings(book).find("S1").student.name == "Sven"
+
+
+@pytest.mark.parametrize("name", ["Ben Oh", "101"])
+def test_several_are_never_one(book: Gradebook, name: str) -> None:
+    """Nobody is taken whom somebody else might be, even where the names are of two kinds."""
+    keys = "'ben', 'emil'" if name == "Ben Oh" else "'anna', 'emil'"
+    with pytest.raises(InputError, match=f"'{name}' may be any of {keys}: name one by this key"):
+        Standings(book).find(name)
+
+
+@pytest.mark.parametrize(
+    ("name", "guess"),
+    [
+        ("ana", "; did you mean 'anna'?"),
+        ("Ana Ek", "; did you mean 'Anna Ek'?"),
+        ("ANNA", "; did you mean 'anna'?"),
+        ("", ""),
+    ],
+)
+def test_nobody(book: Gradebook, name: str, guess: str) -> None:
+    """The message guesses who was meant."""
+    with pytest.raises(InputError) as caught:
+        Standings(book).find(name)
+    everyone = f"; grader export csv --gradebook {book.path} lists everyone"
+    assert str(caught.value) == f"there is no {name!r} in the gradebook{guess or everyone}"
+
+
+def looks(book: Gradebook) -> dict[str, str]:
+    """Who needs a look, and why."""
+    return {each.who: each.why for each in Standings(book).looks(99).listed}
+
+
+def put(book: Gradebook, key: str, name: str = "essay") -> None:
+    """Give a point by hand."""
+    standings = Standings(book)
+    mark(book, standings.find(key), criterion_of(LAB, name), Decimal(1), "me", "")
+
+
+def test_who_needs_a_look(tmp_path: Path) -> None:
+    """Whoever has handed in nothing or nothing readable, or is a stranger, and where the grader failed."""
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        signs = {"anna": "ppp??", "ben": "p!p??", "fay": "ppppp"}
+        graded_into(book, LAB, [came_out(LAB, key, each) for key, each in signs.items()])
+        graded_into(book, LAB, [came_out(LAB, "cleo", "?????", reason="no zip")])
+        with book.transaction():
+            book.keep_student(Student("dora"), Enrolment(1))
+            book.keep_student(Student("fay"), Enrolment(0))
+        assert looks(book) == {
+            "ben": "the grader failed on a criterion",
+            "cleo": "it could not be graded: no zip",
+            "dora": "nothing was handed in",
+            "fay": "not on the roster",
+        }
+        short = Standings(book).looks(1)
+        assert ([each.who for each in short.listed], short.total) == (["ben"], 4)
+
+
+@pytest.mark.parametrize(
+    ("rubric", "digest", "is_older"),
+    [
+        (LAB, "a", False),
+        (LAB, "b", True),  # another submission
+        (lab(loads="1"), "a", False),  # the same submission, and the question is worth the same
+        (lab(essay="3"), "a", True),
+    ],
+)
+def test_a_mark_from_before(rubric: Rubric, digest: str, is_older: bool, tmp_path: Path) -> None:
+    """A mark stays, and is listed where it was given on another submission or for other points."""
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        graded_into(book, LAB, [came_out(LAB, "anna", "ppp??")])
+        put(book, "anna")
+        assert looks(book) == {}
+        graded_into(book, rubric, [came_out(rubric, "anna", "ppp?f", digest)])
+        why = "a mark by hand is from before the submission or the points changed"
+        assert looks(book) == ({"anna": why} if is_older else {})
+        assert Standings(book).find("anna").marks == 1
+
+
+def test_a_mark_on_what_could_not_be_opened_is_looked_at_again(tmp_path: Path) -> None:
+    """Where there was nothing to tell one submission from another, a new result may be of another one."""
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        broken = came_out(LAB, "anna", "?????", reason="no zip")._replace(digest="")
+        graded_into(book, LAB, [broken])
+        put(book, "anna")
+        graded_into(book, LAB, [broken])
+        assert "from before" not in looks(book)["anna"]
+        graded_into(book, LAB, [broken._replace(reason="no tar")])
+        assert "from before" not in looks(book)["anna"]  # the same record: nothing new was found
+        graded_into(book, LAB, [came_out(LAB, "anna", "?????", reason="no tar")])
+        assert "from before" in looks(book)["anna"]
+
+
+def test_who_was_left_behind_by_a_new_rubric(tmp_path: Path) -> None:
+    """A grade by an earlier rubric still counts, and is listed."""
+    newer = lab(loads="1")
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        graded_into(book, LAB, [came_out(LAB, key, "ppppp") for key in ("anna", "ben")])
+        graded_into(book, newer, [came_out(newer, "anna", "ppppp")])
+        assert looks(book) == {"ben": "graded by an earlier rubric only"}
+        assert Standings(book).find("ben").score == LAB.points
+
+
+def test_a_total_is_the_score_less_what_being_late_costs(tmp_path: Path) -> None:
+    """The policy is that of the rubric that the hand-in was graded by; the score stays as it is."""
+    late = lab("due = 2026-09-01T12:00:00Z\npercent_per_day = 10\n")
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        graded_into(book, late, [came_out(late, "anna", "pppff")], submitted="2026-09-02T13:00:00Z")
+        found = Standings(book).find("anna")
+        assert (found.score, found.late.days, found.late.points, found.total) == (
+            Decimal(6),
+            2,
+            Decimal("-2.2"),
+            Decimal("3.8"),
+        )
+        assert Standings(book).report(found).score == Decimal(6)
+
+
+def test_names_that_are_no_text(tmp_path: Path) -> None:
+    """What a folder in another encoding calls a student, and where the class is, is kept as far as it can be read."""
+    graded = came_out(LAB, "x", "ppppp")._replace(verdict="unreadable", reason="no \udcff")
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        run = book.begin("class\udcff", "moodle", LAB)
+        student = Student("x", "J\udcfcrg \u00d8")
+        with book.transaction():
+            result = book.keep(book.keep_student(student, None), LAB.sha256, graded)
+            book.see(book.keep_student(student, None), run, result, HandIn(student, ("a\udcff",)), "")
+        known = next(each for each in book.all_known() if each.key == "x")
+        assert known is not None
+        assert known.is_same(HandIn(student, ("a\udcff",)), None)
+        found = Standings(book).find("x")
+    assert (found.student.name, found.reason) == ("J\\udcfcrg \u00d8", "no \\udcff")
+    assert (found.origin.root, found.origin.paths) == ("class\\udcff", ("a\udcff",))

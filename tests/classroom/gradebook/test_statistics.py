@@ -1,0 +1,197 @@
+"""A class's statistics, held against numpy and the standard library on what the CSV export says."""
+
+import csv
+import json
+import statistics as standard
+import sys
+from collections import Counter
+from decimal import Decimal
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import numpy as np
+import pytest
+
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.grades import Standings
+from grader.classroom.gradebook.marks import mark
+from grader.classroom.gradebook.statistics import ClassStatistics, statistics
+from tests.classroom.gradebooks import came_out, graded_into, grader, lab
+from tests.samples import LAB6, ROOT
+
+sys.path.insert(0, str(ROOT / "benchmarks"))  # a folder of scripts
+import class_generator as made_up
+
+LAB = lab()
+CRITERIA = [criterion.id for criterion in LAB6.criteria]
+
+
+@pytest.fixture(scope="module")
+def graded(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[dict[str, str]], dict[str, Any]]:
+    """The CSV export of a class of 60 with some 150 marks by hand, and its statistics as JSON."""
+    top = tmp_path_factory.mktemp("class")
+    count = sum(1 for _ in made_up.make_class(top / "class", 60, 7, "mixed"))
+    assert count > 60
+    book = top / "book.db"
+    assert grader("batch", top / "class", "--gradebook", book, "--jobs", 2).returncode == 0
+    mark_some(book)
+    table = grader("export", "csv", "--gradebook", book).stdout
+    done = grader("stats", "--gradebook", book, "--format", "json")
+    return list(csv.DictReader(table.splitlines())), json.loads(done.stdout)["statistics"]
+
+
+def mark_some(path: Path) -> None:
+    """Marks as people give them: for most of what waits, and now and then against a check."""
+    chance = Random(3).random
+    with Gradebook(path) as book:
+        standings = Standings(book)
+        for standing in list(standings.all()):
+            for criterion, sign in zip(LAB6.criteria, standing.signs, strict=False):
+                if chance() < (0.7 if sign == "?" else 0.01):
+                    points = (criterion.points * int(chance() * 9) / 8).quantize(Decimal("0.0001"))
+                    mark(book, standing, criterion, min(points, criterion.points), "me", "")
+
+
+def close(value: float, wanted: float) -> bool:
+    """Equal to what JSON is rounded to."""
+    return abs(value - wanted) < 2e-6
+
+
+def test_marks(graded: tuple[list[dict[str, str]], dict[str, Any]]) -> None:
+    """Mean, deviation (of the class, not of a sample), lowest, median, highest, tenths."""
+    rows, found = graded
+    scores = [float(row["score"]) for row in rows if row["status"] == "graded"]
+    assert found["graded"] == len(scores) > 40
+    assert found["pending"] == sum(row["status"] == "graded" and float(row["pending"]) > 0 for row in rows) > 0
+    assert close(found["mean"], standard.fmean(scores))
+    assert close(found["deviation"], standard.pstdev(scores))
+    assert (found["lowest"], found["highest"]) == (min(scores), max(scores))
+    assert close(found["median"], standard.median(scores))
+    assert found["tenths"] == np.histogram(scores, bins=10, range=(0, 100))[0].tolist()
+    assert found["counts"] == dict(Counter(row["status"] for row in rows))
+
+
+def test_criteria(graded: tuple[list[dict[str, str]], dict[str, Any]]) -> None:
+    """The share of the points, and its correlation with the rest of the score."""
+    rows, found = graded
+    points = [[row[name] for name in CRITERIA] for row in rows if row["status"] == "graded"]
+    earned = np.array([[float(cell or 0) for cell in row] for row in points])
+    decided = np.array([[bool(cell) for cell in row] for row in points])
+    most = np.array([float(criterion.points) for criterion in LAB6.criteria])
+    assert [each["id"] for each in found["criteria"]] == CRITERIA
+    for index, each in enumerate(found["criteria"]):
+        who = decided[:, index]
+        share = earned[who, index] / most[index]
+        rest = earned[who].sum(axis=1) - earned[who, index]
+        assert close(each["share"], float(share.mean()))
+        assert close(each["discrimination"], float(np.corrcoef(share, rest)[0, 1]))
+        told = ("passed", "marked_by_hand", "failed", "skipped")
+        assert sum(each[name] for name in told) == who.sum()
+    by_hand = sum(each["marked_by_hand"] for each in found["criteria"])
+    assert by_hand > 60
+
+
+def test_failures(graded: tuple[list[dict[str, str]], dict[str, Any]]) -> None:
+    """The commonest come first, and no more of a kind than did not get all points."""
+    rows, found = graded
+    counts = [each["count"] for each in found["failures"]]
+    assert counts == sorted(counts, reverse=True)
+    assert counts[0] > 3
+    most = {criterion.id: criterion.points for criterion in LAB6.criteria}
+    for name in {each["criterion"] for each in found["failures"]}:
+        missed = sum(row["status"] == "graded" and row[name] != "" and Decimal(row[name]) < most[name] for row in rows)
+        assert sum(each["count"] for each in found["failures"] if each["criterion"] == name) <= missed
+
+
+def of(path: Path, *signs: str, rubric: Any = LAB) -> ClassStatistics:
+    """The statistics of hand-ins that came out like this."""
+    with Gradebook(path / "book.db", create=True) as book:
+        came = [
+            came_out(rubric, f"s{number}", each, reason="" if each else "no zip") for number, each in enumerate(signs)
+        ]
+        graded_into(book, rubric, came)
+        return statistics(book, rubric)
+
+
+@pytest.mark.parametrize("signs", [(), ("?!p!?",)])
+def test_nobody_is_graded(signs: tuple[str, ...], tmp_path: Path) -> None:
+    """Where there is nothing to tell there are zeros, and no shares."""
+    found = of(tmp_path, *signs)
+    assert [found.graded, found.mean, found.deviation, found.median, sum(found.bins)] == [0] * 5
+    assert {(each.decided, each.share, each.discrimination) for each in found.criteria} == {(0, None, None)}
+    assert found.failures == ()
+
+
+def test_one_is_graded(tmp_path: Path) -> None:
+    """One student tells nothing of a criterion."""
+    found = of(tmp_path, "pps?f")
+    assert (found.graded, found.mean, found.deviation) == (1, 5.5, 0.0)
+    assert {found.lowest, found.median, found.highest} == {Decimal("5.5")}
+    assert found.bins == (0, 0, 0, 0, 0, 1, 0, 0, 0, 0)
+    assert [each.share for each in found.criteria] == [1, 1, 0, None, 0]
+    assert {each.discrimination for each in found.criteria} == {None}
+
+
+@pytest.mark.parametrize(("signs", "median"), [(("ppppp", "fffff"), "5.5"), (("ppppp", "fffff", "pffff"), "3")])
+def test_the_median_is_in_the_middle(signs: tuple[str, ...], median: str, tmp_path: Path) -> None:
+    """Of an even number it is halfway between the two middle ones."""
+    assert of(tmp_path, *signs).median == Decimal(median)
+
+
+def test_all_alike_tell_nothing(tmp_path: Path) -> None:
+    """Where the rest of the mark is the same for all, there is no correlation, however points are added up."""
+    rubric = lab(loads="0.1", box="0.2", tall="0.3", essay="0.7")
+    signs = [each for each in ("pppfp", "pppff") for _ in range(7)]
+    found = of(tmp_path, *signs, rubric=rubric)
+    assert [each.discrimination for each in found.criteria] == [None] * 5
+
+
+def test_a_criterion_without_points_still_has_a_share(tmp_path: Path) -> None:
+    """How many passed is worth knowing although it earns nothing, and it is in nobody's rest."""
+    found = of(tmp_path, "ppppp", "ppppf", "fpppf", rubric=lab(picture="0")).criteria
+    assert found[-1].share == pytest.approx(1 / 3)
+    assert found[0].discrimination is None
+    assert found[-1].discrimination == pytest.approx(float(np.corrcoef([1, 0, 0], [10, 10, 7])[0, 1]))
+
+
+@pytest.mark.parametrize(("score", "bin_of_it"), [("ppppp", 9), ("fffff", 0), ("ppp-f", 5)])
+def test_all_points_are_in_the_last_tenth(score: str, bin_of_it: int, tmp_path: Path) -> None:
+    """A mark at a border is in the upper one, all points in the last."""
+    assert of(tmp_path, score).bins.index(1) == bin_of_it
+
+
+def test_whoever_has_another_rubric_is_not_in_it(tmp_path: Path) -> None:
+    """Points of two rubrics are never thrown together."""
+    newer = lab(loads="1")
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        graded_into(book, LAB, [came_out(LAB, key, "ppppp") for key in ("anna", "ben")])
+        graded_into(book, newer, [came_out(newer, "anna", "fpppp")])
+        found = statistics(book, newer)
+    assert (found.graded, found.verdicts, found.highest) == (1, {"graded": 2}, Decimal(8))
+
+
+def test_a_failure_that_a_person_forgave_is_none(tmp_path: Path) -> None:
+    """With all points by hand it did not go wrong; with some of them it did."""
+    with Gradebook(tmp_path / "book.db", create=True) as book:
+        graded_into(book, LAB, [came_out(LAB, key, "pfspp") for key in ("anna", "ben", "cleo")])
+        standings = Standings(book)
+        for key, points in (("anna", "2.5"), ("ben", "1")):
+            mark(book, standings.find(key), LAB.criteria[1], Decimal(points), "me", "")
+        found = statistics(book, LAB)
+    assert [(each.criterion.id, each.count) for each in found.failures] == [("box", 2)]
+    box = found.criteria[1]
+    assert (box.passed, box.marked, box.failed, box.decided) == (0, 2, 1, 3)
+    assert box.share == pytest.approx(3.5 / 7.5)
+
+
+def test_names_do_not_split_a_group(tmp_path: Path) -> None:
+    """Two students who made the same mistake with other names of joints are two of a kind."""
+    text = (ROOT / "submissions/lidar-buried/my_robot.urdf").read_text()
+    (tmp_path / "class").mkdir()
+    for key, joint in (("anna", "base_lidar_joint"), ("ben", "lidar's joint")):
+        (tmp_path / "class" / f"{key}.urdf").write_text(text.replace("base_lidar_joint", joint))
+    grader("batch", tmp_path / "class", "--gradebook", tmp_path / "book.db", "--jobs", 1)
+    found = json.loads(grader("stats", "--gradebook", tmp_path / "book.db", "--format", "json").stdout)
+    counts = {each["criterion"]: each["count"] for each in found["statistics"]["failures"]}
+    assert counts == {"lidar-frame": 2, "lidar-on-top": 2, "joint-names": 1}

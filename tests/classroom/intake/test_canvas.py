@@ -1,0 +1,141 @@
+"""Canvas' bulk download: whose each file is, what is late, and what was handed in again."""
+
+import re
+import tempfile
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grader.classroom.intake.intake import take_in
+from grader.classroom.intake.roster import Entry, Roster
+from grader.classroom.matching import canvas_name
+from grader.classroom.students import HandIn, Student
+from grader.errors import InputError
+from tests.classroom.class_folders import lay_out, pack, taken
+
+FILES = (
+    "doejane_LATE_123_9001_lab6.zip",
+    "doejane_LATE_123_9002_Task1_Step8.png",
+    "müllerjörg_124_9003_my_robot.urdf",
+    "לויעדה_125_text.html",
+    "o_neilsam_126_link.html",
+)
+
+
+def one(tmp_path: Path, *names: str) -> HandIn:
+    (hand_in,) = take_in(lay_out(tmp_path, *names), layout="canvas").hand_ins()
+    return hand_in
+
+
+def test_a_download_is_recognised(tmp_path: Path) -> None:
+    """Files belong to the user whose number they have; a folder and a zip of them give the same."""
+    expected = {
+        "doejane_123": (FILES[1], FILES[0]),
+        "müllerjörg_124": (FILES[2],),
+        "o_neilsam_126": (FILES[4],),
+        "לויעדה_125": (FILES[3],),
+    }
+    for place in (lay_out(tmp_path / "class", *FILES), pack(tmp_path / "submissions.zip", FILES)):
+        intake = take_in(place)
+        assert (intake.layout, taken(intake)) == ("canvas", expected)
+        jane = next(intake.hand_ins())
+        assert (jane.is_late, jane.names) == (True, ("Task1_Step8.png", "lab6.zip"))
+        assert jane.student == Student("doejane_123", canvas="123")
+
+
+def test_anonymous_students(tmp_path: Path) -> None:
+    """An anonymous student has five letters for a number, which are no user's."""
+    lay_out(tmp_path, "anon_aB3xY_9001_lab6.zip", "LATE_anon_Qr5tu_9002_lab6.zip", "anon_aB3xY_text.html")
+    late, on_time = take_in(tmp_path).hand_ins()
+    assert (late.student, late.is_late) == (Student("anon_Qr5tu"), True)
+    assert (on_time.student, on_time.is_late, len(on_time.paths)) == (Student("anon_aB3xY"), False, 2)
+
+
+def test_what_is_handed_in_again(tmp_path: Path) -> None:
+    """Of files with one name, but for the number of a repetition, the one that was saved last counts."""
+    names = ("d_1_20_lab6.tar.gz", "d_1_7_lab6-1.tar.gz", "d_1_100_lab6-2.tar.gz", "d_1_101_a.png", "d_1_3_a.png")
+    hand_in = one(tmp_path, *names)
+    assert hand_in.paths == (names[3], names[2])
+    assert hand_in.names == ("a.png", "lab6-2.tar.gz")
+    assert hand_in.earlier == (names[4], names[1], names[0])
+    assert hand_in.attempt == 3
+
+
+def test_numbers_of_the_students_own_stay(tmp_path: Path) -> None:
+    """Files that are numbered with none that has the plain name are all part of the hand-in."""
+    names = ("d_1_20_task-1.zip", "d_1_21_task-2.zip", "d_1_22_step-8.png")
+    assert one(tmp_path, *names).paths == (names[2], names[0], names[1])
+
+
+def test_what_is_not_named_so_is_left_out(tmp_path: Path) -> None:
+    """A few other files do not hide a download, and are named; many of them do."""
+    lay_out(tmp_path, *FILES, "solution.zip", "README.md", "grades.csv")
+    intake = take_in(tmp_path)
+    assert intake.layout == "canvas"
+    assert [line.split()[0] for line in intake.left_out] == ["README.md", "grades.csv", "solution.zip"]
+    lay_out(tmp_path, "ann/", "bea/", "cal.zip")
+    assert take_in(tmp_path).layout == "folders"
+    with pytest.raises(InputError, match=r"nothing in .* is a submission"):
+        take_in(lay_out(tmp_path / "other", "ann/"), layout="canvas")
+
+
+@pytest.mark.parametrize("name", ["Team_A_1_2_x.zip", "a b_1_2_x.zip", "ann_1.zip", "ann_1_lab6.zip"])
+def test_other_names_are_no_download(tmp_path: Path, name: str) -> None:
+    """Capitals, spaces, or too few numbers are not Canvas'."""
+    assert take_in(lay_out(tmp_path, name)).layout == "folders"
+
+
+def test_the_roster_knows_numbers_and_sortable_names(tmp_path: Path) -> None:
+    """A user's number decides; without one the name as Canvas sorts it does, if it is of one student only."""
+    lay_out(
+        tmp_path,
+        "xx_1_9_a.zip",
+        "vandenbergann_2_9_a.zip",
+        "doejohnjr_3_9_a.zip",
+        "leekim_4_9_a.zip",
+        "ashal_5_9_a.zip",
+    )
+    students = [
+        Student("a", "Jane Doe", canvas="1"),
+        Student("b", "Ann van den Berg"),
+        Student("c", "John Doe Jr."),
+        Student("d", "Kim Lee"),
+        Student("e", "Lee, Kim"),
+        Student("f", "Al Ash", canvas="6"),
+    ]
+    intake = take_in(tmp_path, Roster(Entry(each) for each in students))
+    assert list(taken(intake)) == ["a", "ashal_5", "b", "c", "leekim_4"]
+    assert [each.student.canvas for each in intake.hand_ins()] == ["1", "5", "2", "3", "4"]
+    assert intake.unmatched == ("ashal_5", "leekim_4")
+    assert intake.notes == (
+        "ashal_5 has the name of f, but another number: left unassigned",
+        "leekim_4 may be of several in the roster: left unassigned",
+    )
+
+
+WORDS = st.text(st.characters(categories=["L", "M", "Nd", "Pc", "Zs", "Po"]), min_size=1, max_size=12)
+ORIGINAL = st.from_regex(r"[A-Za-z][A-Za-z0-9_ ]{0,9}\.(zip|png|urdf|tar\.gz)", fullmatch=True)
+
+
+@given(
+    st.dictionaries(
+        st.integers(1, 10**15),
+        st.tuples(WORDS, st.booleans(), st.dictionaries(ORIGINAL, st.just(None), min_size=1, max_size=4)),
+        min_size=1,
+        max_size=6,
+    )
+)
+def test_any_download_is_grouped_again(people: dict[int, tuple[str, bool, dict[str, None]]]) -> None:
+    """Whatever people and files are called, what Canvas makes of them gives the same hand-ins."""
+    attachment, names, expected = 1000, [], {}
+    for user, (name, is_late, originals) in people.items():
+        shown = re.sub(r"_\d+$", "", canvas_name(name))
+        for original in originals:
+            attachment += 1
+            names.append(f"{shown}{'_LATE' if is_late else ''}_{user}_{attachment}_{original}")
+        expected[str(user)] = (is_late, sorted(originals))
+    with tempfile.TemporaryDirectory() as folder:
+        intake = take_in(pack(Path(folder, "submissions.zip"), names), layout="canvas")
+    assert {each.student.canvas: (each.is_late, sorted(each.names)) for each in intake.hand_ins()} == expected

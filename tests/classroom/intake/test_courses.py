@@ -1,0 +1,183 @@
+"""Team repositories with a folder for each student, and courses of nbgrader."""
+
+from pathlib import Path
+
+import pytest
+
+from grader.classroom.intake.intake import take_in
+from grader.classroom.intake.layouts.teams import lab_folder
+from grader.classroom.intake.roster import Entry, Roster
+from grader.classroom.students import HandIn, Student
+from grader.errors import InputError
+from tests.classroom.class_folders import lay_out, pack, taken
+
+TEAM = (
+    "red/Lab6/Ash/ws/src/my_robot/package.xml",
+    "red/Lab6/Birch/my_robot.urdf",
+    "red/Lab6/README.md",
+    "red/Lab5/Ash/",
+)
+
+
+def test_students_of_teams(tmp_path: Path) -> None:
+    """Each student's folder is a hand-in; its key has the team's name in front; other teams stay whole."""
+    files = (*TEAM, "blue/lab_06/Ash/lab/a.urdf", "blue/lab_06/Cedar/lab/a.urdf", "gold/my_robot/package.xml")
+    for place in (lay_out(tmp_path / "class", *files), pack(tmp_path / "class.zip", files)):
+        intake = take_in(place)
+        assert (intake.layout, taken(intake)) == (
+            "teams",
+            {
+                "blue/Ash": ("blue/lab_06/Ash",),
+                "blue/Cedar": ("blue/lab_06/Cedar",),
+                "gold": ("gold",),
+                "red/Ash": ("red/Lab6/Ash",),
+                "red/Birch": ("red/Lab6/Birch",),
+            },
+        )
+        assert intake.left_out == ("red/Lab6/README.md is not a folder, an archive or a URDF",)
+
+
+@pytest.mark.parametrize(
+    "files",
+    [
+        ("red/Lab6/src/my_robot/urdf/a.urdf", "red/Lab6/Ash/a.urdf", "red/Lab6/Birch/a.urdf"),
+        ("red/Lab6/my_robot/urdf/a.urdf", "red/Lab6/other_description/urdf/a.urdf"),
+        ("red/Lab6/Task1/a.urdf", "red/Lab6/Task 2/a.urdf"),
+        ("red/Lab6/prelab/box.urdf", "red/Lab6/lab/a.urdf"),
+        ("red/Lab6/alpha/package.xml", "red/Lab6/beta/package.xml"),
+        ("red/Lab6/Ash/a.urdf", "red/Lab6/Birch/step.png"),
+        ("red/Lab6/roscourse_sim_ws/a.urdf", "red/Lab6/second_ws/a.urdf"),
+        ("red/Lab6/Ash/a.urdf", "red/Lab6/Birch/a.urdf", "red/Lab6/package.xml"),
+        ("red/Lab7/Ash/a.urdf", "red/Lab7/Birch/a.urdf"),
+    ],
+)
+def test_what_may_be_one_submission_stays_one(tmp_path: Path, files: tuple[str, ...]) -> None:
+    """Parts of a package or of a report are never taken for students."""
+    intake = take_in(lay_out(tmp_path, *files))
+    assert (intake.layout, taken(intake)) == ("folders", {"red": ("red",)})
+
+
+def test_a_roster_makes_students_sure(tmp_path: Path) -> None:
+    """Names that stand in the roster are students' even where nothing is in their folders; surnames count in their team."""
+    students = [Student("1", "Ann Ash"), Student("2", "Birch, Bea"), Student("3", "Cal Cedar")]
+    roster = Roster(Entry(each, "Red") for each in students)
+    intake = take_in(lay_out(tmp_path, "red/Lab6/ash/step.png", "red/Lab6/Birch.zip", "blue/Lab6/src/"), roster)
+    assert taken(intake) == {"1": ("red/Lab6/ash",), "2": ("red/Lab6/Birch.zip",), "blue": ("blue",)}
+    assert intake.absent == (students[2],)
+
+
+@pytest.mark.parametrize(
+    ("group", "words"),
+    [
+        ("blue", "whose group is 'blue'"),
+        ("", "who has no group in the roster (its column group names the team folders)"),
+    ],
+)
+@pytest.mark.parametrize("name", ["ash", "ASH", "Ann Ash", "1"])
+def test_a_team_names_only_its_own_members(tmp_path: Path, name: str, group: str, words: str) -> None:
+    """Whatever a folder in a team is called, it is of nobody whose group is not that team; the student is not affected."""
+    ann = Student("1", "Ann Ash", login="ash")
+    roster = Roster([Entry(ann, group), Entry(Student("2", login="bea"), "red")])
+    files = [f"red/Lab6/{name}/a.urdf", "red/Lab6/bea/a.urdf"]
+    intake = take_in(lay_out(tmp_path / "class", *files), roster, layout="teams")
+    assert taken(intake) == {"2": ("red/Lab6/bea",), f"red/{name}": (f"red/Lab6/{name}",)}
+    assert intake.notes == (f"red/{name} is named like 1, {words}: left unassigned",)
+    assert (intake.absent, intake.contested) == ((ann,), ())
+    if group:
+        intake = take_in(lay_out(tmp_path / "class", "blue/Lab6/ash/a.urdf"), roster, layout="teams")
+        assert taken(intake)["1"] == ("blue/Lab6/ash",)
+
+
+def test_a_team_cannot_submit_for_another_team(tmp_path: Path) -> None:
+    """A folder that is named like another group counts for nobody in it."""
+    roster = Roster([Entry(Student("1", login="ash"), "blue"), Entry(Student("2", login="bea"), "red")])
+    intake = take_in(lay_out(tmp_path, "red/Lab6/blue/a.urdf", "red/Lab6/bea/a.urdf"), roster, layout="teams")
+    assert taken(intake) == {"2": ("red/Lab6/bea",), "red/blue": ("red/Lab6/blue",)}
+
+
+def test_teams_that_are_told(tmp_path: Path) -> None:
+    """Told that there are teams, a lab folder's folders are students' unless they are parts of a package."""
+    lay_out(tmp_path, "red/Lab6/Ash/step.png", "blue/Lab6/src/a.urdf")
+    assert take_in(tmp_path).layout == "folders"
+    assert taken(take_in(tmp_path, layout="teams")) == {"red/Ash": ("red/Lab6/Ash",), "blue": ("blue",)}
+
+
+def test_what_a_labs_folder_is_called() -> None:
+    """Case, spaces, hyphens, underscores and leading zeros do not count."""
+    pattern = lab_folder("lab6")
+    assert all(map(pattern.fullmatch, ("lab6", "Lab6", "LAB_6", "lab-06", "Lab 006")))
+    assert not any(map(pattern.fullmatch, ("lab66", "lab", "prelab6", "lab6b")))
+    assert lab_folder("wheeled base").fullmatch("Wheeled_Base")
+    assert not lab_folder("").fullmatch("")
+
+
+COURSE = (
+    "submitted/ann/lab6/a.urdf",
+    "submitted/ann/ps1/",
+    "submitted/bea/Lab 6/",
+    "submitted/bea/ps1/",
+    "source/lab6/",
+)
+
+
+def test_a_course_of_nbgrader(tmp_path: Path) -> None:
+    """The course's folder, or `submitted` itself, gives each student's folder of the assignment, and its time."""
+    lay_out(tmp_path / "c", *COURSE, "submitted/notes.txt")
+    (tmp_path / "c/submitted/ann/lab6/timestamp.txt").write_text("2015-02-02 15:58:23.948203 UTC\n")
+    intake = take_in(tmp_path / "c")
+    assert intake.layout == "nbgrader"
+    ann = Student("ann", login="ann")
+    assert list(intake.hand_ins()) == [HandIn(ann, ("submitted/ann/lab6",), submitted="2015-02-02T15:58:23Z")]
+    assert intake.left_out == (
+        "submitted/bea holds nothing for the assignment lab6",
+        "submitted/notes.txt is not a student's folder",
+    )
+    assert taken(take_in(tmp_path / "c" / "submitted")) == {"ann": ("ann/lab6",)}
+    assert taken(take_in(tmp_path / "c", assignment="ps1")) == {
+        "ann": ("submitted/ann/ps1",),
+        "bea": ("submitted/bea/ps1",),
+    }
+
+
+def test_a_course_in_a_zip(tmp_path: Path) -> None:
+    """A zip of a course is read where it is, its times included."""
+    import zipfile
+
+    with zipfile.ZipFile(tmp_path / "course.zip", "w") as archive:
+        archive.writestr("robo/submitted/ann/lab-6/a.urdf", b"")
+        archive.writestr("robo/submitted/ann/lab-6/timestamp.txt", b"2026-01-30 15:30:10 UCT")
+    (ann,) = take_in(tmp_path / "course.zip").hand_ins()
+    assert (ann.paths, ann.submitted) == (("robo/submitted/ann/lab-6",), "2026-01-30T15:30:10Z")
+
+
+@pytest.mark.parametrize(
+    ("stamp", "time"),
+    [
+        (b"2026-01-30 15:30:10.123 +0200", "2026-01-30T13:30:10Z"),
+        (b"2026-01-30 15:30:10", "2026-01-30T15:30:10Z"),
+        (b"0001-01-01 00:00:00 +0500", ""),
+        (b"2026-01-30 15:30:10 CET", ""),
+        (b"\xff\xfe nonsense", ""),
+        (b"", ""),
+    ],
+)
+def test_times_of_nbgrader(tmp_path: Path, stamp: bytes, time: str) -> None:
+    """A time without a zone is meant in UTC; one that cannot be told is left out."""
+    lay_out(tmp_path, "submitted/ann/lab6/")
+    (tmp_path / "submitted/ann/lab6/timestamp.txt").write_bytes(stamp)
+    (ann,) = take_in(tmp_path).hand_ins()
+    assert ann.submitted == time
+
+
+def test_an_assignment_that_is_not_told(tmp_path: Path) -> None:
+    """One assignment is taken whatever it is called; of several one has to be told, and one that is not there is an error."""
+    lay_out(tmp_path / "c", "submitted/ann/ps1/")
+    assert taken(take_in(tmp_path / "c")) == {"ann": ("submitted/ann/ps1",)}
+    lay_out(tmp_path / "c", "submitted/ann/ps2/")
+    with pytest.raises(InputError, match="which assignment is to be graded; there are: ps1, ps2"):
+        take_in(tmp_path / "c")
+    with pytest.raises(InputError, match="nobody has handed in the assignment ps3; there are: ps1, ps2"):
+        take_in(tmp_path / "c", assignment="ps3")
+    lay_out(tmp_path / "c", "submitted/ann/LAB 6/", "submitted/ann/Lab_6/")
+    with pytest.raises(InputError, match="which assignment"):
+        take_in(tmp_path / "c")

@@ -1,0 +1,430 @@
+"""Our totals and comments in a Moodle grading worksheet, in the languages that it comes in."""
+
+import csv
+import html
+import io
+import re
+from decimal import Decimal
+from typing import Any, Literal
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grader.checks.outcome import Outcome
+from grader.classroom.lms.comments import remarks_on
+from grader.classroom.lms.feedback import LIMIT, Remark, feedback_html, is_our_feedback
+from grader.classroom.lms.grades import Grade
+from grader.classroom.lms.moodle import fill_worksheet
+from grader.classroom.lms.preflight import Conflict, Filled, Left
+from grader.classroom.lms.spreadsheet import neutral
+from grader.classroom.lms.tables import read_table
+from grader.classroom.students import Student
+from grader.errors import InputError
+from grader.grading.report import Result, Ruling
+from tests.classroom.gradebooks import lab
+
+HEADER = (
+    'Identifier,"Full name","Email address",Status,Grade,"Maximum Grade","Grade can be changed",'
+    '"Last modified (submission)","Last modified (grade)","Feedback comments"'
+)
+COMMENT = feedback_html(
+    Decimal("58.5"), Decimal(100), [Remark("The base", Decimal(2), Decimal(4), "it is 0.1 m too low")]
+)
+
+
+def graded(key: str, total: str | None = "58.5", feedback: str = "", why_not: str = "", **known: Any) -> Grade:
+    return Grade(Student(key, **known), None if total is None else Decimal(total), feedback, why_not)
+
+
+def row(
+    number: int,
+    name: str = "Jane Doe",
+    old: str = "",
+    comment: str = "",
+    *,
+    maximum: str = "100.00",
+    change: str = "Yes",
+) -> str:
+    return f'"Participant {number}","{name}",p{number}@uni.example,Submitted,{old},{maximum},{change},-,-,{comment}'
+
+
+def worksheet(*rows: str, header: str = HEADER, end: str = "\n") -> bytes:
+    return "".join(each + end for each in (header, *rows)).encode()
+
+
+def fill(
+    data: bytes,
+    *grades: Grade,
+    column: str = "",
+    feedback_column: str = "",
+    out_of: str = "100",
+    any_maximum: bool = False,
+) -> Filled:
+    return fill_worksheet(
+        data,
+        grades,
+        out_of=Decimal(out_of),
+        column=column,
+        feedback_column=feedback_column,
+        any_maximum=any_maximum,
+    )
+
+
+def cells(filled: Filled) -> list[list[str]]:
+    return list(csv.reader(io.StringIO(filled.data.decode(), newline="")))
+
+
+def test_grade_and_comment_go_into_their_cells() -> None:
+    """The row of the participant has grade and comment; the header stays; everything is matched."""
+    filled = fill(worksheet(row(7)), graded("x", moodle="7", feedback=COMMENT))
+    assert filled.data.decode() == worksheet(row(7, old="58.50", comment=COMMENT)).decode()
+    assert filled.preflight.matches
+    assert filled.preflight.filled == 1
+    assert not filled.preflight.warnings
+
+
+@pytest.mark.parametrize(
+    "known", [{"moodle": "7"}, {"email": "P7@uni.example"}, {"name": "Doe, Jane"}, {"name": "jane  doe"}]
+)
+def test_students_are_found_by_what_is_known(known: dict[str, str]) -> None:
+    """By the number in the identifier, the address, or the name."""
+    assert fill(worksheet(row(7)), graded("x", **known)).preflight.filled == 1
+
+
+@pytest.mark.parametrize("title", ["ID number", "Username", "ID-Nummer"])
+def test_the_key_counts_as_id_number(title: str) -> None:
+    """Where the site shows ID numbers or user names, a student is found by them."""
+    data = f"Identifier,Full name,{title},Status,Grade,Maximum grade\nParticipant 7,Jane,s123,-,,100.00\n".encode()
+    assert fill(data, graded("S123")).preflight.filled == 1
+
+
+def test_namesakes_and_other_numbers_are_never_guessed() -> None:
+    """One name in two rows is ambiguous; a name whose participant number differs joins nobody."""
+    data = worksheet(row(1), row(2), row(3, "Ann Lee"))
+    filled = fill(data, graded("a", name="Jane Doe"), graded("b", name="Ann Lee", moodle="4"))
+    assert cells(filled) == [next(csv.reader([HEADER]))]
+    assert [left.row for left in filled.preflight.ambiguous] == [2, 3]
+    assert [left.who for left in filled.preflight.unknown] == ["Ann Lee"]
+    assert [left.who for left in filled.preflight.missing] == ["Ann Lee"]
+
+
+def test_a_suspended_student_has_a_plain_name() -> None:
+    """The span and the picture that Moodle puts around a suspended student's name are no part of it."""
+    name = '<span class=""usersuspended"">Jane &amp; Doe <img src=""x"" title=""Suspended"" /></span>'
+    filled = fill(worksheet(row(7, name)), graded("x", None, why_not="pending", name="Jane & Doe"))
+    assert filled.preflight.ungraded == (Left(2, "Jane & Doe", "pending"),)
+
+
+def test_blind_marking() -> None:
+    """Without names, people are called by their identifiers and found by the number."""
+    data = b'Identifier,Status,Grade,"Maximum grade"\n"Participant 7",Submitted,,100.00\n"Participant 8",Submitted,,100.00\n'
+    filled = fill(data, graded("x", moodle="7"))
+    assert cells(filled)[1:] == [["Participant 7", "Submitted", "58.50", "100.00"]]
+    assert filled.preflight.unknown[0].who == "Participant 8"
+
+
+def test_rows_without_a_grade_are_left_out() -> None:
+    """Locked, above Moodle's maximum, pending, cells out of place: left out, so that nothing of theirs changes."""
+    rows = [row(1, change="No"), row(2, maximum="50.00"), row(3, old="12.00", comment="mine"), row(4) + ",x"]
+    grades = [
+        graded("1", moodle="1"),
+        graded("2", moodle="2"),
+        graded("3", None, why_not="not handed in", moodle="3"),
+        graded("4", moodle="4"),
+    ]
+    filled = fill(worksheet(*rows), *grades, any_maximum=True)
+    assert len(cells(filled)) == 1
+    assert [left.why for left in filled.preflight.ungraded] == [
+        "has a grade that is locked in Moodle",
+        "has 58.50 points, and Moodle takes 50 at most",
+        "not handed in",
+        "the row has 11 cells and the header 10",
+    ]
+    assert filled.preflight.matches
+
+
+def test_full_marks_are_not_above_the_maximum() -> None:
+    """A total at the maximum is filled."""
+    assert fill(worksheet(row(1)), graded("x", "100", moodle="1")).preflight.filled == 1
+
+
+def test_grades_that_are_there_already() -> None:
+    """The same grade stays as it is written; another one is overwritten, and said so."""
+    filled = fill(worksheet(row(1, old="58.5"), row(2, old="80.00")), graded("1", moodle="1"), graded("2", moodle="2"))
+    assert [each[4] for each in cells(filled)[1:]] == ["58.5", "58.50"]
+    assert filled.preflight.conflicts == (Conflict(3, "Jane Doe", "80.00", "58.50"),)
+    assert (filled.preflight.filled, filled.preflight.unchanged) == (1, 1)
+    assert "modified more recently" in filled.preflight.warnings[0]
+
+
+def test_comments_of_people_stay() -> None:
+    """A comment that a person wrote, or added to ours, is kept and reported; ours of an earlier run is written anew."""
+    quoted = '"' + COMMENT.replace("</ul>", "</ul><p>But well written!</p>").replace('"', '""') + '"'
+    older = feedback_html(Decimal(3), Decimal(100), [])
+    data = worksheet(row(1, comment="Please come to my office."), row(2, comment=quoted), row(3, comment=older))
+    filled = fill(data, *(graded(str(n), feedback=COMMENT, moodle=str(n)) for n in (1, 2, 3)))
+    assert [each[9] for each in cells(filled)[1:]] == [
+        each[9] for each in cells(Filled(data, filled.preflight))[1:3]
+    ] + [COMMENT]
+    assert [left.row for left in filled.preflight.kept_feedback] == [2, 3]
+
+
+def test_no_comment_leaves_the_cell_alone() -> None:
+    """Without feedback of ours the comment that is there stays, and nothing is said of it."""
+    filled = fill(worksheet(row(1, comment="mine")), graded("1", moodle="1"))
+    assert cells(filled)[1][9] == "mine"
+    assert not filled.preflight.kept_feedback
+
+
+def test_a_comment_from_elsewhere_starts_no_formula() -> None:
+    """What is written into a cell is neutral, whoever made it."""
+    assert cells(fill(worksheet(row(1)), graded("1", feedback="=1+1", moodle="1")))[1][9] == "'=1+1"
+
+
+GERMAN = (
+    'ID,"Vollständiger Name",E-Mail-Adresse,Status,Bewertung,Bestwertung,"Bewertung kann geändert werden",'
+    '"Zuletzt geändert (Abgabe)","Zuletzt geändert (Bewertung)","Feedback als Kommentar"'
+)
+
+
+def test_german() -> None:
+    """The number sticks to the word, the decimals have a comma, and No is Nein."""
+    rows = [
+        'Teilnehmer/in123,"Jörg Öztürk",j@uni.example,"Zur Bewertung abgegeben",,"100,00",Ja,-,-,',
+        'Teilnehmer/in124,"Ann Lee",a@uni.example,"Zur Bewertung abgegeben",,"100,00",Nein,-,-,',
+    ]
+    filled = fill(
+        worksheet(*rows, header=GERMAN), graded("1", moodle="123", feedback=COMMENT), graded("2", moodle="124")
+    )
+    assert cells(filled)[1] == [
+        "Teilnehmer/in123",
+        "Jörg Öztürk",
+        "j@uni.example",
+        "Zur Bewertung abgegeben",
+        "58,50",
+        "100,00",
+        "Ja",
+        "-",
+        "-",
+        COMMENT,
+    ]
+    assert [left.who for left in filled.preflight.ungraded] == ["Ann Lee"]
+    assert not filled.preflight.warnings
+
+
+def test_a_language_that_is_not_known() -> None:
+    """Grade and maximum are found by what stands in them; a comment needs its column's name."""
+    header = "Tunniste,Nimi,Sposti,Tila,Ryhmä,Arvosana,Enimmäisarvosana,Muokattu,Palaute"
+    data = worksheet(
+        "Osallistuja 7,Jane,j@uni.example,ok,3,,100.00,-,",
+        "Osallistuja 8,Ann,a@uni.example,ok,3,80.00,100.00,-,",
+        header=header,
+    )
+    grade = graded("x", email="j@uni.example", feedback=COMMENT)
+    filled = fill(data, grade)
+    assert filled.preflight.column == "Arvosana"
+    assert cells(filled)[1][5:] == ["58.50", "100.00", "-", ""]
+    assert any("no column for feedback" in warning for warning in filled.preflight.warnings)
+    assert any("Last modified" in warning for warning in filled.preflight.warnings)
+    assert cells(fill(data, grade, feedback_column="Palaute"))[1][8] == COMMENT
+    assert cells(fill(data, grade, column="Arvosana"))[1][5] == "58.50"
+
+
+def test_a_workflow_a_marker_and_an_online_text() -> None:
+    """Columns that only some sites have, in between, change nothing."""
+    header = (
+        "Identifier,Full name,ID number,Email address,Status,Group,Marker,Grade,Maximum grade,Marking workflow state,"
+        "Grade can be changed,Last modified (submission),Online text,Last modified (grade),Feedback comments"
+    )
+    line = 'Participant 7,Jane,,j@uni.example,ok,Team 1,Prof,,100.00,Not marked,Yes,-,"<p>a\n=b</p>",-,'
+    filled = fill(worksheet(line, header=header), graded("x", moodle="7", feedback=COMMENT))
+    assert cells(filled)[1][7] == "58.50"
+    assert cells(filled)[1][12:] == ["<p>a\n=b</p>", "-", COMMENT]
+
+
+@pytest.mark.parametrize(
+    ("data", "words"),
+    [
+        (b"", "not a grading worksheet.*has: nothing"),
+        (worksheet(), "not a grading worksheet"),
+        (b"Student,ID,SIS Login ID,Section,Lab 6 (1)\nJane,1,ab1,A,\n", "not a grading worksheet.*'Student', 'ID'"),
+        (
+            b'Identifier,Full name,Grade,Scale\nParticipant 1,Jane,,"poor\ngood"\n',
+            "no maximum grade in numbers behind 'Grade'",
+        ),
+        (b"Identifier,Full name,Grade,Maximum grade\nParticipant 1,Jane,,\n", "no maximum grade in numbers"),
+        (b"Tunniste,Nimi,Arvosana\nOsallistuja 1,Jane,\n", "nobody can tell which column.*'Arvosana'"),
+    ],
+)
+def test_other_files_are_refused(data: bytes, words: str) -> None:
+    """What is no worksheet, or one with a scale, is refused in one sentence with the headers that there are."""
+    with pytest.raises(InputError, match=words) as raised:
+        fill(data)
+    assert "\n" not in str(raised.value)
+
+
+def test_columns_that_are_not_there() -> None:
+    """A column that somebody names has to be there."""
+    with pytest.raises(InputError, match=r"no column 'Mark'.*'Grade'"):
+        fill(worksheet(row(1)), column="Mark")
+    with pytest.raises(InputError, match="no column 'Notes'"):
+        fill(worksheet(row(1)), feedback_column="Notes")
+
+
+def test_warnings() -> None:
+    """Another maximum, and a file that has to be uploaded with other settings, are said."""
+    assert fill(worksheet(row(1)), out_of="70", any_maximum=True).preflight.warnings == (
+        "Moodle counts to 100.00 points, and the rubric to 70",
+    )
+    data = b"Identifier;Grade;Maximum grade;Last modified (grade)\nParticipant 1;;100,00;-\n"
+    assert fill(data).preflight.warnings == ("choose semicolon and UTF-8 where the file is uploaded: so it is written",)
+
+
+def test_another_maximum_is_refused() -> None:
+    """9.33 of 100 would be 9.33 of 10, for anyone in the file; whoever wants that says so."""
+    data = worksheet(row(1), row(2, maximum="10.00"))
+    with pytest.raises(InputError) as raised:
+        fill(data, graded("1", "9.33", moodle="1"))
+    assert str(raised.value) == (
+        "Moodle's 'Maximum Grade' is 10, and the rubric's points are 100: change the maximum in the LMS and export again,"
+        " or write the points as they are with --any-maximum"
+    )
+    assert fill(data, graded("1", "9.33", moodle="1"), any_maximum=True).preflight.filled == 1
+
+
+RUBRIC = lab()
+
+
+def result(name: str, outcome: Outcome, because: str | None = None, ruling: Ruling | None = None) -> Result:
+    (criterion,) = [each for each in RUBRIC.criteria if each.id == name]
+    return Result(criterion, outcome, because, "", ruling)
+
+
+def skipped(name: str, because: str = "loads", ruling: Ruling | None = None) -> Result:
+    return result(name, Outcome("skipped", f"not decided, because {because} failed"), because, ruling)
+
+
+def test_what_has_one_cause_is_one_remark() -> None:
+    """Criteria that are skipped because another failed, or wait for the same reason, are told once; messages begin large."""
+    loads = result("loads", Outcome("failed", "the file has no root"))
+    text = feedback_html(Decimal(0), Decimal(11), list(remarks_on([loads, *map(skipped, ("box", "tall", "essay"))])))
+    assert re.findall("<li>(.*?)</li>", text) == [
+        "About loads: 0 of 3. The file has no root",
+        "3 criteria are not decided, because loads failed: 0 of 7.",
+    ]
+    waits = Outcome("pending", "nobody can tell; a person has to look")
+    assert list(remarks_on([result(name, waits) for name in ("box", "tall")])) == [
+        Remark("2 criteria wait for a person", Decimal(0), Decimal(3), "Nobody can tell; a person has to look")
+    ]
+
+
+def test_what_has_a_cause_of_its_own_stays() -> None:
+    """One skip, a question with its model answer, a person's word, and all that has its points."""
+    asks = Outcome("pending", "a person has to mark it", "this", "that")
+    found = [
+        result("loads", Outcome("passed", "fine")),
+        skipped("box", ruling=Ruling(Decimal(1), "me", "nice try")),
+        skipped("tall", "box"),
+        result("essay", asks),
+        result("picture", asks._replace(measured='xyz="0" is off', message='xyz="0" is off')),
+    ]
+    assert [(each.title, each.message) for each in remarks_on(found)] == [
+        ("About box", "nice try"),
+        ("About tall", "Not decided, because box failed"),
+        ("About essay", "A person has to mark it"),
+        ("About picture", 'xyz="0" is off'),
+    ]
+
+
+def test_feedback() -> None:
+    """Score as exported, then the remarks; HTML of a student's is shown as text; one line."""
+    text = feedback_html(
+        Decimal("99.996"),
+        Decimal(100),
+        [Remark("<b>", Decimal("1.50"), Decimal(2), 'say "a\nb" \\'), Remark("c", Decimal(0), Decimal(1))],
+    )
+    assert text.startswith(
+        "<p>Graded automatically: 99.99 of 100 points.</p>"
+        "<ul><li>&lt;b&gt;: 1.5 of 2. say &quot;a b&quot; &#92;</li><li>c: 0 of 1.</li></ul><!-- grader "
+    )
+    assert is_our_feedback(text)
+
+
+def test_feedback_that_an_editor_has_written_anew() -> None:
+    """Other tags and spaces around the same words are still ours; other words, or none of ours, are not."""
+    assert is_our_feedback(COMMENT.replace("<p>", "<p dir='ltr'>\n ").replace("</li>", "</li>\n"))
+    assert not is_our_feedback(COMMENT.replace("too low", "far too low"))
+    assert not is_our_feedback("Graded automatically: 3 of 4 points.")
+    assert not is_our_feedback("")
+
+
+def test_feedback_has_an_end() -> None:
+    """A long comment says how many remarks it leaves out."""
+    remarks = [Remark(f"Criterion {n}", Decimal(0), Decimal(1), "x" * 200) for n in range(90)]
+    text = feedback_html(Decimal(0), Decimal(90), remarks)
+    shown = text.count("Criterion")
+    assert 10 < shown < 90
+    assert f"<li>... and {90 - shown} more</li></ul>" in text
+    assert len(text) <= LIMIT
+
+
+REMARKS = st.builds(
+    Remark, st.text(max_size=900), st.decimals(-5, 5, places=2), st.just(Decimal(5)), st.text(max_size=900)
+)
+
+
+@given(st.lists(REMARKS, max_size=8))
+def test_feedback_is_always_safe(remarks: list[Remark]) -> None:
+    """Any text: one line, within the limit, no tags but ours, no formula, and known again."""
+    text = feedback_html(Decimal(1), Decimal(2), remarks)
+    assert len(text) <= LIMIT
+    assert text.splitlines() == [text]
+    assert neutral(text) == text
+    assert set(re.findall(r"</?\w+", text)) <= {"<p", "</p", "<ul", "</ul", "<li", "</li"}
+    assert "\\" not in text
+    assert is_our_feedback(text)
+    assert is_our_feedback(text.encode("cp1252", "xmlcharrefreplace").decode("cp1252"))
+    text.encode("utf-8")
+
+
+@given(st.text(st.sampled_from('<>&=+-@;" a'), max_size=12))
+def test_feedback_shows_the_message(message: str) -> None:
+    """What a reader sees is the message, character for character but for runs of spaces."""
+    text = feedback_html(Decimal(1), Decimal(2), [Remark("t", Decimal(1), Decimal(2), message)])
+    item = re.search(r"<li>t: 1 of 2\.(.*?)</li>", text)
+    assert item is not None
+    assert html.unescape(item[1]).strip() == " ".join(message.split())
+
+
+NAMES = st.text(st.sampled_from("aé=+-@\"',;\n\t 😀\u202eשא\\<>"), min_size=1, max_size=8)
+
+
+@given(
+    st.lists(st.tuples(NAMES, NAMES, st.sampled_from(["", "80.00", "58.50"]), st.booleans()), min_size=1, max_size=6),
+    st.sampled_from([csv.QUOTE_ALL, csv.QUOTE_MINIMAL]),
+    st.sampled_from(["\r\n", "\n"]),
+)
+def test_only_grades_and_comments_change(
+    students: list[tuple[str, str, str, bool]], quoting: Literal[0, 1], end: str
+) -> None:
+    """Whatever names and comments hold, kept rows differ from the download in two cells, and a person's comment in one."""
+    text = io.StringIO(newline="")
+    writer = csv.writer(text, quoting=quoting, lineterminator=end)
+    writer.writerow(next(csv.reader([HEADER])))
+    for number, (name, comment, old, _) in enumerate(students):
+        writer.writerow([f"Participant {number}", name, f"{number}@x", "-", old, "100.00", "Yes", "-", "-", comment])
+    data = text.getvalue().encode("utf-8-sig")
+    wanted = [n for n, (*_, is_graded) in enumerate(students) if is_graded]
+    filled = fill(data, *(graded(f"k{n}", moodle=str(n), feedback=COMMENT) for n in wanted))
+    before, after = read_table(data, "x"), read_table(filled.data, "x")
+    assert after.bom == before.bom
+    assert [each.value(0) for each in after.rows[1:]] == [f"Participant {n}" for n in wanted]
+    assert after.rows[0] == before.rows[0]
+    for number, changed in zip(wanted, after.rows[1:], strict=True):
+        old_row = before.rows[number + 1]
+        assert changed.end == old_row.end
+        assert changed.value(4) == "58.50"
+        assert changed.value(9) == (old_row.value(9) or COMMENT)
+        kept = [index for index in range(10) if index not in {4, 9}]
+        assert [changed.cells[index].raw for index in kept] == [old_row.cells[index].raw for index in kept]

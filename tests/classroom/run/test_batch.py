@@ -1,0 +1,363 @@
+"""A class gets the marks that each submission gets alone, whoever does the work, and a second run grades only what has changed."""
+
+import json
+import os
+import shutil
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.grades import Standings
+from tests.classroom.class_runs import (
+    class_with_roster,
+    contents,
+    counted,
+    grader,
+    mixed_class,
+    report_here,
+    rows,
+    urdf_class,
+    verdicts,
+)
+from tests.command_line import GRADER
+from tests.samples import ROOT, SAMPLES
+
+JSON = ("--report-format", "json")
+REFERENCE = ROOT / "submissions/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
+
+
+def batch(path: Path, out: Path, *arguments: str, jobs: int = 2) -> dict[str, bytes]:
+    """Grade a class into a new gradebook; the JSON reports by key."""
+    book, reports = out.with_suffix(".db"), out.with_suffix(".reports")
+    done = grader("batch", path, "--gradebook", book, "--jobs", str(jobs), "--reports", reports, *JSON, *arguments)
+    assert done.returncode == 0, done.stderr
+    return reports_of(book, reports)
+
+
+def reports_of(book: Path, reports: Path) -> dict[str, bytes]:
+    """The reports in a folder by the key of their students."""
+    from grader.usecases.class_reports import file_names
+
+    names = file_names([str(key) for (key,) in rows(book, "SELECT key FROM grade WHERE result IS NOT NULL")])
+    found = contents(reports)
+    assert set(found) == {f"{name}.json" for name in names.values()}
+    return {key: found[f"{name}.json"] for key, name in names.items()}
+
+
+# --- The same marks ---------------------------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def samples(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A class whose hand-ins are the samples."""
+    folder = tmp_path_factory.mktemp("samples") / "class"
+    for name in SAMPLES:
+        shutil.copytree(ROOT / "submissions" / name, folder / name)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def mixed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A class of all kinds of hand-ins."""
+    return mixed_class(tmp_path_factory.mktemp("mixed") / "class", 120)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["samples", "mixed"])
+def test_a_class_is_graded_as_each_submission_alone(name: str, request: pytest.FixtureRequest, tmp_path: Path) -> None:
+    """With 1, 2 and 8 workers the reports are those of `grader grade`, byte for byte; what it refuses is refused for the same reason."""
+    folder: Path = request.getfixturevalue(name)
+    one = batch(folder, tmp_path / "one", "--layout", "folders", jobs=1)
+    assert one == batch(folder, tmp_path / "two", "--layout", "folders", jobs=2)
+    assert one == batch(folder, tmp_path / "eight", "--layout", "folders", jobs=8)
+    assert len(one) >= 100
+    refused = 0
+    with Gradebook(tmp_path / "one.db") as book:
+        for standing in Standings(book).all():
+            (path,) = standing.origin.paths
+            code, alone = report_here(folder / path, tmp_path / "alone.json")
+            if code != 2:  # in a folder that can be read there may still be nothing else that can
+                assert standing.verdict in ("graded", "unreadable")
+                assert alone == one[standing.student.key], path
+                is_red = bool({"f", "s"} & set(standing.signs)) or is_undecided(alone)
+                assert code == int(is_red), path
+            else:
+                assert standing.verdict == "unreadable"
+                assert standing.reason in str(alone).replace(f"{folder}/", "")
+                refused += 1
+    assert refused == 0 if name == "samples" else refused > 3
+
+
+def is_undecided(report: bytes | str) -> bool:
+    """Whether something needs manual grading that a program normally decides."""
+    waiting = {each["id"] for each in json.loads(report)["results"] if each["status"] == "pending"}
+    return bool(waiting - {"answer-floating-link", "answer-launch-nodes", "evidence-webcam"})
+
+
+def test_the_command_grade_says_the_same_in_a_process_of_its_own(samples: Path, tmp_path: Path) -> None:
+    """A few of the samples, through the whole command line."""
+    reports = batch(samples, tmp_path / "out", "--layout", "folders")
+    for name in list(SAMPLES)[::20]:
+        assert grader("grade", samples / name, "--format", "json").stdout.encode() == reports[name], name
+
+
+def _pack(folder: Path, place: Path) -> Path:
+    with zipfile.ZipFile(place, "w") as archive:
+        for path in sorted(folder.rglob("*")):
+            archive.write(path, path.relative_to(folder))
+    return place
+
+
+@pytest.mark.parametrize("layout", ["canvas", "moodle", "folders"])
+def test_a_zip_is_graded_as_its_folder(layout: str, tmp_path: Path) -> None:
+    """What an LMS gives as one zip needs not be unpacked: the reports are the same, and a second run grades nothing.
+
+    Nor does one of the folder, apart from what could not be opened, which has no digest.
+    """
+    folder = mixed_class(tmp_path / "class", 120, layout, for_zip=True)
+    packed = _pack(folder, tmp_path / "class.zip")
+    unpacked = batch(folder, tmp_path / "folder")
+    assert unpacked == batch(packed, tmp_path / "zip")
+    done = grader("batch", packed, "--gradebook", tmp_path / "zip.db")
+    assert counted(done).startswith("0 graded, ")
+    ((closed,),) = rows(tmp_path / "zip.db", "SELECT count(*) FROM grade WHERE digest = ''")
+    done = grader("batch", folder, "--gradebook", tmp_path / "zip.db")
+    assert counted(done).startswith(f"{closed} graded, ")
+    assert closed < 10
+
+
+def test_files_side_by_side_are_graded_as_a_folder_of_them(tmp_path: Path) -> None:
+    """What Canvas has saved as several files of one student is the folder that the student had."""
+    folder = mixed_class(tmp_path / "class", 100, "canvas")
+    reports = batch(folder, tmp_path / "out")
+    several = 0
+    with Gradebook(tmp_path / "out.db") as book:
+        for standing in Standings(book).all():
+            paths, names = standing.origin.paths, standing.origin.names
+            if (
+                len(paths) > 1 and standing.verdict == "graded" and not standing.is_late
+            ):  # which is a note in the report
+                together = tmp_path / "together" / standing.student.key
+                together.mkdir(parents=True)
+                for path, name in zip(paths, names, strict=True):
+                    shutil.copy(folder / path, together / name)
+                _, alone = report_here(together, tmp_path / "alone.json")
+                assert alone == reports[standing.student.key]
+                several += 1
+    assert several > 3
+
+
+# --- What has not changed ---------------------------------------------------------------------------------------------
+
+
+PACKAGE = ROOT / "submissions/reference/roscourse_sim_ws/src/my_robot"
+PACKED = ("more", "fewer", "emptier", "renamed", "packed")
+SIZE = 6 + len(PACKED) + 1
+
+
+@pytest.fixture
+def graded(tmp_path: Path) -> Path:
+    """A class of files, packages and a zip, graded once."""
+    folder = urdf_class(tmp_path / "class", 6)
+    for key in PACKED:
+        shutil.copytree(PACKAGE, folder / key)
+    _pack(PACKAGE, folder / "zipped.zip")
+    assert again(folder) == f"{SIZE} graded, 0 unchanged"
+    return folder
+
+
+def again(folder: Path, *arguments: str) -> str:
+    """What the next run into the same gradebook says."""
+    done = grader("batch", folder, "--gradebook", folder.parent / "lab6.db", *arguments)
+    assert done.returncode == 0
+    return counted(done)
+
+
+def results(folder: Path) -> dict[str, list[int]]:
+    """The results of each student."""
+    found: dict[str, list[int]] = {}
+    for key, result in rows(
+        folder.parent / "lab6.db", "SELECT key, result.id FROM result JOIN student ON student.id = student ORDER BY 2"
+    ):
+        found.setdefault(key, []).append(result)
+    return found
+
+
+def _files(folder: Path) -> list[Path]:
+    return sorted(path for path in folder.rglob("*") if path.is_file())
+
+
+def test_what_has_the_same_bytes_is_not_graded_again(graded: Path) -> None:
+    """Nor where the times or the files are others."""
+    before = results(graded)
+    assert again(graded) == f"0 graded, {SIZE} unchanged"
+    for path in _files(graded):
+        os.utime(path, (1, 1))
+    assert again(graded) == f"0 graded, {SIZE} unchanged"
+    for path in _files(graded):
+        data = path.read_bytes()
+        path.unlink()
+        path.write_bytes(data)
+    assert again(graded) == f"0 graded, {SIZE} unchanged"
+    assert results(graded) == before
+
+
+def test_a_class_may_move(graded: Path) -> None:
+    """Its path is nobody's business; reports quote what is there now."""
+    moved = graded.rename(graded.parent / "elsewhere")
+    assert again(moved, "--reports", str(graded.parent / "reports")) == f"0 graded, {SIZE} unchanged"
+    assert len(contents(graded.parent / "reports")) == SIZE
+
+
+def _change_one_byte(path: Path) -> None:
+    """Another number, with nothing else to tell by."""
+    before = path.stat()
+    data = bytearray(path.read_bytes())
+    data[data.index(b"link")] = ord("x")
+    path.write_bytes(data)
+    os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
+    assert (path.stat().st_size, path.stat().st_mtime_ns) == (before.st_size, before.st_mtime_ns)
+
+
+def test_exactly_what_has_changed_is_graded_again(graded: Path, tmp_path: Path) -> None:
+    """One byte, one name, one file more or less: the report is what it would have been at once, and the old result stays."""
+    byte, ending, attempt, *_ = sorted(graded.glob("*.urdf"))
+    _change_one_byte(byte)
+    ending.rename(ending.with_suffix(".urdf.xacro"))
+    shutil.copy(attempt, attempt.with_stem(f"{attempt.stem} (1)"))
+    (graded / "more/notes.txt").write_text("new")
+    (graded / "fewer/setup.cfg").unlink()
+    (graded / "emptier/empty").mkdir()
+    (graded / "renamed/setup.cfg").rename(graded / "renamed/setup.cfg.old")
+    with zipfile.ZipFile(graded / "zipped.zip", "a") as archive:
+        archive.writestr("notes.txt", "new")
+    before = results(graded)
+    assert again(graded, "--reports", str(tmp_path / "reports"), *JSON) == f"8 graded, {SIZE - 8} unchanged"
+    after = results(graded)
+    changed = {byte.stem, ending.stem, attempt.stem, "more", "fewer", "emptier", "renamed", "zipped"}
+    assert {each for each in after if after[each] != before[each]} == changed
+    assert all(after[each][:-1] == before[each] for each in changed)
+    assert reports_of(tmp_path / "lab6.db", tmp_path / "reports") == batch(graded, tmp_path / "fresh")
+
+
+def test_a_new_student_and_one_who_is_gone(graded: Path, tmp_path: Path) -> None:
+    """Only the new one is graded; the grade of one whose hand-in is gone stays."""
+    shutil.copy(REFERENCE, graded / "new.urdf")
+    gone = min(graded.glob("*.urdf"))
+    gone.unlink()
+    assert again(graded) == f"1 graded, {SIZE - 1} unchanged"
+    assert verdicts(tmp_path / "lab6.db")[gone.stem] == "graded"
+
+
+def test_another_rubric_and_force_grade_all_again(graded: Path, tmp_path: Path) -> None:
+    """A rubric that differs by a word is another one; with --force nothing is taken as given, and no result is doubled."""
+    rubric = tmp_path / "lab6.toml"
+    text = (ROOT / "rubrics/lab6.toml").read_text()
+    rubric.write_text(text + "\n# another year\n")
+    before = results(graded)
+    assert again(graded, "--rubric", str(rubric)) == f"{SIZE} graded, 0 unchanged"
+    assert again(graded, "--rubric", str(rubric)) == f"0 graded, {SIZE} unchanged"
+    assert again(graded) == f"{SIZE} graded, 0 unchanged"
+    once_more = results(graded)
+    assert {len(each) for each in once_more.values()} == {3}
+    assert again(graded, "--force") == f"{SIZE} graded, 0 unchanged"
+    assert results(graded) == once_more != before
+
+
+def test_late_is_taken_in_without_grading(graded: Path, tmp_path: Path) -> None:
+    """What the roster says of a student changes the grade, and not the result."""
+    path = min(graded.glob("*.urdf"))
+    before = results(graded)
+    for late in ("yes", "no"):
+        (tmp_path / "roster.csv").write_text(f"id,late\n{path.stem},{late}\n")
+        assert again(graded, "--roster", str(tmp_path / "roster.csv")) == f"0 graded, {SIZE} unchanged"
+        assert rows(tmp_path / "lab6.db", "SELECT is_late FROM grade WHERE key = ?", path.stem) == [(late == "yes",)]
+    assert results(graded) == before
+
+
+# --- Reports ----------------------------------------------------------------------------------------------------------
+
+KEYS = (
+    '"quoted"', "it's", "back\\slash", "Turned\u202eover", "שלום", ".hidden-not", "-dash", "--help", "CON", "con", "Con.txt",
+    "nul", "a b", "a  b", "ALICE", "alice", "Alice", "é" * 120, "測" * 80, "😀" * 60, "=1+1", "$(touch x)", "tab\there",
+    "line\nbreak", "*?", "e\u0301", "\u00e9", "~", "%2e%2e", "x.json", "a:b", "<b>", "a.", " a",
+)  # fmt: skip
+
+
+def test_reports_have_safe_names_whatever_students_are_called(tmp_path: Path) -> None:
+    """A report for each, in the folder and nowhere else, with names that every system takes and none of them twice."""
+    folder = tmp_path / "class"
+    folder.mkdir()
+    for key in KEYS:
+        if not key.startswith("."):
+            shutil.copy(REFERENCE, folder / f"{key}.urdf")
+    reports = batch(folder, tmp_path / "out")
+    count = sum(not key.startswith(".") for key in KEYS)
+    assert len(reports) == count
+    names = sorted(contents(tmp_path / "out.reports"))
+    assert len({name.casefold() for name in names}) == count
+    for name in names:
+        assert not set(name) & set('<>:"/\\|?*\n\t\r'), name
+        assert name[0] not in "-. "
+        assert name.isprintable()
+        assert len(name.encode()) <= 230
+        assert name.partition(".")[0].casefold() not in ("con", "nul")
+    assert {"ALICE", "alice", "Alice"} <= {json.loads(data)["submission"]["id"] for data in reports.values()}
+
+
+def test_reports_quote_files_only_as_they_were(tmp_path: Path) -> None:
+    """A report in words has the line that is meant, as `grader grade` has; once the file has changed, only its number."""
+    folder = tmp_path / "class"
+    shutil.copytree(ROOT / "submissions/several-mistakes", folder / "ann")
+    shutil.copytree(ROOT / "submissions/several-mistakes", folder / "bea")
+    words = tmp_path / "words"
+    command = ("batch", folder, "--gradebook", tmp_path / "lab6.db", "--reports", words)
+    grader(*command)
+    alone = grader("grade", folder / "ann").stdout
+    assert (words / "ann.txt").read_text() == alone
+    quoted = next(line for line in alone.splitlines() if "<" in line and "xyz" in line)
+    (folder / "ann/my_robot.urdf").write_text('<robot name="other"/>\n' * 100)
+    before = rows(tmp_path / "lab6.db", "SELECT max(id) FROM result")
+    from grader.cli.formats import Format, render
+    from grader.usecases.class_reports import report_of
+
+    with Gradebook(tmp_path / "lab6.db") as book:
+        standings = Standings(book)
+        texts = {
+            key: render(report_of(standings, standings.find(key)), Format.TERMINAL, to_file=True)
+            for key in ("ann", "bea")
+        }
+    assert quoted not in texts["ann"]
+    assert quoted in texts["bea"]
+    assert rows(tmp_path / "lab6.db", "SELECT max(id) FROM result") == before
+
+
+# --- Safety -----------------------------------------------------------------------------------------------------------
+
+MODULES = (
+    "numpy", "lxml", "yaml", "signal", "resource", "multiprocessing", "zlib", "imagesize", "json", "token", "selectors",
+    "pebble", "sqlite3", "rich", "distributed", "pypdf",
+)  # fmt: skip
+
+
+def test_nothing_of_a_class_is_imported(tmp_path: Path) -> None:
+    """Not even where the grader is started in the class folder: nor by the processes that do the work."""
+    folder = urdf_class(tmp_path / "class", 5)
+    mark = tmp_path / "ran"
+    for name in MODULES:
+        (folder / f"{name}.py").write_text(f"open({str(mark)!r}, 'w').close()\nraise SystemExit\n")
+    done = grader("batch", ".", "--gradebook", "../lab6.db", "--reports", "../reports", cwd=str(folder))
+    assert (done.returncode, counted(done)) == (0, "5 graded, 0 unchanged")
+    assert not mark.exists()
+    assert GRADER[-2:] == ("-m", "grader")
+
+
+def test_awkward_names_are_found_in_the_roster(tmp_path: Path) -> None:
+    """A folder whose name holds a change of direction, a line break or a tab belongs to the student of that very name."""
+    strangers, absent = class_with_roster(tmp_path / "class", tmp_path / "roster.csv", 300)
+    done = grader("batch", tmp_path / "class", "--gradebook", tmp_path / "lab6.db", "--roster", tmp_path / "roster.csv")
+    assert done.returncode == 0
+    assert [key for (key,) in rows(tmp_path / "lab6.db", "SELECT key FROM grade WHERE expected = 0")] == strangers
+    assert rows(tmp_path / "lab6.db", "SELECT count(*) FROM grade WHERE verdict = 'missing'") == [(absent,)]

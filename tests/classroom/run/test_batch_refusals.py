@@ -1,0 +1,244 @@
+"""What `grader batch` cannot use is one clear line on standard error and exit code 2, and nothing is lost."""
+
+import os
+import sqlite3
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from grader.classroom.gradebook.schema import STEPS
+from tests.classroom.class_runs import contents, counted, grader, rows, urdf_class, verdicts
+from tests.samples import ROOT
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A class of three."""
+    return urdf_class(tmp_path / "class", 3)
+
+
+def refused(*arguments: str | Path) -> str:
+    """The one line with which a command is refused."""
+    done = grader(*arguments)
+    assert (done.returncode, done.stdout) == (2, "")
+    *before, line = done.stderr.splitlines()
+    assert all(each.startswith("grader: ") for each in (*before, line))
+    assert "Traceback" not in done.stderr
+    return line.removeprefix("grader: ")
+
+
+def _missing(top: Path) -> Path:
+    return top / "missing"
+
+
+def _empty(top: Path) -> Path:
+    (top / "empty").mkdir()
+    return top / "empty"
+
+
+def _one_submission(_: Path) -> Path:
+    return ROOT / "submissions/reference/roscourse_sim_ws/src/my_robot"
+
+
+def _one_file(_: Path) -> Path:
+    return ROOT / "submissions/lidar-buried/my_robot.urdf"
+
+
+def _broken_zip(top: Path) -> Path:
+    with zipfile.ZipFile(top / "whole.zip", "w") as archive:
+        archive.writestr("ann.urdf", "<robot/>" * 100)
+    (top / "broken.zip").write_bytes((top / "whole.zip").read_bytes()[:-30])
+    return top / "broken.zip"
+
+
+def _empty_zip(top: Path) -> Path:
+    zipfile.ZipFile(top / "empty.zip", "w").close()
+    return top / "empty.zip"
+
+
+def _pictures(top: Path) -> Path:
+    (top / "pictures").mkdir()
+    (top / "pictures/a.png").touch()
+    return top / "pictures"
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (_missing, "does not exist"),
+        (_empty, "is empty"),
+        (_one_submission, "is one submission and no class"),
+        (_one_file, "is neither a folder nor a zip"),
+        (_broken_zip, "cannot be read as a zip"),
+        (_empty_zip, "is empty"),
+        (_pictures, "is a submission"),
+    ],
+)
+def test_what_is_no_class(make: Callable[[Path], Path], said: str, tmp_path: Path) -> None:
+    """No gradebook is made for it."""
+    assert said in refused("batch", make(tmp_path), "--gradebook", tmp_path / "lab6.db")
+    assert not (tmp_path / "lab6.db").exists()
+
+
+def _folder(place: Path) -> None:
+    place.mkdir()
+
+
+def _text(place: Path) -> None:
+    place.write_text("id,score\nann,70\n" * 1_000)
+
+
+def _short_text(place: Path) -> None:
+    place.write_text("notes")
+
+
+def _other_program(place: Path) -> None:
+    with sqlite3.connect(place) as other:
+        other.execute("CREATE TABLE notes (text)")
+        other.execute("INSERT INTO notes VALUES ('precious')")
+    other.close()
+
+
+def _newer(place: Path) -> None:
+    assert grader("batch", ROOT / "submissions", "--layout", "folders", "--gradebook", place).returncode == 0
+    with sqlite3.connect(place) as book:
+        book.execute(f"PRAGMA user_version = {len(STEPS) + 1}")
+    book.close()
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (_folder, "unable to open database file"),
+        (_text, "file is not a database"),
+        (_short_text, "file is not a database"),
+        (_other_program, "is a database, but no gradebook"),
+        (_newer, "was made by a newer grader: install that one, or name another file"),
+    ],
+)
+def test_what_is_no_gradebook(make: Callable[[Path], None], said: str, folder: Path, tmp_path: Path) -> None:
+    """It stays as it is, to the last byte."""
+    place = tmp_path / "lab6.db"
+    make(place)
+    before = place.read_bytes() if place.is_file() else b""
+    line = refused("batch", folder, "--gradebook", place)
+    assert said in line
+    assert str(place) in line
+    assert (place.read_bytes() if place.is_file() else b"") == before
+
+
+def test_a_gradebook_in_a_missing_folder(folder: Path, tmp_path: Path) -> None:
+    """The line names the gradebook."""
+    place = tmp_path / "missing" / "lab6.db"
+    assert refused("batch", folder, "--gradebook", place).startswith(f"the gradebook {place}: ")
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="nothing is closed to root")
+def test_a_gradebook_that_may_not_be_written(folder: Path, tmp_path: Path) -> None:
+    """A file, or a folder, without the right to write is told."""
+    place = tmp_path / "lab6.db"
+    assert grader("batch", folder, "--gradebook", place).returncode == 0
+    place.chmod(0o400)
+    assert "readonly" in refused("batch", folder, "--gradebook", place, "--force")
+
+
+def test_a_gradebook_on_a_device(folder: Path) -> None:
+    """What takes no file says so."""
+    assert refused("batch", folder, "--gradebook", "/dev/full").startswith("the gradebook /dev/full: ")
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("--jobs", "0"),
+        ("--jobs", "-1"),
+        ("--jobs", "many"),
+        ("--timeout", "0"),
+        ("--timeout", "nan"),
+        ("--timeout", "-1"),
+        ("--layout", "heaps"),
+        ("--report-format", "pdf"),
+        ("--due", "tomorrow"),
+        ("--rubric", "lab66"),
+        ("--rubric", "missing.toml"),
+        ("--roster", "missing.csv"),
+    ],
+)
+def test_wrong_usage(arguments: tuple[str, str], folder: Path, tmp_path: Path) -> None:
+    """Nothing is begun."""
+    line = refused("batch", folder, "--gradebook", tmp_path / "lab6.db", *arguments)
+    assert arguments[0].removeprefix("--") in line or arguments[1] in line
+    assert not (tmp_path / "lab6.db").exists()
+
+
+def test_a_broken_rubric_and_a_broken_roster(folder: Path, tmp_path: Path) -> None:
+    """What is wrong with it is told with its line, and nothing is begun."""
+    (tmp_path / "broken.toml").write_text(
+        (ROOT / "rubrics/lab6.toml").read_text().replace("points = 6", "points = 'six'", 1)
+    )
+    (tmp_path / "broken.csv").write_text("colour\nred\n")
+    command = ("batch", folder, "--gradebook", tmp_path / "lab6.db")
+    assert "broken.toml:" in refused(*command, "--rubric", tmp_path / "broken.toml")
+    assert "broken.csv has no column for an id" in refused(*command, "--roster", tmp_path / "broken.csv")
+    assert not (tmp_path / "lab6.db").exists()
+
+
+def test_reports_where_a_file_stands(folder: Path, tmp_path: Path) -> None:
+    """It is said before anything is graded, and the file is as it was."""
+    (tmp_path / "reports").write_text("precious")
+    book = tmp_path / "lab6.db"
+    assert "reports is no folder" in refused("batch", folder, "--gradebook", book, "--reports", tmp_path / "reports")
+    assert (tmp_path / "reports").read_text() == "precious"
+    assert "cannot write" in refused("batch", folder, "--gradebook", book, "--csv", tmp_path / "missing" / "a.csv")
+    assert not book.exists()
+
+
+@pytest.mark.parametrize("option", ["--reports", "--csv", "--gradebook"])
+def test_no_link_of_a_submission_is_written_through(option: str, folder: Path, tmp_path: Path) -> None:
+    """It is refused before anything is graded; a link beside the class is followed."""
+    (folder / "mallory").mkdir()
+    (tmp_path / "elsewhere").mkdir()
+    (folder / "mallory" / "out").symlink_to(tmp_path / "elsewhere")
+    (tmp_path / "link").symlink_to("elsewhere")
+    book = () if option == "--gradebook" else ("--gradebook", tmp_path / "lab6.db")
+    line = refused("batch", folder, *book, option, folder / "mallory" / "out" / "a")
+    assert line.endswith("mallory/out is a symlink in the submission (name a file outside of it)")
+    assert not list((tmp_path / "elsewhere").iterdir())
+    assert not (tmp_path / "lab6.db").exists()
+    assert grader("batch", folder, *book, option, tmp_path / "link" / "a").returncode == 0
+    assert list((tmp_path / "elsewhere").iterdir())
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="nothing is closed to root")
+def test_a_hand_in_that_may_not_be_read(folder: Path, tmp_path: Path) -> None:
+    """It is unreadable, the others are graded, and it is graded once it may be read."""
+    (folder / "closed").mkdir()
+    (folder / "closed").chmod(0)
+    book = tmp_path / "lab6.db"
+    done = grader("batch", folder, "--gradebook", book)
+    assert (done.returncode, verdicts(book)["closed"]) == (0, "unreadable")
+    (folder / "closed").chmod(0o700)
+    (folder / "closed/my_robot.urdf").write_text("<robot name='a'><link name='b'/></robot>")
+    assert counted(grader("batch", folder, "--gradebook", book)) == "1 graded, 3 unchanged"
+
+
+def test_a_class_that_vanishes(folder: Path, tmp_path: Path) -> None:
+    """What was graded stays; nobody is given another grade for it."""
+    book = tmp_path / "lab6.db"
+    assert grader("batch", folder, "--gradebook", book).returncode == 0
+    before = rows(book, "SELECT * FROM grade")
+    folder.rename(tmp_path / "gone")
+    assert "does not exist" in refused("batch", folder, "--gradebook", book)
+    assert rows(book, "SELECT * FROM grade") == before
+
+
+def test_a_short_time_is_for_submissions_and_not_for_reports(tmp_path: Path) -> None:
+    """Writing the reports of a class takes longer than one submission may."""
+    folder = urdf_class(tmp_path / "class", 200)
+    reports = tmp_path / "reports"
+    command = ("batch", folder, "--gradebook", tmp_path / "lab6.db", "--reports", reports, "--timeout", "0.1")
+    done = grader(*command, "--report-format", "terminal", "--report-format", "json")
+    assert done.returncode == 0, done.stderr
+    assert len(contents(reports)) == 400

@@ -1,0 +1,151 @@
+"""Processes that do the work: whatever is done in them, each promise is kept in time."""
+
+import multiprocessing
+import os
+import signal
+import sys
+import time
+from collections.abc import Iterator
+from concurrent.futures import Future
+from typing import Any
+
+import pytest
+
+from grader.classroom.run.pool import Lost, Processes, processors
+from grader.classroom.run.worker import prepare
+from tests.command_line import PATIENCE
+
+MEMORY = 512 * 1024**2
+
+
+@pytest.fixture(scope="module")
+def pool() -> Iterator[Processes]:
+    """Two workers, each with half a gigabyte."""
+    with Processes(2, PATIENCE, prepare, MEMORY) as processes:
+        yield processes
+
+
+def lost(future: "Future[Any]") -> str:
+    """Why there is no result."""
+    error = future.exception(PATIENCE)
+    assert isinstance(error, Lost), error
+    return str(error)
+
+
+def _eat() -> int:
+    return len(bytearray(2 * MEMORY))
+
+
+def _raise(kind: type[BaseException]) -> None:
+    raise kind("as asked")
+
+
+def _leave(code: int) -> None:
+    os._exit(code)
+
+
+def _unspeakable() -> object:
+    return lambda: None
+
+
+def test_results_come_back(pool: Processes) -> None:
+    """Whatever can be sent is, with arguments by place and by name."""
+    assert pool.submit(sorted, [3, 1, 2], reverse=True).result(PATIENCE) == [3, 2, 1]
+    assert len(pool.submit(bytes, 10**7).result(PATIENCE)) == 10**7
+
+
+def test_errors_come_back_as_they_are(pool: Processes) -> None:
+    """An error of what was asked is that error; what cannot be sent is told, too."""
+    with pytest.raises(ZeroDivisionError):
+        pool.submit(divmod, 1, 0).result(PATIENCE)
+    with pytest.raises(ValueError, match="as asked"):
+        pool.submit(_raise, ValueError).result(PATIENCE)
+    assert pool.submit(_unspeakable).exception(PATIENCE) is not None
+    assert pool.submit(len, "abc").result(PATIENCE) == 3
+
+
+def _stop() -> None:
+    while True:  # a shell that ends may have the processes go on that it has started
+        signal.raise_signal(signal.SIGSTOP)
+
+
+def test_no_more_memory_than_allowed(pool: Processes) -> None:
+    """What needs more is lost, and its worker goes on."""
+    assert lost(pool.submit(_eat)) == "grading it needs more memory than a worker may have (2 GiB)"
+    assert pool.submit(len, "abc").result(PATIENCE) == 3
+
+
+@pytest.mark.parametrize(
+    ("function", "arguments", "reason"),
+    [
+        (_leave, (0,), "the process that graded it ended in the midst of it"),
+        (_leave, (7,), "the process that graded it ended with exit code 7"),
+        (os.abort, (), "the process that graded it was ended by signal 6"),
+        (signal.raise_signal, (signal.SIGKILL,), "the process that graded it was ended by signal 9"),
+        (
+            _stop,
+            (),
+            "grading it took longer than 1.5 s, and was stopped (--timeout raises the limit)",
+        ),
+        (time.sleep, (600,), "grading it took longer than 1.5 s, and was stopped (--timeout raises the limit)"),
+    ],
+)
+def test_what_ends_or_holds_a_worker_is_lost(
+    function: Any, arguments: tuple[Any, ...], reason: str, pool: Processes
+) -> None:
+    """And nothing else with it."""
+    ended = pool.submit_within(1.5, function, arguments, {})
+    others = [pool.submit(pow, number, 2) for number in range(20)]
+    assert lost(ended) in (reason, "grading it took longer than 1.5 s, and was stopped (--timeout raises the limit)")
+    assert [each.result(PATIENCE) for each in others] == [number**2 for number in range(20)]
+
+
+def test_workers_find_nothing_in_the_current_folder(pool: Processes) -> None:
+    """A module there would be the class's; nor do they hear Ctrl-C."""
+    assert pool.submit(eval, "__import__('sys').flags.safe_path").result(PATIENCE)
+    assert pool.submit(signal.getsignal, signal.SIGINT).result(PATIENCE) is signal.SIG_IGN
+    assert "" not in pool.submit(eval, "__import__('sys').path").result(PATIENCE)
+
+
+def test_all_workers_ended_at_once(pool: Processes) -> None:
+    """As where memory is short: what is asked afterwards is done."""
+    pids = {pool.submit(_pid_after, 0.2).result(PATIENCE) for _ in range(4)}
+    for pid in pids:
+        os.kill(pid, signal.SIGKILL)
+    results = []
+    for _ in range(10):
+        future = pool.submit(len, "abc")
+        results.append(future.exception(PATIENCE) or future.result())
+    assert results[-1] == 3
+    assert all(each == 3 or isinstance(each, Lost) for each in results)
+
+
+def _pid_after(seconds: float) -> int:
+    time.sleep(seconds)
+    return os.getpid()
+
+
+def test_shut_in_the_midst_of_work() -> None:
+    """Whoever leaves does not wait for what hangs."""
+    processes = Processes(1, 10 * PATIENCE, prepare)
+    pid = processes.submit(os.getpid).result(PATIENCE)
+    processes.submit(time.sleep, 10 * PATIENCE)
+    began = time.monotonic()
+    processes.shutdown()
+    assert time.monotonic() - began < PATIENCE
+    with pytest.raises(ProcessLookupError):
+        os.kill(pid, 0)
+
+
+def test_shut_before_any_work() -> None:
+    """Where nothing was asked nothing is started."""
+    before = multiprocessing.active_children()
+    with Processes(2, PATIENCE, prepare) as processes:
+        assert not processes._has_begun
+        assert multiprocessing.active_children() == before
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="asks the kernel")
+def test_as_many_workers_as_processors() -> None:
+    """Those that this process may use."""
+    assert processors() == len(os.sched_getaffinity(0))

@@ -1,0 +1,122 @@
+"""What comes of one hand-in: that it could not be read is said whatever it was wrapped in, and in the words of a class run."""
+
+import io
+import json
+import shutil
+import zipfile
+import zlib
+from pathlib import Path
+
+import pytest
+
+from grader.classroom.gradebook.result import Graded
+from grader.classroom.run.worker import Class, Task, grade_all
+from tests.classroom.class_runs import report_here
+from tests.samples import LAB6, ROOT
+
+URDF = (ROOT / "submissions/lidar-buried/my_robot.urdf").read_bytes()
+LARGE = URDF + b" " * 1024 * 1024
+
+
+def zipped(files: dict[str, bytes]) -> bytes:
+    """A zip with these files."""
+    buffer = io.BytesIO()
+    with zipfile.ZipFile(buffer, "w") as archive:
+        for name, data in files.items():
+            archive.writestr(name, data)
+    return buffer.getvalue()
+
+
+def damaged(name: str) -> bytes:
+    """A zip in which one file of this name has a wrong checksum."""
+    data = zipped({name: URDF})
+    start = data.index(b"<robot")
+    return data[:start] + b"<R" + data[start + 2 :]
+
+
+CUT = zipped({"a.urdf": URDF})[:-30]
+UNREADABLE = {
+    "cut": ("lab6.zip", CUT, "lab6.zip cannot be read as an archive: File is not a zip file"),
+    "garbage": ("lab6.zip", b"garbage", "lab6.zip is no archive that can be read, for all its name"),
+    "rar": ("lab6.rar", b"Rar!\x1a\x07\x00", "lab6.rar is a rar archive, which is not read"),
+    "empty": ("lab6.zip", zipped({}), "lab6.zip is empty"),
+    "checksum": ("lab6.zip", damaged("a.urdf"), "a.urdf: Bad CRC-32"),
+    "large": ("a.urdf", LARGE, "a.urdf is larger than 1048576 bytes, the limit for a URDF"),
+    "large-in-a-zip": ("lab6.zip", zipped({"a.urdf": LARGE}), "a.urdf is larger than 1048576 bytes, the limit for a"),
+    "nested": ("lab6.zip", zipped({"b.zip": CUT}), "b.zip cannot be read as an archive"),
+}
+
+
+def graded(top: Path, *paths: str) -> Graded:
+    """What comes of a hand-in below a folder."""
+    (result,) = grade_all(Class(str(top), LAB6.data, str(LAB6.path)), [Task("ann", paths)])
+    return result
+
+
+@pytest.mark.parametrize("kind", UNREADABLE)
+@pytest.mark.parametrize("wrapped", ["", "ann/", "ann/src/lab/"])
+def test_the_folder_around_it_does_not_matter(kind: str, wrapped: str, tmp_path: Path) -> None:
+    """What cannot be read on its own cannot be read in a folder; the reason names it."""
+    name, data, reason = UNREADABLE[kind]
+    place = tmp_path / "class" / wrapped / name
+    place.parent.mkdir(parents=True)
+    place.write_bytes(data)
+    top = tmp_path / "class"
+    result = graded(top, wrapped.partition("/")[0] or name)
+    assert (result.verdict, reason in result.reason) == ("unreadable", True), result.reason
+    assert ("(--max-size raises it)" in result.reason) == kind.startswith("large")
+    assert str(tmp_path) not in result.reason
+
+
+def test_the_report_stays_what_it_is(tmp_path: Path) -> None:
+    """Of a hand-in that is a folder: its points, what is pending, and every word, as `grader grade` says it."""
+    shutil.copytree(ROOT / "submissions/reference", tmp_path / "ann")
+    (urdf,) = (tmp_path / "ann").rglob("*.urdf")
+    urdf.write_bytes(LARGE)
+    result = graded(tmp_path, "ann")
+    _, alone = report_here(tmp_path / "ann", tmp_path / "alone.json")
+    told = json.loads(alone)
+    assert (result.verdict, result.reason.partition(" is ")[0]) == (
+        "unreadable",
+        str(urdf.relative_to(tmp_path / "ann")),
+    )
+    assert result.score > 0
+    assert result.score == told["score"] * 10_000
+    assert b"(--max-size raises it)" in zlib.decompress(result.record)
+    assert (
+        grade_all(Class(str(tmp_path), LAB6.data, str(LAB6.path)), [Task("ann", ("ann",), graded=result.digest)])[
+            0
+        ].verdict
+        == "unchanged"
+    )
+
+
+@pytest.mark.parametrize(
+    "files",
+    [
+        {"lab6.zip": CUT, "a.urdf": URDF},
+        {"lab6.zip": CUT, "my_robot/package.xml": b"<package/>"},
+        {"lab6.zip": zipped({"a.urdf": URDF}), "other.zip": CUT},
+        {"report.pdf": b"%PDF"},
+        {"lab6.zip": zipped({}), "answers.txt": b"1. The root is base_footprint."},
+    ],
+    ids=["urdf", "package", "archive", "pdf", "answers"],
+)
+def test_what_can_be_graded_is(files: dict[str, bytes], tmp_path: Path) -> None:
+    """Beside an archive that is damaged, or where nothing is."""
+    for name, data in files.items():
+        place = tmp_path / "ann" / name
+        place.parent.mkdir(parents=True, exist_ok=True)
+        place.write_bytes(data)
+    assert (graded(tmp_path, "ann").verdict, graded(tmp_path, "ann").reason) == ("graded", "")
+
+
+def test_several_archives_are_counted(tmp_path: Path) -> None:
+    """The first is named with what is wrong with it."""
+    (tmp_path / "ann").mkdir()
+    for name in ("a.zip", "b.zip", "c.zip"):
+        (tmp_path / "ann" / name).write_bytes(b"garbage")
+    assert graded(tmp_path, "ann").reason == (
+        "nothing to grade was found: a.zip is no archive that can be read, for all its name: it is damaged or empty "
+        "(nor could 2 more be opened)"
+    )

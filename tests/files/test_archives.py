@@ -1,0 +1,896 @@
+"""Archives and folders come to the same tree of files; what is hostile in them is refused or left out, and named."""
+
+import bz2
+import errno
+import gc
+import gzip
+import io
+import lzma
+import os
+import socket
+import struct
+import tarfile
+import tempfile
+import zipfile
+import zlib
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from grader.errors import InputError
+from grader.files import archive as archives
+from grader.files import folder as folders
+from grader.files.archive import read_archive
+from grader.files.folder import read_folder
+from grader.files.opening import archive_kind, open_tree, tree_name
+from grader.files.tree import File, Tree
+from tests.files.archives import (
+    FILES,
+    MAKERS,
+    ROBOT,
+    Link,
+    make_named_zip,
+    make_tar,
+    make_zip,
+    set_flags,
+    twice,
+)
+from tests.patience import processor_time
+
+URDF = "my_robot/urdf/my_robot.urdf"
+EVERY = list(MAKERS)
+
+
+@pytest.fixture(autouse=True)
+def temporary(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A folder for temporary files, which is empty whenever one looks."""
+    place = tmp_path_factory.mktemp("temporary")
+    monkeypatch.setattr(tempfile, "tempdir", str(place))
+    gc.freeze()  # what the tests before have left need not be looked through for each of these
+    yield place
+    gc.collect()
+    assert list(place.iterdir()) == []
+
+
+def tree_of(data: bytes, name: str = "lab6.zip") -> Tree:
+    """The tree of an archive, without what is in the archives in it."""
+    kind = archive_kind(data[:512])
+    assert kind is not None
+    return read_archive(io.BytesIO(data), kind, name)
+
+
+def opened(path: Path, data: bytes) -> Tree:
+    """The tree of an archive that is written to a file."""
+    path.write_bytes(data)
+    tree = open_tree(path)
+    assert tree is not None
+    return tree
+
+
+def text(tree: Tree, path: str = URDF) -> bytes:
+    """What is in a file of a tree."""
+    return tree.files[path].read(1000)
+
+
+def refusal(data: bytes, name: str = "lab6.zip") -> str:
+    """Why an archive is refused: one line."""
+    with pytest.raises(InputError) as caught:
+        tree_of(data, name)
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+def read_all(tree: Tree) -> None:
+    """Read every file of a tree; what cannot be read has to be an InputError."""
+    for file in tree.files.values():
+        for first in (True, False):
+            try:
+                file.read(10_000, first=first)
+            except InputError as error:
+                assert "\n" not in str(error)
+
+
+@pytest.mark.parametrize("ending", EVERY)
+def test_every_kind(ending: str, tmp_path: Path) -> None:
+    """Files, sizes and folders are the same whatever they are packed in; an empty folder is kept."""
+    tree = opened(tmp_path / f"lab6{ending}", MAKERS[ending]())
+    assert list(tree.files) == ["my_robot/package.xml", URDF]
+    assert tree.folders == {"my_robot", "my_robot/urdf", "my_robot/meshes"}
+    assert text(tree) == ROBOT
+    assert tree.files[URDF].size == len(ROBOT)
+    assert tree.left_out == tree.generated == ()
+    assert tree_name(tmp_path / f"lab6{ending}") == "lab6"
+
+
+@pytest.mark.parametrize("ending", EVERY)
+def test_parts_of_a_file(ending: str) -> None:
+    """A file is read as far as is asked for, any number of times, and in any order."""
+    tree = tree_of(MAKERS[ending]({"a": b"0123456789", "b": b"b"}))
+    assert tree.files["a"].read(4, first=True) == b"0123"
+    assert tree.files["b"].read(1) == b"b"
+    assert tree.files["a"].read(10) == tree.files["a"].read(99, first=True) == b"0123456789"
+    with pytest.raises(InputError, match=r"a is larger than 9 bytes, the limit$"):
+        tree.files["a"].read(9)
+
+
+def test_only_a_urdfs_limit_can_be_raised(tmp_path: Path) -> None:
+    """The advice to raise the limit is given where it helps."""
+    (tmp_path / "a.urdf").write_bytes(b"12345")
+    (tmp_path / "a.rviz").write_bytes(b"12345")
+    for tree in (read_folder(tmp_path), tree_of(make_zip({"a.urdf": b"12345", "a.rviz": b"12345"}))):
+        with pytest.raises(InputError, match=r"--max-size raises it"):
+            tree.files["a.urdf"].read(4)
+        with pytest.raises(InputError, match=r"a.rviz is larger than 4 bytes, the limit$"):
+            tree.files["a.rviz"].read(4)
+
+
+@pytest.mark.parametrize("ending", EVERY)
+def test_a_part_of_a_tree_keeps_its_archive_open(ending: str) -> None:
+    """A package's tree is read when the whole one is gone."""
+    part = tree_of(MAKERS[ending]()).below("my_robot")
+    gc.collect()
+    assert part.files["urdf/my_robot.urdf"].read(1000) == ROBOT
+    assert part.folders == {"urdf", "meshes"}
+    assert part.name == "my_robot"
+
+
+def test_an_archive_is_closed_with_its_tree() -> None:
+    """A file outlives its tree as an object, but not what it would read."""
+    data = io.BytesIO(make_zip())
+    tree = read_archive(data, "zip", "a.zip")
+    file = tree.files[URDF]
+    del tree
+    gc.collect()
+    assert data.closed
+    with pytest.raises(InputError, match=r"cannot read my_robot/urdf/my_robot.urdf"):
+        file.read(10)
+
+
+def test_a_refused_archive_is_closed() -> None:
+    """A file that cannot be read is closed at once."""
+    for data, kind in ((b"PK\3\4", "zip"), (b"\x1f\x8b", "gz"), (b"Rar!", "rar")):
+        file = io.BytesIO(data)
+        with pytest.raises(InputError):
+            read_archive(file, kind, "a")
+        assert file.closed
+
+
+@pytest.mark.parametrize("ending", EVERY)
+def test_litter(ending: str) -> None:
+    """What macOS, Windows, editors and builds leave is not looked at; URDFs that a build has made are named."""
+    tree = tree_of(MAKERS[ending]({
+        "__MACOSX/my_robot/._package.xml": b"", "my_robot/.DS_Store": b"", "Thumbs.db": b"", ".git/config": b"",
+        "my_robot/.vscode/settings.json": b"", "my_robot/a.urdf": b"", "node_modules/b/b.urdf": b"",
+        "build/my_robot/a.urdf": b"", "install/my_robot/share/my_robot/urdf/A.URDF": b"", "log/x.txt": b"",
+        "venv/pyvenv.cfg": b"", "venv/a.py": b"", "my_env/pyvenv.cfg": b"", "my_env/lib/b.urdf": b"", "my_robot/__pycache__/a.pyc": b"",
+    }))  # fmt: skip
+    assert list(tree.files) == ["my_robot/a.urdf"]
+    assert tree.generated == ("build/my_robot/a.urdf", "install/my_robot/share/my_robot/urdf/A.URDF")
+    assert tree.left_out == ()
+
+
+def test_windows_separators() -> None:
+    """A zip that an old Windows program has made has backslashes in its names."""
+    tree = tree_of(make_named_zip({b"my_robot\\urdf\\my_robot.urdf": ROBOT, b"my_robot\\meshes\\": b""}))
+    assert list(tree.files) == [URDF]
+    assert tree.folders == {"my_robot", "my_robot/urdf", "my_robot/meshes"}
+    assert text(tree) == ROBOT
+
+
+@pytest.mark.parametrize(
+    ("name", "flags", "expected"),
+    [
+        ("Übung/ö.urdf".encode(), 0x800, "Übung/ö.urdf"),
+        ("Übung/ö.urdf".encode(), 0, "Übung/ö.urdf"),
+        ("Übung/ö.urdf".encode("cp437"), 0, "Übung/ö.urdf"),
+        ("Übung/ö.urdf".encode("cp1252"), 0, "\u2584bung/\u00f7.urdf"),
+        (b"a\nb\x1b[31m.urdf", 0, "a\\x0ab\\x1b[31m.urdf"),
+        ("a\u202eb.urdf".encode(), 0x800, "a\\x202eb.urdf"),
+    ],
+)
+def test_names_in_zips(name: bytes, flags: int, expected: str) -> None:
+    """A name is decoded as well as can be told, and is printable in any case."""
+    tree = tree_of(make_named_zip({name: ROBOT}, flags))
+    assert list(tree.files) == [expected]
+    assert text(tree, expected) == ROBOT
+
+
+def test_names_that_are_declared_as_utf8_and_are_not() -> None:
+    """Python refuses such a zip as a whole, in one line."""
+    assert "cannot be read as an archive" in refusal(make_named_zip({"ö.urdf".encode("cp1252"): ROBOT}, 0x800))
+
+
+@pytest.mark.parametrize("style", [tarfile.GNU_FORMAT, tarfile.PAX_FORMAT, tarfile.USTAR_FORMAT])
+def test_names_in_tars(style: int) -> None:
+    """A name in Latin-1 is shown with a mark in place of what is no UTF-8."""
+    name = "Übung/ö.urdf".encode("latin-1").decode("utf-8", "surrogateescape")
+    tree = tree_of(make_tar({name: ROBOT, "ä/" + "b" * 90: b"b"}, style=style))
+    assert list(tree.files) == ["ä/" + "b" * 90, "\ufffdbung/\ufffd.urdf"]
+    assert text(tree, "\ufffdbung/\ufffd.urdf") == ROBOT
+
+
+def test_duplicate_members() -> None:
+    """The last of several members of one name counts, as for unzip and tar."""
+    assert text(tree_of(twice("a.urdf", b"old", b"new")), "a.urdf") == b"new"
+
+
+@pytest.mark.parametrize("ending", EVERY)
+@pytest.mark.parametrize(
+    "name", ["/etc/a.urdf", "../a.urdf", "a/../../b.urdf", "a/..", "C:/a.urdf", "c:a.urdf", "..\\a.urdf", "\\\\host\\a"]
+)
+def test_names_that_lead_out(ending: str, name: str) -> None:
+    """A member whose name leads out is left out and named; the others stay."""
+    tree = tree_of(MAKERS[ending]({name: b"evil", "b.urdf": ROBOT}))
+    assert list(tree.files) == ["b.urdf"]
+    assert tree.left_out == (f"{name} has a name that leads out of the archive, and was not read",)
+
+
+def test_harmless_dots() -> None:
+    """Dots that lead nowhere, and slashes too many, do not count."""
+    tree = tree_of(make_tar({"./a.urdf": b"a", "x/./y//b.urdf": b"b", "./": None, "...": b"c", "x/..y": b"d"}))
+    assert list(tree.files) == ["...", "a.urdf", "x/y/b.urdf"] or list(tree.files) == ["a.urdf", "x/y/b.urdf"]
+
+
+@pytest.mark.parametrize("ending", EVERY)
+def test_links_inside(ending: str) -> None:
+    """A link to a file or folder of the archive is followed, over several steps, and through other links."""
+    links = [
+        Link("one.urdf", URDF), Link("my_robot/two.urdf", "urdf/my_robot.urdf"), Link("a/b/three.urdf", "../../one.urdf"),
+        Link("a/folder", "../my_robot/urdf"), Link("four.urdf", "a/folder/./my_robot.urdf"), Link("again", "a/folder"),
+    ]  # fmt: skip
+    tree = tree_of(MAKERS[ending](FILES, links))
+    assert tree.left_out == ()
+    expected = [
+        "a/b/three.urdf",
+        "a/folder/my_robot.urdf",
+        "again/my_robot.urdf",
+        "four.urdf",
+        "my_robot/two.urdf",
+        "one.urdf",
+        URDF,
+    ]
+    assert [path for path in tree.files if path.endswith(".urdf")] == sorted(expected)
+    assert all(text(tree, path) == ROBOT for path in expected)
+    assert {"a/b", "a/folder", "again"} <= tree.folders
+
+
+@pytest.mark.parametrize("ending", EVERY)
+@pytest.mark.parametrize(
+    "links",
+    [
+        [Link("bad", "/etc/passwd")],
+        [Link("bad", "../other")],
+        [Link("a/bad", "../../" + URDF)],
+        [Link("bad", "nothing.urdf")],
+        [Link("bad", "bad")],
+        [Link("bad", "")],
+        [Link("bad", "my_robot/.git/config")],
+        [Link("bad", "x" * 5000)],
+        [Link("bad", "a/" * 1500)],
+    ],
+)
+def test_links_that_lead_out(ending: str, links: list[Link]) -> None:
+    """A link out of the archive, or to nothing in it, is left out and named; nothing else is lost."""
+    tree = tree_of(MAKERS[ending](FILES, links))
+    assert list(tree.files) == ["my_robot/package.xml", URDF]
+    assert tree.left_out == (f"{links[0].name} is a link that leads nowhere in the archive, and was not followed",)
+
+
+@pytest.mark.parametrize("ending", EVERY)
+def test_circles_of_links(ending: str) -> None:
+    """Links in a circle end, as does a link to a folder around it."""
+    links = [
+        Link("a", "b"),
+        Link("b", "a"),
+        Link("my_robot/urdf/up", ".."),
+        Link("my_robot/here", "."),
+        Link("x", "my_robot"),
+    ]
+    links += [Link(f"chain{n}", f"chain{n + 1}") for n in range(100)]
+    tree = tree_of(MAKERS[ending](FILES, links))
+    assert list(tree.files) == ["my_robot/package.xml", URDF, "x/package.xml", "x/urdf/my_robot.urdf"]
+    assert len(tree.left_out) == 2 + 100
+
+
+def test_hard_links() -> None:
+    """A hard link in a tar names its file from the top; one that leads out is left out."""
+    links = [
+        Link("my_robot/copy.urdf", URDF, is_hard=True),
+        Link("bad", "../etc/passwd", is_hard=True),
+        Link("worse", "/etc/passwd", is_hard=True),
+    ]
+    tree = tree_of(make_tar(FILES, links))
+    assert text(tree, "my_robot/copy.urdf") == ROBOT
+    assert [line.split()[0] for line in tree.left_out] == ["bad", "worse"]
+
+
+def test_links_take_no_time() -> None:
+    """Thousands of links, each to a folder of thousands of files, are refused; long ways through links end."""
+    files: dict[str, bytes | None] = {f"a/{n}": b"" for n in range(5000)}
+    with processor_time(4):
+        assert "holds more than 50000 files" in refusal(make_tar(files, [Link(f"b{n}", "a") for n in range(5000)]))
+        tree = tree_of(make_tar({"a/x": b""}, [Link(f"b{n}", "a/../" * 700 + "a") for n in range(3000)]))
+    assert next(iter(tree.files)) == "a/x"
+    chain = [Link(f"l{n}", f"l{n + 1}/l{n + 1}") for n in range(60)]
+    with processor_time(1):
+        assert len(tree_of(make_tar({"a": b""}, chain)).left_out) == 60
+
+
+@pytest.mark.parametrize("kind", [tarfile.CHRTYPE, tarfile.BLKTYPE, tarfile.FIFOTYPE])
+def test_devices_in_tars(kind: bytes) -> None:
+    """Devices and FIFOs are left out and named."""
+
+    def change(info: tarfile.TarInfo) -> None:
+        info.type = kind if info.name == "device" else info.type
+
+    tree = tree_of(make_tar({"device": b"", "a.urdf": ROBOT}, change=change))
+    assert list(tree.files) == ["a.urdf"]
+    assert tree.left_out == ("device is not a regular file, and was not read",)
+
+
+def test_devices_in_zips() -> None:
+    """A zip may say of a member that it is a device; it stays out."""
+    data = io.BytesIO()
+    with zipfile.ZipFile(data, "w") as archive:
+        for name, mode in (("fifo", 0o010644), ("device", 0o020644), ("plain", 0o100644), ("none", 0), ("bits", 0o644)):
+            info = zipfile.ZipInfo(name)
+            info.external_attr = mode << 16
+            archive.writestr(info, b"a")
+    tree = tree_of(data.getvalue())
+    assert list(tree.files) == ["bits", "none", "plain"]
+    assert [line.split()[0] for line in tree.left_out] == ["device", "fifo"]
+
+
+def test_encrypted_members() -> None:
+    """What needs a password is left out and named, also where it is a link."""
+    data = set_flags(make_zip({"a.urdf": ROBOT}, [Link("l", "a.urdf")]), 0x1)
+    tree = tree_of(data)
+    assert tree.files == {}
+    assert tree.left_out == ("a.urdf is encrypted, and was not read", "l is encrypted, and was not read")
+
+
+@pytest.mark.parametrize("method", [zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA, 9, 93, 98, 12345])
+def test_compressions_that_are_not_read(method: int) -> None:
+    """Members of a zip that are not deflated are left out and named: some of them unpack without a bound."""
+    known = method in (zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA)
+    data = make_zip({"a.urdf": ROBOT}, compression=method if known else zipfile.ZIP_STORED)
+    if not known:
+        data = data.replace(b"PK\1\2\x14\3\x14\0\0\0\0\0", b"PK\1\2\x14\3\x14\0\0\0" + struct.pack("<H", method))
+    tree = tree_of(data)
+    assert tree.files == {}
+    assert tree.left_out == ("a.urdf is compressed in a way that is not read",)
+
+
+@pytest.mark.parametrize(
+    ("start", "kind"), [(b"7z\xbc\xaf\x27\x1c", "7z"), (b"Rar!\x1a\7\0", "rar"), (b"Rar!\x1a\7\1\0", "rar")]
+)
+def test_other_archives(start: bytes, kind: str, tmp_path: Path) -> None:
+    """7z and rar are refused in one line that says what to hand in."""
+    path = tmp_path / f"lab6.{kind}"
+    path.write_bytes(start + bytes(100))
+    with pytest.raises(
+        InputError, match=f"lab6.{kind} is a {kind} archive, which is not read: hand in a .zip or .tar.gz"
+    ):
+        open_tree(path)
+
+
+def test_what_is_no_archive(tmp_path: Path) -> None:
+    """A file is an archive by what is in it; one that only has the name is refused, others are single files."""
+    for name in ("a.zip", "a.tar", "a.TAR.GZ", "a.tgz", "a.rar", "a.7z"):
+        (tmp_path / name).write_bytes(b"something else")
+        with pytest.raises(InputError, match="is no archive that can be read, for all its name"):
+            open_tree(tmp_path / name)
+    for name, data in (("a.urdf", make_zip()), ("a.txt", ROBOT), ("a", b""), ("a.xacro", b"PK\3\4")):
+        (tmp_path / name).write_bytes(data)
+        assert open_tree(tmp_path / name) is None
+    (tmp_path / "upload").write_bytes(make_zip())
+    tree = open_tree(tmp_path / "upload")
+    assert tree is not None
+    assert URDF in tree.files
+
+
+def test_paths_that_cannot_be_opened(tmp_path: Path) -> None:
+    """What is not there, is no file or has an impossible name is one line."""
+    os.mkfifo(tmp_path / "fifo")
+    (tmp_path / "loop").symlink_to("loop")
+    for path, words in (
+        ("nothing", "does not exist"),
+        ("fifo", "is not a regular file"),
+        ("loop", "cannot read"),
+        ("a" * 300, "cannot read"),
+        ("a\0b", "cannot read|does not exist"),
+    ):
+        with pytest.raises(InputError, match=words):
+            open_tree(tmp_path / path)
+
+
+@pytest.mark.parametrize("ending", EVERY)
+def test_truncated_archives(ending: str) -> None:
+    """Whatever is cut off, there is one line, or a tree whose files can be read or say why not."""
+    data = MAKERS[ending]({"a.urdf": ROBOT * 40, "b.urdf": os.urandom(700)})
+    for length in range(1, len(data), 7):
+        if archive_kind(data[:512][:length]) is None:
+            continue
+        try:
+            tree = tree_of(data[:length])
+        except InputError as error:
+            assert "\n" not in str(error)
+        else:
+            read_all(tree)
+
+
+@settings(max_examples=250)
+@given(
+    st.sampled_from(EVERY),
+    st.lists(st.tuples(st.integers(0, 5000), st.integers(0, 2), st.binary(min_size=1, max_size=4)), max_size=6),
+)
+def test_corrupted_archives(ending: str, changes: list[tuple[int, int, bytes]]) -> None:
+    """Bytes are changed, cut out and put in: only InputErrors come of it."""
+    data = MAKERS[ending](FILES, [Link("link", URDF)])
+    for place, how, put in changes:
+        at = len(data) - place % (len(data) + 1) if how == 1 else place % (len(data) + 1)
+        data = data[:at] + (put if how else b"") + data[at + len(put) :]
+    kind = archive_kind(data[:512])
+    if kind is None:
+        return
+    try:
+        tree = read_archive(io.BytesIO(data), kind, "a.zip")
+    except InputError as error:
+        assert "\n" not in str(error)
+        return
+    read_all(tree)
+
+
+@settings(max_examples=100)
+@given(st.sampled_from(["zip", "tar", "gz", "bz2", "xz"]), st.binary(max_size=1200))
+def test_any_bytes_as_an_archive(kind: str, data: bytes) -> None:
+    """Anything at all is refused in one line, or is a tree."""
+    try:
+        read_all(read_archive(io.BytesIO(data), kind, "a"))
+    except InputError as error:
+        assert "\n" not in str(error)
+
+
+def test_a_member_without_a_name() -> None:
+    """A member with an empty name is passed over."""
+    data = bytearray(make_zip({"a.urdf": ROBOT, "b.urdf": ROBOT}))
+    central = data.index(b"PK\1\2")
+    data[central + 28 : central + 34] = struct.pack("<3H", 0, 0, 6)  # its name has become its comment
+    assert list(tree_of(bytes(data)).files) == ["b.urdf"]
+
+
+@pytest.mark.parametrize("ending", [".zip", ".tar.gz", ".tar.bz2", ".tar.xz"])
+def test_bombs_by_ratio(ending: str) -> None:
+    """What unpacks to hundreds of times its own size is refused, and quickly."""
+    data = MAKERS[ending]({"a.urdf": bytes(60_000_000)})
+    assert len(data) < 100_000
+    with processor_time(2):
+        limit = "33554432 bytes, the limit for an archive"
+        assert refusal(data) == f"lab6.zip would unpack to more than {limit}, and was not read"
+
+
+@pytest.mark.parametrize("ending", EVERY)
+def test_limits_of_size(ending: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The size of an archive and of what is in it are limited."""
+    data = MAKERS[ending]({"a": os.urandom(3000), "b": os.urandom(3000)})
+    monkeypatch.setattr(archives, "MAX_ARCHIVE_SIZE", 5000)
+    assert "lab6.zip is larger than 5000 bytes, the limit for an archive" in refusal(data)
+    monkeypatch.undo()
+    monkeypatch.setattr(archives, "ARCHIVE_LIMIT", 20_000)
+    assert set(tree_of(data).files) == {"a", "b"}
+    assert "would unpack to more than 20000 bytes, the limit" in refusal(MAKERS[ending]({"a": bytes(30_000)}))
+
+
+def test_a_bomb_of_overlapping_members() -> None:
+    """Many members that share the same bytes are refused by their number, their sizes or when they are read."""
+    body = zlib.compress(bytes(1_000_000), 9)[2:-4]
+    local = (
+        struct.pack("<4s5H3I2H", b"PK\3\4", 20, 0, 8, 0, 0, zlib.crc32(bytes(1_000_000)), len(body), 1_000_000, 1, 0)
+        + b"a"
+    )
+    central = b"".join(
+        struct.pack(
+            "<4s6H3I5H2I",
+            b"PK\1\2",
+            20,
+            20,
+            0,
+            8,
+            0,
+            0,
+            zlib.crc32(bytes(1_000_000)),
+            len(body),
+            1_000_000,
+            5,
+            0,
+            0,
+            0,
+            0,
+            0,
+            0,
+        )
+        + f"{n:05}".encode()
+        for n in range(2000)
+    )
+    data = (
+        local
+        + body
+        + central
+        + struct.pack("<4s4H2IH", b"PK\5\6", 0, 0, 2000, 2000, len(central), len(local) + len(body), 0)
+    )
+    with processor_time(2):
+        assert "would unpack to more than 33554432 bytes" in refusal(data)
+
+
+@pytest.mark.parametrize("claimed", [10, 5_000_000])
+def test_lying_sizes(claimed: int) -> None:
+    """A member of a zip that says a wrong size is never unpacked further than that, and is no error of ours."""
+    real = bytes(1_000_000)
+    data = make_zip({"a.urdf": real}).replace(struct.pack("<I", len(real)), struct.pack("<I", claimed))
+    tree = tree_of(data)
+    with pytest.raises(InputError), processor_time(1):
+        tree.files["a.urdf"].read(500)
+        tree.files["a.urdf"].read(20_000_000)
+
+
+def test_a_table_of_contents_that_is_too_long() -> None:
+    """A zip that announces gigabytes of names is refused before they are read."""
+    data = bytes(17 * 1024 * 1024)
+    end = struct.pack("<4s4H2IH", b"PK\5\6", 0, 0, 1, 1, 17 * 1024 * 1024, 0, 0)
+    assert "its table of contents is far too long" in refusal(b"PK\3\4" + data[4:] + end)
+
+
+def test_a_large_file_that_is_not_compressed() -> None:
+    """The limit for the table of contents is none for the files."""
+    data = make_zip({"a.pdf": bytes(17 * 1024 * 1024)}, compression=zipfile.ZIP_STORED)
+    tree = tree_of(data)
+    assert len(tree.files["a.pdf"].read(32 * 1024 * 1024)) == 17 * 1024 * 1024
+
+
+@pytest.mark.parametrize("ending", EVERY)
+def test_too_many_members(ending: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """More members than anyone hands in are refused, also where most would be passed over."""
+    monkeypatch.setattr(archives, "MOST_FILES", 200)
+    names: dict[str, bytes | None] = {f".git/{n}": b"" for n in range(200)}
+    assert tree_of(MAKERS[ending](names)).files == {}
+    assert (
+        refusal(MAKERS[ending]({**names, "a": b""}))
+        == "lab6.zip holds more than 50000 files: name the package or the URDF"
+    )
+
+
+def test_too_many_folders() -> None:
+    """Folders count as well, those that only the names of files tell of included."""
+    names: dict[str, bytes | None] = {f"{n}/" + "a/" * 600 + "x": b"" for n in range(100)}
+    with processor_time(2):
+        assert "holds more than 50000 files" in refusal(make_tar(names))
+
+
+def header(name: bytes, size: bytes, kind: bytes = b"0") -> bytes:
+    """A header of a tar, made by hand."""
+    start = name.ljust(100, b"\0") + b"0000644\0" * 3 + size.ljust(12, b"\0") + b"0" * 11 + b"\0"
+    rest = (kind + b"\0" * 100 + b"ustar\x0000").ljust(512 - 156, b"\0")
+    total = sum(start) + sum(rest) + 8 * 32
+    return start + f"{total:06o}\0 ".encode() + rest
+
+
+@pytest.mark.parametrize(
+    "size",
+    [b"\xff" * 12, b"\x80" + b"\xff" * 11, b"\xff" * 8 + b"\0\0\2\0", b"77777777777", b"-1", b"\x80" + b"\x7f" * 11],
+)
+def test_sizes_in_tars(size: bytes) -> None:
+    """Sizes below zero and beyond the end lead to one line, and not round in circles."""
+    data = header(b"a.urdf", b"00000000001") + b"a".ljust(512, b"\0") + header(b"b.urdf", size) + bytes(2048)
+    with processor_time(2):
+        try:
+            read_all(tree_of(data))
+        except InputError as error:
+            assert "\n" not in str(error)
+
+
+def test_long_names_in_tars() -> None:
+    """A name of a hundred thousand characters is left out; names of names end."""
+    tree = tree_of(make_tar({"a" * 100_000: b"", "b.urdf": ROBOT}))
+    assert list(tree.files) == ["b.urdf"]
+    assert tree.left_out == (f"{'a' * 40}... has a name that is far too long, and was not read",)
+    names = header(b"././@LongLink", b"00000000001", b"L") + b"a".ljust(512, b"\0")
+    with processor_time(2):
+        assert "cannot be read as an archive" in refusal(names * 5000 + bytes(1024))
+
+
+def test_sparse_files_in_tars() -> None:
+    """A sparse file that claims a terabyte is ignored by name."""
+    head = bytearray(header(b"a.urdf", b"00000000000", b"S"))
+    head[386 : 386 + 24] = b"00000000000\x0000000000000\0"
+    head[483:495] = b"\x80" + (2**40).to_bytes(11, "big")
+    head[148:156] = b" " * 8
+    head[148:156] = f"{sum(head):06o}\0 ".encode()
+    tree = tree_of(bytes(head) + bytes(1024))
+    assert tree.left_out == ("a.urdf (1099512 MB) is larger than 64 MiB, the limit for one file, and was ignored",)
+    with pytest.raises(InputError, match="limit for one file"):
+        tree.files["a.urdf"].read(10, first=True)
+
+
+@pytest.mark.parametrize("pack", [gzip.compress, bz2.compress, lzma.compress])
+def test_compressed_bombs(pack: Callable[[bytes], bytes]) -> None:
+    """A compressed file is unpacked to a limit only, whether a tar is in it or not."""
+    data = pack(bytes(40_000_000))
+    with processor_time(3):
+        assert "would unpack to more than 33554432 bytes" in refusal(data * 3)
+        assert "cannot be read as an archive" in refusal(pack(b"no tar at all"))
+
+
+def test_a_large_tar_leaves_no_file(temporary: Path) -> None:
+    """A tar that does not fit into memory is kept in a file without a name."""
+    data = make_tar({"a.bin": os.urandom(18_000_000), "b.urdf": ROBOT}, kind="gz")
+    tree = tree_of(data)
+    assert list(temporary.iterdir()) == []
+    assert text(tree, "b.urdf") == ROBOT
+
+
+def nested(levels: int, inside: bytes) -> bytes:
+    """A zip in a zip in a zip."""
+    for _ in range(levels):
+        inside = make_zip({"inner/inner.zip": inside})
+    return inside
+
+
+@pytest.mark.parametrize("levels", [1, 2, 3])
+def test_nested_archives(levels: int, tmp_path: Path) -> None:
+    """An archive in an archive is opened, its name being that of a folder."""
+    tree = opened(tmp_path / "lab6.zip", nested(levels, make_zip()))
+    path = "inner/inner.zip/" * levels + URDF
+    gc.collect()
+    assert text(tree, path) == ROBOT
+    assert "inner/inner.zip/" * levels + "my_robot/meshes" in tree.folders
+    assert tree.left_out == ()
+
+
+def test_archives_nested_too_deep(tmp_path: Path) -> None:
+    """Beyond three levels an archive is left out and named."""
+    tree = opened(tmp_path / "lab6.zip", nested(4, make_zip()))
+    assert not any(path.endswith(".urdf") for path in tree.files)
+    assert tree.left_out[0].endswith("is an archive inside of an archive, too deep to be opened")
+
+
+def test_an_archive_beside_a_package(tmp_path: Path) -> None:
+    """Where a package and a URDF stand beside them, archives stay closed."""
+    (tmp_path / "lab6.zip").write_bytes(make_zip())
+    (tmp_path / "notes.txt").write_bytes(b"")
+    alone = open_tree(tmp_path)
+    assert alone is not None
+    assert f"lab6.zip/{URDF}" in alone.files
+    assert text(alone, f"lab6.zip/{URDF}") == ROBOT
+    for names in (("a.urdf",), ("package.xml",), ("a.urdf", "package.xml"), ("a.urdf", "setup.py")):
+        for name in names:
+            (tmp_path / name).write_bytes(ROBOT)
+        beside = open_tree(tmp_path)
+        assert beside is not None
+        assert (f"lab6.zip/{URDF}" in beside.files) == (len(names) == 1)
+        assert {"lab6.zip", "notes.txt", *names} <= set(beside.files)
+        for name in names:
+            (tmp_path / name).unlink()
+
+
+def test_an_archive_that_cannot_be_opened(tmp_path: Path) -> None:
+    """It is named, and kept in mind: what is missing may be in it."""
+    (tmp_path / "lab6.rar").write_bytes(b"Rar!\x1a\x07")
+    (tmp_path / "notes.txt").write_bytes(b"")
+    tree = open_tree(tmp_path)
+    assert tree is not None
+    assert tree.unopened == ("lab6.rar",)
+    assert "rar archive" in tree.left_out[0]
+
+
+def test_bad_archives_in_a_folder(tmp_path: Path) -> None:
+    """An archive that cannot be opened is named, and the others are opened all the same."""
+    (tmp_path / "a.zip").write_bytes(b"nothing")
+    (tmp_path / "b.rar").write_bytes(b"Rar!\x1a\7\0")
+    (tmp_path / "c.zip").write_bytes(make_zip()[:60])
+    (tmp_path / "d.tar.gz").write_bytes(make_tar(kind="gz"))
+    (tmp_path / "e.zip").write_bytes(make_zip({"a": bytes(60_000_000)}))
+    (tmp_path / "f.csv.gz").write_bytes(gzip.compress(b"1,2\n"))
+    tree = open_tree(tmp_path)
+    assert tree is not None
+    assert f"d.tar.gz/{URDF}" in tree.files
+    assert [line.split()[0] for line in tree.left_out] == ["a.zip", "b.rar", "c.zip", "e.zip", "f.csv.gz"]
+    assert all("\n" not in line for line in tree.left_out)
+
+
+def test_many_archives(tmp_path: Path) -> None:
+    """Only so many archives are opened, those in archives counted, and together they unpack to so much."""
+    (tmp_path / "lab6.zip").write_bytes(
+        make_zip({f"{n:02}.zip": make_zip({"a.zip": make_zip({"b.txt": b""})}) for n in range(15)})
+    )
+    tree = open_tree(tmp_path / "lab6.zip")
+    assert tree is not None
+    assert sum(path.endswith("b.txt") for path in tree.files) == 10
+    assert sum("there are too many archives" in line for line in tree.left_out) == 5
+
+
+def test_archives_share_one_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Many small bombs are one large one."""
+    monkeypatch.setattr(archives, "ARCHIVE_LIMIT", 70_000_000)
+    inner = make_tar({"a.bin": bytes(30_000_000)}, kind="gz")
+    (tmp_path / "lab6.zip").write_bytes(
+        make_zip({f"{n}.tar.gz": inner for n in range(9)}, compression=zipfile.ZIP_STORED)
+    )
+    with processor_time(4):
+        tree = open_tree(tmp_path / "lab6.zip")
+    assert tree is not None
+    assert sum(path.endswith("a.bin") for path in tree.files) == 2
+    assert len(tree.left_out) == 7
+
+
+@pytest.fixture
+def home(tmp_path: Path) -> Path:
+    """A folder with a package, and a secret beside it."""
+    (tmp_path / "secret.urdf").write_bytes(b"secret")
+    (tmp_path / "lab6/my_robot/urdf").mkdir(parents=True)
+    (tmp_path / "lab6" / URDF).write_bytes(ROBOT)
+    (tmp_path / "lab6/my_robot/meshes").mkdir()
+    return tmp_path / "lab6"
+
+
+def test_a_folder(home: Path) -> None:
+    """Files, sizes and folders are those of the folder."""
+    tree = read_folder(home)
+    assert list(tree.files) == [URDF]
+    assert tree.folders == {"my_robot", "my_robot/urdf", "my_robot/meshes"}
+    assert (tree.name, text(tree), tree.files[URDF].size, tree.left_out) == ("lab6", ROBOT, len(ROBOT), ())
+    assert (tree.files[URDF].name, tree.files[URDF].suffix) == ("my_robot.urdf", ".urdf")
+
+
+def test_links_in_folders(home: Path) -> None:
+    """Links inside are followed and the real paths stay; links out, to nothing and to themselves are left out and named."""
+    for name, target in (
+        ("a_link.urdf", URDF), ("a_folder", "my_robot"), ("my_robot/urdf/up", ".."), ("my_robot/top", ".."),
+        ("bad_1", "../secret.urdf"), ("bad_2", "/etc"), ("bad_3", "nothing"), ("bad_4", "bad_4"), ("bad_5", "../lab6/../secret.urdf"),
+        ("fine", "../lab6/my_robot/urdf"),
+    ):  # fmt: skip
+        (home / name).symlink_to(target)
+    tree = read_folder(home)
+    assert list(tree.files) == ["a_folder/urdf/my_robot.urdf", "a_link.urdf", "fine/my_robot.urdf", URDF]
+    assert all(text(tree, path) == ROBOT for path in tree.files)
+    assert [line.split()[0] for line in tree.left_out] == ["bad_1", "bad_2", "bad_3", "bad_4", "bad_5"]
+
+
+def test_circles_of_links_in_folders(tmp_path: Path) -> None:
+    """Folders that link to each other, all of them to all, end."""
+    for n in range(30):
+        (tmp_path / f"d{n}").mkdir()
+        (tmp_path / f"d{n}/a.urdf").write_bytes(b"")
+        for m in range(30):
+            (tmp_path / f"d{n}/l{m}").symlink_to(f"../d{m}")
+    with processor_time(2):
+        tree = read_folder(tmp_path)
+    assert {f"d{n}/a.urdf" for n in range(30)} <= set(tree.files)
+    assert len(tree.files) <= 60
+
+
+def test_what_is_no_file(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """FIFOs and sockets are left out and named, and never opened."""
+    os.mkfifo(home / "fifo")
+    (home / "link").symlink_to("fifo")
+    monkeypatch.chdir(home)
+    with socket.socket(socket.AF_UNIX) as listening:
+        listening.bind("socket")
+        tree = read_folder(home)
+    assert list(tree.files) == [URDF]
+    assert tree.left_out == tuple(
+        f"{name} is not a regular file, and was not read" for name in ("fifo", "link", "socket")
+    )
+
+
+def test_litter_in_folders(home: Path) -> None:
+    """Builds, tools, virtual environments and hidden files are passed over; URDFs that a build has made are named."""
+    for path in (".git/config", "build/my_robot/b.urdf", "install/my_robot/share/my_robot/urdf/my_robot.urdf", "install/x.txt",
+                 "log/latest/c.urdf", "my_robot/.hidden.urdf", "my_robot/__pycache__/a.pyc", "mine/pyvenv.cfg", "mine/lib/d.urdf",
+                 "venv/pyvenv.cfg", "venv/e.urdf", "node_modules/f/f.urdf", ".DS_Store", "Thumbs.db", "my_robot/build/deep/g.urdf"):  # fmt: skip
+        (home / path).parent.mkdir(parents=True, exist_ok=True)
+        (home / path).write_bytes(b"")
+    tree = read_folder(home)
+    assert list(tree.files) == [URDF]
+    assert tree.left_out == ()
+    assert tree.generated == (
+        "build/my_robot/b.urdf", "install/my_robot/share/my_robot/urdf/my_robot.urdf", "log/latest/c.urdf", "my_robot/build/deep/g.urdf",
+    )  # fmt: skip
+
+
+def test_a_build_folder_that_is_a_link(home: Path) -> None:
+    """What a link named install leads to is not even listed."""
+    (home / "install").symlink_to("..")
+    assert read_folder(home).generated == ()
+
+
+def test_folders_that_cannot_be_opened(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A folder without permission is named, and the others are read; the folder itself is refused."""
+    scandir = os.scandir
+
+    def refuse(path: "str | os.PathLike[str]") -> "os._ScandirIterator[str]":
+        if Path(path).name in closed:
+            raise PermissionError(errno.EACCES, "Permission denied", str(path))
+        return scandir(path)
+
+    monkeypatch.setattr(os, "scandir", refuse)
+    closed = ["meshes"]
+    tree = read_folder(home)
+    assert list(tree.files) == [URDF]
+    assert tree.left_out == ("my_robot/meshes is a folder that cannot be opened: Permission denied",)
+    closed = ["lab6"]
+    with pytest.raises(InputError, match=r"cannot read .*lab6: Permission denied"):
+        read_folder(home)
+
+
+def test_names_in_folders(home: Path) -> None:
+    """Names that are no UTF-8 or not printable are shown, and their files read."""
+    (home / os.fsdecode(b"\xfcbung")).mkdir()
+    (home / os.fsdecode(b"\xfcbung/\xf6.urdf")).write_bytes(ROBOT)
+    (home / "a\nb\x1b.urdf").write_bytes(ROBOT)
+    tree = read_folder(home)
+    assert list(tree.files) == ["a\\x0ab\\x1b.urdf", URDF, "\ufffdbung/\ufffd.urdf"]
+    assert all(text(tree, path) == ROBOT for path in tree.files)
+
+
+@pytest.mark.parametrize("name", ["a", "build"])
+def test_deep_folders(name: str, tmp_path: Path) -> None:
+    """Folders nested deeper than a path may be long are read as far as that goes."""
+    handle = os.open(tmp_path, os.O_RDONLY)
+    try:
+        for _ in range(2200):
+            os.mkdir(name, dir_fd=handle)
+            deeper = os.open(name, os.O_RDONLY, dir_fd=handle)
+            os.close(handle)
+            handle = deeper
+    finally:
+        os.close(handle)
+    try:
+        with processor_time(4):
+            tree = read_folder(tmp_path)
+    finally:
+        remove_deep(tmp_path, name)
+    assert tree.files == {}
+    assert len(tree.left_out) == (1 if name == "a" else 0)
+
+
+def remove_deep(folder: Path, name: str) -> None:
+    """Remove folders that are nested too deeply for pytest: the upper half is put aside, level by level."""
+    while (folder / name / name).is_dir():
+        (folder / name / name).rename(folder / "aside")
+        (folder / name).rmdir()
+        (folder / "aside").rename(folder / name)
+
+
+def test_too_many_files_in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A folder with more files than anyone hands in is refused, wherever they are."""
+    monkeypatch.setattr(folders, "MOST_FILES", 20)
+    for n in range(4):
+        (tmp_path / f"d{n}").mkdir()
+        for m in range(4):
+            (tmp_path / f"d{n}/{m}").write_bytes(b"")
+    assert len(read_folder(tmp_path).files) == 16
+    (tmp_path / "one_more").write_bytes(b"")
+    with pytest.raises(InputError, match="holds more than 50000 files: name the package or the URDF"):
+        read_folder(tmp_path)
+
+
+def test_a_file_that_is_gone(home: Path) -> None:
+    """A file that has been removed or replaced since is one line."""
+    file: File = read_folder(home).files[URDF]
+    (home / URDF).unlink()
+    with pytest.raises(InputError, match=r"cannot read .*my_robot.urdf: No such file"):
+        file.read(100)
+    (home / URDF).mkdir()
+    with pytest.raises(InputError, match=r"my_robot.urdf is not a regular file|Is a directory"):
+        file.read(100)
+
+
+def test_the_folder_and_its_zip_are_the_same(home: Path) -> None:
+    """Whether it is packed or not makes no difference."""
+    packed = tree_of(make_zip({URDF: ROBOT, "my_robot/meshes/": None}))
+    plain = read_folder(home)
+    assert list(packed.files.values()) == list(plain.files.values())
+    assert packed.folders == plain.folders

@@ -1,0 +1,96 @@
+"""The samples of launch files, and what the reader tells of one in a form that is easy to compare."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from grader.package.launch.model import Fault, Launch, Reference
+from grader.package.launch.places import PREFIX
+from grader.package.launch.reader import read_launch
+
+SAMPLES = {path.name.removesuffix(".txt"): path for path in sorted(Path(__file__).parent.glob("launch_samples/*.txt"))}
+FOLDER = "share/my_robot/launch"
+# Launch files of the package that the samples include.
+INNER = {
+    f"{FOLDER}/inner.launch.py": b"""\
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.conditions import IfCondition
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        DeclareLaunchArgument('gui', default_value='false'),
+        Node(package='joint_state_publisher_gui', executable='joint_state_publisher_gui',
+             condition=IfCondition(LaunchConfiguration('gui'))),
+        Node(package='joint_state_publisher', executable='joint_state_publisher'),
+    ])
+""",
+    f"{FOLDER}/broken.launch.py": b"def generate_launch_description(:\n",
+}
+_SIGNS = {True: "", False: "!", None: "?"}
+
+
+@dataclass(frozen=True)
+class Told:
+    """What is told of a launch file.
+
+    A node is named by its program, with its package before it where this has another name; ! is off, ? is perhaps. Of
+    anything else there is its line and its path or text; `wrong:` and `unknown:` stand before why there is no path.
+    """
+
+    nodes: str = ""
+    urdf: tuple[str, ...] = ()
+    rviz: tuple[str, ...] = ()
+    include: tuple[str, ...] = ()
+    faults: tuple[str, ...] = ()
+    unknown: tuple[str, ...] = ()
+    forgotten: str = ""
+    syntax: str = ""
+
+
+def told(sample: str) -> Told:
+    """What the reader tells of a sample, which is installed in my_robot's folder launch."""
+    return in_short(follow(SAMPLES[sample].read_bytes(), sample))
+
+
+def follow(data: bytes, name: str, others: dict[str, bytes] = INNER) -> Launch:
+    """What the reader tells of a launch file of this name; `others` are installed, too."""
+
+    def installed(path: str) -> tuple[bytes, str] | None:
+        return (others[path], path.removeprefix("share/my_robot/")) if path in others else None
+
+    return read_launch(data, f"launch/{name}", f"{FOLDER}/{name}", installed)
+
+
+def in_short(launch: Launch) -> Told:
+    """What is told of a launch file, for comparing."""
+    return Told(
+        " ".join(_node(node.package, node.executable) + _SIGNS[node.when] for node in launch.nodes),
+        tuple(map(_reference, launch.named("urdf"))),
+        tuple(map(_reference, launch.named("rviz"))),
+        tuple(map(_reference, launch.named("include"))),
+        tuple(map(_fault, launch.faults)),
+        tuple(map(_fault, launch.unknown)),
+        " ".join(_node(node.package, node.executable) for node in launch.forgotten),
+        _fault(launch.syntax) if launch.syntax is not None else "",
+    )
+
+
+def _node(package: str, executable: str) -> str:
+    return executable if package == executable else f"{package}/{executable}"
+
+
+def _fault(fault: Fault) -> str:
+    """A fault with its line; the words of the parsers themselves differ between their versions."""
+    parsers = ("Python cannot read the file", "not readable as XML", "not readable as YAML")
+    message = next((each for each in parsers if fault.message.startswith(f"{each}: ")), fault.message)
+    return f"{fault.location.line}: {message}"
+
+
+def _reference(named: Reference) -> str:
+    line = f"{named.location.line}: "
+    if named.path is not None and not named.reason:
+        return line + named.path.removeprefix(f"{PREFIX}/share/")
+    return f"{line}{'wrong' if named.sure else 'unknown'}: {named.reason}"

@@ -1,0 +1,216 @@
+"""What is told of a search for files from their list is what Python's own glob, pathlib and os find among real ones."""
+
+import glob
+import os
+import sys
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pytest
+from hypothesis import assume, example, given, settings
+from hypothesis import strategies as st
+
+from grader.files.tree import File, Tree, make_tree
+from grader.package.file_functions import file_functions
+from grader.package.globbing import ORDERS, BeyondError, Listing
+from grader.static_python.library import plain_functions
+from grader.static_python.machine import Machine
+from grader.static_python.parse import Code, parse
+from grader.static_python.values import Unknown, Value
+from tests.patience import processor_time
+
+_NAMES = st.sampled_from(["a", "b", "c", "ab", ".h", ".a", "[a]", "a*", "a.urdf", "b.urdf", "A", "a b"])
+_PATHS = st.lists(_NAMES, min_size=1, max_size=4).map("/".join)
+_PARTS = st.sampled_from(
+    ["*", "**", "?", "[a-c]", "[!a]", "[a-c]*", "*.urdf", "a*", ".*", ".h", "a", "b", "ab", "[a]", "[[]a]", "[", "[]", ".", "..",
+     "", "***", "a**", "*?", "[!.]*", "a.urdf", "[b-a]", "[^a]"]
+)  # fmt: skip
+_PATTERNS = st.lists(_PARTS, min_size=1, max_size=4).map("/".join).filter(lambda pattern: not pattern.startswith("/"))
+_FOLDERS = st.sampled_from([".", "a", "a/b", "./a/", "b", "[a]", "c/../a", "nowhere"])
+
+
+def read_nothing(limit: int, *, first: bool = False) -> bytes:
+    """The bytes of every file of a made-up tree."""
+    return b""
+
+
+@st.composite
+def trees(draw: st.DrawFn) -> Tree:
+    """A few files and folders, some of them hidden, some of them empty."""
+    folders = set(draw(st.lists(_PATHS, max_size=5)))
+    tree = make_tree("made", [], folders)
+    files = {path for path in draw(st.lists(_PATHS, max_size=8)) if path not in tree.folders}
+    files -= {parent for path in files for parent in make_tree("", [File(path, 0, read_nothing)], []).folders}
+    files = {path for path in files if not any(path.startswith(other + "/") for other in files)}
+    assume(not any(path.startswith(file + "/") for file in files for path in tree.folders))
+    return make_tree("made", [File(path, 0, read_nothing) for path in files], folders)
+
+
+@contextmanager
+def on_disk(tree: Tree) -> Iterator[str]:
+    """A temporary folder with the files and folders of a tree."""
+    with TemporaryDirectory() as folder, warnings.catch_warnings():
+        warnings.simplefilter("ignore", FutureWarning)  # of sets in brackets
+        for path in sorted(tree.folders):
+            os.makedirs(os.path.join(folder, path), exist_ok=True)
+        for path in tree.files:
+            Path(folder, path).touch()
+        yield folder
+
+
+def value_of(expression: str, tree: Tree, root: str = "/root", order: str = ORDERS[0]) -> Value:
+    """What an expression comes to in a file of a package with these files; a test that it is no error."""
+    code = parse(
+        f"import os\nfrom glob import glob\nfrom pathlib import Path\nvalue = {expression}\n".encode(), "setup.py"
+    )
+    assert isinstance(code, Code)
+    machine = Machine(code, {**plain_functions(root), **file_functions(Listing(tree, order), root)}, special={})
+    value = machine.run().names["value"]
+    return machine.faults[0] if machine.faults else value
+
+
+def pythons_glob(pattern: str, root: str, *, recursive: bool = True, hidden: bool = False) -> list[str]:
+    """What Python 3.12 finds; before, ** in a folder that is not there finds that folder."""
+    found = set(glob.glob(pattern, root_dir=root, recursive=recursive, include_hidden=hidden))
+    return sorted(path for path in found if os.path.lexists(os.path.join(root, path)))
+
+
+@settings(max_examples=400)
+@given(tree=trees(), pattern=_PATTERNS, recursive=st.booleans(), hidden=st.booleans())
+@example(tree=make_tree("", [], ["a/.h", "a/b/c"]), pattern="**", recursive=True, hidden=False)
+@example(tree=make_tree("", [], ["a/.h", "a/b/c"]), pattern="a/**/", recursive=True, hidden=True)
+@example(tree=make_tree("", [], ["a"]), pattern="b/**", recursive=True, hidden=False)
+@example(tree=make_tree("", [], ["a"]), pattern="a/", recursive=False, hidden=False)
+@example(tree=make_tree("", [], ["a/b"]), pattern="./*/../a//b", recursive=False, hidden=False)
+def test_glob_finds_what_pythons_glob_finds(tree: Tree, pattern: str, recursive: bool, hidden: bool) -> None:
+    """The same paths in the same spelling, for any pattern that stays inside of the tree."""
+    try:
+        told = [Listing(tree, order).glob(pattern, recursive=recursive, hidden=hidden) for order in ORDERS]
+    except BeyondError:
+        assert ".." in pattern
+        return
+    with on_disk(tree) as folder:
+        real = pythons_glob(pattern, folder, recursive=recursive, hidden=hidden)
+    assert [sorted(found) for found in told] == [real] * len(ORDERS)
+
+
+@settings(max_examples=200)
+@given(tree=trees(), pattern=_PATTERNS, folder=_FOLDERS)
+def test_glob_in_a_folder(tree: Tree, pattern: str, folder: str) -> None:
+    """root_dir is taken as it is, even if there are brackets in its name."""
+    found = value_of(f"glob({pattern!r}, root_dir={folder!r}, recursive=True)", tree)
+    if isinstance(found, Unknown):
+        assert ".." in pattern + folder
+        return
+    with on_disk(tree) as root:
+        assert sorted(found) == pythons_glob(pattern, os.path.join(root, folder))
+
+
+@settings(max_examples=200)
+@given(tree=trees(), pattern=_PATTERNS)
+def test_glob_with_an_absolute_path(tree: Tree, pattern: str) -> None:
+    """What is looked for by its full path is found with it."""
+    with on_disk(tree) as root:
+        found = value_of(f"glob(os.path.join(os.getcwd(), {pattern!r}), recursive=True)", tree, root)
+        if isinstance(found, Unknown):  # Python would look through all that the machine has
+            assert ".." in pattern
+        else:
+            assert sorted(found) == pythons_glob(os.path.join(root, pattern), root)
+
+
+@settings(max_examples=400)
+@given(tree=trees(), pattern=_PATTERNS, folder=_FOLDERS, method=st.sampled_from(["glob", "rglob"]))
+@example(tree=make_tree("", [], ["a/.h", "a/b/c"]), pattern="*", folder="a", method="rglob")
+def test_paths_find_what_pathlib_finds(tree: Tree, pattern: str, folder: str, method: str) -> None:
+    """The same paths in the same spelling, as in Python 3.12; what means different things in its versions is not told."""
+    assume(sys.version_info < (3, 13) or not pattern.endswith("**"))
+    found = value_of(f"[str(path) for path in Path({folder!r}).{method}({pattern!r})]", tree)
+    if isinstance(found, Unknown):
+        parts = pattern.split("/")
+        assert (
+            ".." in [*parts, *folder.split("/")]
+            or parts[-1] in ("", ".")
+            or any("**" in p and p != "**" for p in parts)
+        )
+        return
+    with on_disk(tree) as root:
+        real = {str(path.relative_to(root)) for path in getattr(Path(root, folder), method)(pattern)}
+    assert sorted(found) == sorted(real)
+
+
+@settings(max_examples=300)
+@given(tree=trees(), parts=st.lists(_PARTS | _NAMES, min_size=1, max_size=5))
+def test_a_path_leads_where_the_system_says(tree: Tree, parts: list[str]) -> None:
+    """Dots, slashes and files that are taken for folders mean what they mean to the system."""
+    path = "/".join(parts).lstrip("/")
+    told = [value_of(f"os.path.{function}({path!r})", tree) for function in ("exists", "isfile", "isdir")]
+    with on_disk(tree) as root:
+        inside = os.path.join(root, "")
+        real = [getattr(os.path, function)(inside + path if path else "") for function in ("exists", "isfile", "isdir")]
+    if any(isinstance(each, Unknown) for each in told):
+        assert not path or ".." in parts or any(part.startswith(".") for part in parts)
+    else:
+        assert told == real
+
+
+@settings(max_examples=100)
+@given(tree=trees(), folder=_FOLDERS)
+def test_folders_hold_what_they_hold(tree: Tree, folder: str) -> None:
+    """os.listdir, os.walk and iterdir name what is there; without a folder there is an error, or nothing to walk through."""
+    expressions = (
+        f"os.listdir({folder!r})",
+        f"[str(path) for path in Path({folder!r}).iterdir()]",
+        f"[os.path.join(path, name) for path, _, names in os.walk({folder!r}) for name in names]",
+        f"[os.path.join(path, name) for path, names, _ in os.walk({folder!r}) for name in names]",
+    )
+    with on_disk(tree) as root:
+        there = os.path.join(root, folder)
+        is_folder = os.path.isdir(there)
+        names = os.listdir(there) if is_folder else []
+        walked = list(os.walk(there))
+    for order in ORDERS:
+        told = [value_of(expression, tree, order=order) for expression in expressions]
+        if is_folder:
+            assert sorted(told[0]) == sorted(names)
+            assert sorted(told[1]) == sorted(str(Path(folder) / name) for name in names)
+        else:
+            assert not isinstance(told[0], list)
+            assert not isinstance(told[1], list)
+        for found, index in ((told[2], 2), (told[3], 1)):
+            real = [os.path.join(step[0], name) for step in walked for name in step[index]]
+            assert sorted(os.path.normpath(each) for each in found) == sorted(
+                os.path.relpath(each, root) for each in real
+            )
+
+
+@pytest.mark.parametrize("pattern", ["/etc/*", "../*", "a/../../*", "*/" * 100, "*" * 5000, "**/../" * 20 + "*"])
+def test_what_leads_out_of_the_tree_is_not_told(pattern: str) -> None:
+    """A pattern that leads elsewhere, or that nobody writes, is unknown."""
+    with pytest.raises(BeyondError):
+        Listing(make_tree("", [], ["a/b/c", "a/d", "b/c"])).glob(pattern, recursive=True)
+
+
+@pytest.mark.parametrize(
+    "expression",
+    [
+        "[glob(f'**/**/**/*{n}*', recursive=True) for n in range(10000)]",
+        "[glob('*/../' * 12 + '*') for n in range(10000)]",
+        "[list(Path('.').rglob(f'**/**/*{n}')) for n in range(10000)]",
+        "[list(os.walk('.')) for n in range(10000)]",
+        "[os.listdir('f0') for n in range(10000)]",
+        "glob('f*' + '[a-z0-9]*?' * 90 + 'x')",
+    ],
+)
+def test_many_searches_through_many_files_end_soon(expression: str) -> None:
+    """A submission of thousands of files, searched again and again, is followed only so far."""
+    files = [File(f"f{n % 10}/{'g/' * (n % 20)}h{n}", 0, read_nothing) for n in range(4000)]
+    tree = make_tree("", files, [])
+    with processor_time(1.5):
+        code = parse(
+            f"import os\nfrom glob import glob\nfrom pathlib import Path\nvalue = {expression}\n".encode(), "setup.py"
+        )
+        assert isinstance(code, Code)
+        Machine(code, {**plain_functions("/root"), **file_functions(Listing(tree), "/root")}, special={}).run()

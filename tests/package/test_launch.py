@@ -1,0 +1,672 @@
+"""What the reader tells of launch files: of every style that tutorials and students write, and of hostile ones."""
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from grader.package.launch.model import Launch
+from tests.package.launching import FOLDER, INNER, SAMPLES, Told, follow, in_short, told
+from tests.patience import processor_time
+
+NO_FILE = (
+    "wrong: rviz2 is started without -d and a file, so it opens its own default instead of the lab's configuration"
+)
+TOLD = {
+    "add_action.launch.py": Told(
+        nodes="joint_state_publisher_gui rviz2",
+        rviz=("10: my_robot/rviz/my_robot.rviz",),
+        forgotten="joint_state_publisher",
+    ),
+    "anchors.launch.yaml": Told(
+        nodes="joint_state_publisher_gui rviz2 joint_state_publisher joint_state_publisher rviz2",
+        rviz=("7: my_robot/rviz/my_robot.rviz", "15: my_robot/rviz/my_robot.rviz"),
+    ),
+    "argument_never_declared.launch.py": Told(
+        nodes="joint_state_publisher_gui? rviz2",
+        rviz=(f"12: {NO_FILE}",),
+        faults=("8: the launch argument 'gui' is used, but DeclareLaunchArgument does not declare it before",),
+    ),
+    "argument_used_before_declared.launch.py": Told(
+        nodes="robot_state_publisher",
+        urdf=("10: unknown: the launch argument 'model' is not declared",),
+        faults=("10: the launch argument 'model' is used, but DeclareLaunchArgument does not declare it before",),
+    ),
+    "argument_without_default.launch.py": Told(
+        nodes="robot_state_publisher",
+        urdf=("11: unknown: the launch argument 'model' has no default",),
+    ),
+    "arguments_of_arguments.launch.py": Told(
+        nodes="robot_state_publisher",
+        urdf=("15: my_robot/urdf/my_robot.urdf",),
+    ),
+    "bracket_missing.launch.py": Told(
+        syntax="8: Python cannot read the file",
+    ),
+    "command_without_quotes.launch.xml": Told(
+        nodes="robot_state_publisher",
+        urdf=("3: my_robot/urdf/my_robot.urdf",),
+        faults=("3: $(command ...) takes its command in quotes: $(command 'xacro ...')",),
+    ),
+    "condition_on_the_environment.launch.py": Told(
+        nodes="joint_state_publisher rviz2?",
+        rviz=("10: /opt/a.rviz",),
+    ),
+    "conditions.launch.py": Told(
+        nodes="a/equals a/not_equals! a/expression a/no_expression! a/environment? a/compared a/denied! a/calculated? a/one a/wrong?",
+        faults=("24: a condition is 'gui', which is neither true nor false",),
+    ),
+    "conditions.launch.xml": Told(
+        nodes="a/equal a/unequal! a/calculated a/denied! a/environment? joint_state_publisher_gui/chosen a/none a/still_none",
+    ),
+    "description_in_the_file.launch.py": Told(
+        nodes="robot_state_publisher",
+    ),
+    "description_of_another_module.launch.py": Told(
+        unknown=("1: what my_robot.launching.generate_launch_description gives is told only by a run",),
+    ),
+    "environment_variables.launch.py": Told(
+        nodes="rviz2 rviz2 rviz2 rviz2",
+        rviz=(
+            "11: /<home>/ros2_ws/my_robot.rviz",
+            "12: /<home>/a.rviz",
+            "13: /<home>/a.rviz",
+            "14: unknown: an operation of this kind is not followed",
+        ),
+    ),
+    "event_handlers.launch.py": Told(
+        nodes="joint_state_publisher rviz2 turtlesim/turtlesim_node?",
+        rviz=("10: /opt/a.rviz",),
+    ),
+    "execute_process.launch.py": Told(
+        nodes="rviz2 robot_state_publisher joint_state_publisher",
+        urdf=("9: /opt/my_robot.urdf",),
+        rviz=("8: my_robot/rviz/my_robot.rviz",),
+    ),
+    "file_content.launch.xml": Told(
+        nodes="robot_state_publisher",
+        urdf=("3: my_robot/urdf/my_robot.urdf",),
+    ),
+    "find_package_share_find.launch.py": Told(
+        nodes="robot_state_publisher rviz2",
+        urdf=("17: my_robot/urdf/my_robot.urdf",),
+        rviz=("19: my_robot/rviz/my_robot.rviz",),
+    ),
+    "group_and_timer.launch.py": Told(
+        nodes="joint_state_publisher robot_state_publisher! rviz2",
+        rviz=("9: /tmp/one.rviz",),
+    ),
+    "helper_functions.launch.py": Told(
+        nodes="robot_state_publisher joint_state_publisher rviz2",
+        urdf=("15: my_robot/urdf/my_robot.urdf",),
+        rviz=("20: my_robot/rviz/my_robot.rviz",),
+    ),
+    "helper_of_another_module.launch.py": Told(
+        nodes="joint_state_publisher",
+        unknown=("9: what make_rviz starts is told only by a run",),
+    ),
+    "include.launch.xml": Told(
+        nodes="rviz2 joint_state_publisher_gui joint_state_publisher",
+        rviz=("7: my_robot/rviz/my_robot.rviz",),
+        include=("2: my_robot/launch/inner.launch.py",),
+    ),
+    "include.launch.yaml": Told(
+        nodes="rviz2 joint_state_publisher_gui joint_state_publisher",
+        rviz=("10: /opt/a.rviz",),
+        include=("3: my_robot/launch/inner.launch.py", "7: my_robot/launch/broken.launch.py"),
+        faults=("1: Python cannot read the file",),
+    ),
+    "include_foreign.launch.py": Told(
+        include=("10: ros_gz_sim/launch/gz_sim.launch.py",),
+        unknown=("10: it includes share/ros_gz_sim/launch/gz_sim.launch.py, which the submission does not install",),
+    ),
+    "include_of_itself.launch.py": Told(
+        nodes="rviz2",
+        rviz=(f"8: {NO_FILE}",),
+        include=("9: my_robot/launch/include_of_itself.launch.py",),
+        faults=("9: it includes itself, without end",),
+    ),
+    "include_own.launch.py": Told(
+        nodes="rviz2 joint_state_publisher_gui! joint_state_publisher",
+        rviz=("18: my_robot/rviz/my_robot.rviz",),
+        include=("14: my_robot/launch/inner.launch.py",),
+    ),
+    "include_own_under_a_condition.launch.py": Told(
+        nodes="joint_state_publisher_gui? joint_state_publisher?",
+        include=("12: my_robot/launch/inner.launch.py", "15: my_robot/launch/broken.launch.py"),
+        unknown=("1: Python cannot read the file",),
+    ),
+    "include_urdf_launch.launch.py": Told(
+        nodes="robot_state_publisher joint_state_publisher_gui rviz2",
+        urdf=("14: my_robot/urdf/my_robot.urdf",),
+        rviz=("14: my_robot/rviz/my_robot.rviz",),
+    ),
+    "include_with_a_dict.launch.py": Told(
+        nodes="joint_state_publisher_gui joint_state_publisher",
+        include=("10: my_robot/launch/inner.launch.py",),
+        faults=("10: launch_arguments is given a dict: write .items() behind it",),
+    ),
+    "list_in_the_list.launch.py": Told(
+        nodes="rviz2 joint_state_publisher",
+        rviz=(f"6: {NO_FILE}",),
+        faults=("7: an action is expected here, and this is a list of some: write * before it",),
+    ),
+    "list_returned.launch.py": Told(
+        nodes="rviz2",
+        rviz=(f"5: {NO_FILE}",),
+        faults=("4: generate_launch_description returns no LaunchDescription([...])",),
+    ),
+    "loop_over_nodes.launch.py": Told(
+        nodes="joint_state_publisher rviz2 turtlesim/turtle_a_node turtlesim/turtle_b_node",
+        rviz=(f"10: {NO_FILE}",),
+    ),
+    "main_guard.launch.py": Told(
+        nodes="rviz2",
+        rviz=("6: /opt/a.rviz",),
+    ),
+    "misspelt_substitution.launch.xml": Told(
+        nodes="rviz2 rviz2 rviz2",
+        rviz=(
+            "2: unknown: what find-package-share gives is told only by a run",
+            "3: my_robot/rviz/my_robot.rviz",
+            "4: unknown: what my-own gives is told only by a run",
+        ),
+        faults=(
+            "2: there is no substitution $(find-package-share ...); did you mean $(find-pkg-share ...)?",
+            "3: the bracket of $(find-pkg-share is not closed",
+        ),
+    ),
+    "name_not_imported.launch.py": Told(
+        nodes="rviz2",
+        rviz=(f"5: {NO_FILE}",),
+        faults=("5: the name 'Node' is used, but not defined or imported",),
+    ),
+    "next_to_the_file.launch.py": Told(
+        nodes="robot_state_publisher rviz2",
+        urdf=("15: my_robot/launch/../urdf/my_robot.urdf",),
+        rviz=("16: my_robot/rviz/my_robot.rviz",),
+    ),
+    "no_launch.launch.xml": Told(
+        syntax="1: the root of the file is not <launch>; ros2 launch reads nothing of it",
+    ),
+    "no_launch_key.launch.yaml": Told(
+        syntax="1: the file is not one list under launch:; ros2 launch reads nothing of it",
+    ),
+    "no_list_at_all.launch.py": Told(
+        nodes="joint_state_publisher rviz2",
+        rviz=(f"6: {NO_FILE}",),
+        faults=("8: LaunchDescription takes one list: put [ ] around what is launched",),
+    ),
+    "no_lists_for_parameters.launch.py": Told(
+        nodes="robot_state_publisher",
+        urdf=("9: /opt/a.urdf",),
+        faults=("8: parameters has to be a list: put [ ] around it",),
+    ),
+    "no_such_function.launch.py": Told(
+        faults=("1: the file defines no function generate_launch_description, which ros2 launch calls",),
+    ),
+    "no_value.launch.xml": Told(
+        nodes="robot_state_publisher robot_state_publisher",
+        urdf=("2: unknown: this parameter has no value", "5: unknown: what it is given is told only by a run"),
+        faults=("3: <param> has no 'textfile' in ROS 2's launch files; the attribute is called 'value'",),
+        unknown=("8: what <node_container> starts is told only by a run",),
+    ),
+    "nodes_in_a_container.launch.py": Told(
+        unknown=("8: what a container of nodes starts is not followed",),
+    ),
+    "not_closed.launch.xml": Told(
+        syntax="3: not readable as XML",
+    ),
+    "not_indented.launch.yaml": Told(
+        faults=(
+            "2: one action is expected here, under one key; there is node, pkg, exec. Is it indented far enough?",
+            "2: a node has no executable: it is not said which program it is",
+        ),
+        unknown=("2: a node without a package is a program of the machine",),
+    ),
+    "not_yaml.launch.yaml": Told(
+        syntax="3: not readable as YAML",
+    ),
+    "nothing_returned.launch.py": Told(
+        faults=("5: generate_launch_description does not return its LaunchDescription",),
+        forgotten="rviz2",
+    ),
+    "old_names_of_arguments.launch.py": Told(
+        nodes="rviz2 joint_state_publisher",
+        rviz=(f"7: {NO_FILE}",),
+        faults=(
+            "7: Node takes no argument 'node_executable'; did you mean 'executable'?",
+            "7: Node takes no argument 'node_name'",
+            "8: Node takes no argument 'paramters'; did you mean 'parameters'?",
+        ),
+    ),
+    "opaque_function.launch.py": Told(
+        nodes="robot_state_publisher rviz2",
+        urdf=("12: my_robot/urdf/my_robot.urdf",),
+        rviz=("17: my_robot/rviz/my_robot.rviz",),
+    ),
+    "opaque_function_that_decides.launch.py": Told(
+        nodes="robot_state_publisher",
+        urdf=("8: x.urdf",),
+        unknown=("9: it depends on something that only a run would tell",),
+        forgotten="joint_state_publisher_gui",
+    ),
+    "open_read.launch.py": Told(
+        nodes="robot_state_publisher",
+        urdf=("6: my_robot/urdf/my_robot.urdf",),
+    ),
+    "parameters_from_yaml.launch.py": Told(
+        nodes="robot_state_publisher rviz2",
+        urdf=("11: unknown: what it is given is told only by a run",),
+        rviz=(f"12: {NO_FILE}",),
+    ),
+    "path_instead_of_contents.launch.py": Told(
+        nodes="robot_state_publisher",
+        urdf=("9: wrong: robot_description is given the path of the URDF, not what is in it: read the file first",),
+    ),
+    "path_join_substitution.launch.py": Told(
+        nodes="robot_state_publisher rviz2",
+        urdf=("8: my_robot/urdf/my_robot.urdf.xacro",),
+        rviz=("18: my_robot/rviz/my_robot.rviz",),
+    ),
+    "paths_of_one_machine.launch.py": Told(
+        nodes="robot_state_publisher rviz2",
+        urdf=("6: src/my_robot/urdf/my_robot.urdf",),
+        rviz=("11: /home/me/ros2_ws/src/my_robot/rviz/my_robot.rviz",),
+    ),
+    "program_chosen_at_run_time.launch.py": Told(
+        unknown=(
+            "9: what choice gives is told only by a run",
+            "10: a node without a package is a program of the machine",
+        ),
+    ),
+    "publisher_without_robot.launch.py": Told(
+        nodes="robot_state_publisher",
+        urdf=("7: wrong: robot_state_publisher is started without robot_description: it has no robot to publish",),
+    ),
+    "quotes.launch.xml": Told(
+        nodes="robot_state_publisher rviz2 rviz2 rviz2",
+        urdf=("5: my_robot/urdf/my_robot.urdf",),
+        rviz=("7: my_robot/rviz/my(robot).rviz", "8: my_robot/launch/../rviz/a file.rviz", "9: $(find-pkg-share"),
+    ),
+    "quotes_around_a_substitution.launch.xml": Told(
+        nodes="rviz2",
+        rviz=("2: my_robot/rviz/my_robot.rviz",),
+        faults=(
+            "2: quotes cannot go around a substitution in a line of arguments: leave them out",
+            "3: a node has no executable: it is not said which program it is",
+        ),
+        unknown=("3: this is not followed as a text", "4: a node without a package is a program of the machine"),
+    ),
+    "read_text.launch.py": Told(
+        nodes="robot_state_publisher",
+        urdf=("12: my_robot/urdf/my_robot.urdf",),
+    ),
+    "ros1.launch.xml": Told(
+        nodes="robot_state_publisher rviz2",
+        urdf=("4: wrong: robot_state_publisher is started without robot_description: it has no robot to publish",),
+        rviz=("5: my_robot/rviz/my_robot.rviz",),
+        faults=(
+            "2: $(find ...) is of ROS 1; in ROS 2 it is $(find-pkg-share ...)",
+            "2: <arg> has no 'value' in ROS 2's launch files; the attribute is called 'default'",
+            "3: $(arg ...) is of ROS 1; in ROS 2 it is $(var ...)",
+            "3: <param> at this place is of ROS 1, and unknown to ROS 2: a <param> stands inside its <node>",
+            "3: <param> has no 'command' in ROS 2's launch files; the attribute is called 'value'",
+            "4: <node> has no 'type' in ROS 2's launch files; the attribute is called 'exec'",
+            "5: $(find ...) is of ROS 1; in ROS 2 it is $(find-pkg-share ...)",
+            "5: <node> has no 'required' in ROS 2's launch files",
+            "5: <node> has no 'type' in ROS 2's launch files; the attribute is called 'exec'",
+        ),
+    ),
+    "ros2_launch_once_more.launch.py": Told(
+        unknown=("6: it starts ros2 launch once more",),
+    ),
+    "rviz_option_in_one_text.launch.py": Told(
+        nodes="rviz2 rviz2 rviz2",
+        rviz=(
+            "9: wrong: '-d' and the path have to be two entries of arguments: ['-d', path]",
+            "10: wrong: rviz2 is given -d without the path of a file",
+            f"11: {NO_FILE}",
+        ),
+    ),
+    "set_launch_configuration.launch.py": Told(
+        nodes="rviz2 rviz2 rviz2",
+        rviz=(
+            "13: /opt/one.rviz.bak",
+            "15: /opt/one.rviz.bak",
+            "17: unknown: the launch argument 'rviz' is set under a condition",
+        ),
+    ),
+    "share_directory.launch.py": Told(
+        nodes="robot_state_publisher joint_state_publisher_gui rviz2",
+        urdf=("11: my_robot/urdf/my_robot.urdf",),
+        rviz=("23: my_robot/rviz/my_robot.rviz",),
+    ),
+    "share_path.launch.py": Told(
+        nodes="joint_state_publisher! joint_state_publisher_gui robot_state_publisher rviz2",
+        urdf=("22: my_robot/urdf/my_robot.urdf",),
+        rviz=("39: my_robot/rviz/my_robot.rviz",),
+    ),
+    "slash_operator.launch.py": Told(
+        nodes="robot_state_publisher rviz2",
+        urdf=("12: my_robot/urdf/my_robot.urdf",),
+        rviz=("13: my_robot/rviz/my_robot.rviz",),
+    ),
+    "space_missing_in_command.launch.py": Told(
+        nodes="robot_state_publisher",
+        urdf=("11: my_robot/urdf/my_robot.urdf",),
+        faults=("11: a space is missing between xacro and the path: write 'xacro '",),
+    ),
+    "star_import.launch.py": Told(
+        nodes="rviz2",
+        rviz=(
+            "6: wrong: rviz2 is started without -d and a file, so it opens its own default instead of the lab's configuration",
+        ),
+    ),
+    "substitution_lists.launch.py": Told(
+        nodes="robot_state_publisher rviz2",
+        urdf=("10: my_robot/urdf/my_robot.urdf",),
+        rviz=("12: my_robot/rviz/my_robot.rviz",),
+    ),
+    "substitutions_taken_for_texts.launch.py": Told(
+        nodes="robot_state_publisher robot_state_publisher rviz2",
+        urdf=("16: /opt/a.urdf", "18: /opt/a.urdf"),
+        rviz=("19: my_robot/a.rviz",),
+        faults=(
+            "16: open takes a path, not a substitution: use Command(['cat ', ...])",
+            "18: xacro.process_file takes a path, not a substitution: use Command(['xacro ', ...])",
+            "19: os.path.join takes texts, not substitutions: use PathJoinSubstitution([...])",
+        ),
+    ),
+    "two_keys.launch.yaml": Told(
+        syntax="1: the file is not one list under launch:; ros2 launch reads nothing of it",
+    ),
+    "urdf_as_argument.launch.py": Told(
+        nodes="robot_state_publisher",
+        urdf=("11: my_robot/urdf/my_robot.urdf",),
+    ),
+    "values_that_are_no_texts.launch.yaml": Told(
+        nodes="rviz2",
+        rviz=("9: /opt/a.rviz",),
+        faults=(
+            "4: default of arg has to be a text; YAML takes 'true' for something else without its quotes",
+            "7: default of arg has to be a text; YAML takes '3' for something else without its quotes",
+            "9: if of node has to be a text; YAML takes 'true' for something else without its quotes",
+        ),
+    ),
+    "whole.launch.xml": Told(
+        nodes="robot_state_publisher joint_state_publisher_gui joint_state_publisher! rviz2",
+        urdf=("8: my_robot/urdf/my_robot.urdf",),
+        rviz=("15: my_robot/rviz/my_robot.rviz",),
+    ),
+    "whole.launch.yaml": Told(
+        nodes="robot_state_publisher joint_state_publisher joint_state_publisher_gui! rviz2",
+        urdf=("16: my_robot/urdf/my_robot.urdf",),
+        rviz=("28: my_robot/rviz/my_robot.rviz",),
+    ),
+    "xacro_file_read_as_it_is.launch.py": Told(
+        nodes="robot_state_publisher",
+        urdf=(
+            "9: unknown: my_robot.urdf.xacro is read as it is; if anything of xacro is in it, use Command(['xacro ', ...])",
+        ),
+    ),
+    "xacro_parse.launch.py": Told(
+        nodes="robot_state_publisher",
+        urdf=("11: my_robot/urdf/my_robot.urdf.xacro",),
+    ),
+    "xacro_process_file.launch.py": Told(
+        nodes="robot_state_publisher",
+        urdf=("11: my_robot/urdf/my_robot.urdf.xacro",),
+    ),
+    "xacro_with_options.launch.py": Told(
+        nodes="robot_state_publisher robot_state_publisher robot_state_publisher robot_state_publisher",
+        urdf=(
+            "9: /opt/a.urdf.xacro",
+            "11: /opt/b.urdf.xacro",
+            "13: /opt/my robot.urdf",
+            "15: unknown: what this command prints is told only by a run",
+        ),
+    ),
+}
+
+
+@pytest.mark.parametrize("sample", SAMPLES)
+def test_what_is_told(sample: str) -> None:
+    """Nodes, files, faults, and what only a run would tell are found, each with its line."""
+    assert told(sample) == TOLD[sample]
+
+
+def test_every_expectation_has_its_sample() -> None:
+    """The table names samples that are there."""
+    assert TOLD.keys() == SAMPLES.keys()
+
+
+PYTHON = """\
+from launch import LaunchDescription
+from launch.actions import *
+from launch.actions import DeclareLaunchArgument, GroupAction, IncludeLaunchDescription, OpaqueFunction
+from launch.actions import SetLaunchConfiguration
+from launch.substitutions import Command, LaunchConfiguration, PathJoinSubstitution, PythonExpression
+from launch_ros.actions import Node
+{before}
+
+def generate_launch_description():
+    {inside}
+    return LaunchDescription([{actions}])
+"""
+RVIZ = "Node(package='rviz2', executable='rviz2', arguments=['-d', {}])"
+
+
+def python(actions: str, before: str = "", inside: str = "pass") -> bytes:
+    """A launch file in Python."""
+    return PYTHON.format(before=before, inside=inside, actions=actions).encode()
+
+
+def doubling(last: str, name: str = "x", levels: int = 60) -> str:
+    """Lists of lists, each with the next twice: few lines that make more than any machine holds."""
+    lines = [f"{name}0 = {last}", *(f"{name}{n} = [{name}{n - 1}, {name}{n - 1}]" for n in range(1, levels))]
+    return "\n".join(lines)
+
+
+def chained(levels: int = 60) -> str:
+    """Launch arguments, each with the one before it twice."""
+    each = "DeclareLaunchArgument('a{}', default_value=[LaunchConfiguration('a{}'), LaunchConfiguration('a{}')])"
+    return "DeclareLaunchArgument('a0', default_value='ab'), " + ", ".join(
+        each.format(n, n - 1, n - 1) for n in range(1, levels)
+    )
+
+
+XML_NODE = '<node pkg="rviz2" exec="rviz2" args="{}"/>'
+HOSTILE_PYTHON = {
+    "nodes in doubled lists": python("x59", doubling("Node(package='a', executable='a')")),
+    "texts in doubled lists": python(RVIZ.format("x59"), doubling("'ab'")),
+    "package in doubled lists": python("Node(package=x59, executable='a')", doubling("'ab'")),
+    "forgotten node in doubled lists": python("", doubling("'ab'"), "n = Node(package=x59, executable=x59)"),
+    "command in doubled lists": python(RVIZ.format("Command(x59)"), doubling("'xacro '")),
+    "path in doubled lists": python(RVIZ.format("PathJoinSubstitution(x59)"), doubling("'a'")),
+    "expression in doubled lists": python(RVIZ.format("PythonExpression(x59)"), doubling("'1 + '")),
+    "dicts in doubled lists": python("Node(package='rviz2', executable='rviz2', parameters=x59)", doubling("{'a': 1}")),
+    "substitutions doubled": python(RVIZ.format("x"), "x = LaunchConfiguration('a', default='b')\n" + "x = PathJoinSubstitution([x, x])\n" * 60),
+    "groups doubled": python("x", "x = Node(package='a', executable='a')\n" + "x = GroupAction([x, x])\n" * 60),
+    "arguments doubled": python(chained() + ", " + RVIZ.format("LaunchConfiguration('a59')")),
+    "list in itself": python("x", "x = []\nx.append(x)\nx.append(x)"),
+    "list in itself as a text": python(RVIZ.format("x"), "x = []\nx.append(x)\nx.append(x)"),
+    "list in a list, deep": python("x", "x = [Node(package='a', executable='a')]\nfor i in range(5000):\n    x = [x]"),
+    "text in a list, deep": python(RVIZ.format("x"), "x = ['a']\nfor i in range(5000):\n    x = [x]"),
+    "method of a method, deep": python(RVIZ.format("x"), "x = open('a')\nfor i in range(5000):\n    x = x.read()"),
+    "argument of itself": python("DeclareLaunchArgument('a', default_value=LaunchConfiguration('a'))," + RVIZ.format("LaunchConfiguration('a')")),
+    "thousands of nodes": python("*[Node(package='a', executable=f'b{i}') for i in range(9000)]"),
+    "function of itself": python("OpaqueFunction(function=f)", "def f(context):\n    return [OpaqueFunction(function=f), OpaqueFunction(function=f)]"),
+    "description of itself": python("", "ld = LaunchDescription()\nld.add_action(ld)\nld.add_action(ld)", "return ld"),
+    "handler of itself": python("f", "def f():\n    return [f, f]"),
+    "huge text": python(RVIZ.format("x"), "x = 'a' * 1000\nfor i in range(40):\n    x = x + x"),
+    "huge number": python(RVIZ.format("x"), "x = 9\nfor i in range(9000):\n    x = x + x"),
+    "long line": python("'" + "a" * 1_000_000 + "'"),
+    "brackets": b"x = " + b"[" * 100_000,
+    "closed brackets": b"x = " + b"[" * 90 + b"]" * 90,
+    "minus signs": b"x = " + b"-" * 100_000 + b"1",
+    "additions": b"x = 1" + b" + 1" * 20_000,
+    "zero bytes": b"\0" * 1000,
+    "zero byte in a text": python(RVIZ.format("'a\0b'")),
+    "no UTF-8": b"# \xe4\n" + python(""),
+    "declared latin-1": "# -*- coding: latin-1 -*-\n# ä\n".encode("latin-1") + python(""),
+    "lone surrogate": python(RVIZ.format(r"'\ud800'")),
+    "surrogates everywhere": python(r"Node(package='\udcff', executable='\udcff', condition=IfCondition('\udcff'))"),
+    "expression with quotes": python(RVIZ.format("PythonExpression(\"'\\\\x\\\\'\")")),
+    "expression that calls": python(RVIZ.format("PythonExpression(\"__import__('os').system('echo')\")")),
+    "expression that is deep": python(RVIZ.format("PythonExpression('(' * 900)")),
+    "unclosed quotes of a command": python(RVIZ.format("Command('cat \"a')")),
+    "empty command": python(RVIZ.format("Command('')") + ", Node(package='rviz2', executable='rviz2', arguments=[''])"),
+    "break outside a loop": b"def generate_launch_description():\n    break\n",
+    "continue outside a loop": python("OpaqueFunction(function=f)", "def f(context):\n    continue"),
+    "return at the top": b"return 1\n",
+    "end of Python": python("", "", "import sys; sys.exit(1)"),
+    "strange types": python("1, None, True, 2.5, b'', (), {}, {'a': 1}, ..., Node, LaunchDescription, len, lambda: 1"),
+    "strange arguments": python("Node(package=1, executable=None, parameters=1, arguments=2, condition=3), Node(**1), Node(*2)"),
+    "strange calls": python("LaunchDescription(1), GroupAction(1), IncludeLaunchDescription(1), OpaqueFunction(1), DeclareLaunchArgument(1, 2), SetLaunchConfiguration(None)"),
+}  # fmt: skip
+HOSTILE_XML = {
+    "deep": b"<launch>" + b"<group>" * 100_000,
+    "deep and closed": b"<launch>" + b"<group>" * 200 + b"</group>" * 200 + b"</launch>",
+    "deep substitution": f"<launch>{XML_NODE.format('$(var ' * 100_000)}</launch>".encode(),
+    "deep quotes": f"<launch>{XML_NODE.format('$(var (&quot;' * 50_000)}</launch>".encode(),
+    "wide": b"<launch>" + b'<node pkg="a" exec="b"/>' * 40_000 + b"</launch>",
+    "wide attributes": b"<launch><node " + b" ".join(b'a%d="b"' % n for n in range(20_000)) + b"/></launch>",
+    "long line": b'<launch><node pkg="' + b"a" * 1_000_000 + b'" exec="b"/></launch>',
+    "many substitutions": f"<launch>{XML_NODE.format('$(var a) ' * 50_000)}</launch>".encode(),
+    "backslashes": f"<launch>{XML_NODE.format(chr(92) * 100_000)}</launch>".encode(),
+    "doctype": b'<!DOCTYPE launch SYSTEM "file:///etc/passwd"><launch/>',
+    "entity": b'<!DOCTYPE l [<!ENTITY e SYSTEM "file:///etc/passwd">]><launch><node pkg="&e;" exec="b"/>&e;</launch>',
+    "entities": b"<!DOCTYPE l [<!ENTITY a0 'ha'>"
+    + b"".join(b"<!ENTITY a%d '&a%d;&a%d;'>" % (n, n - 1, n - 1) for n in range(1, 60))
+    + b"]><launch><node pkg='&a59;' exec='b'/>&a59;</launch>",
+    "zero bytes": b"<launch>\0</launch>",
+    "no UTF-8": b'<launch><node pkg="\xe4" exec="b"/></launch>',
+    "namespaces": b'<launch xmlns="urn:a" xmlns:b="urn:b"><b:node b:pkg="a"/></launch>',
+    "comments": b"<launch><!-- <node> --><?pi <node> ?><![CDATA[<node>]]><node pkg='a' exec='b'/></launch>",
+    "doubled arguments": (
+        "<launch><let name='a0' value='ab'/>"
+        + "".join(f"<let name='a{n}' value='$(var a{n - 1})$(var a{n - 1})'/>" for n in range(1, 60))
+        + XML_NODE.format("-d $(var a59)") + "</launch>"
+    ).encode(),
+    "empty": b"",
+}  # fmt: skip
+HOSTILE_YAML = {
+    "aliases doubled": b"launch:\n- group: &a0 [node: {pkg: a, exec: b}]\n"
+    + b"".join(b"- group: &a%d [group: *a%d, group: *a%d]\n" % (n, n - 1, n - 1) for n in range(1, 60)),
+    "children doubled": b"launch:\n- x: &a0 {y: z}\n"
+    + b"".join(b"- x: &a%d {p: [*a%d, *a%d]}\n" % (n, n - 1, n - 1) for n in range(1, 60)),
+    "alias of itself": b"launch: &a\n- group: *a\n- group: *a\n",
+    "merge of itself": b"launch:\n- node: &a\n    <<: *a\n    pkg: a\n    exec: b\n",
+    "merges of merges": b"launch:\n- node: &a0 {pkg: a, exec: b}\n"
+    + b"".join(b"- node: &a%d {<<: [*a%d, *a%d]}\n" % (n, n - 1, n - 1) for n in range(1, 60)),
+    "brackets": b"launch: " + b"[" * 100_000,
+    "braces": b"launch: " + b"{a: " * 100_000,
+    "dashes": b"launch: \n" + b"- " * 100_000,
+    "long line": b"launch:\n- node: {pkg: " + b"a" * 400_000 + b", exec: b}",
+    "zero bytes": b"launch: \0",
+    "no UTF-8": b"launch:\n- node: {pkg: \xe4, exec: b}\n",
+    "strange types": b"launch:\n- 1\n- \n- [node]\n- {}\n- {1: 2}\n- {[a]: b}\n- node: \n- node: 3\n- node: [a]\n- group: a\n",
+    "a text": b"launch: yes",
+    "many documents": b"---\n" * 10_000,
+    "python tag": b"launch: !!python/object/apply:os.system ['true']\n",
+    "empty": b"",
+}
+
+
+def hostile() -> list[tuple[str, bytes]]:
+    """Every hostile file, by the name that it has as a launch file."""
+    kinds = {".launch.py": HOSTILE_PYTHON, ".launch.xml": HOSTILE_XML, ".launch.yaml": HOSTILE_YAML}
+    return [(name + ending, data) for ending, samples in kinds.items() for name, data in samples.items()]
+
+
+def is_well_formed(launch: Launch) -> bool:
+    """Whether what is told is bounded, with places in the file."""
+    told = [*launch.nodes, *launch.forgotten]
+    faults = [*launch.faults, *launch.unknown, *filter(None, [launch.syntax])]
+    places = [each.location for part in (told, launch.references, faults) for each in part]
+    return len(places) < 20_000 and all(each.line > 0 and each.column > 0 for each in places)
+
+
+@pytest.mark.parametrize(("name", "data"), [pytest.param(*each, id=each[0]) for each in hostile()])
+def test_hostile_files(name: str, data: bytes) -> None:
+    """Nothing raises or takes long, whatever a launch file is made of."""
+    with processor_time(2):
+        launch = follow(data, name)
+        assert is_well_formed(launch)
+        in_short(launch)
+
+
+TWO = """\
+<launch>
+  <node pkg="a" exec="a"/>
+  <include file="$(dirname)/{}.launch.xml"/>
+  <include file="$(dirname)/{}.launch.xml"/>
+</launch>
+"""
+
+
+def test_two_files_that_include_each_other() -> None:
+    """A circle of files ends, and is a fault."""
+    others = {f"{FOLDER}/{one}.launch.xml": TWO.format(two, two).encode() for one, two in ("ab", "ba")}
+    launch = follow(others[f"{FOLDER}/a.launch.xml"], "a.launch.xml", others)
+    assert {fault.message for fault in launch.faults} == {"it includes itself, without end"}
+    assert len(launch.nodes) == 3
+
+
+def test_many_includes() -> None:
+    """Files that include the next one twice are followed to some bound, and that is said."""
+    others = {f"{FOLDER}/f{n}.launch.xml": TWO.format(f"f{n + 1}", f"f{n + 1}").encode() for n in range(40)}
+    with processor_time(2):
+        launch = follow(others[f"{FOLDER}/f0.launch.xml"], "f0.launch.xml", others)
+    assert "it includes more launch files than are followed" in {each.message for each in launch.unknown}
+    assert len(launch.nodes) < 50
+
+
+def test_arguments_are_shared_with_what_follows_an_include() -> None:
+    """What an include is given stays set behind it, as ROS 2 has it; what a group sets ends with the group."""
+    text = """\
+<launch>
+  <arg name="config" default="/opt/own.rviz"/>
+  <group>
+    <include file="$(dirname)/inner.launch.py"><arg name="config" value="/opt/given.rviz"/></include>
+    <node pkg="rviz2" exec="rviz2" args="-d $(var config)"/>
+  </group>
+  <node pkg="rviz2" exec="rviz2" args="-d $(var config)"/>
+</launch>
+"""
+    launch = follow(text.encode(), "x.launch.xml")
+    assert [each.path for each in launch.named("rviz")] == ["/opt/given.rviz", "/opt/own.rviz"]
+
+
+PIECES = st.sampled_from(
+    [piece for path in SAMPLES.values() for piece in path.read_bytes().split(b"\n")]
+    + [b"$(", b")", b"'", b'"', b"\\", b"[", b"]", b"{", b"}", b"&a ", b"*a", b"<launch>", b"</launch>", b"\0", b"\xff", b"\xed\xa0\x80"]
+)  # fmt: skip
+
+
+@settings(max_examples=150)
+@given(
+    st.sampled_from(sorted(SAMPLES)),
+    st.lists(
+        st.tuples(st.integers(0, 3000), st.integers(0, 40), PIECES | st.binary(max_size=6)), min_size=1, max_size=5
+    ),
+)
+def test_changed_files(sample: str, changes: list[tuple[int, int, bytes]]) -> None:
+    """A sample with something cut out of it and something put in its place is followed without an error."""
+    data = SAMPLES[sample].read_bytes()
+    for place, length, piece in changes:
+        at = place % (len(data) + 1)
+        data = data[:at] + piece + data[at + length :]
+    with processor_time(2):
+        assert is_well_formed(follow(data, sample, {**INNER, f"{FOLDER}/{sample}": data}))
+
+
+@settings(max_examples=100)
+@given(
+    st.binary(max_size=300) | st.lists(PIECES, max_size=20).map(b"\n".join),
+    st.sampled_from([".py", ".xml", ".yaml", ""]),
+)
+def test_random_files(data: bytes, ending: str) -> None:
+    """Anything at all is followed without an error."""
+    with processor_time(2):
+        assert is_well_formed(follow(data, f"x.launch{ending}"))

@@ -1,0 +1,154 @@
+"""What is told of package.xml: the package's name, its build type, what is missing, and where."""
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from grader.package.manifest import Manifest, read_manifest
+from tests.patience import processor_time
+
+# As ros2 pkg create writes it, filled in.
+COMPLETE = """\
+<?xml version="1.0"?>
+<?xml-model href="http://download.ros.org/schema/package_format3.xsd" schematypens="http://www.w3.org/2001/XMLSchema"?>
+<package format="3">
+  <name>my_robot</name>
+  <version>0.0.0</version>
+  <description>A robot</description>
+  <maintainer email="me@example.org">Me</maintainer>
+  <license>Apache-2.0</license>
+
+  <test_depend>python3-pytest</test_depend>
+
+  <export>
+    <build_type>ament_python</build_type>
+  </export>
+</package>
+"""
+
+
+def read(text: str) -> Manifest:
+    """A package.xml with this text."""
+    return read_manifest(text.encode(), "my_robot/package.xml")
+
+
+def said(found: Manifest) -> list[str]:
+    """Its problems, each with its line and column."""
+    return [f"{each.location.line}:{each.location.column} {each.kind.code} {each.message}" for each in found.problems]
+
+
+def test_a_complete_file() -> None:
+    """Name and build type have their places, and there is nothing to say."""
+    found = read(COMPLETE)
+    assert (found.name, found.build_type, found.problems) == ("my_robot", "ament_python", ())
+    assert (found.name_location.line, found.name_location.column) == (4, 3)
+    assert (found.type_location.line, found.type_location.column) == (13, 5)
+    assert found.name_location.path == "my_robot/package.xml"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("  <name>my_robot</name>\n", "", ["3:1 PKG002 package.xml has no <name>"]),
+        ("<name>my_robot</name>", "<name> </name>", ["4:3 PKG002 <name> of package.xml is empty"]),
+        ("<version>0.0.0</version>", "<version/>", ["5:3 PKG002 <version> of package.xml is empty"]),
+        ("<license>Apache-2.0</license>", "<licence>MIT</licence>", ["3:1 PKG002 package.xml has no <license>"]),
+        ("Apache-2.0", "TODO: License declaration", ["8:3 PKG003 <license> of package.xml is still to do"]),
+        (">A robot<", ">TODO: Package description<", ["6:3 PKG003 <description> of package.xml is still to do"]),
+        (' email="me@example.org"', "", ["7:3 PKG002 <maintainer> of package.xml has no email"]),
+        ("me@example.org", "me@todo.todo", ["7:3 PKG003 <maintainer> of package.xml is still to do"]),
+        (' format="3"', "", ["3:1 PKG004 package.xml is of format 1; ROS 2 packages are written in format 3"]),
+        ('"3"', '"2"', []),
+        ("<description>A robot</description>", "<description>A <b>robot</b></description>", []),
+        ("<name>my_robot</name>", "<!-- <name>old</name> --><name>my_robot</name>", []),
+    ],
+)
+def test_what_is_missing(old: str, new: str, expected: list[str]) -> None:
+    """What every package needs is missed at the place where it should stand."""
+    assert old in COMPLETE
+    assert said(read(COMPLETE.replace(old, new))) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "words"),
+    [
+        ("", 1, "not readable as XML"),
+        ("<package>\n<name>a</nam>\n</package>", 2, "not readable as XML: Opening and ending tag mismatch"),
+        ("<package>", 1, "not readable as XML"),
+        ("name: my_robot", 1, "not readable as XML"),
+        ("<robot/>", 1, "the root of package.xml is <robot>, not <package>"),
+        ('<package xmlns="urn:a"/>', 1, "the root of package.xml is <{urn:a}package>, not <package>"),
+    ],
+)
+def test_unreadable_files(text: str, line: int, words: str) -> None:
+    """A file that is no package.xml says so once; no name is known then."""
+    found = read(text)
+    assert [(each.kind.code, each.location.line) for each in found.problems] == [("PKG001", line)]
+    assert words in found.problems[0].message
+    assert found.name is None
+    assert found.build_type == ""
+
+
+@pytest.mark.parametrize(
+    ("export", "kind"),
+    [
+        ("<export/>", "catkin"),
+        ("<export><build_type> ament_cmake </build_type></export>", "ament_cmake"),
+        ("<export><build_type condition='$ROS_VERSION == 1'>catkin</build_type><build_type>ament_python</build_type></export>", "ament_python"),
+        ("<build_type>ament_python</build_type>", "catkin"),
+    ],
+)  # fmt: skip
+def test_build_type(export: str, kind: str) -> None:
+    """The build type is that of <export>; without one colcon takes catkin."""
+    start, _, _ = COMPLETE.partition("  <export>")
+    assert read(f"{start}{export}</package>").build_type == kind
+
+
+def test_entities_are_not_resolved() -> None:
+    """A DOCTYPE opens no file and makes nothing grow, and hides no place."""
+    text = '<!DOCTYPE p [<!ENTITY e "my"><!ENTITY f SYSTEM "file:///etc/passwd">]>\n<package>&e;&e;&f;\n<name>a&f;</name></package>'
+    found = read(text)
+    assert found.name == "a"
+    assert found.name_location.line == 3
+    lines = "".join(f"<!ENTITY a{n} '&a{n - 1};&a{n - 1};'>" for n in range(1, 60))
+    with processor_time(1):
+        read(f"<!DOCTYPE p [<!ENTITY a0 'ha'>{lines}]><package><name>&a59;</name></package>")
+        read(f"<!DOCTYPE p [<!ENTITY a0 'ha'>{lines}]><package format='&a59;'><name>a</name></package>")
+
+
+@pytest.mark.parametrize("encoding", ["UTF-16", "UTF-7", "ISO-8859-1", "cp037", "UTF-8"])
+def test_encodings(encoding: str) -> None:
+    """Another encoding is read or refused, and never an error."""
+    text = COMPLETE.replace('version="1.0"', f'version="1.0" encoding="{encoding}"').replace("A robot", "Ein Rääd")
+    assert read_manifest(text.encode(encoding), "package.xml").name in ("my_robot", None)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["<package>" + "<a>" * 100_000, "<package>" * 200 + "</package>" * 200, "<package " + "a" * 250_000, "<" * 250_000,
+     "<package>" + "<name>a</name>" * 15_000 + "</package>", "<!--" * 60_000, "<package>" + "<![CDATA[" * 20_000],
+)  # fmt: skip
+def test_hostile_files(text: str) -> None:
+    """Depth, length and number take no more time than they have to."""
+    with processor_time(2):
+        assert isinstance(read(text).problems, tuple)
+
+
+@settings(max_examples=150)
+@given(
+    st.integers(0, len(COMPLETE)),
+    st.integers(0, 30),
+    st.binary(max_size=6) | st.sampled_from([b"<", b"&a;", b"<!--", b"]]>"]),
+)
+def test_changed_files(start: int, length: int, put: bytes) -> None:
+    """A file with something cut out of it or put into it is read without an error."""
+    data = COMPLETE.encode()
+    found = read_manifest(data[:start] + put + data[start + length :], "package.xml")
+    assert all(problem.location.line > 0 and "\n" not in problem.message for problem in found.problems)
+
+
+@settings(max_examples=100)
+@given(st.binary(max_size=80) | st.text("<>&;!-[]?/= \"'package\n", max_size=60).map(str.encode))
+def test_any_bytes(data: bytes) -> None:
+    """Anything at all is read without an error."""
+    assert isinstance(read_manifest(data, "package.xml"), Manifest)

@@ -1,0 +1,234 @@
+"""What is told of RViz files: the fixed frame, the displays that are on, and what is wrong."""
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from grader.package.rviz import RvizFile, read_rviz, switched_on
+from grader.package.yaml_nodes import Node, read_yaml
+from tests.patience import processor_time
+
+# As RViz of ROS 2 Jazzy saves it, without the parts that nothing is asked about.
+SAVED = """\
+Panels:
+  - Class: rviz_common/Displays
+    Help Height: 78
+    Name: Displays
+Visualization Manager:
+  Class: ""
+  Displays:
+    - Alpha: 0.5
+      Cell Size: 1
+      Class: rviz_default_plugins/Grid
+      Enabled: true
+      Name: Grid
+      Value: true
+    - Alpha: 1
+      Class: rviz_default_plugins/RobotModel
+      Description File: ""
+      Description Source: Topic
+      Description Topic:
+        Depth: 5
+        Value: /robot_description
+      Enabled: true
+      Links:
+        All Links Enabled: true
+        base_link:
+          Alpha: 1
+          Show Axes: false
+      Name: "My robot: the model"
+      Value: true
+    - Class: rviz_default_plugins/TF
+      Enabled: false
+      Name: TF
+      Value: false
+    - Class: rviz_common/Group
+      Displays:
+        - Class: rviz_default_plugins/Axes
+          Enabled: true
+          Name: Axes
+        - Class: rviz_common/Group
+          Displays:
+            - Class: rviz_default_plugins/LaserScan
+              Enabled: true
+              Name: Scan
+          Enabled: false
+          Name: Off
+      Enabled: true
+      Name: Group
+  Enabled: true
+  Global Options:
+    Background Color: 48; 48; 48
+    Fixed Frame: base_footprint
+    Frame Rate: 30
+  Name: root
+Window Geometry:
+  Height: 846
+"""
+
+
+def read(text: str) -> RvizFile:
+    """An RViz file with this text."""
+    return read_rviz(text.encode(), "rviz/a.rviz")
+
+
+def displays(*entries: str) -> RvizFile:
+    """An RViz file with these displays, each a flow mapping."""
+    listed = "".join(f"    - {{{entry}}}\n" for entry in entries)
+    return read(f"Visualization Manager:\n  Displays:\n{listed}  Global Options: {{Fixed Frame: base_link}}\n")
+
+
+def test_a_saved_file() -> None:
+    """Everything that is asked about is found, groups taken apart."""
+    found = read(SAVED)
+    assert found.fault is None
+    assert found.fixed_frame == "base_footprint"
+    assert SAVED.splitlines()[found.frame_location.line - 1] == "    Fixed Frame: base_footprint"
+    assert found.frame_location.column == 18
+    assert [(each.package, each.kind, each.name, each.enabled) for each in found.displays] == [
+        ("rviz_default_plugins", "Grid", "Grid", True),
+        ("rviz_default_plugins", "RobotModel", "My robot: the model", True),
+        ("rviz_default_plugins", "TF", "TF", False),
+        ("rviz_common", "Group", "Group", True),
+        ("rviz_default_plugins", "Axes", "Axes", True),
+        ("rviz_common", "Group", "Off", False),
+        ("rviz_default_plugins", "LaserScan", "Scan", False),
+    ]
+    lines = SAVED.splitlines()
+    assert all(lines[each.location.line - 1].endswith(f"Class: {each.package}/{each.kind}") for each in found.displays)
+    assert len({each.location for each in found.displays}) == 7
+    topic = found.displays[1].node.get("Description Topic", "Value")
+    assert topic is not None
+    assert topic.text == "/robot_description"
+
+
+def test_what_is_worth_saying() -> None:
+    """A TF display that is off is as good as none; a class of ROS 1 is named at its place."""
+    assert [problem.kind.code for problem in read(SAVED).problems] == ["RVZ003"]
+    old = displays("Class: rviz/RobotModel, Enabled: true", "Class: rviz/TF, Enabled: true, Name: TF")
+    assert [(each.kind.code, each.location.line) for each in old.problems] == [("RVZ002", 3), ("RVZ002", 4)]
+    assert "in ROS 2 it is rviz_default_plugins/RobotModel" in old.problems[0].message
+    assert displays("Class: rviz_default_plugins/TF, Enabled: true").problems == ()
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "words"),
+    [
+        ("Visualization Manager: [", 1, "not readable as YAML"),
+        ("\tVisualization Manager:", 1, "not readable as YAML"),
+        ("", 1, "there is no 'Visualization Manager' in it"),
+        ("- a", 1, "there is no 'Visualization Manager' in it"),
+        ("<robot/>", 1, "there is no 'Visualization Manager' in it"),
+        ("Visualization manager: {}", 1, "there is no 'Visualization Manager' in it"),
+    ],
+)
+def test_faults(text: str, line: int, words: str) -> None:
+    """A file that is none of RViz's says so once, and tells nothing else."""
+    found = read(text)
+    assert [problem.kind.code for problem in found.problems] == ["RVZ001"]
+    assert found.fault is not None
+    assert words in found.fault.message
+    assert found.fault.location.line == line
+    assert found.fixed_frame is None
+    assert found.displays == ()
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Visualization Manager:",
+        "Visualization Manager: 3",
+        "Visualization Manager: []",
+        "Visualization Manager: {Displays: 3, Global Options: []}",
+        "Visualization Manager: {Displays: {a: b}, Global Options: {Fixed Frame: [a]}}",
+        "Visualization Manager: {Displays: [1, [], {}, ~, {Class: [a]}, {Class: {a: b}}, {Displays: 3}], Global Options: 4}",
+    ],
+)
+def test_odd_shapes(text: str) -> None:
+    """Lists where RViz has mappings, and the other way round, hold nothing."""
+    found = read(text)
+    assert found.fault is None
+    assert found.fixed_frame is None
+    assert all(each.kind == each.package == "" and not each.enabled for each in found.displays)
+
+
+@pytest.mark.parametrize(
+    ("settings", "is_on"),
+    [("Enabled: true", True), ("Enabled: True", True), ("Enabled: 1", True), ("Enabled: 'true'", True), ("Enabled: yes", True),
+     ("Enabled: false", False), ("Enabled: FALSE", False), ("Enabled: 0", False), ("Enabled: ''", False), ("Enabled: ", False),
+     ("Name: a", False), ("Enabled: false, Value: true", False), ("Enabled: true, Value: false", True)],
+)  # fmt: skip
+def test_enabled(settings: str, is_on: bool) -> None:
+    """Whether a display is on is told as RViz tells it."""
+    assert [each.enabled for each in displays(f"Class: a/B, {settings}").displays] == [is_on]
+
+
+def test_switched_on() -> None:
+    """What is not there is as by default; a list is no setting."""
+    assert [switched_on(None, default=each) for each in (True, False)] == [True, False]
+    assert [switched_on(node(text), default=False) for text in ("[a]", "no", "off", "0", "0.0")] == [
+        False,
+        True,
+        True,
+        False,
+        True,
+    ]
+
+
+def node(text: str) -> Node:
+    """A value of YAML."""
+    return read_yaml(text.encode(), "a")
+
+
+def test_class_without_a_package() -> None:
+    """A class is told apart at its last slash."""
+    found = displays("Class: RobotModel", "Class: a/b/C", "Class: ''").displays
+    assert [(each.package, each.kind) for each in found] == [("", "RobotModel"), ("a/b", "C"), ("", "")]
+
+
+def test_the_last_of_equal_keys_counts() -> None:
+    """As RViz puts each into its place."""
+    assert displays("Class: a/B, Enabled: false, Class: c/D, Enabled: true").displays[0].kind == "D"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Visualization Manager:\n  Displays: &a\n    - Displays: *a\n    - Displays: *a\n",
+        "Visualization Manager:\n  Displays: &a\n" + "    - Displays: *a\n" * 900,
+        "Visualization Manager:\n  Displays: &a [" + "{Displays: *a}, " * 900 + "b, " * 80_000 + "]\n",
+        "Visualization Manager:\n  Displays:\n" + "    - Class: a/B\n" * 20_000,
+        "Visualization Manager: &a {Displays: [*a, *a], Global Options: *a}",
+    ],
+)
+def test_groups_without_end(text: str) -> None:
+    """Groups in themselves, and thousands of displays, are looked at up to a bound."""
+    with processor_time(2):
+        found = read(text)
+        assert len(found.displays) <= 500
+        assert isinstance(found.problems, tuple)
+
+
+LINES = st.sampled_from(SAVED.splitlines(keepends=True))
+
+
+@settings(max_examples=150)
+@given(
+    st.lists(
+        LINES | st.text(max_size=8) | st.sampled_from(["&a ", "*a", "- ", "\0", "[", "{", "'", '"', "\t"]), max_size=30
+    )
+)
+def test_any_text(pieces: list[str]) -> None:
+    """Anything at all is read without an error."""
+    found = read_rviz("".join(pieces).encode("utf-8", "surrogatepass"), "a.rviz")
+    assert isinstance(found.problems, tuple)
+    assert (found.fault is None) or not found.displays
+
+
+@settings(max_examples=150)
+@given(st.integers(0, len(SAVED)), st.integers(0, 30), st.binary(max_size=6))
+def test_changed_files(start: int, length: int, put: bytes) -> None:
+    """A saved file with something cut out of it or put into it is read without an error."""
+    data = SAVED.encode()
+    found = read_rviz(data[:start] + put + data[start + length :], "a.rviz")
+    assert all(problem.location.line > 0 for problem in found.problems)

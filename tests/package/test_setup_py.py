@@ -1,0 +1,113 @@
+"""What is told of a setup.py without a run is what setuptools installs when the file is run."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from grader.files.folder import read_folder
+from grader.files.tree import is_ignored
+from grader.package.setup_py import Setup, read_setup
+from grader.static_python.parse import parse
+from tests.command_line import PATIENCE
+from tests.package.my_robot import SAMPLES, make_package
+
+# The samples of which not everything can be told, and why; no other may have anything unknown.
+UNKNOWN = {
+    "comprehension_first_of_a_listing": "the order in which folders are listed",
+    "data_files_in_setup_cfg": "data_files is set in setup.cfg",
+    "destination_with_dots": "leads to is not followed",
+    "environment_chooses_the_setup": "only a run would tell",
+    "environment_condition": "only a run would tell",
+    "environment_in_destination": "a formatted text of this kind is not followed",
+    "files_are_made": "the file itself makes or changes files",
+    "folder_name_for_the_package": "the name of the package's folder",
+    "function_that_yields": "a generator function is not followed",
+    "hidden_file_named": "is among files that are not looked at",
+    "list_slice_replaced": "what is put here is not followed",
+    "listing_until_found": "the order in which folders are listed",
+    "package_data_too": "package_data may install files, too",
+    "same_target_twice": "several files go to share/my_robot/box.urdf: other/box.urdf, urdf/box.urdf",
+    "slash_behind_a_file": "depends on the version of setuptools",
+    "try_a_module_that_is_not_there": "an error before it may have been caught",
+    "two_sources_for_one_target": "several files go to share/my_robot/meshes/two.stl",
+    "walk_that_is_steered": "steered",
+    "working_folder_is_left": "it changes the working folder",
+}
+# What install_data says where there are no data files; `setup.py install` does not call it then.
+_NOTHING = "TypeError: 'NoneType' object is not iterable"
+
+
+class Run(NamedTuple):
+    """What came of running a setup.py: where each installed file comes from, or the text of the error."""
+
+    installed: dict[str, str]
+    error: str
+    told: Setup
+
+
+def run(sample: str, folder: Path) -> Run:
+    """Install a sample's data files as setuptools does, and tell from the same files what it would install."""
+    package, root = folder / "my_robot", folder / "root"
+    sources = make_package(sample, package)
+    told = read_setup(parse((package / "setup.py").read_bytes(), "setup.py"), read_folder(package))
+    environment = {name: value for name, value in os.environ.items() if not name.startswith(("MY_", "SETUPTOOLS_"))}
+    # Below a root: of a file that goes to an absolute path nothing is written elsewhere.
+    install = ["--quiet", "install_data", "--root", str(root), "--install-dir", str(root / "prefix")]
+    done = subprocess.run(
+        [sys.executable, "-B", "-W", "ignore", "setup.py", *install],
+        cwd=package,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=PATIENCE,
+    )
+    installed = {
+        os.path.relpath(path, root / "prefix")
+        if path.is_relative_to(root / "prefix")
+        else f"/{path.relative_to(root)}": path
+        for path in root.rglob("*")
+        if path.is_file()
+    }
+    texts = {target: path.read_text(encoding="utf-8") for target, path in installed.items()}
+    return Run(
+        {target: sources[text] for target, text in texts.items() if not is_ignored(sources[text])},
+        f"status {done.returncode}: {done.stderr}" if done.returncode and _NOTHING not in done.stderr else "",
+        told,
+    )
+
+
+@pytest.mark.parametrize("sample", SAMPLES)
+def test_setuptools_installs_what_is_told(sample: str, tmp_path: Path) -> None:
+    """Files and their places are the same; a run that fails is foretold; what is unknown is unknown for its reason."""
+    installed, error, told = run(sample, tmp_path)
+    foretold = [*filter(None, [told.fault]), *told.faults, *told.stops]
+    reason = "; ".join(unknown.reason for unknown in told.unknown)
+    if sample in UNKNOWN:
+        assert UNKNOWN[sample] in reason
+        assert not foretold
+        assert told.installed().items() <= installed.items()
+    elif error:
+        assert foretold, error
+    else:
+        assert not foretold
+        assert not reason
+        assert told.installed() == installed
+
+
+def test_setuptools_runs(tmp_path: Path) -> None:
+    """The comparison is one: setuptools installs the files that a plain setup.py lists."""
+    done = run("literal_lists", tmp_path)
+    assert not done.error
+    assert sorted(done.installed.values()) == [
+        "launch/my_robot_rviz.launch.py",
+        "package.xml",
+        "resource/my_robot",
+        "rviz/my_robot.rviz",
+        "urdf/box.urdf",
+        "urdf/my_robot.urdf",
+    ]

@@ -1,0 +1,202 @@
+"""Plain xacro comes to what xacro itself makes of it; anything more is left to a person."""
+
+import re
+import xml.dom.minidom
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from grader.submission.submission import Submission, read_submission
+from grader.xacro.properties import expand
+from tests.patience import processor_time
+from tests.samples import LAB6, opened
+
+START = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
+NAMES = ("a", "b", "width", "wheel_radius")
+
+
+def robot(*lines: str) -> str:
+    """A robot in xacro."""
+    return START + "\n".join(lines) + "\n</robot>\n"
+
+
+def xacros_own(text: str) -> xml.dom.minidom.Document:
+    """What xacro itself makes of a text; only ever of ours."""
+    xacro: Any = pytest.importorskip("xacro")
+    document = xacro.parse(text)
+    xacro.process_doc(document)
+    return document  # type: ignore[no-any-return]
+
+
+def attributes(document: xml.dom.minidom.Document) -> list[tuple[str, list[tuple[str, str]]]]:
+    """Every element with its attributes, in order."""
+    elements = document.getElementsByTagName("*")
+    return [
+        (each.tagName, sorted((n, v) for n, v in each.attributes.items() if not n.startswith("xmlns")))
+        for each in elements
+    ]
+
+
+def compare(text: str) -> None:
+    """The expanded text says the same as xacro's own, number for number."""
+    mine = expand(text)
+    assert mine is not None
+    for (tag, own), (other_tag, theirs) in zip(
+        attributes(xml.dom.minidom.parseString(mine)), attributes(xacros_own(text)), strict=True
+    ):
+        assert tag == other_tag
+        for (name, value), (other_name, expected) in zip(own, theirs, strict=True):
+            assert name == other_name
+            numbers, wanted = value.split(), expected.split()
+            assert len(numbers) == len(wanted)
+            for one, other in zip(numbers, wanted, strict=True):
+                assert one == other or float(one) == pytest.approx(float(other), rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        robot('<link name="a"/>'),
+        robot('<origin xyz="0 ${1/2} -${0.25}" rpy="${-pi/2} 0 0"/>'),
+        robot('<xacro:property name="r" value="0.1"/>', '<cylinder radius="${r}" length="${r / 2}"/>'),
+        robot(
+            '<cylinder radius="${r}"/>',
+            '<xacro:property name="r" value="${2 * s}"/>',
+            '<xacro:property name="s" value=".1"/>',
+        )
+        .replace('<cylinder radius="${r}"/>\n', "")
+        .replace("</robot>", '<cylinder radius="${r}"/></robot>'),
+        robot("<xacro:property name='n' value='left'></xacro:property>", '<link name="${n}_wheel"/>'),
+        robot('<box size="${0.6} ${2*0.2} ${sqrt(0.04)}"/>', '<origin rpy="${radians(90)} ${max(1, 2)}"/>'),
+        robot('<xacro:property value="1" name="a"/><a x="${a}"/>', '<xacro:property name="a" value="2"/><a x="${a}"/>'),
+        robot(
+            '<xacro:property name="h" value="0.2"/>',
+            '<xacro:property name="pos" value="0.15 0 ${h}"/>',
+            '<a xyz="${pos}"/>',
+        ),
+        robot('<xacro:arg name="unused" default="1"/>', '<a x="${1}"/>'),
+        robot("<!-- ${ not this } <xacro:include/> -->", '<origin xyz="${1} 0 0"/>'),
+    ],
+)
+def test_what_xacro_makes_of_it(text: str) -> None:
+    """Properties, numbers and pi come to the same."""
+    compare(text)
+
+
+numbers = (
+    st.integers(0, 20).map(str) | st.floats(0.01, 9).map(lambda value: f"{value:.3f}") | st.sampled_from(["pi", *NAMES])
+)
+expressions = st.recursive(
+    numbers,
+    lambda inner: (
+        st.tuples(inner, st.sampled_from(["+", "-", "*"]), inner).map(lambda t: f"({t[0]} {t[1]} {t[2]})")
+        | inner.map(lambda text: f"-{text}")
+        | inner.map(lambda text: f"cos({text})")
+    ),
+    max_leaves=6,
+)
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.lists(expressions, min_size=1, max_size=4))
+def test_any_numbers(values: list[str]) -> None:
+    """Whatever is worked out here, xacro works out to the same number."""
+    properties = [f'<xacro:property name="{name}" value="{index + 1}.5"/>' for index, name in enumerate(NAMES)]
+    compare(robot(*properties, *(f'<origin xyz="${{{value}}} 0 0"/>' for value in values)))
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        '<xacro:macro name="w" params="p"/>',
+        '<xacro:include filename="/etc/passwd"/>',
+        '<xacro:if value="true"><link name="a"/></xacro:if>',
+        '<origin xyz="$(arg a) 0 0"/>',
+        '<origin xyz="${unknown} 0 0"/>',
+        "<origin xyz=\"${__import__('os').system('true')} 0 0\"/>",
+        '<origin xyz="${(lambda: 1)()} 0 0"/>',
+        '<origin xyz="${9**9**9} 0 0"/>',
+        '<origin xyz="${1/0} 0 0"/>',
+        '<origin xyz="$${1} 0 0"/>',
+        '<xacro:property name="n" value="' + "9" * 190 + '"/><origin xyz="${' + "*".join("n" * 60) + '} 0 0"/>',
+        '<origin xyz="${late} 0 0"/><xacro:property name="late" value="1"/>',
+        '<xacro:property name="if" value="1"/>',
+        '<xacro:property name="a" value="true"/><origin xyz="${a} 0 0"/>',
+        '<xacro:property name="a" value="0.1_0"/><origin xyz="${a * 2} 0 0"/>',
+        "<xacro:property name='a\" value='1'/>",
+        '<origin xyz="${[1][0]} 0 0"/>',
+        "<origin xyz=\"${'a' * 3} 0 0\"/>",
+        '<origin xyz="${' + "-" * 5000 + '1} 0 0"/>',
+        '<xacro:property name="x" value="${x}"/><origin xyz="${x} 0 0"/>',
+        '<xacro:property name="block"><origin xyz="1 0 0"/></xacro:property>',
+    ],
+)
+def test_anything_more_is_left(line: str) -> None:
+    """What runs code, includes files or takes more than numbers is not worked out."""
+    assert expand(robot(line)) is None
+
+
+def test_a_chain_of_properties_takes_no_time() -> None:
+    """Each property is worked out once, however often it is used."""
+    lines = [f'<xacro:property name="p{i}" value="${{{"+".join([f"p{i - 1}"] * 9)}}}"/>' for i in range(10, 0, -1)]
+    text = robot('<xacro:property name="p0" value="1"/>', *lines, '<a x="${p10}"/>')
+    with processor_time(0.2):
+        expand(text)
+    compare(text)
+
+
+def test_without_its_namespace_it_is_no_xml() -> None:
+    """xacro refuses a prefix that is not declared."""
+    assert expand('<robot name="r">\n<xacro:property name="a" value="1"/></robot>') is None
+
+
+@given(st.text(alphabet="$ {}()<>xacro:propety/=\"'.+-*01\n", max_size=200))
+def test_any_text(text: str) -> None:
+    """It never fails, and every line stays where it is."""
+    expanded = expand(text)
+    assert expanded is None or expanded.count("\n") == text.count("\n")
+
+
+REFERENCE = (LAB6.path.parent / LAB6.reference / LAB6.urdf).read_text(encoding="utf-8")
+PLAIN = REFERENCE.replace('rpy="-1.57 0 0"', 'rpy="${-pi/2} 0 0"')
+MACRO = REFERENCE.replace("</robot>", '<xacro:macro name="m" params="p"/>\n</robot>')
+
+
+def handed_in(folder: Path, text: str, *, name: str = "my_robot.urdf", command: bool = True) -> Submission:
+    """The reference package with another URDF, whose launch file has xacro read it, or not."""
+    import shutil
+
+    shutil.copytree(LAB6.path.parent / LAB6.reference, folder / "my_robot")
+    (folder / "my_robot" / LAB6.urdf).unlink()
+    (folder / "my_robot" / "urdf" / name).write_text(text)
+    launch = folder / "my_robot" / "launch" / "my_robot_rviz.launch.py"
+    if command:
+        changed = re.sub(
+            r"    with open.*?read\(\)\n",
+            "    from launch.substitutions import Command\n    robot_description = Command(['xacro ', share + '/my_robot.urdf'])\n",
+            launch.read_text(),
+            flags=re.DOTALL,
+        )
+        assert "Command" in changed
+        launch.write_text(changed)
+    return opened(folder)
+
+
+def test_xacro_that_the_launch_file_expands(tmp_path: Path) -> None:
+    """Numbers are worked out where the launch file has xacro do it; macros are left to a person; else ROS 2 gets it as it is."""
+    plain = handed_in(tmp_path / "plain", PLAIN)
+    assert (plain.xacro, plain.urdf is not None and plain.urdf.verdict) == ("expanded", "clean")
+    assert handed_in(tmp_path / "macro", MACRO).xacro == "left"
+    as_it_is = handed_in(tmp_path / "as-it-is", PLAIN, command=False)
+    assert (as_it_is.xacro, as_it_is.urdf is not None and as_it_is.urdf.verdict) == ("none", "rejected")
+
+
+def test_xacro_by_its_name() -> None:
+    """A file that is named .xacro is meant to be expanded; one named .urdf is not, if nothing says so."""
+    assert read_submission(PLAIN.encode(), identity="a", path="a.urdf.xacro").xacro == "expanded"
+    assert read_submission(MACRO.encode(), identity="a", path="a.xacro").xacro == "left"
+    assert read_submission(PLAIN.encode(), identity="a", path="a.urdf").xacro == "none"
+    assert read_submission(REFERENCE.encode(), identity="a", path="a.xacro").xacro == "none"

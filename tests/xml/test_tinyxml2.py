@@ -1,0 +1,225 @@
+"""TinyXML2's dialect: never a crash, always XML that lxml reads, and the same tree where no translation is needed."""
+
+import pytest
+from hypothesis import assume, example, given, settings
+from hypothesis import strategies as st
+from lxml import etree
+
+from grader.robot.reader import read_urdf
+from grader.xml.tinyxml2 import is_plain, translate
+from grader.xml.tinyxml2.scanner import Scan
+from tests.patience import processor_time
+from tests.robot.soup import data
+
+_PARSER = etree.XMLParser(
+    resolve_entities=False, no_network=True, load_dtd=False, remove_comments=True, remove_pis=True
+)
+
+
+def decoded(raw: bytes) -> str:
+    """A file's text as the reader hands it over."""
+    return raw.decode("utf-8", "surrogateescape")
+
+
+def assert_sound(scan: Scan, text: str) -> None:
+    """The XML parses and has an offset for each element, at its <; without XML there is a reason, or no robot."""
+    for finding in scan.findings:
+        assert 0 <= finding.offset <= len(text)
+        assert finding.message
+    if not scan.xml:
+        return
+    root = etree.fromstring(scan.xml, _PARSER)
+    assert root.tag == "robot"
+    assert len(list(root.iter())) == len(scan.offsets)
+    assert all(text[offset] == "<" for offset in scan.offsets)
+    assert scan.offsets == sorted(scan.offsets)
+    assert not any(finding.kind.effect == "rejects" for finding in scan.findings)
+
+
+@settings(max_examples=2000, deadline=None)
+@given(raw=data)
+@example(raw=b"")
+@example(raw=b"<robot name='&#;'/>")
+@example(raw=b"<robot a=\x1cb/>")
+@example(raw=b"<robot \x1c/>")
+@example(raw=b"<robot\xc2\x85name='r'/>")
+@example(raw=b"\xff\xfe<\0r\0")
+def test_translation_is_sound(raw: bytes) -> None:
+    """Any bytes are translated or refused, and the translation is XML with its offsets."""
+    text = decoded(raw)
+    assert_sound(translate(text), text)
+
+
+@settings(max_examples=300, deadline=None)
+@given(text=st.text(max_size=200))
+def test_any_text_is_translated_or_refused(text: str) -> None:
+    """Text without any tags in mind."""
+    assert_sound(translate(text), text)
+
+
+# --- Where lxml and TinyXML2 agree ------------------------------------------------------------------------------------
+
+_tag = st.sampled_from(("link", "joint", "a", "_b", "c.d-e", "visual", "box", "A1"))
+_value = st.lists(
+    st.sampled_from(
+        ("base", " ", "  ", "0.5", "&amp;", "&lt;", "&gt;", "&quot;", "&apos;", "&#65;", "&#x41;", "é", "&#233;")
+    )
+    | st.sampled_from(
+        ("&#9;", "&#10;", "&#13;", "&#x20;", "'", ">", "=", "/", "&#128;", "&#x1F916;", "\U0001f916", "]]")
+    ),
+    max_size=4,
+).map("".join)
+_blank = st.sampled_from(("", " ", "\n", "\r\n", "\t", "  \n"))
+_gap = st.sampled_from((" ", "\n", "\r\n", "\t", "  \n"))
+_between = st.sampled_from(
+    (
+        "",
+        " ",
+        "\n",
+        "\r\n",
+        "text",
+        "<!---->",
+        "<!-- <link/> -->",
+        "<!-- ' -->",
+        '<!-- " -->',
+        "&amp;",
+        "&#65;",
+        ">",
+        "'",
+        '="',
+    )
+)
+_start = st.sampled_from(
+    ("", "\ufeff", '<?xml version="1.0"?>', "<?xml version='1.0' encoding='utf-8'?>\n", "<!-- first -->", "\n", " \r\n")
+)
+
+
+@st.composite
+def _elements(draw: st.DrawFn, tag: str, depth: int) -> str:
+    names = draw(st.lists(st.sampled_from(("name", "xyz", "type", "a", "b-c", "_d")), unique=True, max_size=3))
+    attributes = "".join(
+        f'{draw(_gap)}{name}{draw(_blank)}={draw(_blank)}"{draw(_value)}"'
+        if draw(st.booleans())
+        else f"{draw(_gap)}{name}={draw(_blank)}'{draw(_value).replace(chr(39), '')}'"
+        for name in names
+    )
+    opening = f"<{tag}{attributes}{draw(_blank)}"
+    if depth == 0 or (tag != "robot" and draw(st.booleans())):
+        return f"{opening}/>"
+    children = [draw(_elements(draw(_tag), depth - 1)) + draw(_between) for _ in range(draw(st.integers(0, 3)))]
+    return f"{opening}>{draw(_between)}{''.join(children)}</{tag}{draw(_blank)}>"
+
+
+_robots = st.builds("{}{}{}".format, _start, _elements("robot", 3), _blank)
+
+
+def tree(root: etree._Element) -> list[tuple[str, dict[str, str]]]:
+    """Tags and attributes in document order."""
+    return [(str(element.tag), {str(k): str(v) for k, v in element.attrib.items()}) for element in root.iter()]
+
+
+def assert_same_if_plain(text: str) -> None:
+    """If the text counts as plain and lxml reads it, the translation holds the same tags and attributes."""
+    raw = text.encode()
+    if is_plain(raw):
+        try:
+            root = etree.fromstring(raw, _PARSER)
+        except etree.XMLSyntaxError:
+            return
+        assert tree(root) == tree(etree.fromstring(translate(text).xml, _PARSER))
+
+
+@settings(max_examples=300, deadline=None)
+@given(text=_robots)
+def test_plain_text_means_the_same_to_lxml(text: str) -> None:
+    """Where no translation is needed, lxml reads the same tags and attributes from the text and the translation."""
+    assume(is_plain(text.encode()))
+    assert_same_if_plain(text)
+
+
+@settings(max_examples=1000, deadline=None)
+@given(
+    values=st.lists(st.text("a=\"'\n\r\t <!-&;", max_size=5), min_size=1, max_size=3),
+    quote=st.sampled_from("\"'"),
+    gap=st.sampled_from(("", " ", "\n", "\t")),
+    between=st.text("a=\"'\n >-", max_size=6),
+)
+@example(values=["a\nb"], quote="'", gap=" ", between="")
+@example(values=["=", "a\nb"], quote="'", gap="", between="")
+@example(values=["='", "\n"], quote='"', gap="", between='="')
+def test_values_with_line_breaks_are_not_plain(values: list[str], quote: str, gap: str, between: str) -> None:
+    """lxml turns a line break or tab in a value into a space, TinyXML2 keeps it: such a text needs the translation."""
+    attributes = "".join(f" a{n}={gap}{quote}{value.replace(quote, '')}{quote}" for n, value in enumerate(values))
+    assert_same_if_plain(f"<robot{attributes}><!--{between}-->{between}<b{attributes}/>{between}</robot>")
+
+
+@settings(max_examples=1500, deadline=None)
+@given(raw=data)
+def test_plain_soup_means_the_same_to_lxml(raw: bytes) -> None:
+    """Also where the text is not meant to be read by anybody; names that XML and TinyXML2 spell apart are left out."""
+    assume(is_plain(raw))
+    try:
+        root = etree.fromstring(raw, _PARSER)
+    except etree.XMLSyntaxError:
+        return
+    if root.tag != "robot":
+        return
+    translated = tree(etree.fromstring(translate(decoded(raw)).xml, _PARSER))
+    for (tag, attributes), (other, others) in zip(tree(root), translated, strict=True):
+        if tag.isascii() and tag.replace("_", "a").isalnum() and not tag.startswith("xml"):
+            assert tag == other
+        assert {name: value for name, value in attributes.items() if name.isascii() and name.isalnum()} == others
+
+
+@settings(max_examples=400, deadline=None)
+@given(text=_robots)
+def test_both_ways_to_read_give_the_same_robot(text: str) -> None:
+    """An empty CDATA section sends a file through the translation: robot, problems and places stay as they are."""
+    head, end, tail = text.rpartition("</")
+    assume(end)
+    assume(tail.startswith("robot"))
+    plain, other = read_urdf(text.encode()), read_urdf(f"{head}<![CDATA[]]></{tail}".encode())
+    assert other.robot == plain.robot
+    assert other.verdict == plain.verdict
+    assert [(each.code, each.message, each.location) for each in other.problems] == [
+        (each.code, each.message, each.location) for each in plain.problems
+    ]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "<?xml version='1.0'?><!-- c --><robot a='1'/>",
+        "<robot a='1\n2'/>",
+        "<robot a='1\t2'/>",
+        '<robot a="1\r\n2"/>',
+        "<robot a = \n'x\ty'/>",
+        "<robot><![CDATA[<a>]]></robot>",
+        "<!DOCTYPE robot><robot/>",
+        "<robot xmlns='u'/>",
+        "<robot xmlns = 'u'/>",
+        "<robot/><?pi?>",
+        "<?xml version='1.1'?><robot/>",
+        "<?xml version='1.0' encoding='latin-1'?><robot/>",
+        "<?xml version='1.0' standalone='yes'?><robot/>",
+        "<?xml version='1.0' encoding='utf-16'?><robot/>",
+        "<robot/>\0",
+    ],
+)
+def test_what_the_two_read_apart_is_not_plain(text: str) -> None:
+    """Values with line breaks, CDATA, DOCTYPE, namespaces and odd declarations are not plain, or mean the same."""
+    assert_same_if_plain(text)
+
+
+@pytest.mark.parametrize(
+    "piece", ["<", ">", "&", "&#", "&#x", '="', "='", "<!", "<!--", "<?", "<a", "<a ", "<a>", "</a>", "\r"]
+)
+@pytest.mark.parametrize(
+    "frame", ["{}", "<robot {}", "<robot a='{}'/>", "<robot>{}</robot>", "<robot/>{}", "<robot/></x>{}"]
+)
+def test_a_long_file_of_one_piece(piece: str, frame: str) -> None:
+    """Time is linear wherever the piece stands: a quarter of a megabyte takes less than a second."""
+    text = frame.format(piece * (2**18 // len(piece)))
+    with processor_time(1.0):
+        is_plain(text.encode())
+        translate(text)
