@@ -65,8 +65,8 @@ def inspect(
             raise InputError(reason)
         case Absent():
             raise InputError(f"{printable_path(path)} holds no URDF: no file has a <robot> in it")
-    if submission.passed_over:
-        complain(f"inspected {urdf.path}; passed over {', '.join(each.path for each in submission.passed_over)}")
+    if submission.other_candidates:
+        complain(f"inspected {urdf.path}; passed over {', '.join(each.path for each in submission.other_candidates)}")
     if isinstance(urdf, Read) and urdf.is_expanded:
         complain(f"{urdf.path} is xacro: its properties and numbers were worked out first")
     robot = _configure(urdf.reading, joint or [])

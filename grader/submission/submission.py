@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 from grader.errors import InputError, MissingElement, NotDecided
 from grader.files.opening import open_tree, tree_name
 from grader.files.reading import URDF_LIMIT, read_capped, read_standard_input, sha256_of
-from grader.files.tree import PassedOver, Tree, make_tree
+from grader.files.tree import Tree, make_tree
 from grader.package.package import NO_PACKAGE, Package
 from grader.robot.reader import Reading, Verdict
 from grader.source import Source
-from grader.submission.urdf import Absent, NeedsExpansion, Read, Unreadable, Urdf, read_as_ros
+from grader.submission.urdf import Absent, NeedsExpansion, OtherCandidate, Read, Unreadable, Urdf, read_as_ros
 from grader.text import printable_path
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ class Submission:
 
     id: str
     urdf: Urdf
-    passed_over: tuple[PassedOver, ...] = ()
+    other_candidates: tuple[OtherCandidate, ...] = ()
     tree: Tree = field(default=_NO_FILES, repr=False)
     packages: tuple[Package, ...] = field(default=(), repr=False)
     is_single: bool = True
@@ -83,9 +83,9 @@ class Submission:
         return self.urdf.reading.verdict if isinstance(self.urdf, Read) else None
 
     @property
-    def left_out(self) -> tuple[str, ...]:
-        """What was not taken in, and why, in one line each."""
-        return self.tree.left_out
+    def ignored(self) -> tuple[str, ...]:
+        """The files that are not read, and why, in one line each."""
+        return tuple(map(str, self.tree.ignored))
 
     @property
     def package(self) -> Package | None:
@@ -96,8 +96,7 @@ class Submission:
         """The package that is graded; raises MissingElement where there is none, NotDecided where that cannot be told."""
         if self.package is not None:
             return self.package
-        if self.tree.unopened:
-            raise NotDecided(f"no package was found, but {', '.join(self.tree.unopened[:3])} could not be opened")
+        self._refuse_unopened("package")
         raise MissingElement("package", "", message=NO_PACKAGE)
 
     def needed_urdf(self) -> Reading:
@@ -108,12 +107,16 @@ class Submission:
             case Unreadable(reason=reason) | NeedsExpansion(reason=reason):
                 raise NotDecided(reason)
             case Absent():
-                if self.tree.unopened:
-                    raise NotDecided(f"no URDF was found, but {', '.join(self.tree.unopened[:3])} could not be opened")
+                self._refuse_unopened("URDF")
         count = len(self.tree.files)
         files = f"none of the {count} files holds a <robot>" if count > 1 else "the only file holds no <robot>"
         message = f"no URDF was submitted: {files}" if count else "no URDF was submitted"
         raise MissingElement("URDF", "", message=message)
+
+    def _refuse_unopened(self, wanted: str) -> None:
+        if self.tree.unopened:
+            archives = ", ".join(archive.path for archive in self.tree.unopened[:3])
+            raise NotDecided(f"no {wanted} was found, but {archives} could not be opened")
 
     def source(self, path: str) -> Source | None:
         """The text of one of its files, for quoting; None where it cannot be read."""
@@ -171,16 +174,16 @@ def submission_of(
 
     packages = read_packages(tree, package, wanted)
     found = find_urdf(tree, wanted, packages[0].folder if packages else None)
-    others = [PassedOver(each.path("package.xml"), why_not(packages[0], each, wanted)) for each in packages[1:]]
+    others = [OtherCandidate(each.path("package.xml"), why_not(packages[0], each, wanted)) for each in packages[1:]]
     urdf: Urdf = Absent()
     if found.path is not None:
         try:
             urdf = read_as_ros(tree.files[found.path].read(limit), found.path, packages[0] if packages else None)
         except InputError as error:  # the rest of the submission is graded all the same
             urdf = Unreadable(found.path, str(error))
-    passed_over = (*found.passed_over, *others)
-    return Submission(identity, urdf, passed_over, tree, packages, is_single=False, no_documents=no_documents)
+    other_candidates = (*found.other_candidates, *others)
+    return Submission(identity, urdf, other_candidates, tree, packages, is_single=False, no_documents=no_documents)
 
 
 def _because(tree: Tree) -> str:
-    return f": {tree.left_out[0]}" if tree.left_out else " (hidden files and folders of builds are not looked at)"
+    return f": {tree.ignored[0]}" if tree.ignored else " (hidden files and folders of builds are not looked at)"

@@ -1,12 +1,20 @@
 """The URDF of a submission, as one of four states."""
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from grader.package.package import Package
 from grader.problems import Problem
 from grader.robot.catalogue import RAW_XACRO
 from grader.robot.reader import Reading, read_urdf
 from grader.source import Source
+
+
+class OtherCandidate(NamedTuple):
+    """A file that could have been graded, and why another one is."""
+
+    path: str
+    reason: str
 
 
 @dataclass(frozen=True, slots=True)

@@ -116,11 +116,11 @@ def _nothing_readable(submission: Submission) -> str:
         return ""
     tree, closed = submission.tree, submission.tree.unopened
     if closed:
-        because = next((line for line in tree.left_out if line.startswith(closed[0])), f"{closed[0]} cannot be opened")
+        because = str(closed[0])
         more = f" (nor could {len(closed) - 1} more be opened)" if len(closed) > 1 else ""
         return f"nothing to grade was found: {because}{more}"
     if not tree.generated and all(file.suffix in ARCHIVES for file in tree.files.values()):
-        because = tree.left_out[0] if tree.left_out else f"{next(iter(tree.files))} is empty"
+        because = str(tree.ignored[0]) if tree.ignored else f"{next(iter(tree.files))} is empty"
         return f"nothing to grade was found: {because}"
     return ""
 
