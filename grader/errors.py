@@ -6,7 +6,19 @@ class GraderError(Exception):
 
 
 class InputError(GraderError):
-    """What was named cannot be read: missing, a directory without a URDF, too large, not a file."""
+    """What was named cannot be read: missing, a folder without a URDF, too large, not a file."""
+
+
+class FileError(InputError):
+    """A file that cannot be read; the message is its path and the reason: `a.zip` and `is encrypted`."""
+
+    def __init__(self, path: str, reason: str) -> None:
+        super().__init__(path, reason)
+        self.path = path
+        self.reason = reason
+
+    def __str__(self) -> str:
+        return f"{self.path} {self.reason}"
 
 
 class RubricError(GraderError):

@@ -7,6 +7,7 @@ from grader.errors import MissingElement, NotDecided
 from grader.names import did_you_mean
 from grader.package.package import Package
 from grader.submission.submission import Submission
+from grader.submission.urdf import NeedsExpansion, Read
 
 if TYPE_CHECKING:
     from grader.package.launch.model import Launch
@@ -35,7 +36,7 @@ def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: s
     actual = rviz.fixed_frame
     if not actual:
         return judged_as("failed", f"the RViz file sets no Fixed Frame, expected {frame!r}", at=rviz.frame_location)
-    robot = submission.urdf.robot if submission.urdf is not None else None
+    robot = submission.urdf.reading.robot if isinstance(submission.urdf, Read | NeedsExpansion) else None
     links = [link.name for link in robot.links] if robot is not None else []
     message = f"the Fixed Frame is {actual!r}"
     if actual == frame:

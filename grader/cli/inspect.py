@@ -57,29 +57,31 @@ def inspect(
     """
     from grader.report.inspection import Inspection, inspection_json, inspection_terminal, main_root
     from grader.submission.submission import open_submission
+    from grader.submission.urdf import Absent, Read, Unreadable
 
     submission = open_submission(path, wanted=_ANY_URDF, limit=max_size)
-    if submission.unread:
-        raise InputError(submission.unread)
-    if submission.urdf is None or submission.path is None:
-        raise InputError(f"{printable_path(path)} holds no URDF: no file has a <robot> in it")
-    if submission.passed_over:
-        complain(f"inspected {submission.path}; passed over {', '.join(each.path for each in submission.passed_over)}")
-    if submission.xacro == "expanded":
-        complain(f"{submission.path} is xacro: its properties and numbers were worked out first")
-    robot = _configure(submission.urdf, joint or [])
+    match urdf := submission.urdf:
+        case Unreadable(reason=reason):
+            raise InputError(reason)
+        case Absent():
+            raise InputError(f"{printable_path(path)} holds no URDF: no file has a <robot> in it")
+    if submission.other_candidates:
+        complain(f"inspected {urdf.path}; passed over {', '.join(each.path for each in submission.other_candidates)}")
+    if isinstance(urdf, Read) and urdf.is_expanded:
+        complain(f"{urdf.path} is xacro: its properties and numbers were worked out first")
+    robot = _configure(urdf.reading, joint or [])
     frame = relative_to
     if robot is not None and frame is None:
         frame = main_root(robot)
     elif robot is not None and frame is not None and not robot.robot.has_link(frame):
         known = ", ".join(repr(link.name) for link in robot.robot.links[:20])
         raise GraderError(f"--relative-to: there is no link {frame!r}; the file has: {known}")
-    inspection = Inspection(submission.path, submission.urdf, robot, frame)
+    inspection = Inspection(urdf.path, urdf.reading, robot, frame)
     if output_format is InspectFormat.JSON:
         emit(inspection_json(inspection))
     else:
         emit(draw(partial(inspection_terminal, inspection)))
-    return 1 if submission.urdf.verdict == "rejected" else 0
+    return 1 if urdf.reading.verdict == "rejected" else 0
 
 
 def _configure(urdf: "Reading", given: list[str]) -> "Configuration | None":

@@ -8,32 +8,24 @@ from functools import partial
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
-from grader.errors import InputError
-from grader.files.archive import (
-    ARCHIVE_LIMIT,
-    DAMAGED,
-    MAX_ARCHIVE_SIZE,
-    bounded,
-    inside,
-    read_archive,
-    tree_of,
-    words_of,
-    zip_members,
-)
-from grader.files.members import Member
-from grader.files.opening import ARCHIVES, archive_kind
+from grader.errors import FileError, InputError
+from grader.files import limits
+from grader.files.archive import read_archive, tree_of
+from grader.files.members import ARCHIVE_ERRORS, NOT_REGULAR, Member, error_text, safe_path
+from grader.files.opening import ARCHIVES, NOT_AN_ARCHIVE, archive_kind
 from grader.files.tree import File, Tree
+from grader.files.zip_members import zip_members
 from grader.text import printable_path
 
 if TYPE_CHECKING:
     import hashlib
 
-_MOST_MEMBERS = 200_000
+_MAX_MEMBERS = 200_000
 _IN_MEMORY = 16 * 1024 * 1024
 _CHUNK = 1024 * 1024
 
 
-class Bulk:
+class ClassZip:
     """An open zip of many hand-ins. Its paths are those of its members, with forward slashes. Raises InputError."""
 
     def __init__(self, path: Path) -> None:
@@ -43,11 +35,11 @@ class Bulk:
             file = path.open("rb")
             weakref.finalize(self, file.close)
             for member in zip_members(file):
-                self._members[inside(member.path) or ""] = member
-                if len(self._members) > _MOST_MEMBERS:
-                    raise InputError(f"{self._shown} holds more than {_MOST_MEMBERS} files")
-        except DAMAGED as error:
-            raise InputError(f"{self._shown} cannot be read as an archive: {words_of(error)}") from None
+                self._members[safe_path(member.path) or ""] = member
+                if len(self._members) > _MAX_MEMBERS:
+                    raise FileError(self._shown, f"holds more than {_MAX_MEMBERS} files")
+        except ARCHIVE_ERRORS as error:
+            raise FileError(self._shown, f"cannot be read as an archive: {error_text(error)}") from None
         self._names = sorted(self._members)
 
     def folder(self, path: str) -> Tree:
@@ -78,34 +70,34 @@ class Bulk:
         """
         member, name = self._member(path), path.rpartition("/")[2]
         if member.kind != "file":
-            raise InputError(f"{name} {member.reason or 'is not a regular file, and was not read'}")
-        if member.size > MAX_ARCHIVE_SIZE:
-            raise InputError(f"{name} is larger than {MAX_ARCHIVE_SIZE} bytes, the limit for an archive")
+            raise FileError(name, member.reason or NOT_REGULAR)
+        if member.size > limits.MAX_ARCHIVE_SIZE:
+            raise limits.too_large(name)
         kind = None
         stored = tempfile.SpooledTemporaryFile(max_size=_IN_MEMORY)  # noqa: SIM115  its tree closes it
         try:
             kind = _copied(member, stored, digest)
             if kind is not None:
                 return read_archive(stored, kind, path)
-        except DAMAGED as error:
-            raise InputError(f"cannot read {name}: {words_of(error)}") from None
+        except ARCHIVE_ERRORS as error:
+            raise InputError(f"cannot read {name}: {error_text(error)}") from None
         finally:
             if kind is None:
                 stored.close()
         if path.lower().endswith(ARCHIVES):
-            raise InputError(f"{path} is no archive that can be read, for all its name: it is damaged or empty")
+            raise FileError(path, NOT_AN_ARCHIVE)
         return None
 
     def _file_of(self, path: str) -> File:
         tree = self.files({path: path.rpartition("/")[2]}, path)
         for file in tree.files.values():
             return file
-        raise InputError(tree.left_out[0] if tree.left_out else f"{path} cannot be read")
+        raise InputError(str(tree.ignored[0]) if tree.ignored else f"{path} cannot be read")
 
     def _member(self, path: str) -> Member:
         member = self._members.get(path)
         if member is None:
-            raise InputError(f"{path} is not in {self._shown}")
+            raise FileError(path, f"is not in {self._shown}")
         return member
 
     def _named(self, member: Member, path: str) -> Member:
@@ -117,9 +109,9 @@ class Bulk:
 
     def _tree(self, members: list[Member], name: str) -> Tree:
         try:
-            return tree_of(bounded(members, name, ARCHIVE_LIMIT), name)
-        except DAMAGED as error:
-            raise InputError(f"{name} cannot be read: {words_of(error)}") from None
+            return tree_of(members, name)
+        except ARCHIVE_ERRORS as error:
+            raise FileError(name, f"cannot be read: {error_text(error)}") from None
 
 
 def _copied(member: Member, to: IO[bytes], digest: "hashlib._Hash") -> str | None:

@@ -7,24 +7,15 @@ from functools import partial
 from itertools import islice
 from pathlib import Path
 
-from grader.errors import InputError
+from grader.errors import FileError, InputError
+from grader.files import limits
+from grader.files.ignore_rules import BUILD_FOLDERS, IGNORED_FOLDERS, ignored_part, is_generated
 from grader.files.reading import advice_for, capped, read_start
-from grader.files.tree import (
-    BUILT,
-    IGNORED,
-    MOST_FILES,
-    File,
-    Tree,
-    clean,
-    is_generated,
-    is_ignored,
-    make_tree,
-    parents,
-    too_many,
-)
+from grader.files.tree import File, IgnoredFile, Tree, make_tree, parents
 from grader.text import printable_path
 
-_MOST_GENERATED = 10_000
+_MAX_GENERATED = 10_000  # files of builds that are looked through for URDFs
+_IS_SYMLINK = "is a symlink, and was not followed"
 
 
 def read_folder(folder: Path, top: str = "") -> Tree:
@@ -38,7 +29,7 @@ def read_folder(folder: Path, top: str = "") -> Tree:
     walk = _Walk(folder, top)
     walk.enter("", linked=False)
     name = printable_path(folder.resolve().name or "submission")
-    return make_tree(name, walk.files, walk.folders, sorted(walk.left_out), sorted(walk.generated), walk.unseen)
+    return make_tree(name, walk.files, walk.folders, sorted(walk.ignored), sorted(walk.generated), walk.unseen)
 
 
 class _Walk:
@@ -49,12 +40,12 @@ class _Walk:
         self._top = os.path.realpath(folder)
         self._trusted = os.path.realpath(top) if top else self._top
         if top and self._top != os.path.normpath(f"{self._trusted}{os.fspath(folder).removeprefix(top)}"):
-            raise InputError(f"{printable_path(folder.name)} is a symlink, and was not followed")
+            raise FileError(printable_path(folder.name), _IS_SYMLINK)
         self._count = 0
         self._by_link: set[str] = set()
         self.files: list[File] = []
         self.folders: list[str] = []
-        self.left_out: list[str] = []
+        self.ignored: list[IgnoredFile] = []
         self.generated: list[str] = []
         self.unseen: list[str] = []
 
@@ -67,8 +58,8 @@ class _Walk:
             real_folder = os.path.realpath(self._folder / where) if linked else f"{self._top}/{where}".rstrip("/")
             for entry in self._entries(where):
                 self._count += 1
-                if self._count > MOST_FILES:
-                    raise too_many(printable_path(self._folder))
+                if self._count > limits.MAX_FILES:
+                    raise limits.too_many(printable_path(self._folder))
                 path = f"{where}/{entry.name}" if where else entry.name
                 if not self._is_ignored(entry, path) and self._take(entry, path, real_folder):
                     (links if entry.is_symlink() else waiting).append(path)
@@ -76,28 +67,28 @@ class _Walk:
             real = os.path.realpath(self._folder / path)
             if not linked and real not in self._by_link:
                 self._by_link.add(real)
-                self.folders.append(clean(path))
+                self.folders.append(printable_path(path))
                 self.enter(path, linked=True)
 
     def _is_ignored(self, entry: "os.DirEntry[str]", path: str) -> bool:
-        if entry.name not in IGNORED and not is_ignored(clean(path)):
+        if entry.name not in IGNORED_FOLDERS and not ignored_part(printable_path(path)):
             return False
         if entry.is_dir(follow_symlinks=False):
-            self.unseen.append(clean(path))
-        if entry.name in BUILT and not entry.is_symlink():
+            self.unseen.append(printable_path(path))
+        if entry.name in BUILD_FOLDERS and not entry.is_symlink():
             self.generated += _generated(self._folder, path)
         return True
 
     def _take(self, entry: "os.DirEntry[str]", path: str, real_folder: str) -> bool:
         """Take in a file, or say what is left out; True for a folder that is to be entered."""
-        shown = clean(path)
+        shown = printable_path(path)
         try:
             real = os.path.realpath(entry.path) if entry.is_symlink() else ""
             is_folder, is_file = entry.is_dir(), entry.is_file()
         except OSError:  # such as a link to itself
             real, is_folder, is_file = "", False, False
         if real and real != self._top and not real.startswith(self._top.rstrip(os.sep) + os.sep):
-            self.left_out.append(f"{shown} is a link that leads out of the submission, and was not followed")
+            self._ignore(shown, "is a link that leads out of the submission, and was not followed")
         elif is_folder:
             in_itself = real and f"{self._top}/{path}".startswith(real + "/")
             if in_itself or os.path.lexists(entry.path + "/pyvenv.cfg"):
@@ -109,26 +100,29 @@ class _Walk:
             place = real or f"{real_folder}/{entry.name}"
             self.files.append(File(shown, _size(entry), partial(_read, place, shown, self._trusted)))
         elif entry.is_symlink() and not Path(entry.path).exists():
-            self.left_out.append(f"{shown} is a link that leads nowhere, and was not followed")
+            self._ignore(shown, "is a link that leads nowhere, and was not followed")
         else:
-            self.left_out.append(f"{shown} is not a regular file, and was not read")
+            self._ignore(shown, "is not a regular file, and was not read")
         return False
+
+    def _ignore(self, path: str, reason: str) -> None:
+        self.ignored.append(IgnoredFile(path, reason))
 
     def _entries(self, where: str) -> list["os.DirEntry[str]"]:
         try:
             with os.scandir(self._folder / where) as found:
-                return sorted(islice(found, MOST_FILES + 1), key=lambda each: each.name)
+                return sorted(islice(found, limits.MAX_FILES + 1), key=lambda entry: entry.name)
         except OSError as error:
             if not where:
                 raise InputError(f"cannot read {printable_path(self._folder)}: {error.strerror}") from None
-            self.left_out.append(f"{clean(where)} is a folder that cannot be opened: {error.strerror}")
+            self._ignore(printable_path(where), f"is a folder that cannot be opened: {error.strerror}")
             return []
 
 
 def is_looked_at(folder: Path, path: str) -> bool:
     """Whether `read_folder` takes in what stands at a path, relative to the folder, or would if something stood there."""
     steps = path.split("/")
-    if not IGNORED.isdisjoint(steps) or is_ignored(clean(path)):
+    if not IGNORED_FOLDERS.isdisjoint(steps) or ignored_part(printable_path(path)):
         return False
     return not any(os.path.lexists(folder / above / "pyvenv.cfg") for above in parents(path))
 
@@ -143,7 +137,7 @@ def file_at(path: Path, name: str, top: str) -> File:
     except OSError as error:
         raise InputError(f"cannot read {name}: {error.strerror}") from None
     if stat.S_ISLNK(status.st_mode):
-        raise InputError(f"{name} is a symlink, and was not followed")
+        raise FileError(name, _IS_SYMLINK)
     return File(name, status.st_size, partial(_read, os.fspath(path), name, top))
 
 
@@ -155,10 +149,12 @@ def _generated(folder: Path, path: str) -> list[str]:
         for where, folders, names in os.walk(folder / path):
             folders.sort()
             seen += len(names) + len(folders)
-            if seen > _MOST_GENERATED:
+            if seen > _MAX_GENERATED:
                 break
             found += [
-                clean(os.path.relpath(f"{where}/{name}", folder)) for name in names if is_generated("build/" + name)
+                printable_path(os.path.relpath(f"{where}/{name}", folder))
+                for name in names
+                if is_generated("build/" + name)
             ]
     return found
 

@@ -2,27 +2,34 @@
 
 import os
 import tempfile
+from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path, PurePosixPath
-from typing import TYPE_CHECKING
 
-from grader.errors import InputError
-from grader.files.reading import MAX_FILE_SIZE, not_there, open_regular, read_start
-from grader.files.tree import MOST_FILES, File, Tree, make_tree, too_many
+from grader.errors import FileError, InputError
+from grader.files import limits
+from grader.files.limits import Allowance
+from grader.files.reading import not_there, open_regular, read_start
+from grader.files.tree import File, IgnoredFile, Tree, make_tree
 from grader.text import printable_path
 
-if TYPE_CHECKING:
-    from grader.files.archive import Allowance
-
 ARCHIVES = (".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar")
-_MOST_NESTED = 3
-_WORTH_FINDING = ("package.xml", "setup.py")
+NOT_AN_ARCHIVE = "is no archive, although it is named as one: it is damaged or empty"
+_PACKAGE_FILES = ("package.xml", "setup.py")
+_SIGNATURES = {
+    b"PK\x03\x04": "zip",
+    b"PK\x05\x06": "zip",
+    b"\x1f\x8b": "gz",
+    b"BZh": "bz2",
+    b"\xfd7zXZ\0": "xz",
+    b"7z\xbc\xaf\x27\x1c": "7z",
+    b"Rar!": "rar",
+}
 
 
 def archive_kind(start: bytes) -> str | None:
-    """What the first 512 bytes of a file say that it is: zip, tar, gz, bz2, xz, 7z, rar, or None."""
-    signatures = {b"PK\x03\x04": "zip", b"PK\x05\x06": "zip", b"\x1f\x8b": "gz", b"BZh": "bz2", b"\xfd7zXZ\0": "xz"}
-    signatures |= {b"7z\xbc\xaf\x27\x1c": "7z", b"Rar!": "rar"}
-    for signature, kind in signatures.items():
+    """Return the kind of archive that the first 512 bytes of a file belong to: zip, tar, gz, bz2, xz, 7z, rar, or None."""
+    for signature, kind in _SIGNATURES.items():
         if start.startswith(signature):
             return kind
     return "tar" if start[257:262] == b"ustar" else None
@@ -56,7 +63,7 @@ def outer_tree(path: Path, top: str = "") -> Tree | None:
     kind = archive_kind(read_start(path, 512, top=top))
     if kind is None:
         if path.name.lower().endswith(ARCHIVES):
-            raise InputError(f"{shown} is no archive that can be read, for all its name: it is damaged or empty")
+            raise FileError(shown, NOT_AN_ARCHIVE)
         return None
     from grader.files.archive import read_archive
 
@@ -65,62 +72,60 @@ def outer_tree(path: Path, top: str = "") -> Tree | None:
 
 def tree_name(path: Path) -> str:
     """What a submission is called: the name of its folder, or of its file without the endings."""
-    try:
-        is_folder = path.is_dir()
-    except OSError:
-        is_folder = False
-    return (
-        printable_path(path.resolve().name or "submission") if is_folder else printable_path(without_endings(str(path)))
-    )
+    with suppress(OSError):
+        if path.is_dir():
+            return printable_path(path.resolve().name or "submission")
+    return printable_path(without_endings(str(path)))
 
 
-def with_inner(tree: Tree, allowance: "Allowance | None" = None, depth: int = 0) -> Tree:
-    """The tree with what is in its archives, unless a package and a URDF stand beside them."""
+def with_inner(tree: Tree, allowance: Allowance | None = None, depth: int = 0) -> Tree:
+    """Return the tree with what is in its archives, unless a package and a URDF are beside them."""
     archives = [file for file in tree.files.values() if file.suffix in ARCHIVES]
-    has_package = any(file.name in _WORTH_FINDING for file in tree.files.values())
+    has_package = any(file.name in _PACKAGE_FILES for file in tree.files.values())
     if not archives or (has_package and any(file.suffix == ".urdf" for file in tree.files.values())):
         return tree
-    from grader.files.archive import Allowance
-
     allowance = allowance or Allowance()
-    files, folders, left_out = list(tree.files.values()), set(tree.folders), list(tree.left_out)
-    generated, unseen = list(tree.generated), set(tree.unseen)
-    kept, unopened = [tree], list(tree.unopened)
+    parts = [("", tree)]
+    unopened = []
+    count = len(tree.files)
     for archive in archives:
         try:
             inner = _inner(archive, allowance, depth)
-            if len(files) + len(inner.files) > MOST_FILES:
-                raise too_many(archive.path)
+            count += len(inner.files)
+            if count > limits.MAX_FILES:
+                count -= len(inner.files)
+                raise limits.too_many(archive.path)
         except InputError as error:
-            left_out.append(str(error))
-            unopened.append(archive.path)
-            continue
-        kept.append(inner)
-        start = archive.path + "/"
-        files += [File(start + file.path, file.size, file.read) for file in inner.files.values()]
-        folders |= {start + folder for folder in inner.folders}
-        left_out += [f"{start}{each}" for each in inner.left_out]
-        generated += [start + each for each in inner.generated]
-        unseen |= {start + folder for folder in inner.unseen}
-        unopened += [start + each for each in inner.unopened]
-    return make_tree(tree.name, files, folders, left_out, generated, unseen, unopened, tuple(kept))
+            reason = error.reason if isinstance(error, FileError) else f"cannot be opened: {error}"
+            unopened.append(IgnoredFile(archive.path, reason, is_archive=True))
+        else:
+            parts.append((archive.path + "/", inner))
+    return make_tree(
+        tree.name,
+        [replace(file, path=start + file.path) for start, part in parts for file in part.files.values()],
+        [start + folder for start, part in parts for folder in part.folders],
+        [*(file._replace(path=start + file.path) for start, part in parts for file in part.ignored), *unopened],
+        [start + path for start, part in parts for path in part.generated],
+        [start + folder for start, part in parts for folder in part.unseen],
+        tuple(part for _, part in parts),
+    )
 
 
-def _inner(archive: File, allowance: "Allowance", depth: int) -> Tree:
-    """What is in an archive inside of another one, or of a folder; raises InputError."""
+def _inner(archive: File, allowance: Allowance, depth: int) -> Tree:
+    """Return what is in an archive inside of another one, or of a folder; raises InputError."""
     from grader.files.archive import read_archive
 
-    if depth >= _MOST_NESTED:
-        raise InputError(f"{archive.path} is an archive inside of an archive, too deep to be opened")
+    if depth >= limits.MAX_NESTED:
+        raise FileError(archive.path, "is an archive inside of an archive, nested too deep to be opened")
     allowance.archives -= 1
     if allowance.archives < 0:
-        raise InputError(f"{archive.path} was not opened: there are too many archives")
+        raise FileError(archive.path, "was not opened: there are too many archives")
     kind = archive_kind(archive.read(512, first=True))
     if kind is None:
-        raise InputError(f"{archive.path} is no archive that can be read, for all its name: it is damaged or empty")
-    allowance.spend(archive.size, archive.path)
+        raise FileError(archive.path, NOT_AN_ARCHIVE)
+    allowance.spend(archive.path, unpacked=archive.size)
     stored = tempfile.TemporaryFile()  # noqa: SIM115  its tree closes it
-    stored.write(archive.read(MAX_FILE_SIZE))
+    stored.write(archive.read(limits.MAX_FILE_SIZE))
     return with_inner(read_archive(stored, kind, archive.path, allowance), allowance, depth + 1)
 
 

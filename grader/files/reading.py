@@ -11,12 +11,11 @@ from grader.errors import InputError
 from grader.text import printable_path
 
 URDF_LIMIT = 1024 * 1024  # bytes
-MAX_FILE_SIZE = 64 * 1024 * 1024  # bytes of one file of a submission: a larger one is ignored
 # A FIFO would block at open and a device could be endless: both are recognised without reading.
 _FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
 _FOLDER = os.O_RDONLY | getattr(os, "O_DIRECTORY", 0) | getattr(os, "O_CLOEXEC", 0)
 _OPENS_IN_FOLDERS = os.open in os.supports_dir_fd and hasattr(os, "O_NOFOLLOW")
-_MOST_BESIDE = 1000  # names in a folder that are compared with one that is not there
+_MAX_BESIDE = 1000  # names in a folder that are compared with one that is not there
 _ADVICE = " for a URDF (--max-size raises it)"
 
 
@@ -124,7 +123,7 @@ def not_there(path: Path) -> InputError:
     while wrong.name and not os.path.lexists(wrong.parent):
         wrong = wrong.parent
     try:
-        beside = [printable_path(each.name) for each in islice(wrong.parent.iterdir(), _MOST_BESIDE)]
+        beside = [printable_path(each.name) for each in islice(wrong.parent.iterdir(), _MAX_BESIDE)]
     except (OSError, ValueError):
         beside = []
     guess = closest(printable_path(wrong.name), beside)

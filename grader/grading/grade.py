@@ -16,13 +16,13 @@ from grader.robot.catalogue import (
     COLOUR_COUNT,
     DEFAULT_AXIS,
     DEGREES,
-    RAW_XACRO,
     UNDEFINED_MATERIAL,
 )
 from grader.robot.kinematics import Configuration
 from grader.robot.shapes import UnknownShape
 from grader.source import Location, Spot
 from grader.submission.submission import Submission
+from grader.submission.urdf import NeedsExpansion, Read
 from grader.text import quoted
 
 # Problems that say why a measurement came out as it did.
@@ -36,9 +36,7 @@ def grade(rubric: Rubric, submission: Submission, parts: Sequence[str] = ()) -> 
     for criterion in rubric.criteria:
         if criterion.part in chosen:
             run.decide(criterion)
-    problems = submission.urdf.problems if submission.urdf is not None else ()
-    if submission.xacro == "left":
-        problems = tuple(problem for problem in problems if problem.kind is RAW_XACRO)
+    problems = submission.urdf.problems if isinstance(submission.urdf, Read | NeedsExpansion) else ()
     if submission.package is not None and any(rubric.part(each).needs == "package" for each in chosen):
         from grader.package.linting import remarks  # a URDF on its own needs none of what reads a package
 
@@ -52,16 +50,16 @@ class _Run:
 
     def __init__(self, submission: Submission) -> None:
         self.submission = submission
-        self.urdf = submission.urdf
+        self.urdf = submission.urdf.reading if isinstance(submission.urdf, Read) else None
         robot = self.urdf.robot if self.urdf is not None else None
         self.robot = Configuration(robot) if robot is not None else None
         self.results: dict[str, Result] = {}
         self.missed: dict[tuple[str, str], str] = {}
         self._at_hand: dict[Subject, object] = {"submission": submission}
-        if submission.urdf is not None and submission.xacro != "left":
-            self._at_hand["urdf"] = submission.urdf
-            if self.robot is not None:
-                self._at_hand["robot"] = self.robot
+        if self.urdf is not None:
+            self._at_hand["urdf"] = self.urdf
+        if self.robot is not None:
+            self._at_hand["robot"] = self.robot
 
     @property
     def _problems(self) -> tuple[Problem, ...]:

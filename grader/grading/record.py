@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 from grader.checks.handed_in import answered
 from grader.checks.outcome import Outcome
 from grader.documents.evidence import Exhibit
-from grader.files.tree import PassedOver
 from grader.grading.report import Exhibits, Report, Result
 from grader.grading.rubric import Rubric
 from grader.problems import Kind, Problem
 from grader.robot.reader import Verdict
 from grader.source import Location, Source
+from grader.submission.urdf import OtherCandidate
 
 Quote = Callable[[str], Source | None]  # the text of one file of a submission; None where it cannot be read
 
@@ -33,8 +33,8 @@ class Kept:
     path: str | None = None
     sha256: str | None = None
     package: KeptPackage | None = None
-    passed_over: tuple[PassedOver, ...] = ()
-    left_out: tuple[str, ...] = ()
+    other_candidates: tuple[OtherCandidate, ...] = ()
+    ignored: tuple[str, ...] = ()
     has_urdf: bool = False
     verdict: Verdict | None = None
     is_single: bool = False
@@ -69,7 +69,7 @@ def to_record(report: Report, template: Template | None = None) -> str:
         "version": report.version,
         "submission": [
             kept.id, kept.path, kept.sha256, (package.folder, package.name) if package is not None else None,
-            kept.passed_over, kept.left_out, kept.has_urdf, kept.verdict, kept.is_single, kept.unread,
+            kept.other_candidates, kept.ignored, kept.has_urdf, kept.verdict, kept.is_single, kept.unread,
         ],
         "parts": report.parts,
         "results": [_result(same, each) for each in report.results],
@@ -86,14 +86,16 @@ def from_record(text: str, rubric: Rubric, quote: Quote | None = None, template:
     """The report that a record was made from, with the same rubric and template."""
     same = template.outcomes if template is not None else {}
     data = json.loads(text)
-    identity, path, sha256, package, passed_over, left_out, has_urdf, verdict, is_single, unread = data["submission"]
+    identity, path, sha256, package, other_candidates, ignored, has_urdf, verdict, is_single, unread = data[
+        "submission"
+    ]
     kept = Kept(
         identity,
         path,
         sha256,
         KeptPackage(*package) if package is not None else None,
-        tuple(PassedOver(*each) for each in passed_over),
-        tuple(left_out),
+        tuple(OtherCandidate(*each) for each in other_candidates),
+        tuple(ignored),
         has_urdf,
         verdict,
         is_single,

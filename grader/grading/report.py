@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from grader import __version__
 from grader.checks.outcome import Outcome
-from grader.files.tree import PassedOver
 from grader.grading.rubric import Criterion, Evidence, Rubric
 from grader.problems import Problem
 from grader.robot.reader import Verdict
 from grader.source import Source
+from grader.submission.urdf import OtherCandidate
 
 if TYPE_CHECKING:
     from grader.documents.evidence import Exhibit
@@ -88,11 +88,11 @@ class HandedIn(Protocol):
         """The package that is graded."""
 
     @property
-    def passed_over(self) -> tuple[PassedOver, ...]:
+    def other_candidates(self) -> tuple[OtherCandidate, ...]:
         """Files that might have been graded."""
 
     @property
-    def left_out(self) -> tuple[str, ...]:
+    def ignored(self) -> tuple[str, ...]:
         """What was not taken in, and why."""
 
     @property

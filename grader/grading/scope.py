@@ -7,6 +7,7 @@ from grader.errors import InputError
 from grader.grading.report import Exhibits
 from grader.grading.rubric import Rubric
 from grader.submission.submission import Submission
+from grader.submission.urdf import Read
 
 if TYPE_CHECKING:
     from grader.documents.evidence import Exhibit
@@ -26,7 +27,7 @@ def chosen_parts(
     graded = {part.id for part in parts if part.needs == "urdf" or not submission.is_single}
     chosen = tuple(part.id for part in rubric.parts if part.id in graded)
     left = [part.id for part in parts if part.id not in graded]
-    notes: tuple[str, ...] = (_XACRO,) if submission.xacro == "expanded" else ()
+    notes: tuple[str, ...] = (_XACRO,) if isinstance(submission.urdf, Read) and submission.urdf.is_expanded else ()
     package, path = submission.package, submission.path
     if package is not None and path is not None and not path.startswith(f"{package.folder}/" if package.folder else ""):
         notes += ("the URDF that is graded stands outside of the package that is graded",)

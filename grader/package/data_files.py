@@ -7,7 +7,8 @@ from pathlib import PurePosixPath
 from typing import NamedTuple
 
 from grader.errors import InputError
-from grader.files.tree import Tree, is_ignored
+from grader.files.ignore_rules import ignored_part
+from grader.files.tree import Tree
 from grader.names import did_you_mean
 from grader.package.globbing import BeyondError, Listing
 from grader.static_python.methods import FOLDER, names_the_folder
@@ -155,7 +156,7 @@ class Entries:
             )
         elif str(PurePosixPath(text)) in self.tree.files:
             self.unknown.append(Unknown(f"whether {text} is taken for a file depends on the version of setuptools", at))
-        elif is_ignored(posixpath.normpath(text)):
+        elif ignored_part(posixpath.normpath(text)):
             self.unknown.append(Unknown(f"{text} is among files that are not looked at", at))
         else:
             guess = did_you_mean(text, self.tree.files) if len(self.stops) < _MOST_GUESSES else ""

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, NamedTuple
 
-from grader.files.tree import is_ignored
+from grader.files.ignore_rules import ignored_part
 from grader.package.globbing import BeyondError, Listing
 from grader.static_python.values import Made, Spot, Steering, TooHard, Unknown, Value, unknown_in
 
@@ -91,7 +91,7 @@ class _Package:
         """The file or folder that a path leads to; None where there is nothing. Raises BeyondError."""
         path = self.inside(value)
         real = self.listing.real(path)
-        if real is None and is_ignored(posixpath.normpath(path)):
+        if real is None and ignored_part(posixpath.normpath(path)):
             raise BeyondError(f"{path} is among files that are not looked at")
         return real
 

@@ -91,8 +91,8 @@ def notes(report: Report) -> list[str]:
 
 def asides(report: Report) -> list[str]:
     """What might have been graded and was not, and what was not read: of many the first, and how many more there are."""
-    every = [f"Passed over {each.path}: {each.because}" for each in report.submission.passed_over]
-    every += [f"Left out: {each}" for each in report.submission.left_out]
+    every = [f"Passed over {each.path}: {each.reason}" for each in report.submission.other_candidates]
+    every += [f"Left out: {each}" for each in report.submission.ignored]
     more = [f"... and {len(every) - _MOST_LISTED} more"] if len(every) > _MOST_LISTED else []
     return [printable(each) for each in (*every[:_MOST_LISTED], *more)]
 

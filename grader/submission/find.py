@@ -4,11 +4,12 @@ import re
 from typing import NamedTuple
 
 from grader.errors import InputError
-from grader.files.tree import File, PassedOver, Tree
+from grader.files.tree import File, Tree
 from grader.names import closest
 from grader.package.manifest import Manifest, read_manifest
 from grader.package.package import MANIFEST, SETUP, Package
 from grader.source import Location, Source
+from grader.submission.urdf import OtherCandidate
 
 _SNIFFED = 4096  # bytes in which <robot has to stand
 _MOST_SNIFFED = 400
@@ -22,7 +23,7 @@ class Found(NamedTuple):
     """The file that is graded, if there is one, and those that might have been."""
 
     path: str | None
-    passed_over: tuple[PassedOver, ...]
+    other_candidates: tuple[OtherCandidate, ...]
 
 
 class _Candidate(NamedTuple):
@@ -57,8 +58,8 @@ def find_urdf(tree: Tree, wanted: str, package: str | None = None) -> Found:
     if not ranked:
         return Found(None, _generated(tree))
     best, *others = ranked
-    passed_over = [PassedOver(each.path, _reason(best, each, wanted)) for each in others]
-    return Found(best.path, (*passed_over, *_generated(tree)))
+    other_candidates = [OtherCandidate(each.path, _reason(best, each, wanted)) for each in others]
+    return Found(best.path, (*other_candidates, *_generated(tree)))
 
 
 def find_packages(tree: Tree, wanted: str) -> list[str]:
@@ -132,8 +133,8 @@ def _reason(best: _Candidate, other: _Candidate, wanted: str) -> str:
     return "it is equally good, but comes later in the alphabet"
 
 
-def _generated(tree: Tree) -> tuple[PassedOver, ...]:
-    return tuple(PassedOver(path, "a build made it: only the source is graded") for path in tree.generated[:20])
+def _generated(tree: Tree) -> tuple[OtherCandidate, ...]:
+    return tuple(OtherCandidate(path, "a build made it: only the source is graded") for path in tree.generated[:20])
 
 
 def read_packages(tree: Tree, wanted: str, urdf: str = "") -> tuple[Package, ...]:

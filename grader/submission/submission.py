@@ -3,23 +3,21 @@
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from grader.errors import InputError, MissingElement, NotDecided
 from grader.files.opening import open_tree, tree_name
 from grader.files.reading import URDF_LIMIT, read_capped, read_standard_input, sha256_of
-from grader.files.tree import PassedOver, Tree, make_tree
+from grader.files.tree import Tree, make_tree
 from grader.package.package import NO_PACKAGE, Package
-from grader.robot.catalogue import RAW_XACRO
-from grader.robot.reader import Reading, Verdict, read_urdf
+from grader.robot.reader import Reading, Verdict
 from grader.source import Source
+from grader.submission.urdf import Absent, NeedsExpansion, OtherCandidate, Read, Unreadable, Urdf, read_as_ros
 from grader.text import printable_path
 
 if TYPE_CHECKING:
     from grader.documents.documents import Documents
     from grader.documents.evidence import Proof
-
-Xacro = Literal["none", "expanded", "left"]
 
 STANDARD_INPUT = "-"
 # Files that a hand-in is made of; nobody means to have them graded as a URDF.
@@ -31,24 +29,18 @@ _NO_FILES = make_tree("", (), ())
 
 @dataclass(frozen=True)
 class Submission:
-    """What was handed in. `path` is that of the URDF, relative to it; without a URDF `path`, `data` and `urdf` are None.
+    """What a student submitted. `packages` begins with the one that is graded.
 
-    `is_single` tells a URDF on its own from a folder or archive. `packages` begins with the one that is graded. `xacro` tells
-    whether the URDF is xacro that is expanded before ROS 2 reads it: `urdf` is then what it comes to, if that could be worked
-    out, and left to a person if not. `unread` says why the URDF at `path` could not be read, where it is too large or damaged.
-    `no_documents` says why no document is read, where grading was lost with them.
+    `is_single` is whether it is a URDF on its own, not a folder or archive. `no_documents` says why no document is read, where
+    grading ran out of memory with them.
     """
 
     id: str
-    path: str | None
-    data: bytes | None = field(repr=False)
-    urdf: Reading | None
-    passed_over: tuple[PassedOver, ...] = ()
+    urdf: Urdf
+    other_candidates: tuple[OtherCandidate, ...] = ()
     tree: Tree = field(default=_NO_FILES, repr=False)
     packages: tuple[Package, ...] = field(default=(), repr=False)
     is_single: bool = True
-    xacro: Xacro = "none"
-    unread: str = ""
     no_documents: str = ""
 
     @cached_property
@@ -66,24 +58,34 @@ class Submission:
         return read_proofs(self.tree)
 
     @property
+    def path(self) -> str | None:
+        """The path of the URDF, relative to the submission."""
+        return None if isinstance(self.urdf, Absent) else self.urdf.path
+
+    @property
     def sha256(self) -> str | None:
         """The hash of the URDF's bytes."""
-        return sha256_of(self.data) if self.data is not None else None
+        return sha256_of(self.urdf.data) if isinstance(self.urdf, Read | NeedsExpansion) else None
 
     @property
     def has_urdf(self) -> bool:
         """Whether there is a URDF that could be read, whatever ROS 2 makes of it."""
-        return self.urdf is not None
+        return isinstance(self.urdf, Read | NeedsExpansion)
+
+    @property
+    def unread(self) -> str:
+        """Why the URDF could not be read; empty where it was, or where there is none."""
+        return self.urdf.reason if isinstance(self.urdf, Unreadable) else ""
 
     @property
     def verdict(self) -> Verdict | None:
-        """What ROS 2 makes of the URDF; None where there is none, or nobody can tell."""
-        return self.urdf.verdict if self.urdf is not None and self.xacro != "left" else None
+        """What ROS 2 makes of the URDF; None where it was not read, or not expanded."""
+        return self.urdf.reading.verdict if isinstance(self.urdf, Read) else None
 
     @property
-    def left_out(self) -> tuple[str, ...]:
-        """What was not taken in, and why, in one line each."""
-        return self.tree.left_out
+    def ignored(self) -> tuple[str, ...]:
+        """The files that are not read, and why, in one line each."""
+        return tuple(map(str, self.tree.ignored))
 
     @property
     def package(self) -> Package | None:
@@ -94,36 +96,32 @@ class Submission:
         """The package that is graded; raises MissingElement where there is none, NotDecided where that cannot be told."""
         if self.package is not None:
             return self.package
-        if self.unopened:
-            raise NotDecided(f"no package was found, but {', '.join(self.unopened[:3])} could not be opened")
+        self._refuse_unopened("package")
         raise MissingElement("package", "", message=NO_PACKAGE)
 
     def needed_urdf(self) -> Reading:
         """The URDF that is graded; raises MissingElement where there is none, NotDecided where that cannot be told."""
-        if self.unread:
-            raise NotDecided(self.unread)
-        if self.xacro == "left" and self.path is not None:
-            name = self.path.rpartition("/")[2]
-            raise NotDecided(f"{name} is xacro that is not worked out here (ros2 run xacro xacro {name} does)")
-        if self.urdf is not None:
-            return self.urdf
-        if self.unopened:
-            raise NotDecided(f"no URDF was found, but {', '.join(self.unopened[:3])} could not be opened")
+        match self.urdf:
+            case Read(reading=reading):
+                return reading
+            case Unreadable(reason=reason) | NeedsExpansion(reason=reason):
+                raise NotDecided(reason)
+            case Absent():
+                self._refuse_unopened("URDF")
         count = len(self.tree.files)
         files = f"none of the {count} files holds a <robot>" if count > 1 else "the only file holds no <robot>"
         message = f"no URDF was submitted: {files}" if count else "no URDF was submitted"
         raise MissingElement("URDF", "", message=message)
 
-    @property
-    def unopened(self) -> tuple[str, ...]:
-        """The archives in it that could not be opened, though something to grade may be in them."""
-        return self.tree.unopened
+    def _refuse_unopened(self, wanted: str) -> None:
+        if self.tree.unopened:
+            archives = ", ".join(archive.path for archive in self.tree.unopened[:3])
+            raise NotDecided(f"no {wanted} was found, but {archives} could not be opened")
 
     def source(self, path: str) -> Source | None:
         """The text of one of its files, for quoting; None where it cannot be read."""
-        if self.urdf is not None and path == self.path and self.data is not None:
-            written = self.xacro == "expanded"  # what the student wrote is quoted, not what it comes to
-            return Source(path, self.data.decode("utf-8", "replace")) if written else self.urdf.source
+        if isinstance(self.urdf, Read | NeedsExpansion) and path == self.urdf.path:
+            return self.urdf.source
         file = self.tree.files.get(path)
         try:
             return Source(path, file.read(URDF_LIMIT).decode("utf-8", "replace")) if file is not None else None
@@ -133,25 +131,7 @@ class Submission:
 
 def read_submission(data: bytes, *, identity: str, path: str) -> Submission:
     """The submission that the bytes of one URDF make."""
-    reading, xacro = _read(data, path, None)
-    return Submission(identity, path, data, reading, xacro=xacro)
-
-
-def _read(data: bytes, path: str, package: Package | None) -> tuple[Reading, Xacro]:
-    """A URDF as ROS 2 gets to read it: expanded, if it is xacro by its name or the package's launch file has xacro read it."""
-    reading = read_urdf(data, path)
-    if not any(problem.kind is RAW_XACRO for problem in reading.problems):
-        return reading, "none"
-    name = path.rpartition("/")[2]
-    readers = package.readers(name) if package is not None else set()
-    if (readers and readers != {"xacro"}) or (not readers and (".xacro" not in name or name.endswith(".urdf"))):
-        return reading, "none"
-    from grader.xacro.properties import expand
-
-    expanded = expand(reading.source.text)
-    if expanded is None:
-        return reading, "left"
-    return read_urdf(expanded.encode("utf-8", "surrogateescape"), path), "expanded"
+    return Submission(identity, read_as_ros(data, path, None))
 
 
 def open_submission(path: str, *, wanted: str, package: str = "", limit: int = URDF_LIMIT) -> Submission:
@@ -194,31 +174,16 @@ def submission_of(
 
     packages = read_packages(tree, package, wanted)
     found = find_urdf(tree, wanted, packages[0].folder if packages else None)
-    others = [PassedOver(each.path("package.xml"), why_not(packages[0], each, wanted)) for each in packages[1:]]
-    data, unread = None, ""
-    try:
-        data = tree.files[found.path].read(limit) if found.path is not None else None
-    except InputError as error:  # the rest of the hand-in is graded all the same
-        unread = str(error)
-    reading: Reading | None = None
-    xacro: Xacro = "none"
-    if data is not None and found.path is not None:
-        reading, xacro = _read(data, found.path, packages[0] if packages else None)
-    passed_over = (*found.passed_over, *others)
-    return Submission(
-        identity,
-        found.path,
-        data,
-        reading,
-        passed_over,
-        tree,
-        packages,
-        is_single=False,
-        xacro=xacro,
-        unread=unread,
-        no_documents=no_documents,
-    )
+    others = [OtherCandidate(each.path("package.xml"), why_not(packages[0], each, wanted)) for each in packages[1:]]
+    urdf: Urdf = Absent()
+    if found.path is not None:
+        try:
+            urdf = read_as_ros(tree.files[found.path].read(limit), found.path, packages[0] if packages else None)
+        except InputError as error:  # the rest of the submission is graded all the same
+            urdf = Unreadable(found.path, str(error))
+    other_candidates = (*found.other_candidates, *others)
+    return Submission(identity, urdf, other_candidates, tree, packages, is_single=False, no_documents=no_documents)
 
 
 def _because(tree: Tree) -> str:
-    return f": {tree.left_out[0]}" if tree.left_out else " (hidden files and folders of builds are not looked at)"
+    return f": {tree.ignored[0]}" if tree.ignored else " (hidden files and folders of builds are not looked at)"

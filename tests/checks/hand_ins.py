@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 
 from grader.errors import InputError
-from grader.files.tree import File, make_tree
+from grader.files.tree import File, IgnoredFile, make_tree
 from grader.package.package import Package
 from grader.source import Location
 from grader.submission.submission import Submission, submission_of
@@ -35,7 +35,14 @@ class HandIn:
     def submission(self) -> Submission:
         """What the grader sees of it."""
         files = [_file(path, self.data(path)) for path in self.files]
-        tree = make_tree("hand-in", files, (), unopened=[path for path in self.files if path.endswith(".rar")])
+        tree = make_tree(
+            "hand-in",
+            files,
+            (),
+            ignored=[
+                IgnoredFile(path, "is a rar archive", is_archive=True) for path in self.files if path.endswith(".rar")
+            ],
+        )
         return submission_of(tree, "hand-in", wanted="urdf/my_robot.urdf", package=FOLDER)
 
     @property

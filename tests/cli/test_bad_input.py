@@ -50,7 +50,7 @@ class TestPaths:
         (tmp_path / "lab6.tar.gz").touch()
         refuse(command, str(tmp_path / "lab6.tar.gz"), words="damaged or empty")
         (tmp_path / "lab6.7z").write_bytes(b"7z\xbc\xaf\x27\x1c")
-        refuse(command, str(tmp_path / "lab6.7z"), words="hand in a .zip or .tar.gz")
+        refuse(command, str(tmp_path / "lab6.7z"), words="submit a .zip or .tar.gz")
         with zipfile.ZipFile(tmp_path / "empty.zip", "w"):
             pass
         refuse(command, str(tmp_path / "empty.zip"), words="is empty")

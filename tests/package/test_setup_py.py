@@ -9,7 +9,7 @@ from typing import NamedTuple
 import pytest
 
 from grader.files.folder import read_folder
-from grader.files.tree import is_ignored
+from grader.files.ignore_rules import ignored_part
 from grader.package.setup_py import Setup, read_setup
 from grader.static_python.parse import parse
 from tests.command_line import PATIENCE
@@ -75,7 +75,7 @@ def run(sample: str, folder: Path) -> Run:
     }
     texts = {target: path.read_text(encoding="utf-8") for target, path in installed.items()}
     return Run(
-        {target: sources[text] for target, text in texts.items() if not is_ignored(sources[text])},
+        {target: sources[text] for target, text in texts.items() if not ignored_part(sources[text])},
         f"status {done.returncode}: {done.stderr}" if done.returncode and _NOTHING not in done.stderr else "",
         told,
     )

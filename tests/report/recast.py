@@ -6,11 +6,11 @@ from itertools import groupby
 from typing import Any
 
 from grader.cli.formats import Format
-from grader.files.tree import PassedOver
 from grader.grading.report import HandedIn, Report, Result
 from grader.report.words import untold
 from grader.robot.reader import Verdict
 from grader.source import Location, Source
+from grader.submission.urdf import OtherCandidate
 from grader.text import printable
 from tests.report.readers import read_as_github, read_commands, read_json, read_junit, read_markdown
 
@@ -35,8 +35,8 @@ class Recast:
     path: str | None
     sha256: str | None
     package: Package | None
-    passed_over: tuple[PassedOver, ...]
-    left_out: tuple[str, ...]
+    other_candidates: tuple[OtherCandidate, ...]
+    ignored: tuple[str, ...]
     has_urdf: bool
     verdict: Verdict | None
     is_single: bool
@@ -74,8 +74,8 @@ def _submission(old: HandedIn, words: Words, path: Words) -> HandedIn:
         path() if old.path is not None else None,
         old.sha256,
         Package(path() if old.package.folder else "", words()) if old.package is not None else None,
-        tuple(PassedOver(path(), words()) for _ in old.passed_over),
-        tuple(words() for _ in old.left_out),
+        tuple(OtherCandidate(path(), words()) for _ in old.other_candidates),
+        tuple(words() for _ in old.ignored),
         old.has_urdf,
         old.verdict,
         old.is_single,

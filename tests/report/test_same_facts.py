@@ -60,8 +60,8 @@ def facts(report: Report) -> Iterator[Fact]:
             yield Fact("problem", spellings, problem.code)
     submission = report.submission
     yield from (Fact("note", (each,)) for each in report.notes)
-    yield from (Fact("aside", (words,)) for each in submission.passed_over for words in each)
-    yield from (Fact("aside", (each,)) for each in submission.left_out)
+    yield from (Fact("aside", (words,)) for each in submission.other_candidates for words in each)
+    yield from (Fact("aside", (each,)) for each in submission.ignored)
     if submission.package is not None and any(report.rubric.part(part).needs == "package" for part in report.parts):
         yield Fact("package", (submission.package.folder or submission.package.name,))
     score, most, waits = map(points_words, (report.score, report.max_score, report.pending))

@@ -34,9 +34,9 @@ def printed(data: bytes, width: int = 80, *, terminal: bool = False) -> str:
     console = Console(file=out, width=width, force_terminal=terminal, color_system="standard" if terminal else None)
     submission = read_submission(data, identity="a", path="a.urdf")
     render_terminal(grade(RUBRIC, submission), console)
-    assert submission.urdf is not None
-    robot = Configuration(submission.urdf.robot) if submission.urdf.robot is not None else None
-    inspection_terminal(Inspection("a.urdf", submission.urdf, robot, main_root(robot) if robot else None), console)
+    reading = submission.needed_urdf()
+    robot = Configuration(reading.robot) if reading.robot is not None else None
+    inspection_terminal(Inspection("a.urdf", reading, robot, main_root(robot) if robot else None), console)
     return out.getvalue()
 
 

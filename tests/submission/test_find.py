@@ -7,10 +7,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.errors import InputError
-from grader.files.tree import File, PassedOver, Tree, make_tree
+from grader.files.tree import File, Tree, make_tree
 from grader.package.package import Package
 from grader.submission.find import Found, find_packages, find_urdf, read_packages
 from grader.submission.submission import submission_of
+from grader.submission.urdf import OtherCandidate
 from tests.patience import processor_time
 
 WANTED = "urdf/my_robot.urdf"
@@ -51,7 +52,7 @@ def manifest(name: str) -> bytes:
 
 def why(found: Found) -> dict[str, str]:
     """What was passed over, and why."""
-    return {each.path: each.because for each in found.passed_over}
+    return {each.path: each.reason for each in found.other_candidates}
 
 
 def test_every_tier() -> None:
@@ -104,7 +105,7 @@ def test_pairs(better: str, worse: str, reason: str) -> None:
     """Of two files the better one is graded, whatever their order, and the other is named with the reason."""
     for paths in ((better, worse), (worse, better)):
         found = find_urdf(tree_of(*paths), WANTED)
-        assert found == Found(better, (PassedOver(worse, reason),))
+        assert found == Found(better, (OtherCandidate(worse, reason),))
 
 
 def test_what_is_no_robot() -> None:
@@ -145,7 +146,7 @@ def test_the_package_is_preferred() -> None:
     """Among equals that of the package is graded, however deep; a better one outside of it is graded all the same."""
     tree = tree_of("urdf/my_robot.urdf", "ws/src/my_robot/urdf/my_robot.urdf")
     assert find_urdf(tree, WANTED, "ws/src/my_robot") == Found(
-        "ws/src/my_robot/urdf/my_robot.urdf", (PassedOver("urdf/my_robot.urdf", OUTSIDE),)
+        "ws/src/my_robot/urdf/my_robot.urdf", (OtherCandidate("urdf/my_robot.urdf", OUTSIDE),)
     )
     assert find_urdf(tree, WANTED, "").path == "urdf/my_robot.urdf"
     assert find_urdf(tree, WANTED, "ws/src/my_rob").path == "urdf/my_robot.urdf"
@@ -161,7 +162,7 @@ def test_products_of_a_build() -> None:
     found = find_urdf(make_tree("", [_file("a.urdf", ROBOT)], (), generated=generated), WANTED)
     assert found.path == "a.urdf"
     assert set(why(found).values()) == {"a build made it: only the source is graded"}
-    assert len(found.passed_over) == 20
+    assert len(found.other_candidates) == 20
     assert find_urdf(make_tree("", (), (), generated=generated[:1]), WANTED).path is None
 
 
@@ -171,7 +172,7 @@ def test_many_texts() -> None:
     with processor_time(1):
         found = find_urdf(tree, WANTED)
     assert found.path == "z/robot.urdf"
-    assert len(found.passed_over) == 400
+    assert len(found.other_candidates) == 400
 
 
 @given(
@@ -270,7 +271,7 @@ def test_a_team_of_two() -> None:
     assert found.path == "Lab6/Adams/my_robot/urdf/my_robot.urdf"
     assert found.package is not None
     assert found.package.folder == "Lab6/Adams/my_robot"
-    assert {each.path: each.because for each in found.passed_over} == {
+    assert {each.path: each.reason for each in found.other_candidates} == {
         "Lab6/Brown/my_robot/urdf/my_robot.urdf": OUTSIDE,
         "Lab6/Brown/my_robot/package.xml": LATER,
     }

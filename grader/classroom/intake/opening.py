@@ -9,11 +9,12 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import InputError
-from grader.files.class_zip import Bulk
+from grader.files.class_zip import ClassZip
 from grader.files.folder import file_at
+from grader.files.ignore_rules import ignored_part, is_generated
 from grader.files.opening import outer_tree, tree_name, with_inner, without_endings
 from grader.files.reading import URDF_LIMIT, capped, open_regular, read_start
-from grader.files.tree import Tree, clean, ignored_folder, is_generated, is_ignored, make_tree
+from grader.files.tree import Tree, make_tree
 from grader.grading.rubric import Rubric
 from grader.submission.submission import Submission, read_submission, submission_of
 from grader.text import printable_path
@@ -111,20 +112,19 @@ def _in_bulk(root: str, path: str, limit: int) -> Opened:
 
 
 @lru_cache(maxsize=2)
-def _bulk(root: str, stamp: str) -> Bulk:
+def _bulk(root: str, stamp: str) -> ClassZip:
     """The open zip, as long as the file stays the same."""
     del stamp
-    return Bulk(Path(root))
+    return ClassZip(Path(root))
 
 
 def _side_by_side(root: str, named: dict[str, str], name: str) -> Tree:
     """Some files on disk as one tree. What is not looked at in a folder or archive is not looked at here."""
-    given = {clean(each): path for path, each in named.items()}
-    ignored = {each for each in given if is_ignored(each)}
+    given = {printable_path(each): path for path, each in named.items()}
+    ignored = {each: part for each in given if (part := ignored_part(each))}
     files = [file_at(Path(root, path), each, root) for each, path in given.items() if each not in ignored]
     generated = sorted(each for each in ignored if is_generated(each))
-    unseen = [folder for each in ignored if (folder := ignored_folder(each)) is not None]
-    return make_tree(name, files, (), generated=generated, unseen=unseen)
+    return make_tree(name, files, (), generated=generated, unseen=ignored.values() - ignored.keys())
 
 
 def _digest_of(name: str, limit: int) -> "hashlib._Hash":
@@ -155,7 +155,9 @@ def _digest_of_tree(name: str, tree: Tree, limit: int) -> str:
     Folders of builds are unseen on disk; in a zip they are folders like others if they have an entry of their own.
     """
     seed = name if limit == URDF_LIMIT else (name, limit)
-    digest = sha256(repr((seed, sorted(tree.folders | tree.unseen), tree.left_out, tree.generated)).encode())
+    digest = sha256(
+        repr((seed, sorted(tree.folders | tree.unseen), tuple(map(str, tree.ignored)), tree.generated)).encode()
+    )
     for path, file in tree.files.items():
         digest.update(repr((path, file.size)).encode())
         try:

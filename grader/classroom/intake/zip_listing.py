@@ -5,8 +5,8 @@ from pathlib import Path
 
 from grader.classroom.intake.listing import Children, is_silent
 from grader.errors import InputError
-from grader.files.archive import DAMAGED, inside, words_of, zip_members
-from grader.files.members import Member
+from grader.files.members import ARCHIVE_ERRORS, Member, error_text, safe_path
+from grader.files.zip_members import zip_members
 from grader.text import printable_path
 
 MOST_MEMBERS = 200_000
@@ -14,7 +14,7 @@ _DEEPEST = 20  # folders: what lies deeper does not tell who handed in
 
 
 class ZipListing:
-    """A zip of a class. A path in it is a member's name as `inside` writes it: decoded, printable, without ways out."""
+    """A zip of a class. A path in it is a member's name as `safe_path` writes it: decoded, printable, without ways out."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
@@ -25,11 +25,11 @@ class ZipListing:
                     if count >= MOST_MEMBERS or len(self._folders) > MOST_MEMBERS:
                         raise InputError(f"{printable_path(path)} holds more than {MOST_MEMBERS} files")
                     self._enter(member)
-        except DAMAGED as error:
-            raise InputError(f"{printable_path(path)} cannot be read as a zip: {words_of(error)}") from None
+        except ARCHIVE_ERRORS as error:
+            raise InputError(f"{printable_path(path)} cannot be read as a zip: {error_text(error)}") from None
 
     def _enter(self, member: Member) -> None:
-        place = inside(member.path)
+        place = safe_path(member.path)
         if place is None:
             shown = printable_path(member.path[:100])
             self._folders[""][shown] = "has a name that leads out of the archive, and was not read"
@@ -75,11 +75,11 @@ class ZipListing:
             return starts
         with self._path.open("rb") as file:
             for member in zip_members(file):
-                place = inside(member.path)
+                place = safe_path(member.path)
                 if place in wanted and member.kind == "file":
                     try:
                         with member.open() as opened:
                             starts[place] = opened.read(count)
-                    except DAMAGED:
+                    except ARCHIVE_ERRORS:
                         continue
         return starts

@@ -24,6 +24,7 @@ from grader.grading.record import Kept, Template, to_record
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric, read_rubric
 from grader.submission.submission import Submission
+from grader.submission.urdf import Absent, Unreadable
 
 # What a process is to have loaded before it forks, late imports included.
 PRELOAD = (
@@ -109,17 +110,17 @@ def _nothing_readable(submission: Submission) -> str:
 
     As on its own, an archive that is damaged or empty is unreadable where nothing else that could be graded lies beside it.
     """
-    if submission.unread:
-        return submission.unread
-    if submission.path is not None or submission.packages:
+    if isinstance(submission.urdf, Unreadable):
+        return submission.urdf.reason
+    if not isinstance(submission.urdf, Absent) or submission.packages:
         return ""
-    tree, closed = submission.tree, submission.unopened
+    tree, closed = submission.tree, submission.tree.unopened
     if closed:
-        because = next((line for line in tree.left_out if line.startswith(closed[0])), f"{closed[0]} cannot be opened")
+        because = str(closed[0])
         more = f" (nor could {len(closed) - 1} more be opened)" if len(closed) > 1 else ""
         return f"nothing to grade was found: {because}{more}"
     if not tree.generated and all(file.suffix in ARCHIVES for file in tree.files.values()):
-        because = tree.left_out[0] if tree.left_out else f"{next(iter(tree.files))} is empty"
+        because = str(tree.ignored[0]) if tree.ignored else f"{next(iter(tree.files))} is empty"
         return f"nothing to grade was found: {because}"
     return ""
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from grader.errors import InputError
 from grader.files.archive import read_archive
-from grader.files.class_zip import Bulk
+from grader.files.class_zip import ClassZip
 from grader.files.tree import Tree
 from tests.classroom.class_runs import Item, bomb, tarred
 
@@ -32,16 +32,16 @@ def pack(members: dict[str, bytes]) -> bytes:
     return buffer.getvalue()
 
 
-def bulk(place: Path, data: bytes) -> Bulk:
+def bulk(place: Path, data: bytes) -> ClassZip:
     """An open zip."""
     (place / "class.zip").write_bytes(data)
-    return Bulk(place / "class.zip")
+    return ClassZip(place / "class.zip")
 
 
 def told(tree: Tree) -> tuple[object, ...]:
     """All that is known of a tree, with what is in its files."""
     files = {path: (file.size, file.read(10**6)) for path, file in tree.files.items()}
-    return files, tree.folders, tree.left_out, tree.generated, tree.unseen
+    return files, tree.folders, tree.ignored, tree.generated, tree.unseen
 
 
 @given(NAMES)
@@ -72,7 +72,7 @@ def test_an_archive_in_a_bulk_is_read_as_one_alone(tmp_path: Path) -> None:
     assert opened.read("cal.urdf", 100) == b"<robot/>"
     with pytest.raises(InputError, match="larger than 3 bytes"):
         opened.read("cal.urdf", 3)
-    with pytest.raises(InputError, match=r"dan\.zip is no archive that can be read"):
+    with pytest.raises(InputError, match=r"dan\.zip is no archive, although it is named as one"):
         opened.archive("dan.zip", sha256())
     with pytest.raises(InputError, match=r"eve\.zip is not in "):
         opened.archive("eve.zip", sha256())
@@ -104,7 +104,7 @@ def test_an_encrypted_member_is_left_out(tmp_path: Path) -> None:
     opened = bulk(tmp_path, bytes(data))
     tree = opened.folder("ann")
     assert set(tree.files) == {"b.urdf"}
-    assert tree.left_out == ("a.urdf is encrypted, and was not read",)
+    assert tuple(map(str, tree.ignored)) == ("a.urdf is encrypted, and was not read",)
     with pytest.raises(InputError, match=r"a\.urdf is encrypted"):
         opened.read("ann/a.urdf", 100)
 
@@ -128,7 +128,7 @@ def test_a_broken_zip_is_one_line(tmp_path: Path) -> None:
         with pytest.raises(InputError, match=r"class\.zip cannot be read as an archive"):
             bulk(tmp_path, data)
     with pytest.raises(InputError, match="cannot be read as an archive"):
-        Bulk(tmp_path / "missing.zip")
+        ClassZip(tmp_path / "missing.zip")
 
 
 def test_a_damaged_member_costs_its_student_only(tmp_path: Path) -> None:

@@ -16,7 +16,7 @@ from grader.classroom.intake.layouts.prefix import class_prefix, has_prefix
 from grader.classroom.intake.listing import Children, Listing
 from grader.classroom.intake.names import ending_of, without_copy
 from grader.classroom.students import HandIn, Student
-from grader.files.tree import BUILT
+from grader.files.ignore_rules import BUILD_FOLDERS
 
 _NO_SUBMISSION = "is not a folder, an archive or a URDF"
 _BUILT = "is a folder of a build"
@@ -167,8 +167,8 @@ def shelve(
     knows: Callable[[str], bool] | None = None,
 ) -> FolderShelf:
     """The hand-ins of a class folder; `knows` says whether a name stands in the roster."""
-    folders = [name for name in children.folders if name not in BUILT]
-    left_out.add_all((start + name, _BUILT) for name in children.folders if name in BUILT)
+    folders = [name for name in children.folders if name not in BUILD_FOLDERS]
+    left_out.add_all((start + name, _BUILT) for name in children.folders if name in BUILD_FOLDERS)
     files: list[str] = []
     for name in children.files:
         if ending_of(name):

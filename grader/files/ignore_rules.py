@@ -1,0 +1,24 @@
+"""Which parts of a submission are ignored in silence: no student wrote what is in them."""
+
+BUILD_FOLDERS = frozenset({"build", "install", "log"})
+IGNORED_FOLDERS = BUILD_FOLDERS | {
+    "node_modules",
+    "site-packages",
+    "__pycache__",
+    "__MACOSX",
+}  # and those with a pyvenv.cfg
+_LITTER = frozenset({"Thumbs.db", "desktop.ini", "Icon\r", "AMENT_IGNORE", "COLCON_IGNORE"})
+
+
+def ignored_part(path: str) -> str | None:
+    """Return how far a path leads to something ignored: a folder of tools or of a build, or a hidden folder or file."""
+    *folders, name = path.split("/")
+    for index, folder in enumerate(folders):
+        if folder in IGNORED_FOLDERS or folder.startswith("."):
+            return "/".join(folders[: index + 1])
+    return path if name.startswith(".") or name in _LITTER else None
+
+
+def is_generated(path: str) -> bool:
+    """Return whether a path is that of a URDF which a build has copied."""
+    return path.lower().endswith(".urdf") and not BUILD_FOLDERS.isdisjoint(path.split("/")[:-1])

@@ -1,0 +1,51 @@
+"""The limits within which untrusted files are read, and what is said where one is exceeded."""
+
+from grader.errors import FileError, InputError
+
+MAX_FILES = 50_000  # and as many folders, in a submission
+MAX_FILE_SIZE = 64 * 1024 * 1024  # bytes of one file of a submission: a larger one is ignored
+MAX_ARCHIVE_SIZE = 1024 * 1024 * 1024  # bytes of an archive, and of what is decompressed to read it
+MAX_UNPACKED_SIZE = 512 * 1024 * 1024  # bytes of the files in an archive, without those that are too large and ignored
+MAX_ARCHIVES = 20  # in an archive or folder
+MAX_NESTED = 3  # archives inside each other
+MAX_RATIO = 200  # of what is in an archive to its own size
+HARMLESS_SIZE = 32 * 1024 * 1024  # bytes that an archive may hold whatever the ratio
+
+
+class Allowance:
+    """How many bytes an archive may unpack to, together with the archives in it.
+
+    `streamed` counts what is decompressed: a compressed tar has to be, files that are ignored included.
+    """
+
+    def __init__(self) -> None:
+        self.unpacked = MAX_UNPACKED_SIZE
+        self.streamed = MAX_ARCHIVE_SIZE
+        self.archives = MAX_ARCHIVES
+
+    def spend(self, name: str, *, unpacked: int = 0, streamed: int = 0) -> None:
+        """Use up some of it; raises FileError where there is not enough."""
+        self.unpacked -= unpacked
+        self.streamed -= streamed
+        if self.unpacked < 0:
+            raise too_much(name, MAX_UNPACKED_SIZE)
+        if self.streamed < 0:
+            raise too_much(name, MAX_ARCHIVE_SIZE)
+
+
+def too_many(name: str) -> InputError:
+    """Return the error for a submission with more files than any student submits."""
+    return FileError(name, f"holds more than {MAX_FILES} files: name the package or the URDF")
+
+
+def too_large(name: str) -> FileError:
+    """Return the error for an archive of more than `MAX_ARCHIVE_SIZE` bytes."""
+    return FileError(name, f"is larger than {MAX_ARCHIVE_SIZE} bytes, the limit for an archive")
+
+
+def too_much(name: str, limit: int) -> FileError:
+    """Return the error for an archive that would unpack to more than a limit."""
+    ratio = f", {MAX_RATIO} times its own size" if HARMLESS_SIZE < limit < MAX_UNPACKED_SIZE else ""
+    return FileError(
+        name, f"would unpack to more than {limit} bytes, the limit for an archive{ratio}, and was not read"
+    )
