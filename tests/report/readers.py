@@ -274,7 +274,8 @@ READERS: Mapping[Format, Reader] = {
 
 
 def reader(kind: Format) -> Reader:
-    """How a format is read back: by its row above, else as JSON or plain text that tells everything."""
+    """How a format is read back: by its row, else as JSON or as text. Only one with a row has to tell everything."""
     is_json = kind.ending.endswith("json")
-    plain = Reader(read_json, json_structure, json_text) if is_json else Reader(str, lambda _: None, str)
-    return READERS.get(kind, plain)
+    return READERS.get(kind) or Reader(
+        read_json if is_json else str, json_structure if is_json else lambda _: None, str
+    )

@@ -13,7 +13,7 @@ from grader.report.formats import Format, render
 from grader.report.points import points_words
 from grader.report.words import untold
 from grader.text import printable
-from tests.report.readers import READERS, read_commands, reader
+from tests.report.readers import READERS, read_commands
 from tests.samples import SAMPLES
 
 
@@ -80,7 +80,7 @@ def untold_by(kind: Format, report: Report) -> Iterator[Fact]:
     """What a format leaves out. Of more than ten annotations of a type GitHub shows none: the last one names the others."""
     with patch.dict(os.environ, {"COLUMNS": "500"}):
         text = render(report, kind)
-    shown = _plain(reader(kind).text(text))
+    shown = _plain(READERS[kind].text(text))
     told = read_commands(text) if kind is Format.GITHUB else []
     named = {
         name for each in told for name in each.data.partition("The report tells of these, too: ")[2].split(", ")
@@ -94,8 +94,8 @@ def untold_by(kind: Format, report: Report) -> Iterator[Fact]:
 def test_all_formats_tell_the_same(name: str) -> None:
     """Of each criterion its title, its message, its place and its feedback; of the submission all that is said of it."""
     report = SAMPLES[name].grade()
-    left_out = {(kind.value, fact) for kind in Format for fact in untold_by(kind, report)}
-    assert not {(kind, fact) for kind, fact in left_out if fact.kind not in reader(Format(kind)).excused}
+    left_out = {(kind.value, fact) for kind in READERS for fact in untold_by(kind, report)}
+    assert not {(kind, fact) for kind, fact in left_out if fact.kind not in READERS[Format(kind)].excused}
 
 
 def test_every_excuse_is_needed() -> None:
