@@ -75,7 +75,7 @@ def _rounds(wanted: Wanted) -> Iterator[bool]:
     try:
         from grader.usecases.file_events import Watched, rounds
     except ImportError:
-        raise InputError("--watch needs watchfiles: pip install 'grader[watch]'") from None
+        raise InputError("--watch needs watchfiles: pip install 'urdf-grader[watch]'") from None
     return rounds(Watched(Path(wanted.path), rubric, frozenset(os.path.realpath(file) for _, file in wanted.saves)))
 
 
