@@ -19,10 +19,10 @@ from pathlib import Path
 
 from lxml import etree
 
-from grader.cli.formats import Format
 from grader.grading.grade import grade
 from grader.grading.rubric import load_rubric
 from grader.report.as_json import render_json
+from grader.report.formats import Format
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import read_urdf
 from grader.submission.submission import open_submission, read_submission

@@ -9,7 +9,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-GRADER = "grader[documents] @ git+https://github.com/YOUR-ORG/grader@v1"
+GRADER = "urdf-grader[documents] @ git+https://github.com/YOUR-ORG/grader@v1"
 # Parts that a program decides by itself: what waits for a person would count as not passed.
 OPTIONS = ["--rubric", "lab6", "--part", "task1", "--part", "task2"]
 # Where the runner looks for the results, and their formats.

@@ -5,7 +5,6 @@ from typing import Annotated
 
 import typer
 
-from grader.cli.formats import Format
 from grader.cli.options import (
     DEFAULT_RUBRIC,
     ClassFormat,
@@ -18,6 +17,7 @@ from grader.cli.options import (
 )
 from grader.errors import GraderError
 from grader.files.reading import URDF_LIMIT
+from grader.report.formats import Format
 
 
 def batch(
@@ -64,8 +64,9 @@ def batch(
     """
     from grader.usecases.grade_class import Wanted, grade_class  # what grades a class is loaded only for one
 
-    if Format.CLASSROOM50 in (report_format or ()):
-        raise GraderError("classroom50 is the result of one repository: `grader grade` writes it there")
+    for kind in report_format or ():
+        if kind.needs == "identity":
+            raise GraderError(f"{kind} is the result of one repository: `grader grade` writes it there")
     output = Wanted(reports, tuple(report_format or [Format.TERMINAL]), csv, output_format)
     grade_class(
         path,

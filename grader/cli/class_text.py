@@ -6,7 +6,8 @@ from grader.classroom.gradebook.grades import Standings
 from grader.classroom.gradebook.statistics import statistics
 from grader.classroom.run.batch import Progress
 from grader.cli.options import ClassFormat
-from grader.cli.output import draw
+from grader.cli.output import screen
+from grader.report.screen import draw
 
 _MOST_LOOKS = 20
 
@@ -25,4 +26,4 @@ def class_text(standings: Standings, kind: ClassFormat, done: Progress | None = 
         return render_class_json(rubric, found, standings.all(), looks, run)
     from grader.report.classes import render_class
 
-    return draw(partial(render_class, rubric.title, found, looks))
+    return draw(partial(render_class, rubric.title, found, looks), screen())

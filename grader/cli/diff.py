@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from grader.cli.options import ClassFormat, FormatOption
-from grader.cli.output import draw, emit
+from grader.cli.output import emit, show
 from grader.errors import GraderError
 
 
@@ -52,5 +52,5 @@ def diff(
         return 0
     from grader.report.changes import render_changes
 
-    emit(draw(partial(render_changes, found, runs)))
+    show(partial(render_changes, found, runs))
     return 0

@@ -4,10 +4,10 @@ from typing import Annotated
 
 import typer
 
-from grader.cli.formats import Format
 from grader.cli.options import DEFAULT_RUBRIC, MaxSizeOption, RubricOption
 from grader.cli.suggestions import part_ids, save_formats
 from grader.files.reading import URDF_LIMIT
+from grader.report.formats import Format
 from grader.usecases.github import refusals_told
 from grader.usecases.grade import Wanted, grade_once, read_saves
 

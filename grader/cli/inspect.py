@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from grader.cli.options import MaxSizeOption
-from grader.cli.output import complain, draw, emit
+from grader.cli.output import complain, emit, show
 from grader.errors import GraderError, InputError, MissingElement
 from grader.files.reading import URDF_LIMIT
 from grader.text import printable_path
@@ -80,7 +80,7 @@ def inspect(
     if output_format is InspectFormat.JSON:
         emit(inspection_json(inspection))
     else:
-        emit(draw(partial(inspection_terminal, inspection)))
+        show(partial(inspection_terminal, inspection))
     return 1 if urdf.reading.verdict == "rejected" else 0
 
 

@@ -1,6 +1,5 @@
 """Where a command's output goes, and how it fails: one clear line on standard error, never a traceback."""
 
-import io
 import os
 import sys
 from collections.abc import Callable
@@ -8,12 +7,11 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from grader.errors import InputError
+from grader.report.screen import Screen, columns, draw
 from grader.text import without_commands
 
 if TYPE_CHECKING:
     from rich.console import Console
-
-_DEFAULT_WIDTH = 80
 
 
 def emit(text: str | bytes) -> None:
@@ -41,48 +39,20 @@ def complain(message: str) -> None:
             print(without_commands(f"grader: {message}"), file=sys.stderr, flush=True)
 
 
-def draw(render: Callable[["Console"], None], *, to_file: bool = False) -> str:
-    """What a renderer prints, as text: coloured and as wide as standard output takes it, plain for a file."""
-    from rich.console import Console  # rich is not needed for JSON
-
+def screen() -> Screen:
+    """Return what standard output shows: its width, its encoding, and whether it is a terminal."""
     out = sys.stdout
-    is_terminal = not to_file and out is not None and out.isatty()
-    encoding = "utf-8" if to_file or out is None else (out.encoding or "utf-8")
-    buffer = _Buffer(encoding)
-    console = Console(
-        file=buffer,
-        force_terminal=is_terminal,
-        width=_width(is_terminal),
-        highlight=False,
-        markup=False,
-        emoji=False,
-        legacy_windows=False,
-        no_color=True if os.environ.get("NO_COLOR") else None,
-    )
-    render(console)
-    return without_commands(buffer.getvalue())
-
-
-class _Buffer(io.StringIO):
-    """Collects what is printed, and claims the encoding of where it will go."""
-
-    def __init__(self, encoding: str) -> None:
-        super().__init__()
-        self._encoding = encoding
-
-    @property
-    def encoding(self) -> str:  # type: ignore[override]  # typeshed has it writable
-        return self._encoding
-
-
-def _width(is_terminal: bool) -> int:
-    columns = os.environ.get("COLUMNS", "")
-    if columns.isdigit() and int(columns) > 0:
-        return max(40, min(int(columns), 500))
+    is_terminal = out is not None and out.isatty()
+    size = columns()
     if is_terminal:
         with suppress(OSError):
-            return max(40, os.get_terminal_size(sys.stdout.fileno()).columns)
-    return _DEFAULT_WIDTH
+            size = columns(os.get_terminal_size(out.fileno()).columns)
+    return Screen(size, (out.encoding if out is not None else "") or "utf-8", is_terminal)
+
+
+def show(render: Callable[["Console"], None]) -> None:
+    """Write what a renderer prints to standard output, as wide and as colourful as that is."""
+    emit(draw(render, screen()))
 
 
 def _silence(descriptor: int) -> None:

@@ -8,7 +8,7 @@ import typer
 
 from grader.cli.mark import ByOption
 from grader.cli.options import GradebookOption
-from grader.cli.output import complain, draw, emit
+from grader.cli.output import complain, emit, show
 from grader.errors import InputError
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def _ask(standings: "Standings", pending: "Pending", place: str, by: str) -> int
     from grader.classroom.gradebook.marks import read_points
     from grader.report.review import render_pending
 
-    emit(draw(lambda console: render_pending(pending, place, console)))
+    show(lambda console: render_pending(pending, place, console))
     criterion = pending.result.criterion
     while (text := _line(f"points, 0 to {format(criterion.points.normalize(), 'f')} (? for help): ")) is not None:
         word, _, comment = text.strip().partition(" ")

@@ -30,7 +30,7 @@ def part_ids(context: typer.Context) -> list[tuple[str, str]]:
 
 def save_formats() -> list[str]:
     """The beginnings of what `--save` takes."""
-    from grader.cli.formats import Format
+    from grader.report.formats import Format
 
     return [f"{kind.value}=" for kind in Format]
 

@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.classroom.lms.spreadsheet import neutral, rows_of_table, write_table
-from grader.cli.formats import Format, render
 from grader.errors import InputError
+from grader.report.formats import Format, render
 from grader.usecases.writing import save
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def _write_some(
                 continue
             report = report_of(standings, standing)
             for kind in formats:
-                save(Path(folder, f"{name}.{kind.ending}"), render(report, kind, to_file=True))
+                save(Path(folder, f"{name}.{kind.ending}"), render(report, kind))
 
 
 def report_of(standings: "Standings", standing: "Standing") -> "Report":

@@ -8,9 +8,9 @@ from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from grader.cli.formats import Format, render
-from grader.cli.output import complain, emit
+from grader.cli.output import complain, emit, screen
 from grader.errors import GraderError, InputError
+from grader.report.formats import Format, needed, render
 from grader.text import printable_path
 from grader.usecases.github import base_of, on_github, tell_github
 from grader.usecases.writing import ROBOTS, clear, is_same, refuse_links, save
@@ -94,7 +94,7 @@ def grade_once(wanted: Wanted) -> tuple["Report", int]:
     modes = make_room(wanted)
     done = graded(wanted)
     save_reports(wanted, done, modes)
-    text = render(done.report, wanted.format, done.base, to_file=False)
+    text = render(done.report, wanted.format, done.base, screen())
     emit(text if wanted.format is Format.TERMINAL else text.encode("utf-8", "backslashreplace"))
     if not on_github():
         _complain_of_undecided(done)
@@ -110,10 +110,8 @@ def graded(wanted: Wanted) -> Graded:
     from grader.submission.submission import open_submission
     from grader.text import printable
 
-    if Format.CLASSROOM50 in (wanted.format, *(kind for kind, _ in wanted.saves)):
-        from grader.report.classroom50 import identity_from
-
-        identity_from(os.environ)  # refused before anything is graded
+    for kind in (wanted.format, *(kind for kind, _ in wanted.saves)):
+        needed(kind)  # refused before anything is graded
     rules = wanted_rubric(wanted)
     submission = open_submission(wanted.path, wanted=rules.urdf, package=rules.package, limit=wanted.max_size)
     report = grade(rules, submission, wanted.parts)

@@ -18,13 +18,13 @@ from grader.classroom.run.batch import Batch, Progress, Settings
 from grader.classroom.run.pool import Processes, processors
 from grader.classroom.run.worker import PRELOAD, prepare
 from grader.cli.class_text import class_text
-from grader.cli.formats import Format
 from grader.cli.options import ClassFormat
 from grader.cli.output import complain, emit
 from grader.cli.progress import ProgressDisplay
 from grader.errors import InputError
 from grader.grading.answers import load_with_answers
 from grader.grading.rubric import Rubric
+from grader.report.formats import Format
 from grader.text import printable, printable_path
 from grader.usecases.class_reports import write_reports
 from grader.usecases.export import grades_csv

@@ -7,9 +7,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from grader.cli.formats import Format, render
-from grader.cli.output import complain, draw, emit
+from grader.cli.output import complain, emit, screen
 from grader.errors import GraderError, InputError, RubricError
+from grader.report.formats import Format, render
+from grader.report.screen import draw
 from grader.report.since import lines_since, nothing_since
 from grader.text import printable_path
 from grader.usecases.grade import Wanted, graded, make_room, save_reports, wanted_rubric
@@ -74,7 +75,7 @@ def _rounds(wanted: Wanted) -> Iterator[bool]:
     try:
         from grader.usecases.file_events import Watched, rounds
     except ImportError:
-        raise InputError("--watch needs watchfiles: pip install 'grader[watch]'") from None
+        raise InputError("--watch needs watchfiles: pip install 'urdf-grader[watch]'") from None
     return rounds(Watched(Path(wanted.path), rubric, frozenset(os.path.realpath(file) for _, file in wanted.saves)))
 
 
@@ -100,13 +101,13 @@ def _explain(path: str, error: GraderError) -> None:
 
 def _show(report: "Report", last: _Told | None, *, is_news: bool) -> _Told:
     """Print what has changed, and then the whole report; where that is nothing, one line at most."""
-    told = _Told(report, render(report, Format.TERMINAL, to_file=True))
+    told = _Told(report, render(report, Format.TERMINAL))
     if last is not None and told.text == last.text:
         if is_news:
             emit(f"{nothing_since(report)}\n")
         return told
-    news = draw(partial(_news, lines_since(last.report, report))) if last is not None else ""
-    emit(news + render(report, Format.TERMINAL, to_file=False))
+    news = draw(partial(_news, lines_since(last.report, report)), screen()) if last is not None else ""
+    emit(news + render(report, Format.TERMINAL, screen=screen()))
     return told
 
 

@@ -120,9 +120,9 @@ def as_wheel(into: Path) -> Path:
             f"Provides-Extra: {extra}",
             *(f"Requires-Dist: {in_order(each)}; extra == '{extra}'" for each in wanted),
         ]
-    (into / "grader-9.9.dist-info").mkdir()
-    head = "Metadata-Version: 2.4\nName: grader\nVersion: 9.9\n"
-    (into / "grader-9.9.dist-info" / "METADATA").write_text(head + "\n".join(lines) + "\n")
+    (into / "urdf_grader-9.9.dist-info").mkdir()
+    head = "Metadata-Version: 2.4\nName: urdf-grader\nVersion: 9.9\n"
+    (into / "urdf_grader-9.9.dist-info" / "METADATA").write_text(head + "\n".join(lines) + "\n")
     return into
 
 
@@ -153,7 +153,7 @@ def test_requirements_with_conditions(monkeypatch: pytest.MonkeyPatch, tmp_path:
         "other>=5 ; extra == 'test'",
         'third>=6; sys_platform == "linux" and extra == "test"',
     ]
-    monkeypatch.setattr(installed, "requires", {"grader": declared}.get)
+    monkeypatch.setattr(installed, "requires", {"urdf-grader": declared}.get)
     assert requirements("documents") == [
         'both>=4 ; python_version < "3.12"',
         'old>=2 ; python_version < "3.12"',
@@ -295,5 +295,5 @@ def test_a_check_of_another_package() -> None:
     strange.__module__ = "elsewhere.checks"
     rubric = load_rubric("lab6")
     first = replace(rubric.criteria[0], check=describe(strange))
-    with pytest.raises(InputError, match=r"urdf-loads is decided by a check of another package \(elsewhere\)"):
+    with pytest.raises(InputError, match=r"urdf-loads uses a check of the package elsewhere"):
         autograder_zip(replace(rubric, criteria=(first, *rubric.criteria[1:])))

@@ -92,7 +92,7 @@ def test_without_a_python(source: Path, tmp_path: Path, programs: dict[str, str]
     done = set_up(source, tmp_path, PATH=image(tmp_path, **programs))
     assert done.returncode == 1
     assert done.stdout.splitlines()[-1].startswith(
-        "setup.sh: there is still no Python 3.11 or newer. Choose a newer base image"
+        "setup.sh: could not install Python 3.11 or newer. Choose a newer base image"
     )
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from grader.cli.app import COMMANDS
-from grader.cli.formats import Format
+from grader.report.formats import Format
 from grader.report.rubrics import EVERY_KIND
 from tests.command_line import PATIENCE
 from tests.golden.cases import ROOT, run

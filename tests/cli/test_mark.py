@@ -14,8 +14,8 @@ import pytest
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Standings
 from grader.cli.class_text import class_text
-from grader.cli.formats import Format
 from grader.cli.options import ClassFormat
+from grader.report.formats import Format
 from grader.report.schemas import REPORT_SCHEMA
 from tests.classroom.gradebooks import ENVIRONMENT, HOSTILE, batch, grader, hand_in, lab_text, refusal, urdf
 from tests.command_line import PATIENCE
@@ -259,7 +259,7 @@ def test_an_account_is_named_by_no_report(top: Path) -> None:
     assert mark(top, "anna", "essay", "3", "--comment", "fine", **account).returncode == 0
     assert mark(top, "emil", "essay", "3", "--by", "Kim", **account).returncode == 0
     assert grader("review", "--gradebook", top / "book.db", stdin="1\nq\n", **account).returncode == 0
-    formats = [part for kind in Format if kind != "classroom50" for part in ("--report-format", kind)]
+    formats = [part for kind in Format if kind.needs != "identity" for part in ("--report-format", kind)]
     out = top / "out"
     done = batch(top, "--reports", out, *formats, "--csv", out.with_suffix(".csv"))
     assert done.returncode == 0, done.stderr

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.cli.formats import Format
+from grader.report.formats import Format
 from grader.usecases.writing import save
 from tests.golden.cases import CLASSROOM50, run
 from tests.samples import ROOT

@@ -285,7 +285,7 @@ def test_without_the_extra(robot: Path) -> None:
     command = [sys.executable, "-P", "-c", code, "grade", "--watch", str(robot)]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, check=False, timeout=PATIENCE)
     assert (done.returncode, done.stdout) == (2, b"")
-    assert done.stderr == b"grader: --watch needs watchfiles: pip install 'grader[watch]'\n"
+    assert done.stderr == b"grader: --watch needs watchfiles: pip install 'urdf-grader[watch]'\n"
 
 
 def counts(path: Path, changed: Path, *own: Path, rubric: Path | None = None) -> bool:

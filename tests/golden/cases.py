@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from grader.report.formats import Format
 from tests.command_line import ROOT, run
 
 __all__ = ["CLASSROOM50", "GOLDEN", "ROOT", "Golden", "run"]
@@ -23,10 +24,9 @@ class Golden:
     def file(self) -> Path:
         """Where the expected output stands, under the ending that such files have."""
         asked = self.arguments[self.arguments.index("--format") + 1] if "--format" in self.arguments else "terminal"
-        return HERE / f"{self.name}.{_ENDINGS.get(asked, 'json')}"
+        return HERE / f"{self.name}.{Format(asked).ending.rpartition('.')[2]}"
 
 
-_ENDINGS = {"terminal": "txt", "github": "txt", "markdown": "md", "junit": "xml", "sarif": "sarif"}
 # What the runner of Classroom 50 sets around an autograder.
 CLASSROOM50 = {
     "CLASSROOM": "robotics",

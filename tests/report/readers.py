@@ -1,11 +1,13 @@
 """Reports read back as the programs do that they are made for. What such a program would refuse fails the test."""
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from importlib.metadata import distribution
+from itertools import groupby
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
+from urllib.parse import unquote
 
 import cmarkgfm
 import jsonschema
@@ -15,7 +17,7 @@ from lxml import etree, html
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
 
-from grader.cli.formats import Format
+from grader.report.formats import Format
 from grader.report.schemas import REPORT_SCHEMA
 from tests.report.workflow_commands import Command, commands
 
@@ -115,14 +117,165 @@ def read_commands(text: str) -> list[Command]:
     return found
 
 
-READERS: Mapping[Format, Callable[[str], Any]] = {
-    Format.TERMINAL: str.splitlines,
-    Format.MARKDOWN: read_markdown,
-    Format.JSON: read_report,
-    Format.JUNIT: read_junit,
-    Format.SARIF: read_sarif,
-    Format.GITHUB: read_commands,
-    Format.GRADESCOPE: read_by_schema("gradescope"),
-    Format.CLASSROOM50: read_by_schema("classroom50"),
-    Format.CODECLIMATE: read_by_schema("codeclimate"),
+# Words with very many backticks stand in Markdown as text instead of code, or as a block that is indented instead of fenced.
+_ALIKE = {"code_inline": "text", "code_block": "fence"}
+
+
+def markdown_structure(text: str) -> Any:
+    """The tokens of Markdown, and the elements that GitHub makes of it."""
+    kinds = [_ALIKE.get(token.type, token.type) for token in read_markdown(text)]
+    tags = [tag for tag in _tags(read_as_github(text)) if tag != "code"]
+    return [kind for kind, _ in groupby(kinds)], tags
+
+
+def junit_structure(text: str) -> Any:
+    """The elements of a JUnit report."""
+    return _tags(read_junit(text))
+
+
+def commands_structure(text: str) -> Any:
+    """The annotations with the names of their properties."""
+    return [(command.name, [key for key, _ in command.properties]) for command in read_commands(text)]
+
+
+def json_structure(text: str) -> Any:
+    """The keys of JSON with the types of their values."""
+    return _shape(read_json(text))
+
+
+def _tags(root: Any) -> list[str]:
+    return [each.tag for each in root.iter()]
+
+
+# A snippet is left out where it is long; of problems a report in other words has only those that nothing else tells.
+_UNEQUAL = {"snippet", "problems"}
+
+
+def _shape(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _shape(each) for key, each in value.items() if key not in _UNEQUAL}
+    if isinstance(value, list) and all(isinstance(each, str) for each in value):
+        return "lines"
+    return [_shape(each) for each in value] if isinstance(value, list) else type(value).__name__
+
+
+def markdown_text(text: str) -> str:
+    return str(read_as_github(text).text_content())
+
+
+def junit_text(text: str) -> str:
+    return "\n".join(piece for each in read_junit(text).iter() for piece in (*each.attrib.values(), each.text or ""))
+
+
+def commands_text(text: str) -> str:
+    return "\n".join(
+        f"{each.get('title')}\n{each.get('file')}:{each.get('line')}\n{each.data}" for each in read_commands(text)
+    )
+
+
+def sarif_text(text: str) -> str:
+    return "\n".join(_places(json.loads(text))) + json_text(text)
+
+
+def _places(value: Any) -> Iterator[str]:
+    """The places of results, as others write them."""
+    for result in value["runs"][0]["results"]:
+        place = result["locations"][0]["physicalLocation"]
+        yield f"{unquote(place['artifactLocation']['uri'])}:{place['region']['startLine']}"
+
+
+def json_text(text: str) -> str:
+    """Every string as it is, every number beside its key, places as others write them."""
+    data = json.loads(text)
+    return "\n".join((*_values(data), json.dumps(data)))
+
+
+def _values(value: Any) -> Iterator[str]:
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, list):
+        for each in value:
+            yield from _values(each)
+    elif isinstance(value, dict):
+        if {"path", "line"} <= set(value):
+            yield f"{value['path']}:{value['line']}"
+        if {"path", "lines"} <= set(value):
+            yield f"{value['path']}:{value['lines']['begin']}"
+        for each in value.values():
+            yield from _values(each)
+
+
+def gradescope_text(text: str) -> str:
+    data = json.loads(text)
+    return "\n".join(
+        (json_text(text), markdown_text(data["output"]), *(markdown_text(each["output"]) for each in data["tests"]))
+    )
+
+
+_FINDINGS = "it holds what is to be mended, a line each, and nothing else"
+_TESTS = "it has a test for each criterion, and no room for anything else"
+_ALIKE_LINES = "criteria in a row that are skipped, or wait, for one reason are one line"
+_NAMED = "of ten notices one names all that wait and all that are skipped"
+_PERSON = "it is for a person, who has started this grader and named this rubric"
+
+
+class Reader(NamedTuple):
+    """How a format is read back.
+
+    `parse` reads it as the program that it is made for, `structure` returns its pieces whatever the words in them are, `text` what
+    it tells. `excused` says which facts the format does not tell, and why not.
+    """
+
+    parse: Callable[[str], Any]
+    structure: Callable[[str], Any]
+    text: Callable[[str], str]
+    excused: Mapping[str, str] = {}
+
+
+READERS: Mapping[Format, Reader] = {
+    Format.TERMINAL: Reader(
+        str.splitlines,
+        lambda _: None,  # its lines are of no pieces
+        str,
+        {
+            **dict.fromkeys(("title of skipped", "title of pending"), _ALIKE_LINES),
+            **dict.fromkeys(("rubric", "version"), _PERSON),
+        },
+    ),
+    Format.MARKDOWN: Reader(read_markdown, markdown_structure, markdown_text),
+    Format.JSON: Reader(read_report, json_structure, json_text),
+    Format.JUNIT: Reader(read_junit, junit_structure, junit_text),
+    Format.SARIF: Reader(read_sarif, json_structure, sarif_text),
+    Format.GITHUB: Reader(
+        read_commands,
+        commands_structure,
+        commands_text,
+        dict.fromkeys(("message of pending", "found"), _NAMED),
+    ),
+    Format.GRADESCOPE: Reader(read_by_schema("gradescope"), json_structure, gradescope_text),
+    Format.CLASSROOM50: Reader(
+        read_by_schema("classroom50"),
+        json_structure,
+        json_text,
+        dict.fromkeys(("problem", "note", "aside", "package", "waits", "rubric", "version"), _TESTS),
+    ),
+    Format.CODECLIMATE: Reader(
+        read_by_schema("codeclimate"),
+        json_structure,
+        json_text,
+        {
+            **dict.fromkeys(
+                ("title of skipped", "because", "title of pending", "message of pending", "found"), _FINDINGS
+            ),
+            **dict.fromkeys(("note", "aside", "package", "waits", "score", "rubric", "version"), _FINDINGS),
+        },
+    ),
 }
+
+
+def reader(kind: Format) -> Reader:
+    """How a format is read back: by its row, else as JSON or as text. Only one with a row has to tell everything."""
+    is_json = kind.ending.endswith("json")
+    return READERS.get(kind) or Reader(
+        read_json if is_json else str, json_structure if is_json else lambda _: None, str
+    )

@@ -1,22 +1,16 @@
-"""The same report with other words wherever a student's may stand, and what every format makes of it but the words."""
+"""The same report with other words wherever a student's may stand."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from itertools import groupby
-from typing import Any
 
-from grader.cli.formats import Format
 from grader.grading.report import HandedIn, Report, Result
 from grader.report.words import untold
 from grader.robot.reader import Verdict
 from grader.source import Location, Source
 from grader.submission.urdf import OtherCandidate
 from grader.text import printable
-from tests.report.readers import read_as_github, read_commands, read_json, read_junit, read_markdown
 
 Words = Callable[[], str]
-# Words with very many backticks stand in Markdown as text instead of code, or as a block that is indented instead of fenced.
-_ALIKE = {"code_inline": "text", "code_block": "fence"}
 
 
 @dataclass(frozen=True)
@@ -89,36 +83,3 @@ def _result(old: Result, words: Words, path: Words) -> Result:
     where = Location(path(), 1, 2) if outcome.location is not None else None
     measured = f"found\n{words()}" if isinstance(outcome.measured, str) else outcome.measured
     return old._replace(outcome=outcome._replace(message=words(), measured=measured, location=where))
-
-
-def structure(kind: Format, text: str) -> Any:
-    """What a report is made of: its elements, its tokens, its keys, whatever the words in them are."""
-    match kind:
-        case Format.TERMINAL:
-            return None
-        case Format.MARKDOWN:
-            kinds = [_ALIKE.get(token.type, token.type) for token in read_markdown(text)]
-            tags = [tag for tag in _tags(read_as_github(text)) if tag != "code"]
-            return [each for each, _ in groupby(kinds)], tags
-        case Format.JUNIT:
-            return _tags(read_junit(text))
-        case Format.GITHUB:
-            return [(each.name, [key for key, _ in each.properties]) for each in read_commands(text)]
-        case _:
-            return _shape(read_json(text))
-
-
-def _tags(root: Any) -> list[str]:
-    return [each.tag for each in root.iter()]
-
-
-# A snippet is left out where it is long; of problems a report in other words has only those that nothing else tells.
-_UNEQUAL = {"snippet", "problems"}
-
-
-def _shape(value: Any) -> Any:
-    if isinstance(value, dict):
-        return {key: _shape(each) for key, each in value.items() if key not in _UNEQUAL}
-    if isinstance(value, list) and all(isinstance(each, str) for each in value):
-        return "lines"
-    return [_shape(each) for each in value] if isinstance(value, list) else type(value).__name__

@@ -16,14 +16,14 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from grader.cli.app import run
-from grader.cli.formats import Format, render
 from grader.grading.grade import grade
 from grader.grading.report import Report
+from grader.report.formats import Format, render
 from grader.report.places import Base
 from grader.submission.submission import read_submission
 from tests.report.hostile import BREAKING, PIECES, SLOTS, TEXT, UNASKED, hand_in, name_of
-from tests.report.readers import READERS
-from tests.report.recast import recast, structure
+from tests.report.readers import reader
+from tests.report.recast import recast
 from tests.report.workflow_commands import commands
 from tests.robot.edge_cases import EDGE_CASES
 from tests.samples import LAB6, SAMPLES, opened
@@ -50,9 +50,9 @@ def is_harmless(text: str, kind: Format | None = None) -> None:
 
 
 def pieces(report: Report, base: Base) -> dict[Format, Any]:
-    """What every format is made of where all words are harmless; the terminal's lines are of no such pieces."""
+    """What every format is made of where all words are harmless."""
     twin = recast(report, lambda: "words")
-    return {kind: structure(kind, render(twin, kind, base)) for kind in Format if kind is not Format.TERMINAL}
+    return {kind: reader(kind).structure(render(twin, kind, base)) for kind in Format}
 
 
 def holds(report: Report, base: Base, wanted: Mapping[Format, Any] | None = None) -> None:
@@ -62,8 +62,8 @@ def holds(report: Report, base: Base, wanted: Mapping[Format, Any] | None = None
         text = render(report, kind, base)
         is_harmless(text, kind)
         assert kind is Format.GITHUB or not commands(text)
-        READERS[kind](text)
-        assert structure(kind, text) == wanted.get(kind), kind
+        reader(kind).parse(text)
+        assert reader(kind).structure(text) == wanted[kind], kind
 
 
 def written(texts: Mapping[str, str]) -> Report:

@@ -1,44 +1,20 @@
-"""Every format tells the same: what one of them has no room for is excused here, and nothing else is."""
+"""Every format tells the same: what one of them has no room for is excused in its row of READERS, and nothing else is."""
 
-import json
 import os
 import re
-from collections.abc import Callable, Iterator, Mapping
-from typing import Any, NamedTuple
+from collections.abc import Iterator
+from typing import NamedTuple
 from unittest.mock import patch
-from urllib.parse import unquote
 
 import pytest
 
-from grader.cli.formats import Format, render
 from grader.grading.report import Report, Result
+from grader.report.formats import Format, render
 from grader.report.points import points_words
 from grader.report.words import untold
 from grader.text import printable
-from tests.report.readers import read_as_github, read_commands, read_junit
+from tests.report.readers import READERS, read_commands
 from tests.samples import SAMPLES
-
-_FINDINGS = "it holds what is to be mended, a line each, and nothing else"
-_TESTS = "it has a test for each criterion, and no room for anything else"
-_ALIKE = "criteria in a row that are skipped, or wait, for one reason are one line"
-_NAMED = "of ten notices one names all that wait and all that are skipped"
-_PERSON = "it is for a person, who has started this grader and named this rubric"
-# What a format does not tell, and why not.
-EXCUSED: Mapping[Format, Mapping[str, str]] = {
-    Format.TERMINAL: {
-        **dict.fromkeys(("title of skipped", "title of pending"), _ALIKE),
-        **dict.fromkeys(("rubric", "version"), _PERSON),
-    },
-    Format.GITHUB: dict.fromkeys(("message of pending", "found"), _NAMED),
-    Format.CODECLIMATE: {
-        **dict.fromkeys(("title of skipped", "because", "title of pending", "message of pending", "found"), _FINDINGS),
-        **dict.fromkeys(("note", "aside", "package", "waits", "score", "rubric", "version"), _FINDINGS),
-    },
-    Format.CLASSROOM50: dict.fromkeys(
-        ("problem", "note", "aside", "package", "waits", "rubric", "version"),
-        _TESTS,
-    ),
-}
 
 
 class Fact(NamedTuple):
@@ -95,70 +71,6 @@ def _of_criterion(result: Result, report: Report) -> Iterator[Fact]:
         yield Fact("feedback", (criterion.feedback,), name)
 
 
-def _markdown(text: str) -> str:
-    return str(read_as_github(text).text_content())
-
-
-def _junit(text: str) -> str:
-    return "\n".join(piece for each in read_junit(text).iter() for piece in (*each.attrib.values(), each.text or ""))
-
-
-def _github(text: str) -> str:
-    return "\n".join(
-        f"{each.get('title')}\n{each.get('file')}:{each.get('line')}\n{each.data}" for each in read_commands(text)
-    )
-
-
-def _sarif(text: str) -> str:
-    return "\n".join(_places(json.loads(text))) + _json(text)
-
-
-def _places(value: Any) -> Iterator[str]:
-    """The places of results, as others write them."""
-    for result in value["runs"][0]["results"]:
-        place = result["locations"][0]["physicalLocation"]
-        yield f"{unquote(place['artifactLocation']['uri'])}:{place['region']['startLine']}"
-
-
-def _json(text: str) -> str:
-    """Every string as it is, every number beside its key, places as others write them."""
-    data = json.loads(text)
-    return "\n".join((*_values(data), json.dumps(data)))
-
-
-def _values(value: Any) -> Iterator[str]:
-    if isinstance(value, str):
-        yield value
-    elif isinstance(value, list):
-        for each in value:
-            yield from _values(each)
-    elif isinstance(value, dict):
-        if {"path", "line"} <= set(value):
-            yield f"{value['path']}:{value['line']}"
-        if {"path", "lines"} <= set(value):
-            yield f"{value['path']}:{value['lines']['begin']}"
-        for each in value.values():
-            yield from _values(each)
-
-
-def _gradescope(text: str) -> str:
-    data = json.loads(text)
-    return "\n".join((_json(text), _markdown(data["output"]), *(_markdown(each["output"]) for each in data["tests"])))
-
-
-DECODED: Mapping[Format, Callable[[str], str]] = {
-    Format.TERMINAL: str,
-    Format.MARKDOWN: _markdown,
-    Format.JSON: _json,
-    Format.JUNIT: _junit,
-    Format.SARIF: _sarif,
-    Format.GITHUB: _github,
-    Format.GRADESCOPE: _gradescope,
-    Format.CLASSROOM50: _json,
-    Format.CODECLIMATE: _json,
-}
-
-
 def _plain(text: str) -> str:
     """A text without white space and capitals, which are layout, and without what stops mentions and ends sentences."""
     return re.sub(r"[\s\u2060]+|\.$", "", text).casefold()
@@ -168,7 +80,7 @@ def untold_by(kind: Format, report: Report) -> Iterator[Fact]:
     """What a format leaves out. Of more than ten annotations of a type GitHub shows none: the last one names the others."""
     with patch.dict(os.environ, {"COLUMNS": "500"}):
         text = render(report, kind)
-    shown = _plain(DECODED[kind](text))
+    shown = _plain(READERS[kind].text(text))
     told = read_commands(text) if kind is Format.GITHUB else []
     named = {
         name for each in told for name in each.data.partition("The report tells of these, too: ")[2].split(", ")
@@ -182,12 +94,12 @@ def untold_by(kind: Format, report: Report) -> Iterator[Fact]:
 def test_all_formats_tell_the_same(name: str) -> None:
     """Of each criterion its title, its message, its place and its feedback; of the submission all that is said of it."""
     report = SAMPLES[name].grade()
-    left_out = {(kind.value, fact) for kind in Format for fact in untold_by(kind, report)}
-    assert not {(kind, fact) for kind, fact in left_out if fact.kind not in EXCUSED.get(Format(kind), {})}
+    left_out = {(kind.value, fact) for kind in READERS for fact in untold_by(kind, report)}
+    assert not {(kind, fact) for kind, fact in left_out if fact.kind not in READERS[Format(kind)].excused}
 
 
 def test_every_excuse_is_needed() -> None:
     """What a format tells after all is excused no longer."""
     reports = [sample.grade() for sample in SAMPLES.values()]
-    for kind, kinds in EXCUSED.items():
-        assert set(kinds) == {fact.kind for report in reports for fact in untold_by(kind, report)}
+    for kind, read in READERS.items():
+        assert set(read.excused) == {fact.kind for report in reports for fact in untold_by(kind, report)}

@@ -5,12 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from grader.cli.formats import Format, render
 from grader.grading.grade import grade
+from grader.report.formats import Format, render
 from tests.samples import LAB6, ROOT, opened
 
 
-@pytest.mark.parametrize("kind", [kind for kind in Format if kind is not Format.CLASSROOM50])
+@pytest.mark.parametrize("kind", [kind for kind in Format if kind.needs != "identity"])
 def test_a_report_is_no_answer(tmp_path: Path, kind: Format) -> None:
     """A report repeats questions and model answers, and yet what is graded is the same with it and without it."""
     work = tmp_path / "lab"

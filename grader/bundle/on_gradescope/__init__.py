@@ -1,1 +1,1 @@
-"""The files that stand in the root of an autograder for Gradescope. They run there, and nothing here imports them."""
+"""The files in the root of an autograder for Gradescope. They run there; nothing here imports them."""

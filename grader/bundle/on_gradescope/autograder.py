@@ -1,7 +1,7 @@
 """Grade the submission in the current folder, as Gradescope lays it out, and write results/results.json.
 
-Whatever the grader does, a results.json stands in the end: run_autograder has written one that says that nothing was graded, and
-here it is replaced by a better one, or stays. Only the standard library is needed.
+There is always a results.json: run_autograder writes one that says that nothing was graded, and this script replaces it if the
+grader wrote a report. It needs only the standard library.
 """
 
 import json
@@ -13,16 +13,16 @@ from pathlib import Path
 from tempfile import TemporaryFile
 from typing import IO, Any, NamedTuple
 
-# Isolated: nothing in the current folder, in the submission or named by the environment is imported.
+# Isolated (-I): Python imports nothing from the current folder, the submission or PYTHON* variables.
 GRADER = (sys.executable, "-I", "-X", "utf8", "-m", "grader")
 ENVIRONMENT = {"PATH": os.defpath, "LC_ALL": "C.UTF-8"}
 GRADED, NOT_GRADED = (0, 1, 3), 2  # the grader's exit codes
-MOST_BYTES = 32 * 1024 * 1024
-MOST_CHARACTERS = 2000
+MAX_BYTES = 32 * 1024 * 1024
+MAX_CHARACTERS = 2000
 
 
-class Ended(NamedTuple):
-    """How the grader ended: its exit code, None if it took too long, and what it has written."""
+class Completed(NamedTuple):
+    """The exit code of the grader, None if it took too long, and its output."""
 
     code: int | None
     output: bytes
@@ -30,24 +30,24 @@ class Ended(NamedTuple):
 
 
 def main(arguments: list[str]) -> int:
-    """Grade, or with --check only see whether the grader runs and takes the rubric; the exit code."""
+    """Grade, or with --check only test that the grader runs and loads the rubric. Return the exit code."""
     settings = json.loads(Path("source", "autograder.json").read_text(encoding="utf-8"))
     if arguments == ["--check"]:
         return subprocess.call([*GRADER, "rubric", "show", settings["rubric"]], env=ENVIRONMENT)
     options = ["--rubric", settings["rubric"], "--expect-rubric", settings["sha256"], "--format", "gradescope"]
-    ended = run([*GRADER, "grade", "submission", *options], settings["seconds"])
-    print(f"the grader ended with exit code {ended.code}\n{printable(ended.errors)}".rstrip())
-    results = results_of(ended, settings["seconds"])
+    completed = run([*GRADER, "grade", "submission", *options], settings["seconds"])
+    print(f"the grader ended with exit code {completed.code}\n{printable(completed.errors)}".rstrip())
+    results = results_of(completed, settings["seconds"])
     if results is None:
-        print("what it has written is no report; the results say that nothing was graded")
+        print("its output is not a report; the results say that nothing was graded")
         return 1
     write(Path("results", "results.json"), results)
     return 0
 
 
-def run(command: list[str], seconds: float) -> Ended:
-    """Run the grader for so long at most; then it is ended with all that it has started."""
-    # Files and no pipes: nothing can be held up by who does not close them.
+def run(command: list[str], seconds: float) -> Completed:
+    """Run the grader with a time limit in seconds, at which it and all its children are killed."""
+    # Files instead of pipes: a child that keeps a pipe open would block the reader.
     with TemporaryFile() as output, TemporaryFile() as errors:
         process = subprocess.Popen(
             command,
@@ -64,30 +64,29 @@ def run(command: list[str], seconds: float) -> Ended:
             code = None
             os.killpg(process.pid, signal.SIGKILL)
             process.wait()
-        return Ended(code, start_of(output), start_of(errors))
+        return Completed(code, read_start(output), read_start(errors))
 
 
-def start_of(file: IO[bytes]) -> bytes:
-    """What stands in a file, or one byte more of it than is taken."""
+def read_start(file: IO[bytes]) -> bytes:
+    """Return the content of a file, of a long one MAX_BYTES + 1 bytes."""
     file.seek(0)
-    return file.read(MOST_BYTES + 1)
+    return file.read(MAX_BYTES + 1)
 
 
-def results_of(ended: Ended, seconds: float) -> dict[str, Any] | None:
-    """What students are to see; None where the grader has failed."""
-    if ended.code is None:
+def results_of(completed: Completed, seconds: float) -> dict[str, Any] | None:
+    """Return what students see; None if the grader failed."""
+    if completed.code is None:
         return nothing_graded(f"The grader was stopped because it took longer than {seconds:g} seconds.")
-    if ended.code == NOT_GRADED:
-        return nothing_graded(f"The grader could not grade what you have handed in. It says:\n\n{said(ended.errors)}")
-    return report(ended.output) if ended.code in GRADED else None
+    if completed.code == NOT_GRADED:
+        return nothing_graded(f"The grader could not grade your submission:\n\n{messages(completed.errors)}")
+    return report(completed.output) if completed.code in GRADED else None
 
 
 def nothing_graded(why: str) -> dict[str, Any]:
-    """Results with no points, and why."""
+    """Return results without points that give the reason."""
     return {
         "score": 0,
-        "output": f"{why}\n\nNothing was graded yet. Look at what you have handed in, and hand in again. If you cannot tell what is "
-        "wrong, ask your instructor.",
+        "output": f"{why}\n\nNothing was graded. Check your submission and submit again. If you cannot find the fault, ask your instructor.",
         "output_format": "text",
         "visibility": "visible",
         "stdout_visibility": "hidden",
@@ -95,37 +94,37 @@ def nothing_graded(why: str) -> dict[str, Any]:
     }
 
 
-def said(errors: bytes) -> str:
-    """The grader's words on standard error, without its name before each line."""
+def messages(errors: bytes) -> str:
+    """Return the grader's messages on standard error, without its name before each line."""
     return "\n".join(line.removeprefix("grader: ") for line in printable(errors).splitlines())
 
 
 def printable(data: bytes) -> str:
-    """The start of some text, without any character that could do more than be read."""
-    lines = data.decode("utf-8", "replace")[:MOST_CHARACTERS].split("\n")
-    return "\n".join("".join(each if each.isprintable() else "?" for each in line) for line in lines).strip()
+    """Return the start of a text, with `?` for every character that is not printable."""
+    lines = data.decode("utf-8", "replace")[:MAX_CHARACTERS].split("\n")
+    return "\n".join("".join(c if c.isprintable() else "?" for c in line) for line in lines).strip()
 
 
 def report(output: bytes) -> dict[str, Any] | None:
-    """The grader's report; None if this is none."""
-    if len(output) > MOST_BYTES:
+    """Return the grader's report; None if the output is not a report."""
+    if len(output) > MAX_BYTES:
         return None
     try:
-        found = json.loads(output.decode(), parse_constant=refused)
+        found = json.loads(output.decode(), parse_constant=refuse_constant)
     except (ValueError, RecursionError):
         return None
     return found if isinstance(found, dict) and isinstance(found.get("score"), int | float) else None
 
 
-def refused(constant: str) -> float:
-    """NaN and Infinity, which Python reads as JSON and others do not."""
+def refuse_constant(constant: str) -> float:
+    """Refuse NaN and Infinity, which Python accepts in JSON and other parsers do not."""
     raise ValueError(constant)
 
 
 def write(path: Path, results: dict[str, Any]) -> None:
-    """Write the results so that they are there whole or not at all."""
+    """Write the results atomically."""
     temporary = path.with_name("results.json.tmp")
-    # Half a surrogate pair is no character, and not everybody's JSON can hold it.
+    # An unpaired surrogate is not a character, and not every JSON parser accepts it.
     temporary.write_bytes(json.dumps(results, ensure_ascii=False, indent=1).encode("utf-8", "replace"))
     temporary.replace(path)
 

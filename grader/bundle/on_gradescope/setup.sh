@@ -6,7 +6,7 @@ source=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd)
 root=$(dirname -- "$source")
 cd -- "$root"
 
-# The name of a Python that the grader runs on, and that can make virtual environments.
+# Print the name of a Python that is new enough and can make virtual environments.
 find_python() {
   local name
   for name in python3.13 python3.12 python3.11 python3; do
@@ -18,8 +18,8 @@ find_python() {
   return 1
 }
 
-# Ubuntu 22.04 has Python 3.10, and 3.11 beside it; where python3 is new enough, what it lacks is venv.
-# The system's own python3 stays what it is: Gradescope runs on it.
+# Ubuntu 22.04 has Python 3.10 and offers 3.11; where python3 is new enough, only venv is missing.
+# The system's own python3 is not changed: Gradescope runs on it.
 install_python() {
   local wanted=(python3.11 python3.11-venv)
   if python3 -I -c 'import sys; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1; then
@@ -30,10 +30,10 @@ install_python() {
 }
 
 if ! python=$(find_python); then
-  echo "setup.sh: there is no Python 3.11 or newer with venv here; installing one"
+  echo "setup.sh: found no Python 3.11 or newer with venv; installing one"
   install_python || true
   python=$(find_python) || {
-    echo "setup.sh: there is still no Python 3.11 or newer. Choose a newer base image, such as Ubuntu 22.04 or 24.04," \
+    echo "setup.sh: could not install Python 3.11 or newer. Choose a newer base image, such as Ubuntu 22.04 or 24.04," \
       "or install Python 3.11 and its venv in this script, above this line." >&2
     exit 1
   }
@@ -47,7 +47,7 @@ packages=$(venv/bin/python -I -c 'import sysconfig; print(sysconfig.get_path("pu
 echo "$source" >"$packages/autograder.pth"
 venv/bin/python -I -m compileall -q source/grader
 
-# What does not work is to be seen in the output of this build, not by the first student.
+# Fail this build if the grader does not run, rather than the first submission.
 venv/bin/python -I -m grader --version
 venv/bin/python -I source/autograder.py --check
 echo "setup.sh: the grader is ready"

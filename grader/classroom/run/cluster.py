@@ -33,7 +33,7 @@ class Cluster(Executor):
         try:
             import distributed
         except ImportError:
-            raise InputError("--cluster needs Dask: pip install 'grader[cluster]'") from None
+            raise InputError("--cluster needs Dask: pip install 'urdf-grader[cluster]'") from None
         self._timeout, self._address = timeout, address
         self._is_gone = False
         _hush()

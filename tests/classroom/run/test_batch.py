@@ -320,15 +320,12 @@ def test_reports_quote_files_only_as_they_were(tmp_path: Path) -> None:
     quoted = next(line for line in alone.splitlines() if "<" in line and "xyz" in line)
     (folder / "ann/my_robot.urdf").write_text('<robot name="other"/>\n' * 100)
     before = rows(tmp_path / "lab6.db", "SELECT max(id) FROM result")
-    from grader.cli.formats import Format, render
+    from grader.report.formats import Format, render
     from grader.usecases.class_reports import report_of
 
     with Gradebook(tmp_path / "lab6.db") as book:
         standings = Standings(book)
-        texts = {
-            key: render(report_of(standings, standings.find(key)), Format.TERMINAL, to_file=True)
-            for key in ("ann", "bea")
-        }
+        texts = {key: render(report_of(standings, standings.find(key)), Format.TERMINAL) for key in ("ann", "bea")}
     assert quoted not in texts["ann"]
     assert quoted in texts["bea"]
     assert rows(tmp_path / "lab6.db", "SELECT max(id) FROM result") == before

@@ -292,4 +292,4 @@ def test_the_extra_is_not_installed(tmp_path: Path) -> None:
     line = refused(
         "batch", folder, "--gradebook", tmp_path / "lab6.db", "--cluster", "tcp://127.0.0.1:1", PYTHONPATH=str(tmp_path)
     )
-    assert line == "--cluster needs Dask: pip install 'grader[cluster]'"
+    assert line == "--cluster needs Dask: pip install 'urdf-grader[cluster]'"

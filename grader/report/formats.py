@@ -1,0 +1,79 @@
+"""The formats of a report: the one registry from which options, completion, files and documentation take them."""
+
+import os
+from enum import StrEnum
+from functools import partial
+from importlib import import_module
+from typing import TYPE_CHECKING, Literal, Self
+
+from grader.report.screen import Screen, draw
+from grader.text import without_commands
+
+if TYPE_CHECKING:
+    from grader.grading.report import Report
+    from grader.report.places import Base
+
+Need = Literal["", "console", "base", "identity"]
+
+
+class Format(StrEnum):
+    """A format of a report: its name, the ending of its files, `module:function` in this package, and what that needs.
+
+    The function takes the report and returns text. With the need `console` it prints on a rich console instead; `base` is where
+    the submission is in its repository; `identity` is whose result it is, from Classroom 50's environment.
+    """
+
+    ending: str
+    function: str
+    needs: Need
+
+    # The endings differ, so that a report in every format can stand in one folder under one name.
+    TERMINAL = "terminal", "txt", "terminal:render_terminal", "console"
+    MARKDOWN = "markdown", "md", "markdown:render_markdown"
+    JSON = "json", "json", "as_json:render_json"
+    JUNIT = "junit", "xml", "junit:render_junit", "base"
+    SARIF = "sarif", "sarif", "sarif:render_sarif", "base"
+    GITHUB = "github", "github.txt", "github:render_github", "base"
+    GRADESCOPE = "gradescope", "gradescope.json", "gradescope:render_gradescope"
+    CLASSROOM50 = "classroom50", "classroom50.json", "classroom50:render_classroom50", "identity"
+    CODECLIMATE = "codeclimate", "codeclimate.json", "codeclimate:render_codeclimate", "base"
+
+    def __new__(cls, name: str, ending: str = "", function: str = "", needs: Need = "") -> Self:
+        """Return a member with its row; the defaults are for a look-up by name alone."""
+        member = str.__new__(cls, name)
+        member._value_ = name
+        member.ending, member.function, member.needs = ending, function, needs
+        return member
+
+
+def render(report: "Report", kind: Format, base: "Base | None" = None, screen: Screen | None = None) -> str:
+    """Return a report in a format; only that format's module is imported.
+
+    Args:
+        report: The report.
+        kind: Its format.
+        base: Where the submission is in its repository; default: its paths are the repository's.
+        screen: Where the text is shown; default: a file.
+
+    Raises:
+        InputError: The environment does not say whose result it is (Classroom 50).
+    """
+    module, _, name = kind.function.partition(":")
+    function = getattr(import_module(f"grader.report.{module}"), name)
+    if kind.needs == "console":
+        return draw(partial(function, report), screen)
+    text: str = function(report, *needed(kind, base))
+    return text if kind is Format.GITHUB else without_commands(text)  # whose lines are commands
+
+
+def needed(kind: Format, base: "Base | None" = None) -> tuple[object, ...]:
+    """Return what the function of a format takes after the report. Raises InputError if it cannot be had."""
+    if kind.needs == "base":
+        from grader.report.places import Base
+
+        return (base or Base(),)
+    if kind.needs == "identity":
+        from grader.report.classroom50 import identity_from
+
+        return (identity_from(os.environ),)
+    return ()
