@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from grader.checks.handed_in import answered
+from grader.checks.manual import answered
 from grader.checks.outcome import Outcome
 from grader.documents.evidence import Exhibit
 from grader.files.tree import PassedOver
@@ -18,7 +18,7 @@ from grader.source import Location, Source
 Quote = Callable[[str], Source | None]  # the text of one file of a submission; None where it cannot be read
 
 
-class KeptPackage(NamedTuple):
+class StoredPackage(NamedTuple):
     """The package that was graded: its folder in the submission, and its name."""
 
     folder: str
@@ -26,13 +26,13 @@ class KeptPackage(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Kept:
+class StoredSubmission:
     """What is kept of a submission. Its files are not: nothing of them is quoted, unless `quote` has their text."""
 
     id: str
     path: str | None = None
     sha256: str | None = None
-    package: KeptPackage | None = None
+    package: StoredPackage | None = None
     passed_over: tuple[PassedOver, ...] = ()
     left_out: tuple[str, ...] = ()
     has_urdf: bool = False
@@ -87,11 +87,11 @@ def from_record(text: str, rubric: Rubric, quote: Quote | None = None, template:
     same = template.outcomes if template is not None else {}
     data = json.loads(text)
     identity, path, sha256, package, passed_over, left_out, has_urdf, verdict, is_single, unread = data["submission"]
-    kept = Kept(
+    kept = StoredSubmission(
         identity,
         path,
         sha256,
-        KeptPackage(*package) if package is not None else None,
+        StoredPackage(*package) if package is not None else None,
         tuple(PassedOver(*each) for each in passed_over),
         tuple(left_out),
         has_urdf,

@@ -7,7 +7,7 @@ from typing import Any
 
 from grader.cli.formats import Format
 from grader.files.tree import PassedOver
-from grader.grading.report import HandedIn, Report, Result
+from grader.grading.report import GradedSubmission, Report, Result
 from grader.report.words import untold
 from grader.robot.reader import Verdict
 from grader.source import Location, Source
@@ -68,7 +68,7 @@ def recast(report: Report, words: Words) -> Report:
     )
 
 
-def _submission(old: HandedIn, words: Words, path: Words) -> HandedIn:
+def _submission(old: GradedSubmission, words: Words, path: Words) -> GradedSubmission:
     return Recast(
         words(),
         path() if old.path is not None else None,
