@@ -26,7 +26,7 @@ from tests.checks.hand_in_cases import HAND_IN_CASE, HAND_IN_CASES, PENDING_CASE
 from tests.checks.hand_ins import REFERENCE
 
 NAMES = [function.__name__ for function in CHECKS]
-SHARED = {"__init__", "outcome", "registry", "shown"}
+SHARED = {"__init__", "outcome", "registry", "visuals"}
 # A value of each annotation that a parameter may have, as TOML gives it.
 SAMPLES: Mapping[Any, Any] = {float: 1, int: 1, str: "a", bool: True}
 

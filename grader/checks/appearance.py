@@ -4,7 +4,7 @@ from itertools import permutations
 from math import cos, radians
 
 from grader.checks.outcome import SLACK, Outcome, failed, judged, measured, passed, place, point, within
-from grader.checks.shown import ShapeName, body, shape_name, visuals
+from grader.checks.visuals import ShapeName, body, shape_name, visuals
 from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Cylinder, Material, Sphere, Visual

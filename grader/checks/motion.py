@@ -3,7 +3,7 @@
 from math import atan2, degrees, hypot
 
 from grader.checks.outcome import SLACK, Outcome, judged, place, point, quantity, size
-from grader.checks.shown import body, pose_of, visuals
+from grader.checks.visuals import body, pose_of, visuals
 from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Cylinder, Joint

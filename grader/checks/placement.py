@@ -18,7 +18,7 @@ from grader.checks.outcome import (
     size,
     within,
 )
-from grader.checks.shown import ShapeName, body, pose_of, shape_name, span, visuals
+from grader.checks.visuals import ShapeName, body, pose_of, shape_name, span, visuals
 from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Geometry, Mesh, Visual

@@ -6,10 +6,8 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal, get_args, get_type_hints
 
 from grader.checks.appearance import shows_box, shows_colour, shows_cylinder, shows_grey, shows_nothing, shows_sphere
-from grader.checks.handed_in import answered, evidence_shown
-from grader.checks.joints import held_by, joints_named, root_of_tree
 from grader.checks.launch import launch_finds_files, launch_found, launch_starts
-from grader.checks.loading import urdf_loads
+from grader.checks.manual import answered, evidence_shown
 from grader.checks.motion import axis_along, rolls_forward, turns_about_itself
 from grader.checks.outcome import Outcome
 from grader.checks.package import build_installs, installs_files, package_found, package_type, setup_imports
@@ -23,6 +21,7 @@ from grader.checks.placement import (
     under_the_base,
 )
 from grader.checks.rviz import rviz_display_on, rviz_fixed_frame, rviz_found, rviz_shows_robot
+from grader.checks.tree import held_by, joints_named, root_of_tree, urdf_loads
 from grader.errors import InputError
 
 ENTRY_POINTS = "grader.checks"

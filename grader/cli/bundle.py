@@ -50,11 +50,11 @@ def bundle(
 def _next_step(rubric: "Rubric", output: Path) -> str:
     from decimal import Decimal
 
-    from grader.checks.handed_in import JUDGED_BY_A_PERSON
+    from grader.checks.manual import MANUAL_CHECKS
     from grader.report.points import points_words
     from grader.text import printable
 
-    by_hand = [each for each in rubric.criteria if each.check.function in JUDGED_BY_A_PERSON]
+    by_hand = [each for each in rubric.criteria if each.check.function in MANUAL_CHECKS]
     points = sum((each.points for each in by_hand), Decimal(0))
     listed = ", ".join(f"{each.id} ({points_words(each.points)})" for each in by_hand)
     step = f"upload it under Configure Autograder; autograder points: {points_words(rubric.points - points)}"

@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from grader.checks.handed_in import answered
+from grader.checks.manual import answered
 from grader.errors import RubricError
 from grader.files.reading import read_capped
 from grader.grading.rubric import Rubric, complain_of, find_rubric, read_rubric, read_toml

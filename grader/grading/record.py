@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from grader.checks.handed_in import answered
+from grader.checks.manual import answered
 from grader.checks.outcome import Outcome
 from grader.documents.evidence import Exhibit
 from grader.grading.report import Exhibits, Report, Result
@@ -18,7 +18,7 @@ from grader.submission.urdf import OtherCandidate
 Quote = Callable[[str], Source | None]  # the text of one file of a submission; None where it cannot be read
 
 
-class KeptPackage(NamedTuple):
+class StoredPackage(NamedTuple):
     """The package that was graded: its folder in the submission, and its name."""
 
     folder: str
@@ -26,13 +26,13 @@ class KeptPackage(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Kept:
+class StoredSubmission:
     """What is kept of a submission. Its files are not: nothing of them is quoted, unless `quote` has their text."""
 
     id: str
     path: str | None = None
     sha256: str | None = None
-    package: KeptPackage | None = None
+    package: StoredPackage | None = None
     other_candidates: tuple[OtherCandidate, ...] = ()
     ignored: tuple[str, ...] = ()
     has_urdf: bool = False
@@ -89,11 +89,11 @@ def from_record(text: str, rubric: Rubric, quote: Quote | None = None, template:
     identity, path, sha256, package, other_candidates, ignored, has_urdf, verdict, is_single, unread = data[
         "submission"
     ]
-    kept = Kept(
+    kept = StoredSubmission(
         identity,
         path,
         sha256,
-        KeptPackage(*package) if package is not None else None,
+        StoredPackage(*package) if package is not None else None,
         tuple(OtherCandidate(*each) for each in other_candidates),
         tuple(ignored),
         has_urdf,

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _NOTHING = Decimal(0)
 
 
-class Ruling(NamedTuple):
+class ManualMark(NamedTuple):
     """What a person has decided of a criterion: its points, whatever the check has found; who says so, if they gave a name, and why."""
 
     points: Decimal
@@ -34,19 +34,19 @@ class Result(NamedTuple):
     outcome: Outcome
     because: str | None = None
     traceback: str = ""
-    ruling: Ruling | None = None
+    manual_mark: ManualMark | None = None
 
     @property
     def points(self) -> Decimal:
         """What the criterion earns: all or nothing, unless a person has said what."""
-        if self.ruling is not None:
-            return self.ruling.points
+        if self.manual_mark is not None:
+            return self.manual_mark.points
         return self.criterion.points if self.outcome.status == "passed" else _NOTHING
 
     @property
     def is_open(self) -> bool:
         """Whether a person still has to decide."""
-        return self.outcome.status == "pending" and self.ruling is None
+        return self.outcome.status == "pending" and self.manual_mark is None
 
 
 class Exhibits(NamedTuple):
@@ -68,7 +68,7 @@ class Named(Protocol):
         """Its name."""
 
 
-class HandedIn(Protocol):
+class GradedSubmission(Protocol):
     """What a report says of the submission itself: a Submission, or what has been kept of one."""
 
     @property
@@ -123,7 +123,7 @@ class Report:
     evidence asks for. `notes` say in a sentence each what is worth knowing of how the submission was read.
     """
 
-    submission: HandedIn
+    submission: GradedSubmission
     rubric: Rubric
     parts: tuple[str, ...]
     results: tuple[Result, ...]

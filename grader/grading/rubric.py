@@ -8,7 +8,7 @@ from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
-from grader.checks.handed_in import answered
+from grader.checks.manual import answered
 from grader.checks.registry import Check
 from grader.errors import InputError, RubricError
 from grader.files.reading import read_capped, sha256_of

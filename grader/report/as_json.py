@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
-from grader.grading.report import Exhibits, HandedIn, Report, Result
+from grader.grading.report import Exhibits, GradedSubmission, Report, Result
 from grader.report.plain import exact, location, problem, rounded, to_json
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ def report_data(report: Report) -> dict[str, Any]:
     }
 
 
-def package_path(submission: HandedIn) -> str | None:
+def package_path(submission: GradedSubmission) -> str | None:
     """The folder of the package that is graded, `.` for the submission itself; None where there is none."""
     return (submission.package.folder or ".") if submission.package is not None else None
 
@@ -57,8 +57,8 @@ def _exhibit(exhibit: "Exhibit") -> dict[str, Any]:
 
 
 def _result(result: Result) -> dict[str, Any]:
-    criterion, outcome, ruling = result.criterion, result.outcome, result.ruling
-    by_hand = {"points": exact(ruling.points), "by": ruling.by, "comment": ruling.comment} if ruling else None
+    criterion, outcome, mark = result.criterion, result.outcome, result.manual_mark
+    by_hand = {"points": exact(mark.points), "by": mark.by, "comment": mark.comment} if mark else None
     return {
         "id": criterion.id,
         "part": criterion.part,

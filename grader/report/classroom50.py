@@ -95,7 +95,7 @@ def _scale(report: Report) -> int:
 def _test(result: Result, report: Report, scale: int) -> dict[str, Any]:
     return {
         "test-name": printable(f"{result.criterion.title} ({result.criterion.id})"),
-        "passed": not is_lost(result) and (result.ruling is not None or result.outcome.status == "passed"),
+        "passed": not is_lost(result) and (result.manual_mark is not None or result.outcome.status == "passed"),
         "score": int(Decimal(result.points) * scale),
         "max-score": int(result.criterion.points * scale),
         "message": "\n".join(criterion_lines(result, report)),

@@ -51,7 +51,7 @@ def findings(report: Report, base: Base) -> list[Finding]:
 
 def is_lost(result: Result) -> bool:
     """Whether a criterion has cost points, or has failed: what a person has decided counts, whatever the check has found."""
-    if result.ruling is not None:
+    if result.manual_mark is not None:
         return result.points < result.criterion.points
     return result.outcome.status in ("failed", "errored")
 
@@ -67,7 +67,9 @@ def _whole(report: Report, base: Base, *, of_package: bool) -> Place:
 
 def _of_criterion(result: Result, report: Report, source_of: Callable[[str], Source | None], base: Base) -> Finding:
     criterion, what = result.criterion, told(result, report)
-    behind = [each.criterion.points for each in report.results if each.because == criterion.id and each.ruling is None]
+    behind = [
+        each.criterion.points for each in report.results if each.because == criterion.id and each.manual_mark is None
+    ]
     aim = f"Passes when: {sentence(criterion.title)}"
     lines = [*what.sentences, *filter(None, [what.feedback]), aim]
     if behind:

@@ -55,7 +55,7 @@ def _whole(report: Report) -> str:
         lines.append(f"A person decides: {', '.join(waiting)}")
     skipped: dict[str, list[str]] = {}
     for each in report.results:
-        if each.because is not None and each.ruling is None:
+        if each.because is not None and each.manual_mark is None:
             skipped.setdefault(each.because, []).append(each.criterion.id)
     lines += [f"Skipped, because {because} failed: {', '.join(names)}" for because, names in skipped.items()]
     return "\n".join((*lines, *beside(report)))

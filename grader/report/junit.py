@@ -47,8 +47,8 @@ def _counts(results: tuple[Result, ...]) -> dict[str, str]:
 def _kind(result: Result) -> str:
     """The element that says what became of a criterion; empty where it has all points."""
     if is_lost(result):
-        return "error" if result.outcome.status == "errored" and result.ruling is None else "failure"
-    return "skipped" if result.ruling is None and result.outcome.status in ("skipped", "pending") else ""
+        return "error" if result.outcome.status == "errored" and result.manual_mark is None else "failure"
+    return "skipped" if result.manual_mark is None and result.outcome.status in ("skipped", "pending") else ""
 
 
 def _whole(report: Report) -> dict[str, str]:
@@ -84,7 +84,7 @@ def _case(suite: Any, result: Result, report: Report, base: Base) -> None:
         etree.SubElement(case, "system-out").text = "\n".join(lines) + "\n"
         return
     found = etree.SubElement(
-        case, kind, type="marked by hand" if result.ruling else result.outcome.status, message=lines[0]
+        case, kind, type="marked by hand" if result.manual_mark else result.outcome.status, message=lines[0]
     )
     found.text = "\n".join(lines) + "\n"
 

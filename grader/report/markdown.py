@@ -93,7 +93,7 @@ def _item(result: Result, report: Report, shown: set[str], *, answers: bool) -> 
     criterion, status = result.criterion, status_of(result)
     points = f"{points_words(result.points)}/{points_words(criterion.points)}"
     head = f"- {_MARKS[status]} {points} {escaped(printable(criterion.title))}"
-    if status == "passed" and result.ruling is None:
+    if status == "passed" and result.manual_mark is None:
         return head
     details = (indent(block, "  ") for block in _details(result, report, shown, answers=answers))
     return "\n\n".join((f"{head} ({code(criterion.id)})", *details))

@@ -112,7 +112,7 @@ def _shared(results: tuple[Result, ...]) -> str | None:
 
 
 def _reason(result: Result) -> str | None:
-    if result.because is not None and result.ruling is None:
+    if result.because is not None and result.manual_mark is None:
         return f"skipped, because {result.because} failed"
     is_open = result.is_open and not isinstance(result.outcome.measured, str)  # an answer is shown on its own
     return f"pending: {result.outcome.message}" if is_open else None
@@ -136,7 +136,7 @@ def _show_result(result: Result, page: _Page) -> None:
     points = f"{points_words(result.points)}/{points_words(criterion.points)}"
     head = Text.assemble("  ", (symbol(console, *_SYMBOLS[status]), _STYLES[status]), f" {points:<5} ")
     title = Text(printable(criterion.title))
-    if status in ("passed", "skipped") and result.ruling is None:
+    if status in ("passed", "skipped") and result.manual_mark is None:
         because = f"  skipped, because {result.because} failed" if status == "skipped" else ""
         wrapped(console, title + Text(because, style="dim"), _INDENT, head)
         return
@@ -146,7 +146,7 @@ def _show_result(result: Result, page: _Page) -> None:
 
 def _sentence_styles(result: Result) -> tuple[str, ...]:
     """The styles of what is told of a criterion: a person's decision stands out, and so does a fault of ours."""
-    if result.ruling is not None:
+    if result.manual_mark is not None:
         return ("bold", "dim")
     return (_STYLES["errored"] if result.outcome.status == "errored" else "",)
 

@@ -5,7 +5,7 @@ from decimal import Decimal
 from itertools import groupby
 from typing import NamedTuple
 
-from grader.checks.handed_in import JUDGED_BY_A_PERSON
+from grader.checks.manual import MANUAL_CHECKS
 from grader.grading.report import Exhibits, Report, Result
 from grader.problems import Problem
 from grader.report.points import points_words, so_many_points
@@ -42,7 +42,7 @@ def score_words(report: Report) -> str:
 
 def status_of(result: Result) -> str:
     """What became of a criterion: of one that a person has decided, whether it has all points."""
-    if result.ruling is None:
+    if result.manual_mark is None:
         return result.outcome.status
     return "passed" if result.points >= result.criterion.points else "failed"
 
@@ -62,7 +62,7 @@ def summary(report: Report) -> str:
     if submission.path is not None and submission.has_urdf:
         verdict = _VERDICTS[submission.verdict] if submission.verdict else "xacro that a person has to expand"
         graded = f"{path}: {verdict}"
-    decided = [each.outcome.status if each.ruling is None else "marked by hand" for each in report.results]
+    decided = [each.outcome.status if each.manual_mark is None else "marked by hand" for each in report.results]
     return f"{graded}; {', '.join(f'{decided.count(each)} {each}' for each in _STATUSES if each in decided)}"
 
 
@@ -99,15 +99,15 @@ def asides(report: Report) -> list[str]:
 
 def undecided(report: Report) -> list[Result]:
     """Criteria that wait for a person though a program decides them as a rule: what they ask of could not be read."""
-    return [each for each in report.results if each.is_open and each.criterion.check.function not in JUDGED_BY_A_PERSON]
+    return [each for each in report.results if each.is_open and each.criterion.check.function not in MANUAL_CHECKS]
 
 
 def told(result: Result, report: Report) -> Told:
     """What there is to say of one criterion, whatever became of it."""
     outcome = result.outcome
-    if result.ruling is not None:
-        comment = f": {_line(result.ruling.comment)}" if result.ruling.comment else ""
-        by_hand = sentence(f"Marked by {result.ruling.by or 'hand'}{comment}")
+    if result.manual_mark is not None:
+        comment = f": {_line(result.manual_mark.comment)}" if result.manual_mark.comment else ""
+        by_hand = sentence(f"Marked by {result.manual_mark.by or 'hand'}{comment}")
         if outcome.status == "pending":
             return Told((by_hand,), *_answers(result))
         return Told((by_hand, sentence(f"The check: {outcome.status}. {outcome.message}")))

@@ -7,8 +7,6 @@ from typing import Any
 import pytest
 
 from grader.checks.appearance import shows_box, shows_colour, shows_cylinder, shows_grey, shows_nothing, shows_sphere
-from grader.checks.joints import held_by, joints_named, root_of_tree
-from grader.checks.loading import urdf_loads
 from grader.checks.motion import axis_along, rolls_forward, turns_about_itself
 from grader.checks.placement import (
     bottom_at_height,
@@ -19,6 +17,7 @@ from grader.checks.placement import (
     stands_on,
     under_the_base,
 )
+from grader.checks.tree import held_by, joints_named, root_of_tree, urdf_loads
 from tests.checks.asking import AnyCheck
 from tests.checks.robots import Numbers, Scene, box, cylinder, joint, link, paint, scene, sphere, turned, visual
 

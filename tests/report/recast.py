@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from grader.grading.report import HandedIn, Report, Result
+from grader.grading.report import GradedSubmission, Report, Result
 from grader.report.words import untold
 from grader.robot.reader import Verdict
 from grader.source import Location, Source
@@ -62,7 +62,7 @@ def recast(report: Report, words: Words) -> Report:
     )
 
 
-def _submission(old: HandedIn, words: Words, path: Words) -> HandedIn:
+def _submission(old: GradedSubmission, words: Words, path: Words) -> GradedSubmission:
     return Recast(
         words(),
         path() if old.path is not None else None,

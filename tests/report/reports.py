@@ -6,7 +6,7 @@ from pathlib import Path
 
 from grader.checks.outcome import Outcome
 from grader.grading.grade import grade
-from grader.grading.report import Report, Ruling
+from grader.grading.report import ManualMark, Report
 from grader.grading.rubric import load_rubric
 from tests.samples import SAMPLES, opened
 
@@ -42,9 +42,9 @@ def half_points(folder: Path) -> Report:
 def marked() -> Report:
     """A report in which a person has decided: all points for a failure, none for a pass, half of what waited."""
     report = SAMPLES["launch-home-path"].grade()
-    rulings: dict[str, Ruling] = {}
+    rulings: dict[str, ManualMark] = {}
     for status, share in (("failed", 1), ("passed", 0), ("pending", Decimal("0.5"))):
         chosen = next(each for each in report.results if each.outcome.status == status)
-        rulings[chosen.criterion.id] = Ruling(chosen.criterion.points * share, "Ada", "so it\nis")
-    results = tuple(each._replace(ruling=rulings.get(each.criterion.id)) for each in report.results)
+        rulings[chosen.criterion.id] = ManualMark(chosen.criterion.points * share, "Ada", "so it\nis")
+    results = tuple(each._replace(manual_mark=rulings.get(each.criterion.id)) for each in report.results)
     return replace(report, results=results)

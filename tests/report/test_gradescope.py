@@ -77,7 +77,7 @@ def test_what_a_person_has_decided_has_its_points() -> None:
     by_hand = {
         result.outcome.status: (test["score"], test["status"])
         for test, result in zip(data["tests"], report.results, strict=True)
-        if result.ruling is not None
+        if result.manual_mark is not None
     }
     assert {status: decided for status, (_, decided) in by_hand.items()} == {
         "failed": "passed",

@@ -92,7 +92,7 @@ def test_a_file_in_an_archive_has_no_line_in_the_repository() -> None:
 
 def test_what_a_person_has_decided_counts() -> None:
     """Full points by hand are no failure, whatever the check has found; fewer are one."""
-    found = [(result, case.result) for result, case in cases(marked()) if result.ruling is not None]
+    found = [(result, case.result) for result, case in cases(marked()) if result.manual_mark is not None]
     assert sorted((result.outcome.status, [type(each) for each in told]) for result, told in found) == [
         ("failed", []),
         ("passed", [Failure]),

@@ -18,7 +18,7 @@ from grader.classroom.matching import People, clues_of
 from grader.classroom.students import Student
 from grader.errors import InputError
 from grader.grading.record import Template, from_record
-from grader.grading.report import Report, Result, Ruling
+from grader.grading.report import ManualMark, Report, Result
 from grader.grading.rubric import Rubric
 from grader.names import did_you_mean
 from grader.text import printable_path
@@ -201,9 +201,9 @@ class Standings:
         rulings = self._rulings(standing.id) if standing.marks else {}
         return replace(report, results=_ruled(report, rulings)) if rulings else report
 
-    def _rulings(self, student: int) -> dict[str, Ruling]:
+    def _rulings(self, student: int) -> dict[str, ManualMark]:
         rows = self.book.rows("SELECT criterion, points, signed, comment FROM ruling WHERE student = ?", student)
-        return {name: Ruling(Decimal(points) / UNITS, signed, comment) for name, points, signed, comment in rows}
+        return {name: ManualMark(Decimal(points) / UNITS, signed, comment) for name, points, signed, comment in rows}
 
     def _standing(self, row: tuple[Any, ...]) -> Standing:
         (
@@ -240,7 +240,7 @@ def _why(standing: Standing, newest: str) -> str:
     return "; ".join(reasons)
 
 
-def _ruled(report: Report, rulings: dict[str, Ruling]) -> tuple[Result, ...]:
+def _ruled(report: Report, rulings: dict[str, ManualMark]) -> tuple[Result, ...]:
     """The results with what people have decided, also of criteria that the check was not asked for."""
     asked = {each.criterion.id: each for each in report.results}
     not_asked = Outcome("skipped", "not graded: it was not handed in")
@@ -251,5 +251,5 @@ def _ruled(report: Report, rulings: dict[str, Ruling]) -> tuple[Result, ...]:
         if result is None and ruling is not None:
             result = Result(criterion, not_asked)
         if result is not None:
-            results.append(result._replace(ruling=ruling))
+            results.append(result._replace(manual_mark=ruling))
     return tuple(results)

@@ -14,7 +14,7 @@ def remarks_on(results: Iterable[Result]) -> Iterator[Remark]:
     """
     together: dict[tuple[str, str], list[Result]] = {}
     for number, each in enumerate(results):
-        if each.points < each.criterion.points or (each.ruling is not None and each.ruling.comment):
+        if each.points < each.criterion.points or (each.manual_mark is not None and each.manual_mark.comment):
             together.setdefault(_cause(each) or ("", str(number)), []).append(each)
     for (kind, cause), alike in together.items():
         first = alike[0]
@@ -30,7 +30,7 @@ def remarks_on(results: Iterable[Result]) -> Iterator[Remark]:
 
 def _cause(result: Result) -> tuple[str, str] | None:
     """What a criterion was skipped for, or waits for, where others may be for the same."""
-    if result.ruling is not None:
+    if result.manual_mark is not None:
         return None
     if result.because is not None:
         return "skipped", result.because
@@ -38,7 +38,7 @@ def _cause(result: Result) -> tuple[str, str] | None:
 
 
 def _said(result: Result) -> str:
-    return _capitalised(result.outcome.message) if result.ruling is None else result.ruling.comment
+    return _capitalised(result.outcome.message) if result.manual_mark is None else result.manual_mark.comment
 
 
 def _capitalised(message: str) -> str:

@@ -179,7 +179,7 @@ def check(book: Gradebook, model: Model) -> None:
         standing = standings.find(key)
         assert (*map(units, (standing.score, standing.out_of, standing.pending)), standing.faults) == wanted
         report = standings.report(standing)
-        open_faults = sum(each.outcome.status == "errored" and each.ruling is None for each in report.results)
+        open_faults = sum(each.outcome.status == "errored" and each.manual_mark is None for each in report.results)
         assert (*map(units, (report.score, report.max_score, report.pending)), open_faults) == wanted
         decided = {each.criterion.id: each.points for each in report.results if is_decided(each)}
         assert standings.points(standing) == decided
@@ -187,7 +187,7 @@ def check(book: Gradebook, model: Model) -> None:
 
 def is_decided(result: Any) -> bool:
     """Whether a check or a person has said what a criterion earns."""
-    return result.ruling is not None or result.outcome.status in ("passed", "failed", "skipped")
+    return result.manual_mark is not None or result.outcome.status in ("passed", "failed", "skipped")
 
 
 def test_a_student_without_a_hand_in_has_no_points(book: Gradebook) -> None:

@@ -21,7 +21,7 @@ from grader.classroom.lms.spreadsheet import neutral
 from grader.classroom.lms.tables import read_table
 from grader.classroom.students import Student
 from grader.errors import InputError
-from grader.grading.report import Result, Ruling
+from grader.grading.report import ManualMark, Result
 from tests.classroom.gradebooks import lab
 
 HEADER = (
@@ -296,12 +296,12 @@ def test_another_maximum_is_refused() -> None:
 RUBRIC = lab()
 
 
-def result(name: str, outcome: Outcome, because: str | None = None, ruling: Ruling | None = None) -> Result:
+def result(name: str, outcome: Outcome, because: str | None = None, ruling: ManualMark | None = None) -> Result:
     (criterion,) = [each for each in RUBRIC.criteria if each.id == name]
     return Result(criterion, outcome, because, "", ruling)
 
 
-def skipped(name: str, because: str = "loads", ruling: Ruling | None = None) -> Result:
+def skipped(name: str, because: str = "loads", ruling: ManualMark | None = None) -> Result:
     return result(name, Outcome("skipped", f"not decided, because {because} failed"), because, ruling)
 
 
@@ -324,7 +324,7 @@ def test_what_has_a_cause_of_its_own_stays() -> None:
     asks = Outcome("pending", "a person has to mark it", "this", "that")
     found = [
         result("loads", Outcome("passed", "fine")),
-        skipped("box", ruling=Ruling(Decimal(1), "me", "nice try")),
+        skipped("box", ruling=ManualMark(Decimal(1), "me", "nice try")),
         skipped("tall", "box"),
         result("essay", asks),
         result("picture", asks._replace(measured='xyz="0" is off', message='xyz="0" is off')),

@@ -57,4 +57,4 @@ def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
 
 
 # Always pending, whatever was handed in.
-JUDGED_BY_A_PERSON = (answered, evidence_shown)
+MANUAL_CHECKS = (answered, evidence_shown)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.checks.handed_in import answered, evidence_shown
+from grader.checks.manual import answered, evidence_shown
 from grader.checks.outcome import Outcome
 from grader.documents.documents import MAX_LINES
 from grader.source import Location
