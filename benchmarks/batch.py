@@ -22,10 +22,10 @@ from class_generator import make_class
 from run import check_urdf, in_turn, once
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.intake.intake import take_in
-from grader.classroom.run.batch import Batch, Progress, Settings
+from grader.classroom.intake.intake import read_class
+from grader.classroom.run.batch import Batch, Progress, RunSettings
 from grader.classroom.run.pool import Processes, processors
-from grader.classroom.run.worker import PRELOAD, Class, Task, grade_all, prepare
+from grader.classroom.run.worker import PRELOAD, ClassContext, Task, grade_all, prepare
 from grader.grading.rubric import load_rubric
 
 _TIMEOUT = 60.0  # seconds for one hand-in
@@ -181,7 +181,7 @@ def workers(bench: Bench, jobs: int) -> Iterator[Executor]:
     """Workers, each of which has graded a few dozen hand-ins that are in no class."""
     executor = Processes(jobs, _TIMEOUT, prepare, preload=PRELOAD)
     folder, rubric = bench.folder(_WARMING), load_rubric("lab6")
-    common = Class(str(folder), rubric.data, str(rubric.path))
+    common = ClassContext(str(folder), rubric.data, str(rubric.path))
     tasks = [Task(name, (name,)) for name in names_in(folder)]
     warm: set[int] = set()
     end = time.monotonic() + _PATIENCE
@@ -193,7 +193,7 @@ def workers(bench: Bench, jobs: int) -> Iterator[Executor]:
         executor.shutdown()
 
 
-def warmed(common: Class, tasks: Sequence[Task]) -> int:
+def warmed(common: ClassContext, tasks: Sequence[Task]) -> int:
     """Grade these in a worker; which process that is."""
     grade_all(common, tasks)
     return os.getpid()
@@ -214,7 +214,7 @@ def grade_class(folder: Path, count: int, jobs: int, executor: Executor, book: P
     """Grade a class into a gradebook; every hand-in gets a mark or has been marked before."""
     root, rubric = str(folder), load_rubric("lab6")
     with Gradebook(book, create=True) as opened:
-        progress = Batch(opened, rubric, Settings(root, "folders", count, jobs), executor).grade(take_in(folder))
+        progress = Batch(opened, rubric, RunSettings(root, "folders", count, jobs), executor).grade(read_class(folder))
     assert (progress.done, progress.errored, progress.unreadable) == (count, 0, 0), progress
     return progress
 

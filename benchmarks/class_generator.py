@@ -667,7 +667,7 @@ KINDS: dict[str, tuple[int, Kind]] = {
 }
 
 
-class HandIn(NamedTuple):
+class ClassSubmission(NamedTuple):
     """What one student has handed in, and of what kind. The last of the `attempts` counts; there may be none."""
 
     person: Person
@@ -676,7 +676,7 @@ class HandIn(NamedTuple):
     made: Made | None
 
 
-def hand_ins(count: int, seed: int, kind: str) -> Iterator[HandIn]:
+def hand_ins(count: int, seed: int, kind: str) -> Iterator[ClassSubmission]:
     """A class of so many students. A mixed one has one more, who is nobody in it and comes last."""
     is_mixed = kind == "mixed"
     for index in range(count + is_mixed):
@@ -684,7 +684,7 @@ def hand_ins(count: int, seed: int, kind: str) -> Iterator[HandIn]:
         who = person(seed, index, with_awkward=is_mixed)
         desk = Desk(Dice(f"{seed}/hand-in/{index}"), who.login)
         attempts = KINDS[name][1](desk)
-        yield HandIn(who, name, attempts, desk.made)
+        yield ClassSubmission(who, name, attempts, desk.made)
 
 
 def card(seed: int, index: int) -> str:
@@ -704,7 +704,7 @@ def _deck(seed: int, number: int) -> list[str]:
 ENDINGS = (".urdf.xacro", ".tar.gz", ".urdf", ".zip")
 
 
-def in_folders(hand_in: HandIn) -> Iterator[Item]:
+def in_folders(hand_in: ClassSubmission) -> Iterator[Item]:
     """A file that is named after the student, or a folder; later attempts are numbered as browsers do."""
     for number, items in enumerate(hand_in.attempts):
         key = f"{hand_in.person.key} ({number})" if number else hand_in.person.key
@@ -716,7 +716,7 @@ def in_folders(hand_in: HandIn) -> Iterator[Item]:
             yield from _below(key, items)
 
 
-def in_canvas(hand_in: HandIn) -> Iterator[Item]:
+def in_canvas(hand_in: ClassSubmission) -> Iterator[Item]:
     """Files side by side; what is a folder was zipped. The same name in a later attempt is numbered."""
     who = hand_in.person
     for number, items in enumerate(hand_in.attempts):
@@ -730,7 +730,7 @@ def in_canvas(hand_in: HandIn) -> Iterator[Item]:
             yield item._replace(path=f"{canvas_name(who)}{late}_{canvas_id(who)}_{attachment}_{name}")
 
 
-def in_moodle(hand_in: HandIn) -> Iterator[Item]:
+def in_moodle(hand_in: ClassSubmission) -> Iterator[Item]:
     """A folder for each participant, with the last attempt in it."""
     who = hand_in.person
     if hand_in.attempts:

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.gradebook.result import Graded
-from grader.classroom.intake.intake import take_in
+from grader.classroom.gradebook.result import GradingResult
+from grader.classroom.intake.intake import read_class
 from grader.classroom.intake.roster_file import read_roster
-from grader.classroom.run.worker import Class, Task, grade_all
+from grader.classroom.run.worker import ClassContext, Task, grade_all
 from grader.grading.grade import grade
 from grader.submission.submission import read_submission
 from tests.samples import LAB6, ROOT
@@ -142,15 +142,15 @@ def test_every_mixed_hand_in_is_opened(layout: str, tmp_path: Path) -> None:
     assert layout == "moodle" or refused >= {"broken-zip", "garbage-zip", "zip-bomb"}
 
 
-def _graded(folder: Path) -> Iterable[tuple[str, Graded]]:
+def _graded(folder: Path) -> Iterable[tuple[str, GradingResult]]:
     """The result of each hand-in, with the top name of what counted."""
-    common = Class(str(folder), LAB6.data, str(LAB6.path))
-    for hand_in in take_in(folder).hand_ins():
+    common = ClassContext(str(folder), LAB6.data, str(LAB6.path))
+    for hand_in in read_class(folder).submissions():
         (graded,) = grade_all(common, [Task(hand_in.student.key, hand_in.paths, hand_in.names)])
         yield hand_in.paths[0].partition("/")[0], graded
 
 
-def _lost(graded: Graded) -> set[str]:
+def _lost(graded: GradingResult) -> set[str]:
     """The criteria of the URDF that failed or were skipped."""
     lost = {each.id for each, sign in zip(LAB6.criteria, graded.signs, strict=True) if sign in "fs"}
     return lost & set(made_up.criteria())
@@ -163,7 +163,7 @@ def test_the_lists_match_the_class(layout: str, list_name: str, tmp_path: Path) 
     folder = tmp_path / "class"
     written = every(made_up.make_class(folder, MIXED, SEED, "mixed", layout))
     made_up.write_beside(written, MIXED, layout, None, tmp_path / "roster.csv", tmp_path / "lms.csv")
-    intake = take_in(folder, read_roster(tmp_path / list_name))
+    intake = read_class(folder, read_roster(tmp_path / list_name))
     assert intake.layout == layout
     assert len(intake.unmatched) == 1
     assert len(intake.absent) == sum(not each.paths for each in written)

@@ -42,7 +42,7 @@ OF_RECORDS = (*NUMBERS, Clue.WORD, Clue.ANY_CASE, Clue.NAME, Clue.CANVAS_NAME)  
 TYPED = (*NUMBERS, Clue.WORD, Clue.NAME)  # what a person may type, who is then asked to be exact
 
 
-class Found(NamedTuple):
+class Match(NamedTuple):
     """Who is meant: the positions of those whom the first matching kind of clue finds.
 
     `contradicted` has those whom it finds as well, but whom an LMS knows by another number: they are not meant.
@@ -71,7 +71,7 @@ class People:
                     before = table.get(value)
                     table[value] = index if before is None else (*_tuple(before), index)
 
-    def find(self, claims: Clues, kinds: Sequence[Clue] = OF_FOLDERS, among: Collection[int] | None = None) -> Found:
+    def find(self, claims: Clues, kinds: Sequence[Clue] = OF_FOLDERS, among: Collection[int] | None = None) -> Match:
         """Who has these clues, of everybody or of the positions in `among`."""
         for clue in kinds:
             table = self._tables[clue]
@@ -80,8 +80,8 @@ class People:
                 found.intersection_update(among)
             if found:
                 against = {index for index in found if _contradict(claims, self.clues[index])}
-                return Found(tuple(sorted(found - against)), clue, tuple(sorted(against)))
-        return Found(())
+                return Match(tuple(sorted(found - against)), clue, tuple(sorted(against)))
+        return Match(())
 
     def named(self, name: str) -> tuple[int, ...]:
         """Everybody whom a number, key, login, address or full name may mean that a person types: whatever kind of clue it is."""

@@ -24,7 +24,7 @@ class Student:
 
 
 @dataclass(frozen=True, slots=True)
-class HandIn:
+class ClassSubmission:
     """What one student has handed in: the last attempt, and where the earlier ones are.
 
     `paths` lead from the top of the class folder (or archive) to one folder, one file, or the several files that an LMS has

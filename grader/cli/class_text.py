@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from grader.classroom.gradebook.grades import Standings
+from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.statistics import statistics
 from grader.classroom.run.batch import Progress
 from grader.cli.options import ClassFormat
@@ -12,11 +12,11 @@ from grader.report.screen import draw
 _MOST_LOOKS = 20
 
 
-def class_text(standings: Standings, kind: ClassFormat, done: Progress | None = None) -> str:
+def class_text(standings: Grades, kind: ClassFormat, done: Progress | None = None) -> str:
     """Marks, statistics and who needs a look; `done` is what a batch has just done. Raises InputError where nothing was graded."""
     rubric = standings.newest_rubric()
     found = statistics(standings.book, rubric)
-    looks = standings.looks(_MOST_LOOKS)
+    looks = standings.needing_attention(_MOST_LOOKS)
     if kind is ClassFormat.JSON:
         from grader.report.classes_json import render_class_json
 

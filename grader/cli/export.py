@@ -13,7 +13,7 @@ from grader.text import printable_path
 from grader.usecases.writing import is_output, is_same, not_over, refuse_links, save_bytes
 
 if TYPE_CHECKING:
-    from grader.classroom.gradebook.grades import Standings
+    from grader.classroom.gradebook.grades import Grades
 
 
 class Target(StrEnum):
@@ -61,7 +61,7 @@ def export(
       grader export canvas --gradebook lab6.db --into canvas.csv > upload.csv
     """
     from grader.classroom.gradebook.gradebook import Gradebook
-    from grader.classroom.gradebook.grades import Standings
+    from grader.classroom.gradebook.grades import Grades
     from grader.classroom.gradebook.lateness import read_time
 
     if (into is None) == (target in (Target.CANVAS, Target.MOODLE)):
@@ -80,7 +80,7 @@ def export(
         classes = {run.source for run in book.runs()}
         if output is not None:
             refuse_links(output, tuple(classes))
-        standings = Standings(book, read_time(due) if due else None)
+        standings = Grades(book, read_time(due) if due else None)
         if into is None:
             data = _plain(target, standings)
         else:
@@ -101,7 +101,7 @@ def export(
     return 0
 
 
-def _plain(target: Target, standings: "Standings") -> bytes:
+def _plain(target: Target, standings: "Grades") -> bytes:
     if target is Target.CSV:
         from grader.usecases.export import grades_csv
 

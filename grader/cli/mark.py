@@ -31,7 +31,7 @@ def mark(
       grader mark alice lidar-frame - --gradebook lab6.db
     """
     from grader.classroom.gradebook.gradebook import Gradebook
-    from grader.classroom.gradebook.grades import Standings
+    from grader.classroom.gradebook.grades import Grades
     from grader.classroom.gradebook.marks import criterion_of, read_points
     from grader.classroom.gradebook.marks import mark as add_mark
     from grader.report.points import points_words
@@ -39,7 +39,7 @@ def mark(
     from grader.text import printable
 
     with Gradebook(gradebook) as book:
-        standings = Standings(book)
+        standings = Grades(book)
         standing = standings.find(submission)
         asked = criterion_of(
             standings.rubric(standing.rubric) if standing.rubric else standings.newest_rubric(), criterion

@@ -14,8 +14,8 @@ from grader.errors import InputError
 if TYPE_CHECKING:
     from decimal import Decimal
 
-    from grader.classroom.gradebook.grades import Standings
-    from grader.classroom.gradebook.marks import Pending
+    from grader.classroom.gradebook.grades import Grades
+    from grader.classroom.gradebook.marks import PendingCriterion
 
 _KEEP = "k to keep that mark, r to replace it with yours: "
 _HELP = "points and a comment, or s to skip, q to stop (everything is kept), ? for this line"
@@ -38,31 +38,31 @@ def review(
       grader review --gradebook lab6.db --criterion answer-floating-link
     """
     from grader.classroom.gradebook.gradebook import Gradebook
-    from grader.classroom.gradebook.grades import Standings
-    from grader.classroom.gradebook.marks import criterion_of, pending, waiting
+    from grader.classroom.gradebook.grades import Grades
+    from grader.classroom.gradebook.marks import criterion_of, manual_grading_queue, pending_criterion
 
     if isinstance(sys.stdin, io.TextIOWrapper):
         sys.stdin.reconfigure(errors="backslashreplace")  # a terminal in another encoding
     with Gradebook(gradebook) as book:
-        standings = Standings(book, answers=True)
+        standings = Grades(book, answers=True)
         if criterion:
             criterion_of(standings.newest_rubric(), criterion)
-        asked = waiting(standings, criterion)
+        asked = manual_grading_queue(standings, criterion)
         given = 0
         for number, each in enumerate(asked, 1):
-            found = pending(standings, each)
+            found = pending_criterion(standings, each)
             if found is None:  # somebody else has decided it meanwhile
                 continue
             answer = _ask(standings, found, f"{number} of {len(asked)}", by)
             if answer is None:
                 break
             given += answer
-        left = len(waiting(standings, criterion))
+        left = len(manual_grading_queue(standings, criterion))
     emit(f"{given} marked, {left} still wait\n" if asked else "nothing waits for a person\n")
     return 0
 
 
-def _ask(standings: "Standings", pending: "Pending", place: str, by: str) -> int | None:
+def _ask(standings: "Grades", pending: "PendingCriterion", place: str, by: str) -> int | None:
     """Ask until there is an answer: how many marks came of it, None to stop."""
     from grader.classroom.gradebook.marks import read_points
     from grader.report.review import render_pending
@@ -90,7 +90,7 @@ def _ask(standings: "Standings", pending: "Pending", place: str, by: str) -> int
     return None
 
 
-def _mark(standings: "Standings", pending: "Pending", points: "Decimal", by: str, comment: str) -> int | None:
+def _mark(standings: "Grades", pending: "PendingCriterion", points: "Decimal", by: str, comment: str) -> int | None:
     """Mark, unless somebody else has meanwhile and their mark is to be kept: how many marks came of it, None to stop."""
     from grader.classroom.gradebook.marks import NewerMarkError, mark
     from grader.report.review import mark_words

@@ -16,10 +16,10 @@ def stats(gradebook: GradebookOption, due: DueOption = None, output_format: Form
       grader stats --gradebook lab6.db --format json
     """
     from grader.classroom.gradebook.gradebook import Gradebook
-    from grader.classroom.gradebook.grades import Standings
+    from grader.classroom.gradebook.grades import Grades
     from grader.classroom.gradebook.lateness import read_time
     from grader.cli.class_text import class_text
 
     with Gradebook(gradebook) as book:
-        emit(class_text(Standings(book, read_time(due) if due else None), output_format))
+        emit(class_text(Grades(book, read_time(due) if due else None), output_format))
     return 0

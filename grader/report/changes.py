@@ -7,7 +7,7 @@ from typing import Any
 from rich.console import Console
 from rich.text import Text
 
-from grader.classroom.gradebook.changes import Change, Step
+from grader.classroom.gradebook.changes import Change, PointsChange
 from grader.classroom.gradebook.gradebook import Run
 from grader.report.layout import wrapped
 from grader.report.plain import exact, to_json
@@ -59,7 +59,7 @@ def _score(change: Change) -> str:
     return f"{_words(change.after)} as before, only the verdict changed"
 
 
-def _lines(steps: Sequence[Step]) -> Iterator[str]:
+def _lines(steps: Sequence[PointsChange]) -> Iterator[str]:
     """A line for each criterion, one for those that took the same step if they are many, and an end."""
     alike: dict[tuple[Decimal | None, Decimal | None], list[str]] = {}
     for step in steps:

@@ -7,7 +7,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from grader.classroom.gradebook.grades import Looks
+from grader.classroom.gradebook.grades import AttentionList
 from grader.classroom.gradebook.statistics import ClassStatistics, CriterionStatistics
 from grader.report.layout import wrapped
 from grader.report.points import points_words
@@ -18,7 +18,7 @@ _MOST_FAILURES = 10
 _WEAK = 0.2
 
 
-def render_class(title: str, statistics: ClassStatistics, looks: Looks, console: Console) -> None:
+def render_class(title: str, statistics: ClassStatistics, looks: AttentionList, console: Console) -> None:
     """Print what there is to say of a class. Nothing of a submission is taken for markup or control codes."""
     verdicts = statistics.verdicts
     counted = [
@@ -107,7 +107,7 @@ def _show_failures(statistics: ClassStatistics, console: Console) -> None:
         wrapped(console, Text(printable(f"{failure.criterion.title}: {failure.message}")), 8, head)
 
 
-def _show_looks(looks: Looks, console: Console) -> None:
+def _show_looks(looks: AttentionList, console: Console) -> None:
     if not looks.total:
         return
     console.print()

@@ -4,14 +4,18 @@ from collections.abc import Iterable
 from typing import Any
 
 from grader import __version__
-from grader.classroom.gradebook.grades import Looks, Standing
+from grader.classroom.gradebook.grades import AttentionList, StudentGrade
 from grader.classroom.gradebook.statistics import ClassStatistics, CriterionStatistics
 from grader.grading.rubric import Rubric
 from grader.report.plain import exact, rounded, to_json
 
 
 def render_class_json(
-    rubric: Rubric, statistics: ClassStatistics, standings: Iterable[Standing], looks: Looks, run: dict[str, int] | None
+    rubric: Rubric,
+    statistics: ClassStatistics,
+    standings: Iterable[StudentGrade],
+    looks: AttentionList,
+    run: dict[str, int] | None,
 ) -> str:
     """Everyone's current grade and the statistics; `run` counts what the batch has done, if there was one just now."""
     return to_json(
@@ -27,7 +31,7 @@ def render_class_json(
     )
 
 
-def standing_data(standing: Standing) -> dict[str, Any]:
+def standing_data(standing: StudentGrade) -> dict[str, Any]:
     """One student's current grade as plain data."""
     student, has_result = standing.student, standing.result is not None
     return {
@@ -39,11 +43,11 @@ def standing_data(standing: Standing) -> dict[str, Any]:
         "score": exact(standing.score) if has_result else None,
         "max_score": exact(standing.out_of) if has_result else None,
         "pending": exact(standing.pending) if has_result else None,
-        "late": {"days": standing.late.days, "points": exact(standing.late.points), "because": standing.late.words},
+        "late": {"days": standing.late.days, "points": exact(standing.late.points), "because": standing.late.reason},
         "total": exact(standing.total) if has_result else None,
         "is_final": not standing.why_not_final,
         "marks_by_hand": standing.marks,
-        "paths": list(standing.origin.paths),
+        "paths": list(standing.files.paths),
         "attempt": standing.attempt,
         "earlier": list(standing.earlier),
     }

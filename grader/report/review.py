@@ -5,7 +5,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.text import Text
 
-from grader.classroom.gradebook.marks import Mark, Pending
+from grader.classroom.gradebook.marks import Mark, PendingCriterion
 from grader.report.layout import wrapped
 from grader.report.points import points_words, so_many_points
 from grader.text import printable
@@ -13,7 +13,7 @@ from grader.text import printable
 _INDENT = 2
 
 
-def render_pending(pending: Pending, place: str, console: Console) -> None:
+def render_pending(pending: PendingCriterion, place: str, console: Console) -> None:
     """Print a question of a student, `place` of all that wait. Nothing of the submission is taken for markup or control codes."""
     criterion, outcome = pending.result.criterion, pending.result.outcome
     student = pending.standing.student
@@ -47,9 +47,9 @@ def _show(what: str, text: str, console: Console) -> None:
         wrapped(console, Text(printable(line)), _INDENT)
 
 
-def _where(pending: Pending, path: str) -> str:
+def _where(pending: PendingCriterion, path: str) -> str:
     """A file of the submission as a person may open it."""
-    origin = pending.standing.origin
+    origin = pending.standing.files
     if len(origin.paths) == 1:
         return str(Path(origin.root, origin.paths[0], path))
     called = dict(zip(origin.names or [each.rpartition("/")[2] for each in origin.paths], origin.paths, strict=True))

@@ -18,7 +18,7 @@ from grader.usecases.writing import save
 if TYPE_CHECKING:
     from datetime import datetime
 
-    from grader.classroom.gradebook.grades import Standing, Standings
+    from grader.classroom.gradebook.grades import Grades, StudentGrade
     from grader.grading.report import Report
 
 _TOGETHER = 50
@@ -57,10 +57,10 @@ def _write_some(
     book: str, folder: str, formats: tuple[Format, ...], names: dict[str, str], due: "datetime | None"
 ) -> None:
     from grader.classroom.gradebook.gradebook import Gradebook
-    from grader.classroom.gradebook.grades import Standings
+    from grader.classroom.gradebook.grades import Grades
 
     with Gradebook(Path(book)) as opened:
-        standings = Standings(opened, due)
+        standings = Grades(opened, due)
         for standing in list(standings.between(min(names), max(names))):
             name = names.get(standing.student.key)
             if name is None:
@@ -70,14 +70,14 @@ def _write_some(
                 save(Path(folder, f"{name}.{kind.ending}"), render(report, kind))
 
 
-def report_of(standings: "Standings", standing: "Standing") -> "Report":
+def report_of(standings: "Grades", standing: "StudentGrade") -> "Report":
     """The report on a student's newest hand-in; what being late costs is a note of its own."""
     report = standings.report(standing)
-    if not standing.late.words:
+    if not standing.late.reason:
         return report
     from grader.report.points import points_words
 
-    note = standing.late.words
+    note = standing.late.reason
     if standing.late.points:
         note += (
             f": {points_words(-standing.late.points)} points are taken off, which leaves {points_words(standing.total)}"

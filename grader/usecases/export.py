@@ -6,13 +6,13 @@ from decimal import Decimal
 from pathlib import Path
 from typing import NamedTuple
 
-from grader.classroom.gradebook.grades import Standing, Standings
+from grader.classroom.gradebook.grades import Grades, StudentGrade
 from grader.classroom.lms.canvas import fill_gradebook
-from grader.classroom.lms.comments import remarks_on
-from grader.classroom.lms.feedback import Remark, feedback_html
-from grader.classroom.lms.grades import Grade
+from grader.classroom.lms.comments import feedback_items
+from grader.classroom.lms.feedback import FeedbackItem, feedback_html
+from grader.classroom.lms.grades import LmsGrade
 from grader.classroom.lms.moodle import fill_worksheet
-from grader.classroom.lms.preflight import Filled, Left, Preflight
+from grader.classroom.lms.preflight import Filled, Preflight, RowNote
 from grader.classroom.lms.spreadsheet import write_table
 from grader.classroom.lms.tables import SIZE_LIMIT
 from grader.files.reading import read_capped
@@ -24,14 +24,14 @@ _MOST_NAMED, _MOST_LINES = 3, 50
 Cell = str | int | Decimal | None
 
 
-def grades_csv(standings: Standings) -> str:
+def grades_csv(standings: Grades) -> str:
     """A row for everyone: the grade, what being late costs, and the points of each criterion, empty where nobody has decided."""
     rubric = standings.newest_rubric()
     header = [*_ABOUT, "total", "not_final_because", *(criterion.id for criterion in rubric.criteria)]
     return write_table(header, (_row(standings, each, rubric) for each in standings.all()))
 
 
-def _row(standings: Standings, standing: Standing, rubric: Rubric) -> list[Cell]:
+def _row(standings: Grades, standing: StudentGrade, rubric: Rubric) -> list[Cell]:
     student = standing.student
     about: list[Cell] = [student.key, student.name, student.email, student.login, student.sis, standing.verdict]
     if standing.result is None:
@@ -41,7 +41,7 @@ def _row(standings: Standings, standing: Standing, rubric: Rubric) -> list[Cell]
     return [*about, *grade, standing.total, standing.why_not_final, *(points.get(each.id) for each in rubric.criteria)]
 
 
-def lms_grades(standings: Standings, *, feedback: bool, pending_as_zero: bool) -> Iterator[Grade]:
+def lms_grades(standings: Grades, *, feedback: bool, pending_as_zero: bool) -> Iterator[LmsGrade]:
     """Everyone's grade for an LMS. One that is not final has no total, unless what still waits counts as nothing."""
     for standing in standings.all():
         reason = standing.why_not_final
@@ -49,10 +49,10 @@ def lms_grades(standings: Standings, *, feedback: bool, pending_as_zero: bool) -
             standing.verdict in ("graded", "errored") and not replace(standing, pending=Decimal(0)).why_not_final
         )
         if reason and not (waits_only and pending_as_zero):
-            yield Grade(standing.student, None, "", reason, standing.is_expected is not False)
+            yield LmsGrade(standing.student, None, "", reason, standing.is_expected is not False)
             continue
         text = _feedback(standings, standing) if feedback else ""
-        yield Grade(standing.student, standing.total, text, is_on_roster=standing.is_expected is not False)
+        yield LmsGrade(standing.student, standing.total, text, is_on_roster=standing.is_expected is not False)
 
 
 class Filling(NamedTuple):
@@ -65,7 +65,7 @@ class Filling(NamedTuple):
     any_maximum: bool
 
 
-def fill(is_moodle: bool, standings: Standings, filling: Filling) -> Filled:
+def fill(is_moodle: bool, standings: Grades, filling: Filling) -> Filled:
     """Fill Moodle's worksheet, or Canvas' gradebook; raises InputError."""
     data = read_capped(filling.file, SIZE_LIMIT, advice="")
     shown, rubric = printable_path(filling.file), standings.newest_rubric()
@@ -87,11 +87,11 @@ def fill(is_moodle: bool, standings: Standings, filling: Filling) -> Filled:
     )
 
 
-def _feedback(standings: Standings, standing: Standing) -> str:
+def _feedback(standings: Grades, standing: StudentGrade) -> str:
     report = standings.report(standing)
-    remarks = list(remarks_on(report.results))
+    remarks = list(feedback_items(report.results))
     if standing.late.points:
-        remarks.append(Remark("Handed in late", standing.late.points, Decimal(0), standing.late.words))
+        remarks.append(FeedbackItem("Handed in late", standing.late.points, Decimal(0), standing.late.reason))
     return feedback_html(standing.total, report.max_score, remarks)
 
 
@@ -114,7 +114,7 @@ def preflight_lines(found: Preflight) -> Iterator[str]:
     yield from map(printable, found.warnings)
 
 
-def _by_reason(what: str, left: Sequence[Left]) -> list[str]:
+def _by_reason(what: str, left: Sequence[RowNote]) -> list[str]:
     """A line for each reason, in the order of the rows, with how many it holds for and the first of them."""
     names: dict[str, list[str]] = {}
     for each in left:

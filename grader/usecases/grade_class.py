@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.grades import Standings
+from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.lateness import read_time
-from grader.classroom.intake.intake import Intake, take_in
+from grader.classroom.intake.intake import Intake, read_class
 from grader.classroom.intake.roster import Roster, roster_from_json
 from grader.classroom.intake.roster_file import read_roster
-from grader.classroom.run.batch import Batch, Progress, Settings
+from grader.classroom.run.batch import Batch, Progress, RunSettings
 from grader.classroom.run.pool import Processes, processors
 from grader.classroom.run.worker import PRELOAD, prepare
 from grader.cli.class_text import class_text
@@ -69,20 +69,20 @@ def grade_class(
     known = _roster(roster, gradebook)
     root = path.resolve()
     _check(wanted, gradebook, root)
-    intake = take_in(path, known, layout, assignment, rules.id)
+    intake = read_class(path, known, layout, assignment, rules.id)
     _tell(intake)
     with Gradebook(gradebook, create=True) as book:
         with _executor(cluster, jobs, timeout, root) as (executor, workers):
             told = deadline.isoformat() if deadline is not None else ""
-            settings = Settings(str(root), intake.layout, len(intake), workers, force, known, told, add, max_size)
+            settings = RunSettings(str(root), intake.layout, len(intake), workers, force, known, told, add, max_size)
             done = _run(book, rules, intake, settings, executor)
         if wanted.reports is not None:
             with _processes(jobs, _REPORTING) as local:
                 count = write_reports(local, gradebook, wanted.reports, wanted.report_formats, deadline)
             complain(f"{count} reports are in {printable_path(wanted.reports)}")
         if wanted.csv is not None:
-            save(wanted.csv, grades_csv(Standings(book, deadline)), (root,))
-        emit(class_text(Standings(book, deadline), wanted.output, done))
+            save(wanted.csv, grades_csv(Grades(book, deadline)), (root,))
+        emit(class_text(Grades(book, deadline), wanted.output, done))
 
 
 def _roster(file: Path | None, gradebook: Path) -> Roster | None:
@@ -92,7 +92,7 @@ def _roster(file: Path | None, gradebook: Path) -> Roster | None:
         return roster
     with Gradebook(gradebook) as book:
         roster = roster or roster_from_json(book.roster_entries())
-        return roster.knowing(book.students()) if roster is not None else None
+        return roster.with_lms_numbers(book.students()) if roster is not None else None
 
 
 @contextmanager
@@ -113,7 +113,7 @@ def _processes(jobs: int | None, timeout: float) -> "Executor":
 
 
 def _run(
-    book: "Gradebook", rules: "Rubric", intake: "Intake", settings: "Settings", executor: "Executor"
+    book: "Gradebook", rules: "Rubric", intake: "Intake", settings: "RunSettings", executor: "Executor"
 ) -> "Progress":
     """Grade what is new; where it is interrupted, say what is kept."""
     with ProgressDisplay() as display:
@@ -135,7 +135,7 @@ def _tell(intake: "Intake") -> None:
     """Say how the class was taken in, and what was left out."""
     complain(f"{len(intake)} hand-in{'' if len(intake) == 1 else 's'}, laid out as {intake.layout}")
     unmatched = [f"{key} is not on the roster" for key in intake.unmatched]
-    for lines in (intake.notes, unmatched, [f"left out: {line}" for line in intake.left_out]):
+    for lines in (intake.notes, unmatched, [f"left out: {line}" for line in intake.ignored]):
         _tell_lines(lines)
 
 

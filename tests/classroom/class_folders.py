@@ -30,4 +30,4 @@ def pack(place: Path, names: Iterable[str]) -> Path:
 
 def taken(intake: Intake) -> dict[str, tuple[str, ...]]:
     """The paths of each hand-in by its student's key, in their order."""
-    return {each.student.key: each.paths for each in intake.hand_ins()}
+    return {each.student.key: each.paths for each in intake.submissions()}

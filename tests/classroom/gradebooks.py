@@ -7,9 +7,9 @@ from pathlib import Path
 
 from grader.checks.outcome import Outcome
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.result import NOT_GRADED, SIGNS, Graded, Verdict
+from grader.classroom.gradebook.result import NOT_GRADED, STATUS_LETTERS, GradingResult, Verdict
 from grader.classroom.run.worker import Task, _of
-from grader.classroom.students import HandIn, Student
+from grader.classroom.students import ClassSubmission, Student
 from grader.files.reading import sha256_of
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric, read_rubric
@@ -28,7 +28,7 @@ _CRITERIA = {
     'with = { question = "Why?", answer = "Because of the roots.", places = ["step 1"] }',
     "picture": 'part = "report"\ncheck = "evidence_shown"\nwith = { names = ["screen"] }',
 }
-_STATUSES = {sign: status for status, sign in SIGNS.items()}
+_STATUSES = {sign: status for status, sign in STATUS_LETTERS.items()}
 ENVIRONMENT = surroundings()
 HOSTILE = ROOT / "tests" / "classroom" / "hostile"
 
@@ -50,7 +50,7 @@ def lab(late: str = "", **points: str) -> Rubric:
     return read_rubric(lab_text(late, **points).encode(), Path("small.toml"))
 
 
-def came_out(rubric: Rubric, key: str, signs: str, digest: str = "a", reason: str = "") -> Graded:
+def came_out(rubric: Rubric, key: str, signs: str, digest: str = "a", reason: str = "") -> GradingResult:
     """A hand-in whose criteria came out as these signs say; one that has a reason could not be read."""
     results = tuple(
         Result(criterion, Outcome(_STATUSES[sign], f"what was found of {criterion.id}"))
@@ -64,7 +64,7 @@ def came_out(rubric: Rubric, key: str, signs: str, digest: str = "a", reason: st
     return _of(report, Task(key, (key,)), verdict, reason, sha256_of(digest.encode()), "")
 
 
-def graded_into(book: Gradebook, rubric: Rubric, found: Iterable[Graded], submitted: str = "") -> int:
+def graded_into(book: Gradebook, rubric: Rubric, found: Iterable[GradingResult], submitted: str = "") -> int:
     """Keep what came out as one run; its number."""
     run = book.begin("class", "folders", rubric)
     with book.transaction():
@@ -72,7 +72,7 @@ def graded_into(book: Gradebook, rubric: Rubric, found: Iterable[Graded], submit
             who = Student(each.key)
             student = book.keep_student(who, None)
             result = book.keep(student, rubric.sha256, each)
-            book.see(student, run, result, HandIn(who, (each.key,), submitted=submitted), "")
+            book.see(student, run, result, ClassSubmission(who, (each.key,), submitted=submitted), "")
     book.finish(run)
     return run
 

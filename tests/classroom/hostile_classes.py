@@ -26,12 +26,12 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_state_machine_as_test
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.grades import Standing, Standings
+from grader.classroom.gradebook.grades import Grades, StudentGrade
 from grader.classroom.gradebook.marks import mark
-from grader.classroom.intake.intake import take_in
-from grader.classroom.intake.opening import is_bulk, open_hand_in
-from grader.classroom.intake.roster import Entry, Roster
-from grader.classroom.run.batch import Batch, Settings
+from grader.classroom.intake.intake import read_class
+from grader.classroom.intake.opening import is_bulk, open_submission
+from grader.classroom.intake.roster import Roster, RosterEntry
+from grader.classroom.run.batch import Batch, RunSettings
 from grader.classroom.students import Student
 from grader.errors import InputError
 from grader.grading.rubric import read_rubric
@@ -143,7 +143,7 @@ class Class:
             return None
         in_canvas, in_moodle = self.layout == "canvas", self.layout == "moodle"
         return Roster(
-            Entry(
+            RosterEntry(
                 Student(
                     f"k{_NUMBER[name]}", _FULL[name], f"{name}@example.org", name,
                     canvas=_NUMBER[name] if in_canvas else "", moodle=_NUMBER[name] if in_moodle else "",
@@ -197,7 +197,7 @@ class HostileClass(RuleBasedStateMachine):
             self._submit(self.made.place(name), name)
         self.book = self._stack.enter_context(Gradebook(self.top / "g.db", create=True))
         self._grade()
-        for standing in list(Standings(self.book).all()):
+        for standing in list(Grades(self.book).all()):
             mark(self.book, standing, _CRITERION, Decimal(4), "me", "")
         self.before = self._marks()
         assert sorted(self.before) == sorted(NAMES), (self.made, self.before)
@@ -266,10 +266,10 @@ class HostileClass(RuleBasedStateMachine):
         roster = self.made.roster
         if self.source != self.root:
             _pack(self.root, self.source)
-        intake = take_in(self.source, roster, layout, rubric_id="lab6")
-        for hand_in in intake.hand_ins():
+        intake = read_class(self.source, roster, layout, rubric_id="lab6")
+        for hand_in in intake.submissions():
             self._check_files(hand_in.paths, hand_in.names, hand_in.student.key)
-        told = Settings(str(self.source), layout, len(intake), 1, roster=roster)
+        told = RunSettings(str(self.source), layout, len(intake), 1, roster=roster)
         Batch(self.book, RUBRIC, told, Here()).grade(intake)
 
     def _check_files(self, paths: tuple[str, ...], names: tuple[str, ...], key: str) -> None:
@@ -277,7 +277,7 @@ class HostileClass(RuleBasedStateMachine):
         owners = {next((name for name in NAMES if _is_below(path, self.made.place(name))), MALLORY) for path in paths}
         assert len(owners) == 1, (key, paths)
         try:
-            opened = open_hand_in(str(self.source), paths, names, key)
+            opened = open_submission(str(self.source), paths, names, key)
         except InputError:
             return
         read = [opened.data] if opened.data is not None else []
@@ -296,17 +296,17 @@ class HostileClass(RuleBasedStateMachine):
     def _marks(self) -> dict[str, tuple[Any, ...]]:
         """The mark of each honest student: by the roster's key, and without a roster by the folder."""
         found = {}
-        for standing in Standings(self.book).all():
+        for standing in Grades(self.book).all():
             owner = self._owner_of(standing)
             if owner in NAMES and standing.result is not None:
                 assert owner not in found, (owner, standing)
-                found[owner] = (standing.score, standing.marks, standing.why_not_final, standing.origin.paths)
+                found[owner] = (standing.score, standing.marks, standing.why_not_final, standing.files.paths)
         return found
 
-    def _owner_of(self, standing: Standing) -> str:
+    def _owner_of(self, standing: StudentGrade) -> str:
         if self.made.has_roster:
             return next((name for name in NAMES if standing.student.key == f"k{_NUMBER[name]}"), MALLORY)
-        return next((name for name in NAMES if _is_below(standing.origin.paths[0], self.made.place(name))), MALLORY)
+        return next((name for name in NAMES if _is_below(standing.files.paths[0], self.made.place(name))), MALLORY)
 
 
 def _pack(folder: Path, to: Path) -> None:

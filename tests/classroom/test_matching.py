@@ -9,10 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.grades import Standings
-from grader.classroom.intake.roster import Entry, Roster
-from grader.classroom.lms.grades import Grade
-from grader.classroom.lms.matching import Person, join
+from grader.classroom.gradebook.grades import Grades
+from grader.classroom.intake.roster import Roster, RosterEntry
+from grader.classroom.lms.grades import LmsGrade
+from grader.classroom.lms.matching import LmsStudent, join
 from grader.classroom.matching import Clue, People, canvas_name, canvas_names, clues_of, plain_name, surname
 from grader.classroom.students import Student
 from grader.errors import InputError
@@ -28,20 +28,22 @@ Asked = Callable[[str], Student | None]
 
 def in_roster(name: str) -> Student | None:
     """Whose a folder of this name is."""
-    place = Roster(map(Entry, CLASS)).match(Student(name)).place
+    place = Roster(map(RosterEntry, CLASS)).match(Student(name)).place
     return None if place is None else CLASS[place]
 
 
 def in_a_team(name: str) -> Student | None:
     """Whose a folder of this name is in the team of everybody."""
-    found = Roster(Entry(each, "red") for each in CLASS).match(Student(f"red/{name}", name, login=name, team="red"))
+    found = Roster(RosterEntry(each, "red") for each in CLASS).match(
+        Student(f"red/{name}", name, login=name, team="red")
+    )
     return None if found.place is None else CLASS[found.place]
 
 
 def in_lms(name: str) -> Student | None:
     """Whose grade goes into a row of an LMS file that has this login, address and name."""
-    row = Person(1, name, Student("", name, email=name, login=name))
-    grade = join([row], [Grade(each, Decimal(1)) for each in CLASS]).matched.get(1)
+    row = LmsStudent(1, name, Student("", name, email=name, login=name))
+    grade = join([row], [LmsGrade(each, Decimal(1)) for each in CLASS]).matched.get(1)
     return grade.student if grade is not None else None
 
 
@@ -52,7 +54,7 @@ def in_gradebook(name: str, tmp_path: Path) -> Student | None:
             for each in CLASS:
                 book.keep_student(each, None)
         try:
-            return Standings(book).find(name).student
+            return Grades(book).find(name).student
         except InputError:
             return None
 
@@ -94,14 +96,14 @@ def test_the_weakest_clues(name: str, roster: Student | None, team: Student | No
 
 def test_exact_case_decides_before_another() -> None:
     """Beside the exact word another case is nobody's."""
-    grades = [Grade(Student(key), Decimal(1)) for key in ("alice", "ALICE")]
-    found = join([Person(1, "alice", Student("", login="alice"))], grades)
+    grades = [LmsGrade(Student(key), Decimal(1)) for key in ("alice", "ALICE")]
+    found = join([LmsStudent(1, "alice", Student("", login="alice"))], grades)
     assert found.matched[1].student.key == "alice"
 
 
 def test_numbers_of_an_lms_decide() -> None:
     """A number goes before a name, and a name is of nobody whose number is another."""
-    people = Roster(map(Entry, CLASS))
+    people = Roster(map(RosterEntry, CLASS))
     assert people.match(Student("x", "Ann Ash", canvas="5")).place == 1
     assert people.match(Student("x", moodle="6")).place == 1
     found = people.match(Student("x", "Bea Ash", moodle="7"))
@@ -110,19 +112,19 @@ def test_numbers_of_an_lms_decide() -> None:
 
 def test_what_is_not_on_the_roster_is_matched_by_number_only() -> None:
     """A folder that calls itself Ann Ash gets no row of an LMS file; one with the LMS's own number does."""
-    row = Person(1, "Ann Ash", Student("", "Ann Ash", login="aash", canvas="7"))
-    stranger = Grade(Student("aash", "Ann Ash"), Decimal(1), is_on_roster=False)
-    numbered = Grade(Student("aash", "Ann Ash", canvas="7"), Decimal(1), is_on_roster=False)
+    row = LmsStudent(1, "Ann Ash", Student("", "Ann Ash", login="aash", canvas="7"))
+    stranger = LmsGrade(Student("aash", "Ann Ash"), Decimal(1), is_on_roster=False)
+    numbered = LmsGrade(Student("aash", "Ann Ash", canvas="7"), Decimal(1), is_on_roster=False)
     assert not join([row], [stranger]).matched
-    assert join([row], [stranger, Grade(ANN, Decimal(2))]).matched[1].student == ANN
+    assert join([row], [stranger, LmsGrade(ANN, Decimal(2))]).matched[1].student == ANN
     assert join([row], [numbered]).matched[1] == numbered
 
 
 @given(st.lists(st.sampled_from("abAB"), min_size=1, max_size=5), st.lists(st.sampled_from("abAB"), max_size=5))
 def test_pairs_are_the_only_ones(rows: list[str], keys: list[str]) -> None:
     """A row has a grade exactly where one row and one student have its word, or, if none has it exactly, its letters."""
-    grades = [Grade(Student(key, login=f"{key}{index}"), Decimal(index)) for index, key in enumerate(keys)]
-    found = join([Person(index, row, Student("", login=row)) for index, row in enumerate(rows)], grades).matched
+    grades = [LmsGrade(Student(key, login=f"{key}{index}"), Decimal(index)) for index, key in enumerate(keys)]
+    found = join([LmsStudent(index, row, Student("", login=row)) for index, row in enumerate(rows)], grades).matched
     for index, row in enumerate(rows):
         exact = [each for each in grades if each.student.key == row]
         if rows.count(row) == 1 and len(exact) == 1:

@@ -17,13 +17,13 @@ import jsonschema
 import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.grades import Standings
+from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import criterion_of
 from grader.classroom.gradebook.marks import mark as add_mark
-from grader.classroom.intake.intake import take_in
+from grader.classroom.intake.intake import read_class
 from grader.classroom.intake.roster_file import read_roster
-from grader.classroom.lms.preflight import Conflict, Left, Preflight
-from grader.classroom.students import HandIn
+from grader.classroom.lms.preflight import Conflict, Preflight, RowNote
+from grader.classroom.students import ClassSubmission
 from grader.errors import InputError
 from grader.files.opening import ARCHIVES
 from grader.grading.grade import grade
@@ -51,7 +51,7 @@ def table(text: str) -> dict[str, dict[str, str]]:
 def mark(top: Path, key: str, **points: str) -> None:
     """Mark criteria by hand."""
     with Gradebook(top / "book.db") as book:
-        standings = Standings(book)
+        standings = Grades(book)
         standing = standings.find(key)
         for name, each in points.items():
             add_mark(book, standing, criterion_of(standings.rubric(standing.rubric), name), Decimal(each), "me", "")
@@ -343,10 +343,10 @@ def test_another_maximum_is_refused(top: Path) -> None:
 
 def test_a_large_class_does_not_flood_the_screen() -> None:
     """Who has no grade is a line for each reason, and no kind of lines goes on for ever."""
-    waits = [Left(number, f"Student {number}", "10 points wait for a person") for number in range(3, 41)]
-    late = [Left(number, f"Doe, {number}", "nothing was handed in") for number in (41, 42)]
-    one = [Left(43, "Zoe", "has a grade that is locked in Moodle")]
-    unknown = tuple(Left(number, "x\x1b", "nobody") for number in range(50, 103))
+    waits = [RowNote(number, f"Student {number}", "10 points wait for a person") for number in range(3, 41)]
+    late = [RowNote(number, f"Doe, {number}", "nothing was handed in") for number in (41, 42)]
+    one = [RowNote(43, "Zoe", "has a grade that is locked in Moodle")]
+    unknown = tuple(RowNote(number, "x\x1b", "nobody") for number in range(50, 103))
     conflicts = tuple(Conflict(number, "y", "1", "2") for number in range(50))
     found = Preflight("Grade", 0, 0, conflicts, (*waits, *late, *one), unknown, (), (), (), ("warned",))
     lines = list(preflight_lines(found))
@@ -429,10 +429,10 @@ class Trip(NamedTuple):
         assert done.returncode == 0, done.stderr
         return done
 
-    def hand_ins(self) -> Iterator[HandIn]:
+    def hand_ins(self) -> Iterator[ClassSubmission]:
         """Whoever is on the roster and has handed something in."""
-        intake = take_in(self.top / "class", read_roster(self.top / "roster.csv"))
-        return (each for each in intake.hand_ins() if each.student.key not in intake.unmatched)
+        intake = read_class(self.top / "class", read_roster(self.top / "roster.csv"))
+        return (each for each in intake.submissions() if each.student.key not in intake.unmatched)
 
 
 @pytest.fixture(scope="module", params=["canvas", "moodle"])
@@ -448,7 +448,7 @@ def trip(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
     return Trip(request.param, top)
 
 
-def by_itself(trip: Trip, each: HandIn, scratch: Path) -> Decimal | None:
+def by_itself(trip: Trip, each: ClassSubmission, scratch: Path) -> Decimal | None:
     """The points of `grader grade` on what one student has handed in; None where it is refused, or nothing in it can be read."""
     path = trip.top / "class" / each.paths[0]
     if len(each.paths) > 1:
@@ -490,7 +490,7 @@ def grade_column(trip: Trip) -> int:
     return 5 if trip.layout == "canvas" else 4
 
 
-def number_of(trip: Trip, each: HandIn) -> str:
+def number_of(trip: Trip, each: ClassSubmission) -> str:
     """What the LMS's file has for a student."""
     return each.student.canvas if trip.layout == "canvas" else f"Participant {each.student.moodle}"
 

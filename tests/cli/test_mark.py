@@ -12,7 +12,7 @@ import jsonschema
 import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.grades import Standings
+from grader.classroom.gradebook.grades import Grades
 from grader.cli.class_text import class_text
 from grader.cli.options import ClassFormat
 from grader.report.formats import Format
@@ -34,7 +34,7 @@ def mark(top: Path, *arguments: object, **more: Any) -> subprocess.CompletedProc
 def student(top: Path, key: str) -> dict[str, Any]:
     """A student's grade, as `grader export json` has it, which is what the view has."""
     with Gradebook(top / "book.db") as book:
-        data = json.loads(class_text(Standings(book), ClassFormat.JSON))
+        data = json.loads(class_text(Grades(book), ClassFormat.JSON))
         (found,) = [each for each in data["students"] if each["id"] == key]
         ((score, out_of, pending, marks),) = book.rows(
             "SELECT score, out_of, pending, marks FROM grade WHERE key = ?", key

@@ -11,8 +11,8 @@ from typing import Any
 import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.grades import Standings
-from grader.classroom.gradebook.marks import NewerMarkError, Waiting, mark, pending
+from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.marks import NewerMarkError, QueuedCriterion, mark, pending_criterion
 from tests.classroom.gradebooks import ENVIRONMENT, grader
 from tests.command_line import PATIENCE
 from tests.samples import ROOT
@@ -180,8 +180,8 @@ def test_a_third_mark_is_shown_as_well(graded_class: Path, top: Path) -> None:
     """Each look and write are one transaction: also a mark that comes in while the question about another stands."""
     del graded_class
     with Gradebook(top / "book.db") as one, Gradebook(top / "book.db") as other:
-        standings = Standings(one)
-        found = pending(standings, Waiting("anna", "essay"))
+        standings = Grades(one)
+        found = pending_criterion(standings, QueuedCriterion("anna", "essay"))
         assert found is not None
         shown, seen = found.newest, []
         for points in (1, 2):

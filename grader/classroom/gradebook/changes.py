@@ -6,7 +6,7 @@ from decimal import Decimal
 from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook, Run
-from grader.classroom.gradebook.result import UNITS
+from grader.classroom.gradebook.result import UNITS_PER_POINT
 from grader.errors import InputError
 from grader.grading.rubric import Rubric
 from grader.text import printable_path
@@ -24,7 +24,7 @@ SELECT student, criterion, points FROM mark WHERE points IS NOT NULL AND id =
 _EVER = 2**62
 
 
-class Side(NamedTuple):
+class Snapshot(NamedTuple):
     """One of the two that are compared: a run in a gradebook, with the marks by hand up to one of them."""
 
     book: Gradebook
@@ -40,7 +40,7 @@ class Side(NamedTuple):
         return runs[-1]
 
 
-class Step(NamedTuple):
+class PointsChange(NamedTuple):
     """A criterion before and after; None where it was not graded, or nobody had decided."""
 
     criterion: str
@@ -55,7 +55,7 @@ class Change:
     key: str
     before: Decimal | None
     after: Decimal | None
-    steps: tuple[Step, ...]
+    steps: tuple[PointsChange, ...]
     why: tuple[str, ...]
 
 
@@ -72,7 +72,7 @@ class _State(NamedTuple):
         return sum((each for each in self.points.values() if each is not None), Decimal(0))
 
 
-def last_two(book: Gradebook, before: int | None = None, after: int | None = None) -> tuple[Side, Side]:
+def last_two(book: Gradebook, before: int | None = None, after: int | None = None) -> tuple[Snapshot, Snapshot]:
     """The last two runs in a gradebook, or two that are named by their numbers; raises InputError.
 
     The older is taken with the marks by hand that there were when it began, the newer with those that followed it.
@@ -89,15 +89,15 @@ def last_two(book: Gradebook, before: int | None = None, after: int | None = Non
     if older >= newer:
         raise InputError(f"run {older} is not before run {newer}")
     later = [run.last_mark for run in runs.values() if run.id > newer]
-    return Side(book, older, runs[older].last_mark), Side(book, newer, min(later, default=_EVER))
+    return Snapshot(book, older, runs[older].last_mark), Snapshot(book, newer, min(later, default=_EVER))
 
 
-def newest(book: Gradebook) -> Side:
+def newest(book: Gradebook) -> Snapshot:
     """The newest state of a gradebook."""
-    return Side(book, _EVER)
+    return Snapshot(book, _EVER)
 
 
-def changes(before: Side, after: Side) -> list[Change]:
+def changes(before: Snapshot, after: Snapshot) -> list[Change]:
     """Everyone for whom something changed, in the order of their keys."""
     old, new = _states(before), _states(after)
     found = []
@@ -108,7 +108,7 @@ def changes(before: Side, after: Side) -> list[Change]:
     return found
 
 
-def _states(side: Side) -> dict[str, _State]:
+def _states(side: Snapshot) -> dict[str, _State]:
     rulings: dict[int, dict[str, int]] = {}
     for student, criterion, points in side.book.rows(_RULINGS, side.last_mark):
         rulings.setdefault(student, {})[criterion] = points
@@ -126,7 +126,7 @@ def _states(side: Side) -> dict[str, _State]:
 def _points(rubric: Rubric, signs: str, rulings: Mapping[str, int]) -> dict[str, Decimal | None]:
     worth = {"f": Decimal(0), "s": Decimal(0)}
     return {
-        criterion.id: Decimal(rulings[criterion.id]) / UNITS
+        criterion.id: Decimal(rulings[criterion.id]) / UNITS_PER_POINT
         if criterion.id in rulings
         else criterion.points
         if sign == "p"
@@ -141,7 +141,7 @@ def _change(key: str, old: _State | None, new: _State | None) -> Change | None:
         return Change(key, old.score if old else None, new.score if new else None, (), (why,))
     names = dict.fromkeys((*old.points, *new.points))
     steps = tuple(
-        Step(name, old.points.get(name), new.points.get(name))
+        PointsChange(name, old.points.get(name), new.points.get(name))
         for name in names
         if old.points.get(name) != new.points.get(name)
     )

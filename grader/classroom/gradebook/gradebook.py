@@ -10,7 +10,8 @@ from typing import Any, NamedTuple, Self
 
 from grader import __version__
 from grader.classroom.gradebook.database import PATIENCE, prepare
-from grader.classroom.gradebook.known import (
+from grader.classroom.gradebook.result import UNITS_PER_POINT, GradingResult
+from grader.classroom.gradebook.stored import (
     ADD_STUDENT,
     ALL_STUDENTS,
     CHANGE_STUDENT,
@@ -18,15 +19,14 @@ from grader.classroom.gradebook.known import (
     KNOWN,
     UNKNOWN,
     Enrolment,
-    Known,
+    StoredSubmission,
     known_of,
     place_of,
     storable,
     told_of,
     values_of,
 )
-from grader.classroom.gradebook.result import UNITS, Graded
-from grader.classroom.students import HandIn, Student
+from grader.classroom.students import ClassSubmission, Student
 from grader.errors import GraderError, InputError
 from grader.files.reading import sha256_of
 from grader.grading.answers import with_answers
@@ -141,7 +141,7 @@ class Gradebook:
         self.connection.executemany(
             "INSERT OR IGNORE INTO criterion VALUES (?, ?, ?, ?)",
             [
-                (rubric.sha256, criterion.id, position, int(criterion.points * UNITS))
+                (rubric.sha256, criterion.id, position, int(criterion.points * UNITS_PER_POINT))
                 for position, criterion in enumerate(rubric.criteria)
             ],
         )
@@ -150,7 +150,7 @@ class Gradebook:
             [(rubric.sha256, each.id, storable(each.answer)) for each in rubric.criteria if each.answer],
         )
 
-    def all_known(self) -> Iterator[Known]:
+    def all_known(self) -> Iterator[StoredSubmission]:
         """What there is of everyone, in the order of their keys, as it was when this began, whatever is written meanwhile."""
         with self.complaining(), closing(sqlite3.connect(self.path, timeout=PATIENCE)) as beside:
             for row in beside.execute(f"{KNOWN} ORDER BY student.key"):
@@ -168,7 +168,7 @@ class Gradebook:
             self.connection.execute(CHANGE_STUDENT, (*told, identity))
         return int(identity)
 
-    def keep(self, student: int, rubric: str, graded: Graded) -> int:
+    def keep(self, student: int, rubric: str, graded: GradingResult) -> int:
         """Add a result, unless the newest one of the student says the same; its number."""
         newest = self.connection.execute(
             "SELECT id, rubric, version, digest, template, record FROM result WHERE student = ? ORDER BY id DESC LIMIT 1",
@@ -188,12 +188,12 @@ class Gradebook:
         )
         return int(added.lastrowid or 0)
 
-    def see(self, student: int, run: int, result: int, hand_in: HandIn, fingerprint: str) -> None:
+    def see(self, student: int, run: int, result: int, hand_in: ClassSubmission, fingerprint: str) -> None:
         """Note that a run has seen this of a student, and which result it has."""
         row = (student, run, result, place_of(hand_in), fingerprint, int(hand_in.is_late), hand_in.submitted)
         self.connection.execute("INSERT INTO seen VALUES (?, ?, ?, ?, ?, ?, ?, 0)", row)
 
-    def see_gone(self, known: Known, run: int) -> None:
+    def see_gone(self, known: StoredSubmission, run: int) -> None:
         """Note that a hand-in is not there any more where the run before has seen it, unless this run has seen it after all."""
         row = (known.student, run, known.result, known.place, "", known.is_late, known.submitted, 1)
         self.connection.execute("INSERT INTO seen VALUES (?, ?, ?, ?, ?, ?, ?, ?) ON CONFLICT DO NOTHING", row)

@@ -10,10 +10,10 @@ from typing import Any, NamedTuple
 
 from grader.checks.outcome import Outcome
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.known import storable
-from grader.classroom.gradebook.lateness import Lateness, Times, lateness, read_time
-from grader.classroom.gradebook.result import UNITS
-from grader.classroom.gradebook.sources import Origin, Quoting
+from grader.classroom.gradebook.lateness import Lateness, SubmissionTimes, lateness, read_time
+from grader.classroom.gradebook.result import UNITS_PER_POINT
+from grader.classroom.gradebook.sources import SubmissionFiles, SubmissionSources
+from grader.classroom.gradebook.stored import storable
 from grader.classroom.matching import People, clues_of
 from grader.classroom.students import Student
 from grader.errors import InputError
@@ -33,7 +33,7 @@ _QUERY = (
 
 
 @dataclass(frozen=True, slots=True)
-class Standing:
+class StudentGrade:
     """One student's current grade. Without a hand-in `verdict` is `missing`, and there are no points.
 
     `score` has the marks by hand in it, but not what being late costs. `faults` counts criteria on which the grader failed;
@@ -60,7 +60,7 @@ class Standing:
     is_gone: bool
     is_outdated: bool
     signs: str
-    origin: Origin
+    files: SubmissionFiles
     attempt: int
     earlier: tuple[str, ...]
     late: Lateness
@@ -93,21 +93,21 @@ class Standing:
         return ""
 
 
-class Look(NamedTuple):
+class AttentionItem(NamedTuple):
     """Who needs a look, and why."""
 
     who: str
     why: str
 
 
-class Looks(NamedTuple):
+class AttentionList(NamedTuple):
     """Those who need a look, as far as they are listed, and how many there are in all."""
 
-    listed: tuple[Look, ...]
+    listed: tuple[AttentionItem, ...]
     total: int
 
 
-class Standings:
+class Grades:
     """The current grades in a gradebook, with the rubrics that they are made by.
 
     Only with `answers`, for those who grade, do these hold model answers.
@@ -135,7 +135,7 @@ class Standings:
             raise self.book.nothing_graded()
         return self.rubric(runs[-1].rubric)
 
-    def points(self, standing: Standing) -> dict[str, Decimal]:
+    def points(self, standing: StudentGrade) -> dict[str, Decimal]:
         """The points of each criterion that is decided, by the check or by hand."""
         if not standing.rubric:
             return {}
@@ -149,17 +149,17 @@ class Standings:
         known = {criterion.id for criterion in criteria}
         return found | {name: ruling.points for name, ruling in rulings.items() if name in known}
 
-    def all(self) -> Iterator[Standing]:
+    def all(self) -> Iterator[StudentGrade]:
         """Everyone, in the order of their keys."""
         for row in self.book.rows(f"{_QUERY} ORDER BY key"):
             yield self._standing(row)
 
-    def between(self, first: str, last: str) -> Iterator[Standing]:
+    def between(self, first: str, last: str) -> Iterator[StudentGrade]:
         """Those whose keys are not before the first and not behind the last of two, in the order of their keys."""
         for row in self.book.rows(f"{_QUERY} WHERE key BETWEEN ? AND ? ORDER BY key", first, last):
             yield self._standing(row)
 
-    def looks(self, most: int) -> Looks:
+    def needing_attention(self, most: int) -> AttentionList:
         """Who needs a look: nothing or nothing readable was handed in, the grader failed, a grade or mark may be out of date."""
         newest = self.newest_rubric().sha256
         where = (
@@ -167,9 +167,9 @@ class Standings:
         )
         ((count,),) = self.book.rows(f"SELECT count(*) FROM grade {where}", newest)
         found = (self._standing(row) for row in self.book.rows(f"{_QUERY} {where} ORDER BY key LIMIT ?", newest, most))
-        return Looks(tuple(Look(each.student.key, _why(each, newest)) for each in found), count)
+        return AttentionList(tuple(AttentionItem(each.student.key, _why(each, newest)) for each in found), count)
 
-    def find(self, name: str) -> Standing:
+    def find(self, name: str) -> StudentGrade:
         """The one whom a key, or else a login, address, number or full name belongs to; raises InputError, also for several."""
         name = storable(name)
         found = list(self.book.rows(f"{_QUERY} WHERE key = ?", name))
@@ -188,7 +188,7 @@ class Standings:
         everyone = f"grader export csv --gradebook {printable_path(self.book.path)}"
         raise InputError(f"there is no {name!r} in the gradebook{guess or f'; {everyone} lists everyone'}")
 
-    def report(self, standing: Standing) -> Report:
+    def report(self, standing: StudentGrade) -> Report:
         """The report on a student's newest hand-in, with the marks by hand in it; raises InputError where there is none."""
         if standing.result is None:
             raise InputError(f"{standing.student.key} has handed in nothing")
@@ -197,32 +197,35 @@ class Standings:
         if (standing.rubric, template) not in self._templates:
             self._templates[standing.rubric, template] = Template(template, rubric)
         beside = self._templates[standing.rubric, template]
-        report = from_record(record, rubric, Quoting(standing.origin, rubric), beside)
+        report = from_record(record, rubric, SubmissionSources(standing.files, rubric), beside)
         rulings = self._rulings(standing.id) if standing.marks else {}
         return replace(report, results=_ruled(report, rulings)) if rulings else report
 
     def _rulings(self, student: int) -> dict[str, ManualMark]:
         rows = self.book.rows("SELECT criterion, points, signed, comment FROM ruling WHERE student = ?", student)
-        return {name: ManualMark(Decimal(points) / UNITS, signed, comment) for name, points, signed, comment in rows}
+        return {
+            name: ManualMark(Decimal(points) / UNITS_PER_POINT, signed, comment)
+            for name, points, signed, comment in rows
+        }
 
-    def _standing(self, row: tuple[Any, ...]) -> Standing:
+    def _standing(self, row: tuple[Any, ...]) -> StudentGrade:
         (
             identity, *known, due, extension, days_late, expected, run, result, rubric, digest, verdict, reason, score,
             out_of, pending, faults, marks, older, over, is_gone, signs, place, is_late, submitted,
             source, mark,
         ) = row  # fmt: skip
-        earned, most, waiting = (Decimal(each or 0) / UNITS for each in (score, out_of, pending))
-        times = Times(bool(is_late), str(submitted), str(due), float(extension or 0), days_late)
+        earned, most, waiting = (Decimal(each or 0) / UNITS_PER_POINT for each in (score, out_of, pending))
+        times = SubmissionTimes(bool(is_late), str(submitted), str(due), float(extension or 0), days_late)
         paths, names, attempt, earlier = json.loads(place)
         late = lateness(self.rubric(rubric), times, earned, self._due) if rubric else Lateness()
-        return Standing(
+        return StudentGrade(
             identity, Student(*known), None if expected is None else bool(expected), verdict, reason, run, result,
             rubric or "", digest or "", earned, most, waiting, faults or 0, marks, older, over, bool(is_gone), bool(rubric) and rubric != self._newest(), signs or "",
-            Origin(source or "", tuple(paths), tuple(names), known[0], mark or ""), attempt, tuple(earlier), late, bool(is_late), submitted,
+            SubmissionFiles(source or "", tuple(paths), tuple(names), known[0], mark or ""), attempt, tuple(earlier), late, bool(is_late), submitted,
         )  # fmt: skip
 
 
-def _why(standing: Standing, newest: str) -> str:
+def _why(standing: StudentGrade, newest: str) -> str:
     reasons = []
     if standing.verdict != "graded" or standing.faults:
         reasons.append(standing.why_not_final or "it could not be graded, and was marked by hand")

@@ -17,15 +17,15 @@ _DAY = timedelta(days=1)
 
 @dataclass(frozen=True, slots=True)
 class Lateness:
-    """How late a hand-in is, in days begun, and the points (0 or less) that it costs. `words` say why."""
+    """How late a hand-in is, in days begun, and the points (0 or less) that it costs. `reason` says why."""
 
     days: int = 0
     points: Decimal = Decimal(0)
-    words: str = ""
+    reason: str = ""
 
 
 @dataclass(frozen=True, slots=True)
-class Times:
+class SubmissionTimes:
     """What is known of when something was handed in and when it was due: ISO 8601, empty or None where nobody says."""
 
     is_late: bool = False
@@ -35,7 +35,7 @@ class Times:
     days_late: float | None = None
 
 
-def lateness(rubric: Rubric, times: Times, score: Decimal, due: datetime | None = None) -> Lateness:
+def lateness(rubric: Rubric, times: SubmissionTimes, score: Decimal, due: datetime | None = None) -> Lateness:
     """What a hand-in with these times and points loses. `due` goes before the rubric's; a student's own before both."""
     policy = rubric.late
     days, words = _days(times, policy, due)
@@ -58,7 +58,7 @@ def read_time(text: str) -> datetime:
         raise InputError(f"{text!r} is no time: write it as 2026-11-20T23:59+01:00") from None
 
 
-def _days(times: Times, policy: Late | None, due: datetime | None) -> tuple[int, str]:
+def _days(times: SubmissionTimes, policy: Late | None, due: datetime | None) -> tuple[int, str]:
     if times.days_late is not None:
         days = max(0, ceil(times.days_late))
         return days, f"{_many(days)} late, by the roster" if days else ""

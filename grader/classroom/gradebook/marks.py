@@ -6,15 +6,15 @@ from decimal import Decimal, InvalidOperation
 from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.grades import Standing, Standings
-from grader.classroom.gradebook.known import storable
-from grader.classroom.gradebook.result import UNITS
+from grader.classroom.gradebook.grades import Grades, StudentGrade
+from grader.classroom.gradebook.result import UNITS_PER_POINT
+from grader.classroom.gradebook.stored import storable
 from grader.errors import InputError
 from grader.grading.report import Result
 from grader.grading.rubric import Criterion, Rubric
 from grader.names import did_you_mean
 
-_UNIT = Decimal(1) / UNITS
+_UNIT = Decimal(1) / UNITS_PER_POINT
 TAKEN_BACK = "-"  # in place of points: what the check says counts again
 
 
@@ -36,7 +36,7 @@ class NewerMarkError(Exception):
         self.mark = mark
 
 
-class Waiting(NamedTuple):
+class QueuedCriterion(NamedTuple):
     """A criterion of a student, by their key, that waited for a person when it was looked up."""
 
     key: str
@@ -44,10 +44,10 @@ class Waiting(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Pending:
+class PendingCriterion:
     """One criterion of one student that a person still has to decide; `newest` is the id of its newest mark, 0 if it has none."""
 
-    standing: Standing
+    standing: StudentGrade
     result: Result
     newest: int = 0
 
@@ -79,7 +79,7 @@ def criterion_of(rubric: Rubric, name: str) -> Criterion:
 
 def mark(
     book: Gradebook,
-    standing: Standing,
+    standing: StudentGrade,
     criterion: Criterion,
     points: Decimal | None,
     by: str,
@@ -95,7 +95,7 @@ def mark(
     """
     if standing.result is None:
         raise InputError(f"{standing.student.key} has handed in nothing that could be marked")
-    units = None if points is None else int(points * UNITS)
+    units = None if points is None else int(points * UNITS_PER_POINT)
     at = datetime.now(UTC).isoformat(timespec="seconds")
     name = storable(by)
     row = (standing.id, criterion.id, units, storable(why), name or storable(account()), name, at, standing.result)
@@ -119,7 +119,7 @@ def newest_mark(book: Gradebook, student: int, criterion: str) -> Mark | None:
         "SELECT id, points, signed, comment, at FROM mark WHERE student = ? AND criterion = ? ORDER BY id DESC LIMIT 1"
     )
     for identity, units, signed, comment, at in list(book.rows(query, student, criterion)):
-        return Mark(identity, None if units is None else Decimal(units) / UNITS, signed, comment, at)
+        return Mark(identity, None if units is None else Decimal(units) / UNITS_PER_POINT, signed, comment, at)
     return None
 
 
@@ -133,14 +133,14 @@ def account() -> str:
         return ""
 
 
-def waiting(standings: Standings, criterion: str = "") -> list[Waiting]:
+def manual_grading_queue(standings: Grades, criterion: str = "") -> list[QueuedCriterion]:
     """What a person still has to decide, one criterion after the other, so that like is marked beside like.
 
     Of hand-ins that could not be read nothing is asked: that is not a question of points.
     """
     rubric = standings.newest_rubric()
     return [
-        Waiting(str(key), each.id)
+        QueuedCriterion(str(key), each.id)
         for position, each in enumerate(rubric.criteria)
         if criterion in ("", each.id)
         for (key,) in standings.book.rows(_WAITING, rubric.sha256, position + 1, each.id)
@@ -153,12 +153,12 @@ _WAITING = (
 )
 
 
-def pending(standings: Standings, waiting: Waiting) -> Pending | None:
+def pending_criterion(standings: Grades, queued: QueuedCriterion) -> PendingCriterion | None:
     """What is to be decided, as it stands now; None where somebody has decided it meanwhile."""
-    standing = standings.find(waiting.key)
+    standing = standings.find(queued.key)
     newest = newest_mark(
-        standings.book, standing.id, waiting.criterion
+        standings.book, standing.id, queued.criterion
     )  # first, so that no later one is taken for shown
     results = standings.report(standing).results
-    found = next((each for each in results if each.criterion.id == waiting.criterion and each.is_open), None)
-    return Pending(standing, found, newest.id if newest is not None else 0) if found is not None else None
+    found = next((each for each in results if each.criterion.id == queued.criterion and each.is_open), None)
+    return PendingCriterion(standing, found, newest.id if newest is not None else 0) if found is not None else None

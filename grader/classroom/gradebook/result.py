@@ -5,12 +5,12 @@ from typing import Literal, NamedTuple
 from grader.checks.outcome import Status
 
 Verdict = Literal["graded", "unreadable", "errored", "unchanged"]
-UNITS = 10_000  # points are kept as whole numbers of ten-thousandths
-SIGNS: dict[Status, str] = {"passed": "p", "failed": "f", "skipped": "s", "pending": "?", "errored": "!"}
+UNITS_PER_POINT = 10_000  # points are kept as whole numbers of ten-thousandths
+STATUS_LETTERS: dict[Status, str] = {"passed": "p", "failed": "f", "skipped": "s", "pending": "?", "errored": "!"}
 NOT_GRADED = "-"
 
 
-class Graded(NamedTuple):
+class GradingResult(NamedTuple):
     """What came of one hand-in. `signs` has a letter for each criterion of the rubric; points are in ten-thousandths."""
 
     key: str

@@ -3,14 +3,14 @@
 import time
 from typing import NamedTuple
 
-from grader.classroom.intake.opening import fingerprint, open_hand_in
+from grader.classroom.intake.opening import fingerprint, open_submission
 from grader.errors import InputError
 from grader.grading.rubric import Rubric
 from grader.source import Source
 from grader.submission.submission import Submission
 
 
-class Origin(NamedTuple):
+class SubmissionFiles(NamedTuple):
     """Where a hand-in was when it was graded: below the class folder or archive `root`; what it looked like then."""
 
     root: str
@@ -20,11 +20,11 @@ class Origin(NamedTuple):
     fingerprint: str
 
 
-class Quoting:
+class SubmissionSources:
     """Opens a hand-in when the first of its lines is asked for."""
 
-    def __init__(self, origin: Origin, rubric: Rubric) -> None:
-        self._origin, self._rubric = origin, rubric
+    def __init__(self, files: SubmissionFiles, rubric: Rubric) -> None:
+        self._files, self._rubric = files, rubric
         self._submission: Submission | None = None
         self._is_open = False
 
@@ -36,10 +36,10 @@ class Quoting:
         return self._submission.source(path) if self._submission is not None else None
 
     def _open(self) -> Submission | None:
-        root, paths, names, key, kept = self._origin
+        root, paths, names, key, kept = self._files
         if not kept or fingerprint(root, paths, time.time_ns()) != kept:
             return None
         try:
-            return open_hand_in(root, paths, names, key).submission(self._rubric)
+            return open_submission(root, paths, names, key).submission(self._rubric)
         except InputError:
             return None

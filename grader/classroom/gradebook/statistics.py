@@ -9,11 +9,11 @@ from math import sqrt
 from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.result import UNITS
+from grader.classroom.gradebook.result import UNITS_PER_POINT
 from grader.grading.rubric import Criterion, Rubric
 
 _BINS = 10
-_MOST_FAILURES = 20
+_MAX_FAILURES = 20
 _BY_HAND = "m"  # in place of a sign, where a person has decided
 
 
@@ -73,7 +73,7 @@ class _Tally:
 
     def __init__(self, criterion: Criterion) -> None:
         self.criterion = criterion
-        self.units = int(criterion.points * UNITS)
+        self.units = int(criterion.points * UNITS_PER_POINT)
         self.worth = self.units or 1  # that one without points went well can be told as well
         self.signs: Counter[str] = Counter()
         self.count = self.x = self.r = self.xx = self.rr = self.xr = 0
@@ -125,10 +125,10 @@ def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
         failures[index, message] += count
     values = sorted(scores.items())
     graded = scores.total()
-    mean = sum(score * count for score, count in values) / graded / UNITS if graded else 0.0
-    variance = sum((score / UNITS - mean) ** 2 * count for score, count in values) / graded if graded else 0.0
+    mean = sum(score * count for score, count in values) / graded / UNITS_PER_POINT if graded else 0.0
+    variance = sum((score / UNITS_PER_POINT - mean) ** 2 * count for score, count in values) / graded if graded else 0.0
     median = (_at(values, (graded - 1) // 2) + _at(values, graded // 2)) / 2
-    ranked = sorted(failures.items(), key=lambda each: (-each[1], each[0]))[:_MOST_FAILURES]
+    ranked = sorted(failures.items(), key=lambda each: (-each[1], each[0]))[:_MAX_FAILURES]
     return ClassStatistics(
         verdicts, rubric.points, graded, pending, mean, sqrt(variance), _at(values, 0), median,
         _at(values, graded - 1), _bins(values, rubric.points), tuple(tally.result() for tally in tallies),
@@ -182,13 +182,13 @@ def _at(values: list[tuple[int, int]], place: int) -> Decimal:
     for score, count in values:
         place -= count
         if place < 0:
-            return Decimal(score) / UNITS
+            return Decimal(score) / UNITS_PER_POINT
     return Decimal(0)
 
 
 def _bins(values: list[tuple[int, int]], out_of: Decimal) -> tuple[int, ...]:
     bins = [0] * _BINS
-    most = int(out_of * UNITS) or 1
+    most = int(out_of * UNITS_PER_POINT) or 1
     for score, count in values:
         bins[max(0, min(_BINS - 1, score * _BINS // most))] += count
     return tuple(bins)
@@ -203,5 +203,5 @@ def _misses(book: Gradebook, rubric: Rubric) -> Iterator[tuple[int, str, int]]:
         marks = _marks(book, student)
         for index, message in json.loads(misses):
             criterion = rubric.criteria[index]
-            if marks.get(criterion.id) != criterion.points * UNITS:
+            if marks.get(criterion.id) != criterion.points * UNITS_PER_POINT:
                 yield index, message, 1

@@ -5,25 +5,25 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from grader.classroom.intake.layouts import canvas, folders, moodle, nbgrader, teams
-from grader.classroom.intake.layouts.layout import LeftOut, Shelf
+from grader.classroom.intake.layouts.layout import IgnoredFiles, Submissions
 from grader.classroom.intake.listing import Children, FolderListing, Listing
 from grader.classroom.intake.names import ending_of
 from grader.classroom.intake.roster import Roster
-from grader.classroom.intake.roster_match import Placement, place
+from grader.classroom.intake.roster_match import RosterMatches, place
 from grader.classroom.intake.zip_listing import ZipListing
-from grader.classroom.students import HandIn, Student
+from grader.classroom.students import ClassSubmission, Student
 from grader.errors import InputError
 from grader.files.opening import archive_kind
 from grader.files.reading import not_there, read_start
 from grader.text import printable_path
 
 LAYOUTS = ("folders", "canvas", "moodle", "teams", "nbgrader")
-_MOST_NAMES = 1_000  # in one folder
+_MAX_NAMES = 1_000  # in one folder
 Knows = Callable[[str], bool]
 
 
 class Intake:
-    """A class's hand-ins. `left_out` says in one line each what in the folder is no submission, and why.
+    """A class's hand-ins. `ignored` says in one line each what in the folder is no submission, and why.
 
     With a roster, `unmatched` are the keys of submissions that belong to nobody in it (they are graded all the same), `absent`
     are those who have submitted nothing, `contested` those whom several submissions may belong to, and `notes` says where the
@@ -32,10 +32,10 @@ class Intake:
     """
 
     def __init__(
-        self, layout: str, shelf: Shelf, left_out: LeftOut, roster: Roster | None, placement: Placement
+        self, layout: str, shelf: Submissions, ignored: IgnoredFiles, roster: Roster | None, placement: RosterMatches
     ) -> None:
         self.layout = layout
-        self.left_out = left_out.lines()
+        self.ignored = ignored.lines()
         self.unmatched = placement.unmatched
         self.absent: tuple[Student, ...] = placement.absent
         self.contested: tuple[Student, ...] = placement.contested
@@ -57,13 +57,13 @@ class Intake:
         """Who has submitted, as the names of the submissions say."""
         yield from map(self._shelf.student, range(len(self._shelf)))
 
-    def hand_ins(self) -> Iterator[HandIn]:
+    def submissions(self) -> Iterator[ClassSubmission]:
         """The hand-ins in the order of their students' keys, made one by one; it may be called again."""
         for position, index in enumerate(self._placement.order):
             yield self._placement.final(self._roster, position, self._shelf.hand_in(index))
 
 
-def take_in(
+def read_class(
     path: Path, roster: Roster | None = None, layout: str = "auto", assignment: str = "", rubric_id: str = "lab6"
 ) -> Intake:
     """Who has handed in what, in a folder or zip. Raises InputError, in one plain sentence, where there is nothing to take in.
@@ -87,15 +87,15 @@ def take_in(
         raise InputError(
             f"{shown} is one submission and no class: it holds a package.xml itself (grader grade {shown} grades it)"
         )
-    left_out = LeftOut()
-    shelf = taking.shelve(chosen, left_out, is_told=layout != "auto")
+    ignored = IgnoredFiles()
+    shelf = taking.find_submissions(chosen, ignored, is_told=layout != "auto")
     if not len(shelf):
-        lines = left_out.lines()
+        lines = ignored.lines()
         example = f": {lines[0]}" if lines else ""
         advice = f" (without --layout {layout} it is found out)" if layout != "auto" else ""
         raise InputError(f"nothing in {printable_path(path)} is a submission{example}{advice}")
     placement = place(shelf, roster, holds_students=taking.holds_students)
-    return Intake(chosen, shelf, left_out, roster, placement)
+    return Intake(chosen, shelf, ignored, roster, placement)
 
 
 class _Taking:
@@ -125,28 +125,32 @@ class _Taking:
             return "nbgrader"
         return "teams" if self._labs(is_told=False) else "folders"
 
-    def shelve(self, layout: str, left_out: LeftOut, *, is_told: bool) -> Shelf:
+    def find_submissions(self, layout: str, ignored: IgnoredFiles, *, is_told: bool) -> Submissions:
         """The hand-ins in this layout; `is_told` where the user has named it."""
         listing, children, start = self._listing, self.children, self._start
         match layout:
             case "moodle":
-                return moodle.shelve(listing, children, start, left_out)
+                return moodle.find_submissions(listing, children, start, ignored)
             case "canvas":
-                return canvas.shelve(children, start, left_out)
+                return canvas.find_submissions(children, start, ignored)
             case "nbgrader":
                 where = self._course()
-                return nbgrader.shelve(
-                    listing, start if where is None else where, left_out, self._assignment, self._rubric_id
+                return nbgrader.find_submissions(
+                    listing, start if where is None else where, ignored, self._assignment, self._rubric_id
                 )
             case "teams":
                 labs = self._labs(is_told=is_told)
-                return teams.shelve(listing, children, start, left_out, self._rubric_id, self._knows_submission, labs)
+                return teams.find_submissions(
+                    listing, children, start, ignored, self._rubric_id, self._knows_submission, labs
+                )
             case _:
-                return folders.shelve(listing, children, start, left_out, self._rubric_id, self._knows_submission)
+                return folders.find_submissions(
+                    listing, children, start, ignored, self._rubric_id, self._knows_submission
+                )
 
     def holds_students(self, path: str) -> bool:
         """Whether a folder holds hand-ins of at least two students: then it is a section, and not what a team has handed in."""
-        inner = self._listing.children(path, _MOST_NAMES)
+        inner = self._listing.children(path, _MAX_NAMES)
         names = inner.folders + [name.removesuffix(ending_of(name)) for name in inner.files if ending_of(name)]
         return self._knows is not None and sum(map(self._knows, names)) > 1
 

@@ -26,7 +26,7 @@ _ROBOTS = (".urdf", ".xacro")
 _NEITHER = "is neither a URDF nor a folder or archive"
 _WHOLE = 64 * 1024 * 1024  # bytes of a file that its digest is made of; of a larger one the size is
 _CHUNK = 1024 * 1024
-_MOST_ENTRIES = 100_000
+_MAX_ENTRIES = 100_000
 _SETTLED = 50_000_000  # nanoseconds in which a file system may not tell two changes apart
 
 
@@ -58,7 +58,7 @@ class Opened(NamedTuple):
         )
 
 
-def open_hand_in(
+def open_submission(
     root: str, paths: tuple[str, ...], names: tuple[str, ...], name: str, limit: int = URDF_LIMIT
 ) -> Opened:
     """What stands at `paths` below a class folder, or in a zip; raises InputError.
@@ -218,7 +218,7 @@ def _walk(top: str) -> Iterator[tuple[str, os.stat_result]]:
             entries = sorted(found, key=lambda each: each.name)
         for entry in entries:
             count += 1
-            if count > _MOST_ENTRIES:
+            if count > _MAX_ENTRIES:
                 raise OSError("too many")
             yield entry.path, entry.stat(follow_symlinks=False)
             if entry.is_dir(follow_symlinks=False):

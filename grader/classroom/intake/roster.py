@@ -6,11 +6,11 @@ from dataclasses import asdict, dataclass, replace
 from typing import NamedTuple
 
 from grader.classroom.matching import OF_FOLDERS, OF_TEAM_FOLDERS, Clue, People, claims_of, clues_of, plain_group
-from grader.classroom.students import HandIn, Student
+from grader.classroom.students import ClassSubmission, Student
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class RosterEntry:
     """One row of a roster. `due` and `submitted` are ISO 8601; what the roster does not say is empty or None.
 
     `section` is the group or team that hands in together, or else the section: nobody tells the two apart but by a hand-in.
@@ -27,7 +27,7 @@ class Entry:
     aliases: tuple[str, ...] = ()
 
 
-class Match(NamedTuple):
+class RosterMatch(NamedTuple):
     """Whose submission it is: the position in the entries, or None. `clue` says how it was found.
 
     `doubt` says in words why nobody was taken although somebody might be meant, and `several` has the positions of those who might be.
@@ -45,7 +45,9 @@ class Roster:
     `assignments` has Canvas' ids of the assignments that the file has columns for.
     """
 
-    def __init__(self, entries: Iterable[Entry], notes: tuple[str, ...] = (), assignments: Iterable[str] = ()) -> None:
+    def __init__(
+        self, entries: Iterable[RosterEntry], notes: tuple[str, ...] = (), assignments: Iterable[str] = ()
+    ) -> None:
         self.entries = tuple(entries)
         self.notes = notes
         self.assignments = frozenset(assignments)
@@ -56,7 +58,7 @@ class Roster:
             if group := plain_group(entry.section):
                 self._groups.setdefault(group, []).append(index)
 
-    def knowing(self, students: Iterable[Student]) -> "Roster":
+    def with_lms_numbers(self, students: Iterable[Student]) -> "Roster":
         """The roster with the numbers by which an LMS knows these students, by key, where it does not say them itself."""
         known = {each.key: each for each in students if each.canvas or each.moodle}
         return Roster(
@@ -68,7 +70,7 @@ class Roster:
         """The students, in the order of the file."""
         return tuple(entry.student for entry in self.entries)
 
-    def entry(self, key: str) -> Entry | None:
+    def entry(self, key: str) -> RosterEntry | None:
         """The row of the student with this key."""
         index = self._by_key.get(key)
         return None if index is None else self.entries[index]
@@ -98,7 +100,7 @@ class Roster:
         """The positions of everybody whom the number or name of a submission may mean."""
         return self._people.find(claims_of(student)).people
 
-    def match(self, student: Student) -> Match:
+    def match(self, student: Student) -> RosterMatch:
         """Whose a submission is, given what its name says.
 
         What lies in a team's folder can only be of a student whose group is that team: anybody in the team may have named it.
@@ -107,12 +109,12 @@ class Roster:
         group = self._groups.get(plain_group(student.team), ()) if student.team else None
         found = self._people.find(claims, OF_TEAM_FOLDERS if student.team else OF_FOLDERS, group)
         if found.only is not None:
-            return Match(found.only, found.clue)
+            return RosterMatch(found.only, found.clue)
         if found.people:
-            return Match(None, found.clue, doubt="may be of several in the roster", several=found.people)
+            return RosterMatch(None, found.clue, doubt="may be of several in the roster", several=found.people)
         if found.contradicted:
             other = self.entries[found.contradicted[0]].student
-            return Match(None, found.clue, doubt=f"has the name of {other.key}, but another number")
+            return RosterMatch(None, found.clue, doubt=f"has the name of {other.key}, but another number")
         elsewhere = self._people.find(claims, OF_TEAM_FOLDERS).people if student.team else ()
         if elsewhere:
             entry = self.entries[elsewhere[0]]
@@ -121,10 +123,10 @@ class Roster:
                 if entry.section
                 else "who has no group in the roster (its column group names the team folders)"
             )
-            return Match(None, found.clue, doubt=f"is named like {entry.student.key}, {group_words}")
-        return Match(None)
+            return RosterMatch(None, found.clue, doubt=f"is named like {entry.student.key}, {group_words}")
+        return RosterMatch(None)
 
-    def complete(self, index: int, hand_in: HandIn) -> HandIn:
+    def complete(self, index: int, hand_in: ClassSubmission) -> ClassSubmission:
         """The submission of a student in the roster, with the name and numbers that an LMS gives. Times in the roster count first."""
         entry, said = self.entries[index], hand_in.student
         own = entry.student
@@ -141,7 +143,7 @@ class Roster:
         )
 
 
-def _knowing(entry: Entry, known: Student | None) -> Entry:
+def _knowing(entry: RosterEntry, known: Student | None) -> RosterEntry:
     if known is None:
         return entry
     own = entry.student
@@ -149,7 +151,7 @@ def _knowing(entry: Entry, known: Student | None) -> Entry:
     return replace(entry, student=numbered)
 
 
-def entry_to_json(entry: Entry) -> str:
+def entry_to_json(entry: RosterEntry) -> str:
     """A row of a roster as a gradebook keeps it."""
     return json.dumps(asdict(entry), sort_keys=True)
 
@@ -160,8 +162,8 @@ def roster_from_json(entries: Iterable[str]) -> Roster | None:
     return Roster(rows) if rows else None
 
 
-def entry_from_json(text: str) -> Entry:
+def entry_from_json(text: str) -> RosterEntry:
     """A row of a roster that a gradebook has kept."""
     row = json.loads(text)
     student = {**row["student"], "maybe_canvas": ()}
-    return Entry(**{**row, "student": Student(**student), "aliases": tuple(row["aliases"])})
+    return RosterEntry(**{**row, "student": Student(**student), "aliases": tuple(row["aliases"])})

@@ -33,7 +33,7 @@ _AS_TEXT = re.compile(r'="(.*)"', re.DOTALL)  # how spreadsheets are kept from m
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class RosterRow:
     """A student's row: the line that it begins in, and its cells by field."""
 
     line: int
@@ -56,7 +56,7 @@ def text_of(data: bytes, shown: str) -> str:
     raise InputError(f"{shown} is no text that can be read: save it as CSV in UTF-8")
 
 
-def rows_of(text: str, shown: str) -> Iterator[Row]:
+def rows_of(text: str, shown: str) -> Iterator[RosterRow]:
     """The rows of students, each with its cells by field."""
     fields: list[str] | None = None
     of_canvas = False
@@ -71,11 +71,11 @@ def rows_of(text: str, shown: str) -> Iterator[Row]:
         if len(cells) < width or any(cells[width:]):
             count = len(cells)
             raise InputError(f"line {line} of {shown} has {count} cells where the first line has {width}")
-        row = Row(line, _by_field(fields, cells))
+        row = RosterRow(line, _by_field(fields, cells))
         if of_canvas:
             if not row["id"]:  # Canvas has rows of points and of remarks between the header and the students
                 continue
-            row = Row(line, {**row.cells, "canvas": row["canvas"] or row["id"]})
+            row = RosterRow(line, {**row.cells, "canvas": row["canvas"] or row["id"]})
         yield row
 
 

@@ -4,8 +4,8 @@ import re
 from pathlib import Path
 
 from grader.classroom.intake.names import iso_time
-from grader.classroom.intake.roster import Entry, Roster
-from grader.classroom.intake.roster_cells import Row, canvas_assignments, rows_of, text_of
+from grader.classroom.intake.roster import Roster, RosterEntry
+from grader.classroom.intake.roster_cells import RosterRow, canvas_assignments, rows_of, text_of
 from grader.classroom.students import Student
 from grader.errors import InputError
 from grader.files.reading import read_capped
@@ -25,7 +25,7 @@ def read_roster(path: Path) -> Roster:
     """
     shown = printable_path(path)
     text = text_of(read_capped(path, _LIMIT, advice=""), shown)
-    entries: list[Entry] = []
+    entries: list[RosterEntry] = []
     notes: list[str] = []
     lines: dict[tuple[str, str], int] = {}
     for row in rows_of(text, shown):
@@ -42,7 +42,7 @@ def read_roster(path: Path) -> Roster:
     return Roster(entries, tuple(notes), canvas_assignments(text, shown))
 
 
-def _entry(row: Row, shown: str, notes: list[str]) -> Entry:
+def _entry(row: RosterRow, shown: str, notes: list[str]) -> RosterEntry:
     participant = _PARTICIPANT.fullmatch(row["id"])
     own_id = "" if participant else row["id"]
     moodle = row["moodle"] or (participant[1] if participant else "")
@@ -57,7 +57,7 @@ def _entry(row: Row, shown: str, notes: list[str]) -> Entry:
     submitted = iso_time(row["submitted"])
     if row["submitted"] and not submitted:
         notes.append(f"line {row.line}: {row['submitted']!r} is no time such as 2026-09-01T10:00, and was passed over")
-    return Entry(
+    return RosterEntry(
         Student(printable_path(key), name, row["email"], login, sis, row["canvas"], moodle),
         row["group"] or row["section"],
         *_due(row, shown),
@@ -68,7 +68,7 @@ def _entry(row: Row, shown: str, notes: list[str]) -> Entry:
     )
 
 
-def _due(row: Row, shown: str) -> tuple[str, float]:
+def _due(row: RosterRow, shown: str) -> tuple[str, float]:
     """Until when a student may hand in, and by how many days more: an extension is either."""
     days = _number(row["extension"].removesuffix("days").removesuffix("day").strip())
     written = row["due"] or ("" if days is not None else row["extension"])
@@ -80,7 +80,7 @@ def _due(row: Row, shown: str) -> tuple[str, float]:
     return due, days or 0.0
 
 
-def _late(row: Row, shown: str) -> tuple[bool | None, float | None]:
+def _late(row: RosterRow, shown: str) -> tuple[bool | None, float | None]:
     said = row["late"].casefold()
     if not said:
         return None, None

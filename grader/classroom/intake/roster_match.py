@@ -5,17 +5,17 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
-from grader.classroom.intake.layouts.layout import Shelf, place_key
+from grader.classroom.intake.layouts.layout import Submissions, place_key
 from grader.classroom.intake.roster import Roster
 from grader.classroom.matching import CERTAIN, Clue, plain_word
-from grader.classroom.students import HandIn, Student
+from grader.classroom.students import ClassSubmission, Student
 
 _NOBODY = -1
 _MAX_NOTES = 200
 
 
 @dataclass(frozen=True, slots=True)
-class Placement:
+class RosterMatches:
     """The submissions in the order of their final keys, and what the roster makes of them.
 
     `order` has an index into the shelf for each of them; a team's submission is there once for each member, and in `shared`.
@@ -41,7 +41,7 @@ class Placement:
             return roster.entries[owner].student.key
         return self.renamed.get(self.order[position]) or student.key
 
-    def final(self, roster: Roster | None, position: int, hand_in: HandIn) -> HandIn:
+    def final(self, roster: Roster | None, position: int, hand_in: ClassSubmission) -> ClassSubmission:
         """The submission at this position of the order as it is graded: that of a student in the roster, or an unmatched one."""
         if roster is None:
             return hand_in
@@ -55,11 +55,11 @@ class Placement:
 
 
 def place(
-    shelf: Shelf,
+    shelf: Submissions,
     roster: Roster | None,
     *,
     holds_students: Callable[[str], bool] = lambda _: False,
-) -> Placement:
+) -> RosterMatches:
     """Whose each submission is.
 
     Of several that may belong to one student, the only one that bears the student's own number, key or login exactly counts; without
@@ -67,7 +67,7 @@ def place(
     submitted nothing else, unless its folder `holds_students`: then the group is a section.
     """
     if roster is None:
-        return Placement(range(len(shelf)), contested=shelf.contested)
+        return RosterMatches(range(len(shelf)), contested=shelf.contested)
     joined = _join(shelf, roster)
     shared = _share(shelf, roster, joined, holds_students)
     taken = {plain_word(entry.student.key) for entry in roster.entries}
@@ -84,7 +84,7 @@ def place(
     placed.sort()
     there = {owner for *_, owner in placed} | joined.contested
     shown, more = sorted(joined.notes)[:_MAX_NOTES], len(joined.notes) - _MAX_NOTES
-    return Placement(
+    return RosterMatches(
         array("l", (index for _, index, _ in placed)),
         array("l", (owner for *_, owner in placed)),
         shared,
@@ -117,7 +117,7 @@ class _Joined(NamedTuple):
     notes: list[str]
 
 
-def _join(shelf: Shelf, roster: Roster) -> _Joined:
+def _join(shelf: Submissions, roster: Roster) -> _Joined:
     joined = _Joined(array("l", [_NOBODY]) * len(shelf), [], set(), set(), [])
     claims: dict[int, list[_Claim]] = {}
     for index in range(len(shelf)):
@@ -153,7 +153,7 @@ def _join(shelf: Shelf, roster: Roster) -> _Joined:
 
 
 def _share(
-    shelf: Shelf,
+    shelf: Submissions,
     roster: Roster,
     joined: _Joined,
     holds_students: Callable[[str], bool],

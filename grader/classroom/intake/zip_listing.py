@@ -9,7 +9,7 @@ from grader.files.members import ARCHIVE_ERRORS, Member, error_text, safe_path
 from grader.files.zip_members import zip_members
 from grader.text import printable_path
 
-MOST_MEMBERS = 200_000
+MAX_MEMBERS = 200_000
 _DEEPEST = 20  # folders: what lies deeper does not tell who handed in
 
 
@@ -22,8 +22,8 @@ class ZipListing:
         try:
             with path.open("rb") as file:
                 for count, member in enumerate(zip_members(file)):
-                    if count >= MOST_MEMBERS or len(self._folders) > MOST_MEMBERS:
-                        raise InputError(f"{printable_path(path)} holds more than {MOST_MEMBERS} files")
+                    if count >= MAX_MEMBERS or len(self._folders) > MAX_MEMBERS:
+                        raise InputError(f"{printable_path(path)} holds more than {MAX_MEMBERS} files")
                     self._enter(member)
         except ARCHIVE_ERRORS as error:
             raise InputError(f"{printable_path(path)} cannot be read as a zip: {error_text(error)}") from None

@@ -11,10 +11,10 @@ from decimal import Decimal
 
 from grader.classroom.lms.canvas_columns import CanvasColumns, find_columns, is_student, names_rubric
 from grader.classroom.lms.filling import Filling, same_maximum
-from grader.classroom.lms.grades import Grade, exact_words, has_decimal_comma, points_text, read_points
-from grader.classroom.lms.matching import Person, join
+from grader.classroom.lms.grades import LmsGrade, exact_words, has_decimal_comma, points_text, read_points
+from grader.classroom.lms.matching import LmsStudent, join
 from grader.classroom.lms.preflight import Filled
-from grader.classroom.lms.tables import Row, Table, read_table
+from grader.classroom.lms.tables import Table, TableRow, read_table
 from grader.classroom.students import Student
 
 _QUOTED = re.compile(r'="(.*)"', re.DOTALL)  # gradebook_exporter.rb: so are names that begin with =
@@ -24,7 +24,7 @@ _NOT_OURS = {"ex": "is excused in Canvas", "n/a": "is not given this assignment 
 
 def fill_gradebook(
     data: bytes,
-    grades: Sequence[Grade],
+    grades: Sequence[LmsGrade],
     *,
     out_of: Decimal,
     wanted: tuple[str, ...] = (),
@@ -56,7 +56,9 @@ def fill_gradebook(
     return filling.result(table, rows)
 
 
-def _filled(table: Table, row: Row, columns: CanvasColumns, who: str, filling: Filling, comma: bool) -> Row | None:
+def _filled(
+    table: Table, row: TableRow, columns: CanvasColumns, who: str, filling: Filling, comma: bool
+) -> TableRow | None:
     """A student's row with the grade, or None where it is to be left out."""
     grade = filling.grade_of(row, who, len(columns.titles))
     if grade is None or grade.total is None:
@@ -75,7 +77,7 @@ def _filled(table: Table, row: Row, columns: CanvasColumns, who: str, filling: F
     return table.changed(row, columns.grade, new)
 
 
-def _person(row: Row, columns: CanvasColumns) -> Person:
+def _person(row: TableRow, columns: CanvasColumns) -> LmsStudent:
     written = row.value(columns.name)
     quoted = _QUOTED.fullmatch(written)
     name = quoted[1] if quoted else written
@@ -83,7 +85,7 @@ def _person(row: Row, columns: CanvasColumns) -> Person:
         name = f"{name}, {row.value(columns.first_name)}"
     value = row.value
     student = Student("", name, login=value(columns.login), sis=value(columns.sis), canvas=value(columns.id))
-    return Person(row.number, name, student)
+    return LmsStudent(row.number, name, student)
 
 
 def _warnings(table: Table, columns: CanvasColumns, out_of: Decimal, wanted: tuple[str, ...]) -> list[str]:

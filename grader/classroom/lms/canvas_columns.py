@@ -7,7 +7,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from grader.classroom.lms.tables import Row, Table
+from grader.classroom.lms.tables import Table, TableRow
 from grader.errors import InputError
 
 _IDENTITY = frozenset(
@@ -41,7 +41,7 @@ class CanvasColumns:
     login: int | None
     grade: int
     others: int
-    points_possible: Row | None
+    points_possible: TableRow | None
 
     @property
     def title(self) -> str:
@@ -49,7 +49,7 @@ class CanvasColumns:
         return self.titles[self.grade]
 
 
-def is_student(row: Row) -> bool:
+def is_student(row: TableRow) -> bool:
     """Whether a row is a student's: no blank line, no points possible, no "Manual Posting" of assignments with hidden grades."""
     if row.number == 1 or "Points Possible" in row.value(0):
         return False

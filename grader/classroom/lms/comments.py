@@ -3,11 +3,11 @@
 from collections.abc import Iterable, Iterator
 from decimal import Decimal
 
-from grader.classroom.lms.feedback import Remark
+from grader.classroom.lms.feedback import FeedbackItem
 from grader.grading.report import Result
 
 
-def remarks_on(results: Iterable[Result]) -> Iterator[Remark]:
+def feedback_items(results: Iterable[Result]) -> Iterator[FeedbackItem]:
     """A remark on each criterion that has not all its points, or a person's comment, in their order.
 
     Those that are not decided because one and the same criterion failed, or that wait for the same reason, are one remark.
@@ -19,13 +19,13 @@ def remarks_on(results: Iterable[Result]) -> Iterator[Remark]:
     for (kind, cause), alike in together.items():
         first = alike[0]
         if len(alike) == 1:
-            yield Remark(first.criterion.title, first.points, first.criterion.points, _said(first))
+            yield FeedbackItem(first.criterion.title, first.points, first.criterion.points, _said(first))
             continue
         out_of = sum((each.criterion.points for each in alike), Decimal(0))
         if kind == "skipped":
-            yield Remark(f"{len(alike)} criteria are not decided, because {cause} failed", Decimal(0), out_of)
+            yield FeedbackItem(f"{len(alike)} criteria are not decided, because {cause} failed", Decimal(0), out_of)
         else:
-            yield Remark(f"{len(alike)} criteria wait for a person", Decimal(0), out_of, _capitalised(cause))
+            yield FeedbackItem(f"{len(alike)} criteria wait for a person", Decimal(0), out_of, _capitalised(cause))
 
 
 def _cause(result: Result) -> tuple[str, str] | None:

@@ -23,7 +23,7 @@ _TAG = re.compile(r"<[^>]*+>")
 
 
 @dataclass(frozen=True, slots=True)
-class Remark:
+class FeedbackItem:
     """One criterion as the student reads of it."""
 
     title: str
@@ -32,7 +32,7 @@ class Remark:
     message: str = ""
 
 
-def feedback_html(score: Decimal, out_of: Decimal, remarks: Sequence[Remark]) -> str:
+def feedback_html(score: Decimal, out_of: Decimal, remarks: Sequence[FeedbackItem]) -> str:
     """A comment of one line and at most 4,000 characters: the score as it is exported, then the remarks, in their order."""
     opening = f"<p>{_OPENING}: {exact_words(cut(score))} of {exact_words(out_of)} points.</p>"
     items = [_item(remark) for remark in remarks]
@@ -55,7 +55,7 @@ def is_our_feedback(text: str) -> bool:
     return _words(words).startswith(_OPENING) and mark[1] == _hash(words)
 
 
-def _item(remark: Remark) -> str:
+def _item(remark: FeedbackItem) -> str:
     points = exact_words(remark.points)
     if remark.points >= 0:  # less is what being late costs: that is of nothing
         points += f" of {exact_words(remark.out_of)}"

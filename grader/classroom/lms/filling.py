@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from decimal import Decimal
 
-from grader.classroom.lms.grades import Grade, exact_words, read_points
-from grader.classroom.lms.matching import Join
-from grader.classroom.lms.preflight import Conflict, Filled, Left, Preflight
-from grader.classroom.lms.tables import Row, Table
+from grader.classroom.lms.grades import LmsGrade, exact_words, read_points
+from grader.classroom.lms.matching import Matches
+from grader.classroom.lms.preflight import Conflict, Filled, Preflight, RowNote
+from grader.classroom.lms.tables import Table, TableRow
 from grader.errors import InputError
 
 
@@ -16,19 +16,19 @@ class Filling:
     """What has been filled so far and what has not; `result` makes the values of it that others see."""
 
     column: str
-    found: Join
+    found: Matches
     filled: int = 0
     unchanged: int = 0
-    unknown: tuple[Left, ...] = ()
-    ungraded: list[Left] = field(default_factory=list)
+    unknown: tuple[RowNote, ...] = ()
+    ungraded: list[RowNote] = field(default_factory=list)
     conflicts: list[Conflict] = field(default_factory=list)
-    kept_feedback: list[Left] = field(default_factory=list)
+    kept_feedback: list[RowNote] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.unknown = self.found.unknown
 
-    def grade_of(self, row: Row, who: str, width: int) -> Grade | None:
+    def grade_of(self, row: TableRow, who: str, width: int) -> LmsGrade | None:
         """The grade that belongs into a row; None, and noted why, where there is none or where cells are out of place."""
         grade = self.found.matched.get(row.number)
         if grade is None:
@@ -41,19 +41,19 @@ class Filling:
             return None
         return grade
 
-    def leave(self, row: Row, who: str, why: str) -> None:
+    def leave(self, row: TableRow, who: str, why: str) -> None:
         """A student of ours gets no grade in this row."""
-        self.ungraded.append(Left(row.number, who, why))
+        self.ungraded.append(RowNote(row.number, who, why))
 
-    def overwrite(self, row: Row, who: str, was: str, becomes: str) -> None:
+    def overwrite(self, row: TableRow, who: str, was: str, becomes: str) -> None:
         """A grade that is not ours is overwritten."""
         self.conflicts.append(Conflict(row.number, who, was, becomes))
 
-    def keep_feedback(self, row: Row, who: str, why: str) -> None:
+    def keep_feedback(self, row: TableRow, who: str, why: str) -> None:
         """A comment that is not ours stays."""
-        self.kept_feedback.append(Left(row.number, who, why))
+        self.kept_feedback.append(RowNote(row.number, who, why))
 
-    def result(self, table: Table, rows: Sequence[Row]) -> Filled:
+    def result(self, table: Table, rows: Sequence[TableRow]) -> Filled:
         """The filled file and the account of it."""
         preflight = Preflight(
             column=self.column,

@@ -12,7 +12,7 @@ _COMMA = re.compile(r"[0-9],[0-9]{1,2}$")
 
 
 @dataclass(frozen=True, slots=True)
-class Grade:
+class LmsGrade:
     """What one student gets. Without a total `why_not` says, in words, why: no hand-in, a person still has to look.
 
     `feedback` is HTML (`feedback_html` makes it); Moodle takes it, Canvas' gradebook has no place for it. `is_on_roster` is False for

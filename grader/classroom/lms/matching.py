@@ -3,16 +3,16 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from grader.classroom.lms.grades import Grade
-from grader.classroom.lms.preflight import Left
-from grader.classroom.matching import OF_RECORDS, Clues, Found, People, clues_of, numbers_of
+from grader.classroom.lms.grades import LmsGrade
+from grader.classroom.lms.preflight import RowNote
+from grader.classroom.matching import OF_RECORDS, Clues, Match, People, clues_of, numbers_of
 from grader.classroom.students import Student
 
 _MAX_NAMED = 5
 
 
 @dataclass(frozen=True, slots=True)
-class Person:
+class LmsStudent:
     """Somebody in an LMS file: the number of the row, what messages call them, and what the row says of them."""
 
     row: int
@@ -22,16 +22,16 @@ class Person:
 
 
 @dataclass(frozen=True, slots=True)
-class Join:
+class Matches:
     """The grades by row number, and what has no match or more than one."""
 
-    matched: dict[int, Grade]
-    unknown: tuple[Left, ...]
-    missing: tuple[Left, ...]
-    ambiguous: tuple[Left, ...]
+    matched: dict[int, LmsGrade]
+    unknown: tuple[RowNote, ...]
+    missing: tuple[RowNote, ...]
+    ambiguous: tuple[RowNote, ...]
 
 
-def join(people: Sequence[Person], grades: Sequence[Grade]) -> Join:
+def join(people: Sequence[LmsStudent], grades: Sequence[LmsGrade]) -> Matches:
     """Each row's grade. A pair counts only if each of the two finds the other and nobody else.
 
     A submission that is not on the roster is matched by the numbers of the LMS only: its name is what a student wrote.
@@ -48,15 +48,15 @@ def join(people: Sequence[Person], grades: Sequence[Grade]) -> Join:
     left = (
         set(range(len(grades))) - set(matched.values()) - {each for found in unclear.values() for each in found.people}
     )
-    return Join(
+    return Matches(
         {people[row].row: grades[grade] for row, grade in matched.items()},
         tuple(
-            Left(each.row, each.who, "no student of the gradebook has this number, address or name")
+            RowNote(each.row, each.who, "no student of the gradebook has this number, address or name")
             for row, each in enumerate(people)
             if row not in matched and row not in unclear
         ),
         tuple(
-            Left(0, grades[each].who, "has a grade, but no row in the file")
+            RowNote(0, grades[each].who, "has a grade, but no row in the file")
             for each in sorted(left)
             if grades[each].total is not None
         ),
@@ -64,16 +64,16 @@ def join(people: Sequence[Person], grades: Sequence[Grade]) -> Join:
     )
 
 
-def _clues(grade: Grade) -> Clues:
+def _clues(grade: LmsGrade) -> Clues:
     return clues_of(grade.student) if grade.is_on_roster else numbers_of(grade.student)
 
 
-def _is_unclear(row: int, found: Found, row_of: Sequence[Found]) -> bool:
+def _is_unclear(row: int, found: Match, row_of: Sequence[Match]) -> bool:
     """Whether a row may be of several students, or one student's who may have another row as well."""
     return len(found.people) > 1 or any(row in row_of[each].people for each in found.people)
 
 
-def _ambiguous(person: Person, names: Sequence[str]) -> Left:
+def _ambiguous(person: LmsStudent, names: Sequence[str]) -> RowNote:
     if len(names) == 1:
-        return Left(person.row, person.who, f"{names[0]!r} could be this row or another one")
-    return Left(person.row, person.who, "could be any of " + ", ".join(map(repr, names[:_MAX_NAMED])))
+        return RowNote(person.row, person.who, f"{names[0]!r} could be this row or another one")
+    return RowNote(person.row, person.who, "could be any of " + ", ".join(map(repr, names[:_MAX_NAMED])))

@@ -13,13 +13,13 @@ from decimal import Decimal
 
 from grader.classroom.lms.feedback import is_our_feedback
 from grader.classroom.lms.filling import Filling, same_maximum
-from grader.classroom.lms.grades import Grade, cut, exact_words, has_decimal_comma, points_text, read_points
-from grader.classroom.lms.matching import Person, join
+from grader.classroom.lms.grades import LmsGrade, cut, exact_words, has_decimal_comma, points_text, read_points
+from grader.classroom.lms.matching import LmsStudent, join
 from grader.classroom.lms.moodle_columns import MoodleColumns, find_columns, people_rows
-from grader.classroom.lms.moodle_words import NO
+from grader.classroom.lms.moodle_headers import NO
 from grader.classroom.lms.preflight import Filled
 from grader.classroom.lms.spreadsheet import neutral
-from grader.classroom.lms.tables import Row, Table, read_table
+from grader.classroom.lms.tables import Table, TableRow, read_table
 from grader.classroom.students import Student
 
 _TAG = re.compile(r"<[^>]*+>")  # gradingtable.php puts the name of a suspended student into a span, with a picture
@@ -28,7 +28,7 @@ _NUMBER = re.compile(r"\d+$")
 
 def fill_worksheet(
     data: bytes,
-    grades: Sequence[Grade],
+    grades: Sequence[LmsGrade],
     *,
     out_of: Decimal,
     column: str = "",
@@ -59,7 +59,7 @@ def fill_worksheet(
     return filling.result(table, rows)
 
 
-def _filled(table: Table, row: Row, columns: MoodleColumns, who: str, filling: Filling) -> Row | None:
+def _filled(table: Table, row: TableRow, columns: MoodleColumns, who: str, filling: Filling) -> TableRow | None:
     """A student's row with grade and comment, or None where it is to be left out."""
     grade = filling.grade_of(row, who, len(columns.titles))
     if grade is None or grade.total is None:
@@ -81,7 +81,9 @@ def _filled(table: Table, row: Row, columns: MoodleColumns, who: str, filling: F
     return new
 
 
-def _with_points(table: Table, row: Row, columns: MoodleColumns, who: str, total: Decimal, filling: Filling) -> Row:
+def _with_points(
+    table: Table, row: TableRow, columns: MoodleColumns, who: str, total: Decimal, filling: Filling
+) -> TableRow:
     old = row.value(columns.grade)
     new = points_text(total, comma=has_decimal_comma(row.value(columns.maximum)))
     if read_points(old) == read_points(new):
@@ -91,7 +93,9 @@ def _with_points(table: Table, row: Row, columns: MoodleColumns, who: str, total
     return table.changed(row, columns.grade, new)
 
 
-def _with_comment(table: Table, row: Row, columns: MoodleColumns, who: str, grade: Grade, filling: Filling) -> Row:
+def _with_comment(
+    table: Table, row: TableRow, columns: MoodleColumns, who: str, grade: LmsGrade, filling: Filling
+) -> TableRow:
     old, new = row.value(columns.feedback), neutral(grade.feedback)
     if columns.feedback is None or not new or old == new:
         return row
@@ -101,12 +105,12 @@ def _with_comment(table: Table, row: Row, columns: MoodleColumns, who: str, grad
     return table.changed(row, columns.feedback, new)
 
 
-def _person(row: Row, columns: MoodleColumns) -> Person:
+def _person(row: TableRow, columns: MoodleColumns) -> LmsStudent:
     name = " ".join(html.unescape(_TAG.sub(" ", row.value(columns.name))).split())
     identifier = row.value(columns.identifier)
     number = _NUMBER.search(identifier)
     student = Student("", name, row.value(columns.email), moodle=number[0] if number else "")
-    return Person(row.number, name or identifier, student, tuple(row.value(index) for index in columns.numbers))
+    return LmsStudent(row.number, name or identifier, student, tuple(row.value(index) for index in columns.numbers))
 
 
 def _maxima(table: Table, columns: MoodleColumns) -> set[str]:

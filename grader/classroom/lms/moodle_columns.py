@@ -10,8 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from grader.classroom.lms.grades import read_points
-from grader.classroom.lms.moodle_words import CHANGEABLE, FEEDBACK, IDENTIFIER, MAXIMUM, MODIFIED, NUMBERS, STATUS
-from grader.classroom.lms.tables import Row, Table
+from grader.classroom.lms.moodle_headers import CHANGEABLE, FEEDBACK, IDENTIFIER, MAXIMUM, MODIFIED, NUMBERS, STATUS
+from grader.classroom.lms.tables import Table, TableRow
 from grader.errors import InputError
 
 _IDENTIFIER = re.compile(r"[^\d\s][^\d]*\d+")
@@ -39,7 +39,7 @@ class MoodleColumns:
         return self.titles[self.grade]
 
 
-def people_rows(table: Table) -> list[Row]:
+def people_rows(table: Table) -> list[TableRow]:
     """The rows below the header that have anything in them."""
     return [row for row in table.rows[1:] if any(cell.value.strip() for cell in row.cells)]
 
@@ -85,7 +85,7 @@ def find_columns(table: Table, column: str, feedback_column: str, shown: str) ->
     )
 
 
-def _grade(headers: Sequence[str], rows: Sequence[Row], identifier: int) -> int | None:
+def _grade(headers: Sequence[str], rows: Sequence[TableRow], identifier: int) -> int | None:
     """The column before the maximum grade: by the maximum's header, by English headers, else by what stands in the two."""
     for index in range(identifier + 2, len(headers)):
         if headers[index] in MAXIMUM or (headers[index - 1], headers[index]) == ("grade", "scale"):
@@ -96,7 +96,7 @@ def _grade(headers: Sequence[str], rows: Sequence[Row], identifier: int) -> int 
     return shaped[0] if len(shaped) == 1 else None
 
 
-def _is_grade_and_maximum(rows: Sequence[Row], index: int) -> bool:
+def _is_grade_and_maximum(rows: Sequence[TableRow], index: int) -> bool:
     """Whether a column has one and the same number everywhere, and the column before it nothing, or numbers up to it."""
     limits = {read_points(row.value(index)) for row in rows}
     limit = limits.pop() if len(limits) == 1 else None
@@ -111,7 +111,7 @@ def _is_maximum(text: str) -> bool:
     return points is not None and points > 0
 
 
-def _all(rows: Sequence[Row], index: int, pattern: re.Pattern[str]) -> bool:
+def _all(rows: Sequence[TableRow], index: int, pattern: re.Pattern[str]) -> bool:
     """Whether all that stands in a column has a shape, and something stands there."""
     values = [value for row in rows if (value := row.value(index))]
     return bool(values) and all(pattern.fullmatch(value) for value in values)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
-class Left:
+class RowNote:
     """Someone without a new grade, and why. `row` counts from 1 in the LMS file; 0 for a student who has no row there."""
 
     row: int
@@ -36,11 +36,11 @@ class Preflight:
     filled: int
     unchanged: int
     conflicts: tuple[Conflict, ...]
-    ungraded: tuple[Left, ...]
-    unknown: tuple[Left, ...]
-    missing: tuple[Left, ...]
-    ambiguous: tuple[Left, ...]
-    kept_feedback: tuple[Left, ...]
+    ungraded: tuple[RowNote, ...]
+    unknown: tuple[RowNote, ...]
+    missing: tuple[RowNote, ...]
+    ambiguous: tuple[RowNote, ...]
+    kept_feedback: tuple[RowNote, ...]
     warnings: tuple[str, ...]
 
     @property

@@ -31,7 +31,7 @@ class Cell:
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class TableRow:
     """One row: `number` is 1 for the first, `end` the line break behind it. A blank line has no cells."""
 
     number: int
@@ -47,7 +47,7 @@ class Row:
 class Table:
     """A CSV file: its rows, and what is needed to write them back byte for byte."""
 
-    rows: tuple[Row, ...]
+    rows: tuple[TableRow, ...]
     delimiter: str
     encoding: str
     bom: bytes
@@ -57,7 +57,7 @@ class Table:
         text = "".join(self.delimiter.join(cell.raw for cell in row.cells) + row.end for row in self.rows)
         return self.bom + text.encode(self.encoding, "xmlcharrefreplace")
 
-    def changed(self, row: Row, column: int, value: str) -> Row:
+    def changed(self, row: TableRow, column: int, value: str) -> TableRow:
         """A row with another value in one cell, in quotes where the old one was, or where it has to be."""
         quoted = row.cells[column].raw.startswith('"') or re.search(rf'[{self.delimiter};\t"\r\n]|^\s|\s$', value)
         raw = '"' + value.replace('"', '""') + '"' if quoted else value
@@ -99,9 +99,9 @@ def _cell(delimiter: str) -> re.Pattern[str]:
     return re.compile(rf'"((?:[^"]++|"")*+)"([^{delimiter}\r\n]*+)|((?!")[^{delimiter}\r\n]*+)')
 
 
-def _rows(text: str, delimiter: str, shown: str) -> tuple[Row, ...]:
+def _rows(text: str, delimiter: str, shown: str) -> tuple[TableRow, ...]:
     pattern, at, count = _cell(delimiter), 0, 0
-    rows: list[Row] = []
+    rows: list[TableRow] = []
     cells: list[Cell] = []
     while at < len(text):
         if not cells and len(rows) >= ROW_LIMIT:
@@ -122,7 +122,7 @@ def _rows(text: str, delimiter: str, shown: str) -> tuple[Row, ...]:
         end = "\r\n" if text.startswith("\r\n", at) else text[at : at + 1]
         at += len(end)
         is_blank = len(cells) == 1 and not cells[0].raw
-        rows.append(Row(len(rows) + 1, () if is_blank else tuple(cells), end))
+        rows.append(TableRow(len(rows) + 1, () if is_blank else tuple(cells), end))
         cells = []
     return tuple(rows)
 

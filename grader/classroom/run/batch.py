@@ -9,18 +9,18 @@ from typing import NamedTuple
 
 from grader import __version__
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.known import Enrolment, Known
-from grader.classroom.gradebook.result import Graded
+from grader.classroom.gradebook.result import GradingResult
+from grader.classroom.gradebook.stored import Enrolment, StoredSubmission
 from grader.classroom.intake.intake import Intake
 from grader.classroom.intake.layouts.attempts import home_of
 from grader.classroom.intake.layouts.layout import place_key
 from grader.classroom.intake.opening import fingerprint
-from grader.classroom.intake.roster import Entry, Roster, entry_to_json
-from grader.classroom.run.belonging import assignments_text, check_belongs
+from grader.classroom.intake.roster import Roster, RosterEntry, entry_to_json
 from grader.classroom.run.identity import Identities
 from grader.classroom.run.queue import Queue
-from grader.classroom.run.worker import Class, Task
-from grader.classroom.students import HandIn, Student
+from grader.classroom.run.same_class import assignments_text, check_belongs
+from grader.classroom.run.worker import ClassContext, Task
+from grader.classroom.students import ClassSubmission, Student
 from grader.errors import InputError
 from grader.files.reading import URDF_LIMIT
 from grader.grading.record import to_record
@@ -55,7 +55,7 @@ class Progress:
         )
 
 
-class Settings(NamedTuple):
+class RunSettings(NamedTuple):
     """How a run is done.
 
     `root` is the absolute path of the class, `max_size` the limit for a URDF in bytes; `add` has the class added to whatever the
@@ -80,29 +80,31 @@ class Batch:
         self,
         book: Gradebook,
         rubric: Rubric,
-        settings: Settings,
+        settings: RunSettings,
         executor: Executor,
         listener: Callable[[Progress], None] = lambda _: None,
     ) -> None:
         self._book, self._rubric, self._settings, self._listener = book, rubric, settings, listener
         self._sha256 = rubric.sha256
         self._queue = Queue(executor, settings.workers, self._common, rubric)
-        self._waiting: dict[str, tuple[HandIn, Known | None]] = {}
+        self._waiting: dict[str, tuple[ClassSubmission, StoredSubmission | None]] = {}
         self._identities: Identities | None = None
-        self._passed: list[Known] = []  # of this class folder, and not met yet
+        self._passed: list[StoredSubmission] = []  # of this class folder, and not met yet
         self._renamed: set[int] = set()
         self.notes: list[str] = []
-        self._before: Iterator[Known] = iter(())
-        self._next: Known | None = None
+        self._before: Iterator[StoredSubmission] = iter(())
+        self._next: StoredSubmission | None = None
         self._has_others = False
         self._progress = Progress(settings.total)
         self._run = 0
 
-    def _common(self) -> Class:
+    def _common(self) -> ClassContext:
         """What all tasks share: made when there is something to grade, for grading the reference takes longer than looking."""
         template = _template(self._rubric)
         self._book.keep_beside(template)
-        return Class(self._settings.root, self._rubric.data, str(self._rubric.path), template, self._settings.max_size)
+        return ClassContext(
+            self._settings.root, self._rubric.data, str(self._rubric.path), template, self._settings.max_size
+        )
 
     @property
     def has_begun(self) -> bool:
@@ -126,7 +128,7 @@ class Batch:
         self._next = next(self._before, None)
         self._has_others = self._next is not None
         contested = {student.key for student in intake.contested}
-        for hand_in in intake.hand_ins():
+        for hand_in in intake.submissions():
             before = self._known(hand_in)
             if before is not None and self._is_doubtful(hand_in, before):
                 self.notes.append(f"{hand_in.paths[0]} may be of {before.key}, who had another before: left unassigned")
@@ -161,7 +163,7 @@ class Batch:
                 self._passed.append(self._next)
             self._next = next(self._before, None)
 
-    def _same_person(self, hand_in: HandIn) -> Known | None:
+    def _same_person(self, hand_in: ClassSubmission) -> StoredSubmission | None:
         """Who has this hand-in under another key, and gets this one now."""
         known = self._identities.of(hand_in) if self._identities is not None else None
         key = hand_in.student.key
@@ -176,7 +178,7 @@ class Batch:
         self.notes.append(f"{known.key} is {key} now, with all manual marks")
         return known
 
-    def _known(self, hand_in: HandIn) -> Known | None:
+    def _known(self, hand_in: ClassSubmission) -> StoredSubmission | None:
         """What the gradebook has of this student."""
         key = hand_in.student.key
         self._pass_to(key)
@@ -187,7 +189,7 @@ class Batch:
             known = self._same_person(hand_in)
         return known
 
-    def _gives_way(self, known: Known, hand_in: HandIn) -> bool:
+    def _gives_way(self, known: StoredSubmission, hand_in: ClassSubmission) -> bool:
         """Whether a key was only that of a folder until the roster gave it to somebody else, who is known as well.
 
         The folder's results and marks then get the key of its place.
@@ -201,19 +203,19 @@ class Batch:
         self._passed.append(known)
         return self._book.rename(known.student, place_key(path))
 
-    def _is_doubtful(self, hand_in: HandIn, known: Known) -> bool:
+    def _is_doubtful(self, hand_in: ClassSubmission, known: StoredSubmission) -> bool:
         """Whether a submission only may be of a student who had another one in this class before."""
         if hand_in.is_certain or known.source != self._settings.root:
             return False
         return home_of(json.loads(known.place)[0][0]) != home_of(hand_in.paths[0])
 
-    def _still_valid(self, known: Known | None) -> Known | None:
+    def _still_valid(self, known: StoredSubmission | None) -> StoredSubmission | None:
         """A result that may still hold: of the same rubric and grader, and not errored."""
         if known is None or (known.rubric, known.version) != (self._sha256, __version__):
             return None
         return None if known.verdict == "errored" or self._settings.force else known
 
-    def _is_unchanged(self, hand_in: HandIn, known: Known) -> bool:
+    def _is_unchanged(self, hand_in: ClassSubmission, known: StoredSubmission) -> bool:
         """Whether the file system and the roster say what they said before."""
         return (
             known.fingerprint != ""
@@ -222,7 +224,7 @@ class Batch:
             == known.fingerprint
         )
 
-    def _hand_out(self, hand_in: HandIn, known: Known | None) -> None:
+    def _hand_out(self, hand_in: ClassSubmission, known: StoredSubmission | None) -> None:
         self._waiting[hand_in.student.key] = (hand_in, known)
         digest = known.digest if known is not None else ""
         self._queue.put(Task(hand_in.student.key, hand_in.paths, hand_in.names, digest))
@@ -236,7 +238,7 @@ class Batch:
                 del self._waiting[graded.key]
             self._tell(each.verdict for each in results)
 
-    def _keep(self, graded: Graded) -> None:
+    def _keep(self, graded: GradingResult) -> None:
         hand_in, known = self._waiting[graded.key]
         student = self._keep_student(hand_in)
         if graded.verdict == "unchanged" and known is not None:
@@ -245,7 +247,7 @@ class Batch:
             result = self._book.keep(student, self._sha256, graded)
         self._book.see(student, self._run, result, hand_in, graded.fingerprint)
 
-    def _keep_student(self, hand_in: HandIn) -> int:
+    def _keep_student(self, hand_in: ClassSubmission) -> int:
         return self._book.keep_student(hand_in.student, self._enrolment(hand_in.student))
 
     def _enrolment(self, student: Student) -> Enrolment | None:
@@ -268,7 +270,7 @@ def _template(rubric: Rubric) -> str:
         return ""
 
 
-def _enrolment_of(entry: Entry | None) -> Enrolment:
+def _enrolment_of(entry: RosterEntry | None) -> Enrolment:
     """What the roster says of one; not late is not late, whatever a time says."""
     if entry is None:
         return Enrolment(0)

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from grader import __version__
-from grader.classroom.run.pool import Lost, Processes
+from grader.classroom.run.pool import Processes, WorkerError
 from grader.classroom.run.worker import PRELOAD, prepare
 from grader.errors import InputError
 from grader.text import printable_path
@@ -26,7 +26,7 @@ class Cluster(Executor):
     """An executor whose tasks run on the workers of a Dask cluster; raises InputError where it cannot be used.
 
     `root` is the class: every worker has to see it at the same path. A worker that is lost is Dask's business: its tasks go to
-    another one, and one that ends worker after worker is told as Lost.
+    another one, and one that ends worker after worker is told as WorkerError.
     """
 
     def __init__(self, address: str, timeout: float, root: Path) -> None:
@@ -92,10 +92,10 @@ class Cluster(Executor):
             result = await self._client.gather(task, asynchronous=True)
         except (CancelledError, asyncio.CancelledError, OSError):  # nobody here cancels anything
             self._is_gone = True
-            result = Lost("the cluster that grades came to an end", is_own_fault=False)
+            result = WorkerError("the cluster that grades came to an end", is_own_fault=False)
         except Exception as error:  # noqa: BLE001  such as Dask's KilledWorker
             known = type(error).__name__ == "KilledWorker"
-            result = Lost("it ended one worker of the cluster after the other") if known else error
+            result = WorkerError("it ended one worker of the cluster after the other") if known else error
         if isinstance(result, Exception):
             done.set_exception(result)
         else:
@@ -124,12 +124,12 @@ def _introduce(root: str) -> tuple[str, bool]:
 
 
 def _apart(timeout: float, function: Callable[..., Any], arguments: tuple[Any, ...], named: dict[str, Any]) -> Any:
-    """Run a function in a process of this worker's: what it gives, or Lost, which raised would fill the worker's log."""
+    """Run a function in a process of this worker's: what it gives, or WorkerError, which raised would fill the worker's log."""
     with _one_at_a_time:
         processes = _processes()
     try:
         return processes.submit_within(timeout, function, arguments, named).result()
-    except Lost as lost:
+    except WorkerError as lost:
         return lost
 
 

@@ -5,11 +5,11 @@ from functools import cached_property
 from json import dumps, loads
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.known import Known
+from grader.classroom.gradebook.stored import StoredSubmission
 from grader.classroom.intake.layouts.layout import is_place_key
-from grader.classroom.intake.roster import Entry, Roster, entry_from_json
+from grader.classroom.intake.roster import Roster, RosterEntry, entry_from_json
 from grader.classroom.matching import NUMBERS, Clue, Clues, People, clues_of, numbers_of
-from grader.classroom.students import HandIn, Student
+from grader.classroom.students import ClassSubmission, Student
 
 
 class Identities:
@@ -24,7 +24,7 @@ class Identities:
         self._book, self._root, self._roster, self._keys = book, root, roster, keys
 
     @cached_property
-    def _known(self) -> list[Known]:
+    def _known(self) -> list[StoredSubmission]:
         """Those whose key is neither in the class nor on the roster: in most runs nobody asks for them."""
         kept = set(self._keys()).union(student.key for student in (self._roster.students if self._roster else ()))
         return [each for each in self._book.all_known() if each.key not in kept]
@@ -37,7 +37,7 @@ class Identities:
     def _never_on_roster(self) -> set[int]:
         return {index for index, each in enumerate(self._known) if not each.is_expected}
 
-    def of(self, hand_in: HandIn) -> Known | None:
+    def of(self, hand_in: ClassSubmission) -> StoredSubmission | None:
         """The one who is certainly the same."""
         student = hand_in.student
         entry = self._roster.entry(student.key) if self._roster is not None else None
@@ -52,10 +52,10 @@ class Identities:
         return self._known[found.only] if found.only is not None else None
 
 
-def _clues(known: Known, root: str) -> Clues:
+def _clues(known: StoredSubmission, root: str) -> Clues:
     """What identifies a student of the gradebook: what a roster said; else the key and the place, for a login may be a folder's name."""
     if known.is_expected:
-        entry = entry_from_json(known.entry) if known.entry else Entry(known.record)
+        entry = entry_from_json(known.entry) if known.entry else RosterEntry(known.record)
         return {**clues_of(entry.student, entry.aliases), **numbers_of(known.record)}
     place = (dumps(loads(known.place)[0]),) if known.source == root else ()
     return {**clues_of(Student(known.key)), **numbers_of(known.record), Clue.PLACE: place}

@@ -23,7 +23,7 @@ _MUTE = 1  # the exit code of a worker that had to wait longer
 _LEFT = 70  # the exit code of a worker that was ended in the midst of its work as if all were well
 
 
-class Lost(GraderError):
+class WorkerError(GraderError):
     """Work that came to nothing, and why, in words for a report. It may have been the fault of what ran beside it."""
 
     def __init__(self, reason: str, *, is_own_fault: bool = True) -> None:
@@ -32,7 +32,7 @@ class Lost(GraderError):
 
 
 class Processes(Executor):
-    """Worker processes. What takes longer than `timeout` seconds, or ends its worker, raises Lost from its future.
+    """Worker processes. What takes longer than `timeout` seconds, or ends its worker, raises WorkerError from its future.
 
     Another worker then takes the place of the one that ended. All of them end with the process that has started them, however
     that ends. `prepare` is run in each at its start; `preload` names the modules that are loaded once for all of them, where
@@ -119,22 +119,25 @@ class Processes(Executor):
         threading.Thread(target=self._pool.join, daemon=True).start()  # which ends what is left of it
         self._pool = self._new_pool()
         for done in tuple(self._promised):
-            self._settle(done, Lost("the processes that grade came to an end", is_own_fault=False))
+            self._settle(done, WorkerError("the processes that grade came to an end", is_own_fault=False))
 
     def _pass_on(self, inner: "Future[Any]", done: "Future[Any]", timeout: float) -> None:
         try:
             self._settle(done, result=inner.result())
         except TimeoutError:
             self._settle(
-                done, Lost(f"grading it took longer than {timeout:g} s, and was stopped (--timeout raises the limit)")
+                done,
+                WorkerError(f"grading it took longer than {timeout:g} s, and was stopped (--timeout raises the limit)"),
             )
         except ProcessExpired as error:
             is_own_fault = error.exitcode != _MUTE
-            self._settle(done, Lost(f"the process that graded it {_end_of(error.exitcode)}", is_own_fault=is_own_fault))
+            self._settle(
+                done, WorkerError(f"the process that graded it {_end_of(error.exitcode)}", is_own_fault=is_own_fault)
+            )
         except (BrokenProcessPool, CancelledError):
-            self._settle(done, Lost("the processes that grade came to an end", is_own_fault=False))
+            self._settle(done, WorkerError("the processes that grade came to an end", is_own_fault=False))
         except MemoryError:
-            self._settle(done, Lost(NO_MEMORY))
+            self._settle(done, WorkerError(NO_MEMORY))
         except Exception as error:  # noqa: BLE001  it is told, whatever it is
             self._settle(done, error)
 

@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 from grader.checks.outcome import Outcome, Status
 from grader.classroom.gradebook.failures import kind_of_miss
-from grader.classroom.gradebook.result import NOT_GRADED, SIGNS, UNITS, Graded, Verdict
-from grader.classroom.intake.opening import fingerprint, open_hand_in
+from grader.classroom.gradebook.result import NOT_GRADED, STATUS_LETTERS, UNITS_PER_POINT, GradingResult, Verdict
+from grader.classroom.intake.opening import fingerprint, open_submission
 from grader.classroom.run.pool import NO_MEMORY
 from grader.errors import InputError
 from grader.files.opening import ARCHIVES
@@ -35,7 +35,7 @@ PRELOAD = (
 )
 
 
-class Class(NamedTuple):
+class ClassContext(NamedTuple):
     """What all tasks of a run share: the top of the class folder or archive, and the rubric's file."""
 
     root: str
@@ -58,7 +58,7 @@ class Task(NamedTuple):
     no_documents: str = ""
 
 
-def grade_all(common: Class, tasks: Sequence[Task]) -> list[Graded]:
+def grade_all(common: ClassContext, tasks: Sequence[Task]) -> list[GradingResult]:
     """Grade hand-ins one after the other; what is wrong with one of them costs the others nothing."""
     return [_grade_one(common, task) for task in tasks]
 
@@ -77,15 +77,15 @@ def prepare(memory: int) -> None:
     gc.set_threshold(10_000, 10, 20)
 
 
-def _grade_one(common: Class, task: Task) -> Graded:
+def _grade_one(common: ClassContext, task: Task) -> GradingResult:
     rubric, template = _rules(common.rubric, common.rubric_path, common.template)
     mark = fingerprint(common.root, task.paths, time.time_ns(), common.max_size)
     digest = ""
     try:
-        opened = open_hand_in(common.root, task.paths, task.names, task.key, common.max_size)
+        opened = open_submission(common.root, task.paths, task.names, task.key, common.max_size)
         digest = opened.digest
         if digest == task.graded:
-            return Graded(task.key, "unchanged", digest, mark)
+            return GradingResult(task.key, "unchanged", digest, mark)
         submission = opened.submission(rubric, task.no_documents)
         report = grade(rubric, submission)
     except InputError as error:
@@ -125,12 +125,14 @@ def _nothing_readable(submission: Submission) -> str:
     return ""
 
 
-def _of_class(reason: str, common: Class) -> str:
+def _of_class(reason: str, common: ClassContext) -> str:
     """A reason as a class is told it: with paths in the class."""
     return reason.replace(f"{common.root}{os.sep}", "")
 
 
-def failed(rubric: Rubric, task: Task, verdict: Verdict, reason: str, digest: str = "", mark: str = "") -> Graded:
+def failed(
+    rubric: Rubric, task: Task, verdict: Verdict, reason: str, digest: str = "", mark: str = ""
+) -> GradingResult:
     """The result of a hand-in that could not be graded: no criterion is decided, and each says why."""
     status: Status = "errored" if verdict == "errored" else "pending"
     message = reason if status == "errored" else f"{reason}; a person has to look"
@@ -148,16 +150,16 @@ def _of(
     digest: str,
     mark: str,
     template: Template | None = None,
-) -> Graded:
+) -> GradingResult:
     signs = [NOT_GRADED] * len(report.rubric.criteria)
     misses = []
     for criterion, outcome, *_ in report.results:
-        signs[criterion.position] = SIGNS[outcome.status]
+        signs[criterion.position] = STATUS_LETTERS[outcome.status]
         if outcome.status == "failed":
             misses.append((criterion.position, kind_of_miss(outcome)))
-    score, out_of, pending = (int(each * UNITS) for each in (report.score, report.max_score, report.pending))
+    score, out_of, pending = (int(each * UNITS_PER_POINT) for each in (report.score, report.max_score, report.pending))
     record = zlib.compress(to_record(report, template).encode(), 1)
-    return Graded(
+    return GradingResult(
         task.key, verdict, digest, mark, score, out_of, pending, "".join(signs), json.dumps(misses), record, reason
     )
 

@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grader.classroom.gradebook import gradebook as module
-from grader.classroom.gradebook.changes import Change, Step, changes, last_two, newest
+from grader.classroom.gradebook.changes import Change, PointsChange, changes, last_two, newest
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.grades import Standings
+from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import criterion_of, mark
 from grader.errors import InputError
 from tests.classroom.gradebooks import came_out, graded_into, lab
@@ -35,7 +35,7 @@ def run(book: Gradebook, rubric: Any = LAB, digest: str = "a", **signs: str) -> 
 def put(book: Gradebook, key: str, name: str, points: str | None) -> None:
     """Mark by hand."""
     given = None if points is None else Decimal(points)
-    mark(book, Standings(book).find(key), criterion_of(LAB, name), given, "me", "")
+    mark(book, Grades(book).find(key), criterion_of(LAB, name), given, "me", "")
 
 
 def found(book: Gradebook, before: int | None = None, after: int | None = None) -> list[Change]:
@@ -62,10 +62,10 @@ def test_another_submission(book: Gradebook) -> None:
     run(book, digest="b", anna="pppfp")
     (change,) = found(book)
     steps = (
-        Step("box", Decimal(0), Decimal("2.5")),
-        Step("tall", Decimal(0), Decimal("0.5")),
-        Step("essay", None, Decimal(0)),
-        Step("picture", Decimal(0), Decimal(1)),
+        PointsChange("box", Decimal(0), Decimal("2.5")),
+        PointsChange("tall", Decimal(0), Decimal("0.5")),
+        PointsChange("essay", None, Decimal(0)),
+        PointsChange("picture", Decimal(0), Decimal(1)),
     )
     assert change == Change("anna", Decimal(3), Decimal(7), steps, ("the submission changed",))
 
@@ -76,9 +76,12 @@ def test_another_rubric(book: Gradebook) -> None:
     bigger = lab(box="5", extra="7")
     run(book, bigger, anna="pppppp", ben="pfsppf")
     assert why(book) == {"anna": ("the rubric changed",), "ben": ("the rubric changed",)}
-    assert found(book)[0].steps == (Step("box", Decimal("2.5"), Decimal(5)), Step("extra", None, Decimal(7)))
+    assert found(book)[0].steps == (
+        PointsChange("box", Decimal("2.5"), Decimal(5)),
+        PointsChange("extra", None, Decimal(7)),
+    )
     run(book, anna="ppppp")
-    assert found(book)[0].steps[-1] == Step("extra", Decimal(7), None)
+    assert found(book)[0].steps[-1] == PointsChange("extra", Decimal(7), None)
 
 
 def test_another_grader(book: Gradebook, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -100,21 +103,21 @@ def test_marks_by_hand(book: Gradebook) -> None:
     third = run(book, anna="ppp??")
     put(book, "dora", "box", "0")
 
-    def seen(before: int, after: int) -> dict[str, list[Step]]:
+    def seen(before: int, after: int) -> dict[str, list[PointsChange]]:
         assert all(each.why == ("marked by hand",) for each in found(book, before, after))
         return {each.key: list(each.steps) for each in found(book, before, after)}
 
     two, none = Decimal(2), Decimal(0)
-    anna = {"anna": [Step("essay", None, two)]}
-    assert seen(first, second) == anna | {"cleo": [Step("picture", None, none)]}
+    anna = {"anna": [PointsChange("essay", None, two)]}
+    assert seen(first, second) == anna | {"cleo": [PointsChange("picture", None, none)]}
     assert seen(second, third) == {
-        "ben": [Step("essay", two, None)],
-        "cleo": [Step("picture", None, none)],
-        "dora": [Step("box", Decimal("2.5"), none)],
+        "ben": [PointsChange("essay", two, None)],
+        "cleo": [PointsChange("picture", None, none)],
+        "dora": [PointsChange("box", Decimal("2.5"), none)],
     }
     assert seen(first, third) == anna | {
-        "cleo": [Step("picture", None, none)],
-        "dora": [Step("box", Decimal("2.5"), none)],
+        "cleo": [PointsChange("picture", None, none)],
+        "dora": [PointsChange("box", Decimal("2.5"), none)],
     }
 
 
@@ -165,12 +168,14 @@ def test_which_runs(book: Gradebook) -> None:
             runs(*turned)
 
 
-SIGNS = st.text("pfs?!-", min_size=5, max_size=5)
+STATUS_LETTERS = st.text("pfs?!-", min_size=5, max_size=5)
 
 
 @settings(max_examples=40)
 @given(
-    SIGNS, SIGNS, st.lists(st.tuples(st.sampled_from([each.id for each in LAB.criteria]), st.booleans()), max_size=4)
+    STATUS_LETTERS,
+    STATUS_LETTERS,
+    st.lists(st.tuples(st.sampled_from([each.id for each in LAB.criteria]), st.booleans()), max_size=4),
 )
 def test_steps_add_up(before: str, after: str, marks: list[tuple[str, bool]]) -> None:
     """The difference of the scores is the sum of the steps, and the newer score is the one that counts."""
@@ -187,4 +192,4 @@ def test_steps_add_up(before: str, after: str, marks: list[tuple[str, bool]]) ->
             assert change.why
             total = sum(((each.after or 0) - (each.before or 0) for each in change.steps), Decimal(0))
             assert change.after - change.before == total
-            assert change.after == Standings(book).find("anna").score
+            assert change.after == Grades(book).find("anna").score

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from grader.classroom.gradebook import database as module
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.grades import Standings
+from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import mark
 from grader.classroom.gradebook.schema import APPLICATION_ID, STEPS
 from grader.errors import InputError
@@ -38,7 +38,7 @@ def book(tmp_path: Path) -> Iterator[Gradebook]:
 
 def put(book: Gradebook, key: str, name: str, points: Decimal | None, why: str = "") -> None:
     """Mark a criterion by hand."""
-    standings = Standings(book)
+    standings = Grades(book)
     standing = standings.find(key)
     criterion = next(each for each in standings.rubric(standing.rubric).criteria if each.id == name)
     mark(book, standing, criterion, points, "me", why)
@@ -91,12 +91,12 @@ def test_what_was_said_cannot_be_unsaid(book: Gradebook, statement: str) -> None
 
 # --- The current grade ------------------------------------------------------------------------------------------------
 
-SIGNS = st.text("pfs?!-", min_size=6, max_size=6)
+STATUS_LETTERS = st.text("pfs?!-", min_size=6, max_size=6)
 RUN = st.tuples(
     st.just("run"),
     st.integers(0, len(LABS) - 1),
     st.dictionaries(
-        st.sampled_from(STUDENTS), st.tuples(SIGNS, st.sampled_from("ab"), st.sampled_from(["", "broken"]))
+        st.sampled_from(STUDENTS), st.tuples(STATUS_LETTERS, st.sampled_from("ab"), st.sampled_from(["", "broken"]))
     ),
 )
 MARK = st.tuples(
@@ -168,7 +168,7 @@ def play(book: Gradebook, model: Model, step: tuple[Any, ...]) -> None:
 
 def check(book: Gradebook, model: Model) -> None:
     """Everyone's grade, asked in four ways."""
-    standings = Standings(book)
+    standings = Grades(book)
     assert {each.student.key for each in standings.all()} == model.results.keys()
     for key in model.results:
         wanted = model.grade(key)
@@ -192,14 +192,14 @@ def is_decided(result: Any) -> bool:
 
 def test_a_student_without_a_hand_in_has_no_points(book: Gradebook) -> None:
     """Whoever is only on the roster is missing, with nothing to add up."""
-    from grader.classroom.gradebook.known import Enrolment
+    from grader.classroom.gradebook.stored import Enrolment
     from grader.classroom.students import Student
 
     with book.transaction():
         book.keep_student(Student("dora"), Enrolment(1))
     ((score, verdict, faults),) = book.rows("SELECT score, verdict, faults FROM grade WHERE key = 'dora'")
     assert (score, verdict, faults or 0) == (None, "missing", 0)
-    assert Standings(book).find("dora").why_not_final == "nothing was handed in"
+    assert Grades(book).find("dora").why_not_final == "nothing was handed in"
 
 
 # --- Versions ---------------------------------------------------------------------------------------------------------
@@ -237,7 +237,7 @@ def test_half_a_step_leaves_no_trace(book: Gradebook, monkeypatch: pytest.Monkey
         tables = {row[0] for row in again.rows("SELECT name FROM sqlite_master")}
         assert not tables & {"pet", "one", "pets"}
         assert next(again.rows("PRAGMA user_version")) == (len(STEPS),)
-        assert Standings(again).find("anna").score == Decimal("8.5")
+        assert Grades(again).find("anna").score == Decimal("8.5")
 
 
 def test_many_may_make_the_same_gradebook_at_once(tmp_path: Path) -> None:

@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.grades import Standings
-from grader.classroom.gradebook.known import Enrolment
+from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import criterion_of, mark
-from grader.classroom.students import HandIn, Student
+from grader.classroom.gradebook.stored import Enrolment
+from grader.classroom.students import ClassSubmission, Student
 from grader.errors import InputError
 from grader.grading.rubric import Rubric
 from tests.classroom.gradebooks import came_out, graded_into, lab
@@ -37,8 +37,8 @@ def book(tmp_path: Path) -> Iterator[Gradebook]:
 def test_people_are_known_by_all_that_names_one_of_them(book: Gradebook) -> None:
     """Key, login, address, numbers, name; a key goes before the rest."""
     for name in ("anna", "ae1", "anna@example.org", "9001", "Anna Ek"):
-        assert Standings(book).find(name).student.key == "anna"
-    assert Standings(book).find("S1").student.name == "Sven"
+        assert Grades(book).find(name).student.key == "anna"
+    assert Grades(book).find("S1").student.name == "Sven"
 
 
 @pytest.mark.parametrize("name", ["Ben Oh", "101"])
@@ -46,7 +46,7 @@ def test_several_are_never_one(book: Gradebook, name: str) -> None:
     """Nobody is taken whom somebody else might be, even where the names are of two kinds."""
     keys = "'ben', 'emil'" if name == "Ben Oh" else "'anna', 'emil'"
     with pytest.raises(InputError, match=f"'{name}' may be any of {keys}: name one by this key"):
-        Standings(book).find(name)
+        Grades(book).find(name)
 
 
 @pytest.mark.parametrize(
@@ -61,19 +61,19 @@ def test_several_are_never_one(book: Gradebook, name: str) -> None:
 def test_nobody(book: Gradebook, name: str, guess: str) -> None:
     """The message guesses who was meant."""
     with pytest.raises(InputError) as caught:
-        Standings(book).find(name)
+        Grades(book).find(name)
     everyone = f"; grader export csv --gradebook {book.path} lists everyone"
     assert str(caught.value) == f"there is no {name!r} in the gradebook{guess or everyone}"
 
 
 def looks(book: Gradebook) -> dict[str, str]:
     """Who needs a look, and why."""
-    return {each.who: each.why for each in Standings(book).looks(99).listed}
+    return {each.who: each.why for each in Grades(book).needing_attention(99).listed}
 
 
 def put(book: Gradebook, key: str, name: str = "essay") -> None:
     """Give a point by hand."""
-    standings = Standings(book)
+    standings = Grades(book)
     mark(book, standings.find(key), criterion_of(LAB, name), Decimal(1), "me", "")
 
 
@@ -92,7 +92,7 @@ def test_who_needs_a_look(tmp_path: Path) -> None:
             "dora": "nothing was handed in",
             "fay": "not on the roster",
         }
-        short = Standings(book).looks(1)
+        short = Grades(book).needing_attention(1)
         assert ([each.who for each in short.listed], short.total) == (["ben"], 4)
 
 
@@ -114,7 +114,7 @@ def test_a_mark_from_before(rubric: Rubric, digest: str, is_older: bool, tmp_pat
         graded_into(book, rubric, [came_out(rubric, "anna", "ppp?f", digest)])
         why = "a mark by hand is from before the submission or the points changed"
         assert looks(book) == ({"anna": why} if is_older else {})
-        assert Standings(book).find("anna").marks == 1
+        assert Grades(book).find("anna").marks == 1
 
 
 def test_a_mark_on_what_could_not_be_opened_is_looked_at_again(tmp_path: Path) -> None:
@@ -138,7 +138,7 @@ def test_who_was_left_behind_by_a_new_rubric(tmp_path: Path) -> None:
         graded_into(book, LAB, [came_out(LAB, key, "ppppp") for key in ("anna", "ben")])
         graded_into(book, newer, [came_out(newer, "anna", "ppppp")])
         assert looks(book) == {"ben": "graded by an earlier rubric only"}
-        assert Standings(book).find("ben").score == LAB.points
+        assert Grades(book).find("ben").score == LAB.points
 
 
 def test_a_total_is_the_score_less_what_being_late_costs(tmp_path: Path) -> None:
@@ -146,14 +146,14 @@ def test_a_total_is_the_score_less_what_being_late_costs(tmp_path: Path) -> None
     late = lab("due = 2026-09-01T12:00:00Z\npercent_per_day = 10\n")
     with Gradebook(tmp_path / "book.db", create=True) as book:
         graded_into(book, late, [came_out(late, "anna", "pppff")], submitted="2026-09-02T13:00:00Z")
-        found = Standings(book).find("anna")
+        found = Grades(book).find("anna")
         assert (found.score, found.late.days, found.late.points, found.total) == (
             Decimal(6),
             2,
             Decimal("-2.2"),
             Decimal("3.8"),
         )
-        assert Standings(book).report(found).score == Decimal(6)
+        assert Grades(book).report(found).score == Decimal(6)
 
 
 def test_names_that_are_no_text(tmp_path: Path) -> None:
@@ -164,10 +164,10 @@ def test_names_that_are_no_text(tmp_path: Path) -> None:
         student = Student("x", "J\udcfcrg \u00d8")
         with book.transaction():
             result = book.keep(book.keep_student(student, None), LAB.sha256, graded)
-            book.see(book.keep_student(student, None), run, result, HandIn(student, ("a\udcff",)), "")
+            book.see(book.keep_student(student, None), run, result, ClassSubmission(student, ("a\udcff",)), "")
         known = next(each for each in book.all_known() if each.key == "x")
         assert known is not None
-        assert known.is_same(HandIn(student, ("a\udcff",)), None)
-        found = Standings(book).find("x")
+        assert known.is_same(ClassSubmission(student, ("a\udcff",)), None)
+        found = Grades(book).find("x")
     assert (found.student.name, found.reason) == ("J\\udcfcrg \u00d8", "no \\udcff")
-    assert (found.origin.root, found.origin.paths) == ("class\\udcff", ("a\udcff",))
+    assert (found.files.root, found.files.paths) == ("class\\udcff", ("a\udcff",))

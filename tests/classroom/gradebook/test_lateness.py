@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.gradebook.lateness import Lateness, Times, lateness, read_time
+from grader.classroom.gradebook.lateness import Lateness, SubmissionTimes, lateness, read_time
 from grader.errors import InputError
 from grader.grading.rubric import Rubric
 from tests.classroom.gradebooks import lab
@@ -22,12 +22,12 @@ LONG_GRACE = lab(f"{DUE}{POLICY}grace_minutes = 30\n")
 
 def cost(score: str, days: float, policy: str = POLICY) -> Decimal:
     """What so many days cost a hand-in with this score."""
-    return lateness(lab(policy), Times(days_late=days), Decimal(score)).points
+    return lateness(lab(policy), SubmissionTimes(days_late=days), Decimal(score)).points
 
 
 def days(submitted: str, rubric: Rubric = LAB, due: datetime | None = None, own: str = "", **more: Any) -> int:
     """How many days late a hand-in is; `own` is when it was due for this student."""
-    return lateness(rubric, Times(submitted=submitted, due=own, **more), Decimal(11), due).days
+    return lateness(rubric, SubmissionTimes(submitted=submitted, due=own, **more), Decimal(11), due).days
 
 
 @pytest.mark.parametrize(
@@ -102,7 +102,7 @@ def test_a_date_alone_is_due_at_its_end() -> None:
 
 def test_days_by_the_roster_go_before_all() -> None:
     """They are rounded up to whole ones; none is not late, whatever the LMS has flagged."""
-    late = Times(is_late=True, submitted="2026-10-10T12:00:00Z", days_late=1.2)
+    late = SubmissionTimes(is_late=True, submitted="2026-10-10T12:00:00Z", days_late=1.2)
     assert lateness(LAB, late, Decimal(11)) == Lateness(2, Decimal("-2.2"), "2 days late, by the roster")
     assert days("", is_late=True, days_late=0.0) == 0
 
@@ -110,22 +110,22 @@ def test_days_by_the_roster_go_before_all() -> None:
 def test_a_flag_without_a_time_is_one_day() -> None:
     """Nobody knows by how much, and the words say so; a known time goes before the flag."""
     assert days("", is_late=True) == 1
-    assert "unknown" in lateness(LAB, Times(is_late=True), Decimal(11)).words
+    assert "unknown" in lateness(LAB, SubmissionTimes(is_late=True), Decimal(11)).reason
     assert days("2026-09-10T11:00:00+02:00", is_late=True) == 0
     assert days("2026-09-15T12:00:00Z", lab(POLICY), is_late=True) == 1  # no due time to compare with
 
 
 def test_without_a_policy_nothing_is_lost() -> None:
     """How late it was is still said."""
-    found = lateness(lab(), Times(submitted="2026-09-12T12:00:00Z", due="2026-09-10T12:00:00Z"), Decimal(11))
+    found = lateness(lab(), SubmissionTimes(submitted="2026-09-12T12:00:00Z", due="2026-09-10T12:00:00Z"), Decimal(11))
     assert (found.days, found.points) == (2, Decimal(0))
 
 
 def test_words_say_when_it_was_due() -> None:
     """With the offset that was taken for it, so that a wrong one is seen."""
-    late = Times(submitted="2026-09-12T12:00:00Z", due="2026-09-10T23:59", extension=1.0)
+    late = SubmissionTimes(submitted="2026-09-12T12:00:00Z", due="2026-09-10T23:59", extension=1.0)
     words = "1 day late: handed in 2026-09-12T12:00:00Z, due 2026-09-10T23:59+00:00, extended by 1 day"
-    assert lateness(LAB, late, Decimal(11)).words == words
+    assert lateness(LAB, late, Decimal(11)).reason == words
 
 
 def test_summer_time_is_in_the_offset() -> None:

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.grades import Standings
-from grader.classroom.gradebook.marks import criterion_of, mark, pending, read_points, waiting
+from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.marks import criterion_of, manual_grading_queue, mark, pending_criterion, read_points
 from grader.errors import InputError
 from tests.classroom.gradebooks import came_out, graded_into, lab
 
@@ -20,16 +20,16 @@ ESSAY = criterion_of(LAB, "essay")
 
 
 @pytest.fixture
-def standings(tmp_path: Path) -> Iterator[Standings]:
+def standings(tmp_path: Path) -> Iterator[Grades]:
     """A gradebook with four hand-ins: two with both questions open, a URDF alone, and one that could not be read."""
     with Gradebook(tmp_path / "book.db", create=True) as book:
         came = [("anna", "ppp??"), ("ben", "fsp??"), ("cleo", "ppp--")]
         graded = [came_out(LAB, key, signs) for key, signs in came]
         graded_into(book, LAB, [*graded, came_out(LAB, "dora", "?????", reason="no zip")])
-        yield Standings(book)
+        yield Grades(book)
 
 
-def put(standings: Standings, key: str, name: str, points: str) -> None:
+def put(standings: Grades, key: str, name: str, points: str) -> None:
     """Mark a criterion by hand."""
     criterion = criterion_of(LAB, name)
     mark(standings.book, standings.find(key), criterion, read_points(points, criterion), "me", "why")
@@ -114,29 +114,29 @@ def test_a_misspelt_criterion() -> None:
         criterion_of(LAB, "esay")
 
 
-def test_like_is_marked_beside_like(standings: Standings) -> None:
+def test_like_is_marked_beside_like(standings: Grades) -> None:
     """One criterion after the other, in the rubric's order; nothing of a hand-in that could not be read or has no such part."""
     wanted = [("anna", "essay"), ("ben", "essay"), ("anna", "picture"), ("ben", "picture")]
-    assert waiting(standings) == wanted
-    assert waiting(standings, "picture") == wanted[2:]
-    assert waiting(standings, "box") == []
+    assert manual_grading_queue(standings) == wanted
+    assert manual_grading_queue(standings, "picture") == wanted[2:]
+    assert manual_grading_queue(standings, "box") == []
 
 
-def test_what_was_marked_waits_no_more(standings: Standings) -> None:
+def test_what_was_marked_waits_no_more(standings: Grades) -> None:
     """Until the mark is taken back."""
-    first, *rest = waiting(standings)
-    assert pending(standings, first) is not None
+    first, *rest = manual_grading_queue(standings)
+    assert pending_criterion(standings, first) is not None
     put(standings, "anna", "essay", "1")
-    assert waiting(standings) == rest
-    assert pending(standings, first) is None  # somebody else has looked this up before the mark
+    assert manual_grading_queue(standings) == rest
+    assert pending_criterion(standings, first) is None  # somebody else has looked this up before the mark
     put(standings, "anna", "essay", "-")
-    assert waiting(standings) == [first, *rest]
+    assert manual_grading_queue(standings) == [first, *rest]
 
 
-def test_a_fault_of_ours_keeps_nobody_from_marking_the_rest(standings: Standings) -> None:
+def test_a_fault_of_ours_keeps_nobody_from_marking_the_rest(standings: Grades) -> None:
     """What a check of ours could not decide is nobody's question, but the written answers of the same hand-in are."""
     graded_into(standings.book, LAB, [came_out(LAB, "emil", "p!p??")])
-    assert [each.criterion for each in waiting(standings) if each.key == "emil"] == ["essay", "picture"]
+    assert [each.criterion for each in manual_grading_queue(standings) if each.key == "emil"] == ["essay", "picture"]
     standing = standings.find("emil")
     assert (standing.verdict, standing.why_not_final) == ("errored", "the grader failed on a criterion")
     for name, points in (("box", "2.5"), ("essay", "4"), ("picture", "1")):
@@ -145,7 +145,7 @@ def test_a_fault_of_ours_keeps_nobody_from_marking_the_rest(standings: Standings
     assert standings.find("emil").score == Decimal("11")
 
 
-def test_a_hand_in_that_cannot_be_read_can_be_marked(standings: Standings) -> None:
+def test_a_hand_in_that_cannot_be_read_can_be_marked(standings: Grades) -> None:
     """Criterion by criterion; it is final when all of them are."""
     for number, criterion in enumerate(LAB.criteria):
         assert standings.find("dora").why_not_final == "it could not be graded: no zip", number
@@ -154,7 +154,7 @@ def test_a_hand_in_that_cannot_be_read_can_be_marked(standings: Standings) -> No
     assert (found.score, found.out_of, found.pending, found.why_not_final) == (LAB.points, LAB.points, Decimal(0), "")
 
 
-def test_what_was_not_asked_for_can_be_marked(standings: Standings) -> None:
+def test_what_was_not_asked_for_can_be_marked(standings: Grades) -> None:
     """A URDF alone has no written answers; if they came by mail, a mark adds their points to both sides."""
     put(standings, "cleo", "essay", "4")
     found = standings.find("cleo")
@@ -163,7 +163,7 @@ def test_what_was_not_asked_for_can_be_marked(standings: Standings) -> None:
     assert (essay.points, essay.outcome.status) == (Decimal(4), "skipped")
 
 
-def test_bytes_that_are_no_text_are_spelt_out(standings: Standings) -> None:
+def test_bytes_that_are_no_text_are_spelt_out(standings: Grades) -> None:
     """A comment or a name from a terminal in another encoding is kept, as far as it can be read."""
     mark(standings.book, standings.find("anna"), ESSAY, Decimal(1), "m\udcff", "gr\udcf6n \ud800")
     assert list(standings.book.rows("SELECT author, comment FROM mark")) == [("m\\udcff", "gr\\udcf6n \\ud800")]

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.grades import Standings
+from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import mark
 from grader.classroom.gradebook.statistics import ClassStatistics, statistics
 from tests.classroom.gradebooks import came_out, graded_into, grader, lab
@@ -45,7 +45,7 @@ def mark_some(path: Path) -> None:
     """Marks as people give them: for most of what waits, and now and then against a check."""
     chance = Random(3).random
     with Gradebook(path) as book:
-        standings = Standings(book)
+        standings = Grades(book)
         for standing in list(standings.all()):
             for criterion, sign in zip(LAB6.criteria, standing.signs, strict=False):
                 if chance() < (0.7 if sign == "?" else 0.01):
@@ -175,7 +175,7 @@ def test_a_failure_that_a_person_forgave_is_none(tmp_path: Path) -> None:
     """With all points by hand it did not go wrong; with some of them it did."""
     with Gradebook(tmp_path / "book.db", create=True) as book:
         graded_into(book, LAB, [came_out(LAB, key, "pfspp") for key in ("anna", "ben", "cleo")])
-        standings = Standings(book)
+        standings = Grades(book)
         for key, points in (("anna", "2.5"), ("ben", "1")):
             mark(book, standings.find(key), LAB.criteria[1], Decimal(points), "me", "")
         found = statistics(book, LAB)

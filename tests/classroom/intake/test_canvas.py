@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.intake.intake import take_in
-from grader.classroom.intake.roster import Entry, Roster
+from grader.classroom.intake.intake import read_class
+from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.matching import canvas_name
-from grader.classroom.students import HandIn, Student
+from grader.classroom.students import ClassSubmission, Student
 from grader.errors import InputError
 from tests.classroom.class_folders import lay_out, pack, taken
 
@@ -24,8 +24,8 @@ FILES = (
 )
 
 
-def one(tmp_path: Path, *names: str) -> HandIn:
-    (hand_in,) = take_in(lay_out(tmp_path, *names), layout="canvas").hand_ins()
+def one(tmp_path: Path, *names: str) -> ClassSubmission:
+    (hand_in,) = read_class(lay_out(tmp_path, *names), layout="canvas").submissions()
     return hand_in
 
 
@@ -38,9 +38,9 @@ def test_a_download_is_recognised(tmp_path: Path) -> None:
         "לויעדה_125": (FILES[3],),
     }
     for place in (lay_out(tmp_path / "class", *FILES), pack(tmp_path / "submissions.zip", FILES)):
-        intake = take_in(place)
+        intake = read_class(place)
         assert (intake.layout, taken(intake)) == ("canvas", expected)
-        jane = next(intake.hand_ins())
+        jane = next(intake.submissions())
         assert (jane.is_late, jane.names) == (True, ("Task1_Step8.png", "lab6.zip"))
         assert jane.student == Student("doejane_123", canvas="123")
 
@@ -48,7 +48,7 @@ def test_a_download_is_recognised(tmp_path: Path) -> None:
 def test_anonymous_students(tmp_path: Path) -> None:
     """An anonymous student has five letters for a number, which are no user's."""
     lay_out(tmp_path, "anon_aB3xY_9001_lab6.zip", "LATE_anon_Qr5tu_9002_lab6.zip", "anon_aB3xY_text.html")
-    late, on_time = take_in(tmp_path).hand_ins()
+    late, on_time = read_class(tmp_path).submissions()
     assert (late.student, late.is_late) == (Student("anon_Qr5tu"), True)
     assert (on_time.student, on_time.is_late, len(on_time.paths)) == (Student("anon_aB3xY"), False, 2)
 
@@ -72,19 +72,19 @@ def test_numbers_of_the_students_own_stay(tmp_path: Path) -> None:
 def test_what_is_not_named_so_is_left_out(tmp_path: Path) -> None:
     """A few other files do not hide a download, and are named; many of them do."""
     lay_out(tmp_path, *FILES, "solution.zip", "README.md", "grades.csv")
-    intake = take_in(tmp_path)
+    intake = read_class(tmp_path)
     assert intake.layout == "canvas"
-    assert [line.split()[0] for line in intake.left_out] == ["README.md", "grades.csv", "solution.zip"]
+    assert [line.split()[0] for line in intake.ignored] == ["README.md", "grades.csv", "solution.zip"]
     lay_out(tmp_path, "ann/", "bea/", "cal.zip")
-    assert take_in(tmp_path).layout == "folders"
+    assert read_class(tmp_path).layout == "folders"
     with pytest.raises(InputError, match=r"nothing in .* is a submission"):
-        take_in(lay_out(tmp_path / "other", "ann/"), layout="canvas")
+        read_class(lay_out(tmp_path / "other", "ann/"), layout="canvas")
 
 
 @pytest.mark.parametrize("name", ["Team_A_1_2_x.zip", "a b_1_2_x.zip", "ann_1.zip", "ann_1_lab6.zip"])
 def test_other_names_are_no_download(tmp_path: Path, name: str) -> None:
     """Capitals, spaces, or too few numbers are not Canvas'."""
-    assert take_in(lay_out(tmp_path, name)).layout == "folders"
+    assert read_class(lay_out(tmp_path, name)).layout == "folders"
 
 
 def test_the_roster_knows_numbers_and_sortable_names(tmp_path: Path) -> None:
@@ -105,9 +105,9 @@ def test_the_roster_knows_numbers_and_sortable_names(tmp_path: Path) -> None:
         Student("e", "Lee, Kim"),
         Student("f", "Al Ash", canvas="6"),
     ]
-    intake = take_in(tmp_path, Roster(Entry(each) for each in students))
+    intake = read_class(tmp_path, Roster(RosterEntry(each) for each in students))
     assert list(taken(intake)) == ["a", "ashal_5", "b", "c", "leekim_4"]
-    assert [each.student.canvas for each in intake.hand_ins()] == ["1", "5", "2", "3", "4"]
+    assert [each.student.canvas for each in intake.submissions()] == ["1", "5", "2", "3", "4"]
     assert intake.unmatched == ("ashal_5", "leekim_4")
     assert intake.notes == (
         "ashal_5 has the name of f, but another number: left unassigned",
@@ -137,5 +137,5 @@ def test_any_download_is_grouped_again(people: dict[int, tuple[str, bool, dict[s
             names.append(f"{shown}{'_LATE' if is_late else ''}_{user}_{attachment}_{original}")
         expected[str(user)] = (is_late, sorted(originals))
     with tempfile.TemporaryDirectory() as folder:
-        intake = take_in(pack(Path(folder, "submissions.zip"), names), layout="canvas")
-    assert {each.student.canvas: (each.is_late, sorted(each.names)) for each in intake.hand_ins()} == expected
+        intake = read_class(pack(Path(folder, "submissions.zip"), names), layout="canvas")
+    assert {each.student.canvas: (each.is_late, sorted(each.names)) for each in intake.submissions()} == expected

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.intake.intake import take_in
+from grader.classroom.intake.intake import read_class
 from grader.classroom.intake.layouts.teams import lab_folder
-from grader.classroom.intake.roster import Entry, Roster
-from grader.classroom.students import HandIn, Student
+from grader.classroom.intake.roster import Roster, RosterEntry
+from grader.classroom.students import ClassSubmission, Student
 from grader.errors import InputError
 from tests.classroom.class_folders import lay_out, pack, taken
 
@@ -23,7 +23,7 @@ def test_students_of_teams(tmp_path: Path) -> None:
     """Each student's folder is a hand-in; its key has the team's name in front; other teams stay whole."""
     files = (*TEAM, "blue/lab_06/Ash/lab/a.urdf", "blue/lab_06/Cedar/lab/a.urdf", "gold/my_robot/package.xml")
     for place in (lay_out(tmp_path / "class", *files), pack(tmp_path / "class.zip", files)):
-        intake = take_in(place)
+        intake = read_class(place)
         assert (intake.layout, taken(intake)) == (
             "teams",
             {
@@ -34,7 +34,7 @@ def test_students_of_teams(tmp_path: Path) -> None:
                 "red/Birch": ("red/Lab6/Birch",),
             },
         )
-        assert intake.left_out == ("red/Lab6/README.md is not a folder, an archive or a URDF",)
+        assert intake.ignored == ("red/Lab6/README.md is not a folder, an archive or a URDF",)
 
 
 @pytest.mark.parametrize(
@@ -53,15 +53,15 @@ def test_students_of_teams(tmp_path: Path) -> None:
 )
 def test_what_may_be_one_submission_stays_one(tmp_path: Path, files: tuple[str, ...]) -> None:
     """Parts of a package or of a report are never taken for students."""
-    intake = take_in(lay_out(tmp_path, *files))
+    intake = read_class(lay_out(tmp_path, *files))
     assert (intake.layout, taken(intake)) == ("folders", {"red": ("red",)})
 
 
 def test_a_roster_makes_students_sure(tmp_path: Path) -> None:
     """Names that stand in the roster are students' even where nothing is in their folders; surnames count in their team."""
     students = [Student("1", "Ann Ash"), Student("2", "Birch, Bea"), Student("3", "Cal Cedar")]
-    roster = Roster(Entry(each, "Red") for each in students)
-    intake = take_in(lay_out(tmp_path, "red/Lab6/ash/step.png", "red/Lab6/Birch.zip", "blue/Lab6/src/"), roster)
+    roster = Roster(RosterEntry(each, "Red") for each in students)
+    intake = read_class(lay_out(tmp_path, "red/Lab6/ash/step.png", "red/Lab6/Birch.zip", "blue/Lab6/src/"), roster)
     assert taken(intake) == {"1": ("red/Lab6/ash",), "2": ("red/Lab6/Birch.zip",), "blue": ("blue",)}
     assert intake.absent == (students[2],)
 
@@ -77,29 +77,29 @@ def test_a_roster_makes_students_sure(tmp_path: Path) -> None:
 def test_a_team_names_only_its_own_members(tmp_path: Path, name: str, group: str, words: str) -> None:
     """Whatever a folder in a team is called, it is of nobody whose group is not that team; the student is not affected."""
     ann = Student("1", "Ann Ash", login="ash")
-    roster = Roster([Entry(ann, group), Entry(Student("2", login="bea"), "red")])
+    roster = Roster([RosterEntry(ann, group), RosterEntry(Student("2", login="bea"), "red")])
     files = [f"red/Lab6/{name}/a.urdf", "red/Lab6/bea/a.urdf"]
-    intake = take_in(lay_out(tmp_path / "class", *files), roster, layout="teams")
+    intake = read_class(lay_out(tmp_path / "class", *files), roster, layout="teams")
     assert taken(intake) == {"2": ("red/Lab6/bea",), f"red/{name}": (f"red/Lab6/{name}",)}
     assert intake.notes == (f"red/{name} is named like 1, {words}: left unassigned",)
     assert (intake.absent, intake.contested) == ((ann,), ())
     if group:
-        intake = take_in(lay_out(tmp_path / "class", "blue/Lab6/ash/a.urdf"), roster, layout="teams")
+        intake = read_class(lay_out(tmp_path / "class", "blue/Lab6/ash/a.urdf"), roster, layout="teams")
         assert taken(intake)["1"] == ("blue/Lab6/ash",)
 
 
 def test_a_team_cannot_submit_for_another_team(tmp_path: Path) -> None:
     """A folder that is named like another group counts for nobody in it."""
-    roster = Roster([Entry(Student("1", login="ash"), "blue"), Entry(Student("2", login="bea"), "red")])
-    intake = take_in(lay_out(tmp_path, "red/Lab6/blue/a.urdf", "red/Lab6/bea/a.urdf"), roster, layout="teams")
+    roster = Roster([RosterEntry(Student("1", login="ash"), "blue"), RosterEntry(Student("2", login="bea"), "red")])
+    intake = read_class(lay_out(tmp_path, "red/Lab6/blue/a.urdf", "red/Lab6/bea/a.urdf"), roster, layout="teams")
     assert taken(intake) == {"2": ("red/Lab6/bea",), "red/blue": ("red/Lab6/blue",)}
 
 
 def test_teams_that_are_told(tmp_path: Path) -> None:
     """Told that there are teams, a lab folder's folders are students' unless they are parts of a package."""
     lay_out(tmp_path, "red/Lab6/Ash/step.png", "blue/Lab6/src/a.urdf")
-    assert take_in(tmp_path).layout == "folders"
-    assert taken(take_in(tmp_path, layout="teams")) == {"red/Ash": ("red/Lab6/Ash",), "blue": ("blue",)}
+    assert read_class(tmp_path).layout == "folders"
+    assert taken(read_class(tmp_path, layout="teams")) == {"red/Ash": ("red/Lab6/Ash",), "blue": ("blue",)}
 
 
 def test_what_a_labs_folder_is_called() -> None:
@@ -124,16 +124,18 @@ def test_a_course_of_nbgrader(tmp_path: Path) -> None:
     """The course's folder, or `submitted` itself, gives each student's folder of the assignment, and its time."""
     lay_out(tmp_path / "c", *COURSE, "submitted/notes.txt")
     (tmp_path / "c/submitted/ann/lab6/timestamp.txt").write_text("2015-02-02 15:58:23.948203 UTC\n")
-    intake = take_in(tmp_path / "c")
+    intake = read_class(tmp_path / "c")
     assert intake.layout == "nbgrader"
     ann = Student("ann", login="ann")
-    assert list(intake.hand_ins()) == [HandIn(ann, ("submitted/ann/lab6",), submitted="2015-02-02T15:58:23Z")]
-    assert intake.left_out == (
+    assert list(intake.submissions()) == [
+        ClassSubmission(ann, ("submitted/ann/lab6",), submitted="2015-02-02T15:58:23Z")
+    ]
+    assert intake.ignored == (
         "submitted/bea holds nothing for the assignment lab6",
         "submitted/notes.txt is not a student's folder",
     )
-    assert taken(take_in(tmp_path / "c" / "submitted")) == {"ann": ("ann/lab6",)}
-    assert taken(take_in(tmp_path / "c", assignment="ps1")) == {
+    assert taken(read_class(tmp_path / "c" / "submitted")) == {"ann": ("ann/lab6",)}
+    assert taken(read_class(tmp_path / "c", assignment="ps1")) == {
         "ann": ("submitted/ann/ps1",),
         "bea": ("submitted/bea/ps1",),
     }
@@ -146,7 +148,7 @@ def test_a_course_in_a_zip(tmp_path: Path) -> None:
     with zipfile.ZipFile(tmp_path / "course.zip", "w") as archive:
         archive.writestr("robo/submitted/ann/lab-6/a.urdf", b"")
         archive.writestr("robo/submitted/ann/lab-6/timestamp.txt", b"2026-01-30 15:30:10 UCT")
-    (ann,) = take_in(tmp_path / "course.zip").hand_ins()
+    (ann,) = read_class(tmp_path / "course.zip").submissions()
     assert (ann.paths, ann.submitted) == (("robo/submitted/ann/lab-6",), "2026-01-30T15:30:10Z")
 
 
@@ -165,19 +167,19 @@ def test_times_of_nbgrader(tmp_path: Path, stamp: bytes, time: str) -> None:
     """A time without a zone is meant in UTC; one that cannot be told is left out."""
     lay_out(tmp_path, "submitted/ann/lab6/")
     (tmp_path / "submitted/ann/lab6/timestamp.txt").write_bytes(stamp)
-    (ann,) = take_in(tmp_path).hand_ins()
+    (ann,) = read_class(tmp_path).submissions()
     assert ann.submitted == time
 
 
 def test_an_assignment_that_is_not_told(tmp_path: Path) -> None:
     """One assignment is taken whatever it is called; of several one has to be told, and one that is not there is an error."""
     lay_out(tmp_path / "c", "submitted/ann/ps1/")
-    assert taken(take_in(tmp_path / "c")) == {"ann": ("submitted/ann/ps1",)}
+    assert taken(read_class(tmp_path / "c")) == {"ann": ("submitted/ann/ps1",)}
     lay_out(tmp_path / "c", "submitted/ann/ps2/")
     with pytest.raises(InputError, match="which assignment is to be graded; there are: ps1, ps2"):
-        take_in(tmp_path / "c")
+        read_class(tmp_path / "c")
     with pytest.raises(InputError, match="nobody has handed in the assignment ps3; there are: ps1, ps2"):
-        take_in(tmp_path / "c", assignment="ps3")
+        read_class(tmp_path / "c", assignment="ps3")
     lay_out(tmp_path / "c", "submitted/ann/LAB 6/", "submitted/ann/Lab_6/")
     with pytest.raises(InputError, match="which assignment"):
-        take_in(tmp_path / "c")
+        read_class(tmp_path / "c")

@@ -7,17 +7,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.intake.intake import take_in
+from grader.classroom.intake.intake import read_class
 from grader.classroom.intake.layouts.prefix import class_prefix
 from grader.classroom.intake.names import ENDINGS, ending_of, without_copy
-from grader.classroom.intake.roster import Entry, Roster
-from grader.classroom.students import HandIn, Student
+from grader.classroom.intake.roster import Roster, RosterEntry
+from grader.classroom.students import ClassSubmission, Student
 from grader.files.opening import ARCHIVES
 from tests.classroom.class_folders import lay_out, taken
 
 
-def only(top: Path) -> HandIn:
-    (hand_in,) = take_in(top).hand_ins()
+def only(top: Path) -> ClassSubmission:
+    (hand_in,) = read_class(top).submissions()
     return hand_in
 
 
@@ -35,7 +35,7 @@ def test_children_are_submissions(tmp_path: Path) -> None:
         "build/",
         ".git/",
     )
-    intake = take_in(tmp_path)
+    intake = read_class(tmp_path)
     assert intake.layout == "folders"
     assert taken(intake) == {
         "ann": ("ann",),
@@ -45,7 +45,7 @@ def test_children_are_submissions(tmp_path: Path) -> None:
         "eli": ("eli.urdf.xacro",),
         "finn": ("finn.zip",),
     }
-    assert intake.left_out == (
+    assert intake.ignored == (
         "README.md is not a folder, an archive or a URDF",
         "build is a folder of a build",
     )
@@ -60,15 +60,15 @@ def test_every_archive_that_can_be_opened_is_taken() -> None:
 def test_case_makes_two_students(tmp_path: Path) -> None:
     """Names that differ by case are two students."""
     lay_out(tmp_path, "ann/", "Ann.zip")
-    assert taken(take_in(tmp_path)) == {"Ann": ("Ann.zip",), "ann": ("ann",)}
+    assert taken(read_class(tmp_path)) == {"Ann": ("Ann.zip",), "ann": ("ann",)}
 
 
 def test_a_folder_goes_before_its_archive(tmp_path: Path) -> None:
     """Of names that differ in their ending one counts, in the order that is documented, and each other is named."""
     lay_out(tmp_path, "ann/", "ann.zip", "bea.urdf", "bea.tar.gz", "bea.zip")
-    intake = take_in(tmp_path)
+    intake = read_class(tmp_path)
     assert taken(intake) == {"ann": ("ann",), "bea": ("bea.zip",)}
-    assert intake.left_out == (
+    assert intake.ignored == (
         "ann.zip was passed over: ann has the same name, and counts",
         "bea.tar.gz was passed over: bea.zip has the same name, and counts",
         "bea.urdf was passed over: bea.zip has the same name, and counts",
@@ -85,8 +85,8 @@ def test_a_browsers_copies_are_attempts(tmp_path: Path) -> None:
 def test_numbers_of_teams_are_no_copies(tmp_path: Path) -> None:
     """Without the plain name, or a roster that has it, a number in brackets is part of the name."""
     lay_out(tmp_path, "Team (1).zip", "Team (2).zip")
-    assert list(taken(take_in(tmp_path))) == ["Team (1)", "Team (2)"]
-    assert taken(take_in(tmp_path, Roster([Entry(Student("team"))]))) == {"team": ("Team (2).zip",)}
+    assert list(taken(read_class(tmp_path))) == ["Team (1)", "Team (2)"]
+    assert taken(read_class(tmp_path, Roster([RosterEntry(Student("team"))]))) == {"team": ("Team (2).zip",)}
 
 
 @pytest.mark.parametrize(
@@ -107,7 +107,7 @@ def test_a_folder_of_attempts(tmp_path: Path) -> None:
     """A folder with nothing but attempts hands in the last; one with anything else in it is a submission."""
     lay_out(tmp_path, "ann/attempt 1/a.urdf", "ann/Attempt-10.zip", "ann/attempt_2/", "ann/.hidden")
     lay_out(tmp_path, "bea/attempt 1/", "bea/notes.txt", "cal/try3/", "dee/submission 2.txt")
-    ann, bea, cal, dee = take_in(tmp_path).hand_ins()
+    ann, bea, cal, dee = read_class(tmp_path).submissions()
     assert (ann.paths, ann.attempt) == (("ann/Attempt-10.zip",), 10)
     assert ann.earlier == ("ann/attempt 1", "ann/attempt_2")
     assert (bea.paths, cal.paths, dee.paths) == (("bea",), ("cal/try3",), ("dee",))
@@ -118,8 +118,11 @@ def test_a_folder_of_attempts(tmp_path: Path) -> None:
 )
 def test_class_repositories(tmp_path: Path, names: tuple[str, ...]) -> None:
     """The lab in front of every name is taken away, and what is left is the login."""
-    intake = take_in(lay_out(tmp_path, *names, "notes.txt"))
-    assert [each.student for each in intake.hand_ins()] == [Student("ann", login="ann"), Student("bo-b", login="bo-b")]
+    intake = read_class(lay_out(tmp_path, *names, "notes.txt"))
+    assert [each.student for each in intake.submissions()] == [
+        Student("ann", login="ann"),
+        Student("bo-b", login="bo-b"),
+    ]
 
 
 @pytest.mark.parametrize(
@@ -134,12 +137,12 @@ def test_class_repositories(tmp_path: Path, names: tuple[str, ...]) -> None:
 )
 def test_a_prefix_is_taken_away_where_it_is(tmp_path: Path, names: tuple[str, ...], keys: list[str]) -> None:
     """The rubric's wherever it is, that of another lab where most have it: one more folder does not change the others."""
-    assert sorted(taken(take_in(lay_out(tmp_path, *names)))) == keys
+    assert sorted(taken(read_class(lay_out(tmp_path, *names)))) == keys
 
 
 def test_with_and_without_the_prefix_none_is_assigned(tmp_path: Path) -> None:
     """Nobody can tell which of the two is the student's."""
-    intake = take_in(lay_out(tmp_path, "lab6-ann/", "ann/", "lab6-bea/"))
+    intake = read_class(lay_out(tmp_path, "lab6-ann/", "ann/", "lab6-bea/"))
     assert sorted(taken(intake)) == ["./ann", "./lab6-ann", "bea"]
     assert [each.key for each in intake.contested] == ["ann"]
 
@@ -162,9 +165,9 @@ def test_awkward_names(tmp_path: Path) -> None:
     """Names of all kinds are keys as they are; what cannot be printed has its path and a digest for a key."""
     lay_out(tmp_path, *(f"{name}/" for name in AWKWARD))
     printable = {name for name in AWKWARD if name.isprintable()}
-    (odd,) = set(taken(take_in(tmp_path))) - printable
+    (odd,) = set(taken(read_class(tmp_path))) - printable
     assert odd == f"./a\\x0ab-{sha256(b'a' + bytes([10]) + b'b').hexdigest()}"
-    assert printable < set(taken(take_in(tmp_path)))
+    assert printable < set(taken(read_class(tmp_path)))
 
 
 @given(st.text(), st.sampled_from(ENDINGS))

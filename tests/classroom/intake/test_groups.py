@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.intake.intake import take_in
-from grader.classroom.intake.roster import Entry, Roster
+from grader.classroom.intake.intake import read_class
+from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.intake.roster_file import read_roster
 from grader.classroom.students import Student
 from grader.errors import InputError
@@ -21,7 +21,7 @@ SHARED = "submitted by groups, and counted for each of their members: {}"
 
 def roster(red: str = "Team Red", blue: str = "Team Blue") -> Roster:
     """Two groups, the members of which do not stand together."""
-    return Roster([Entry(CAL, red), Entry(BEA, blue), Entry(ANN, red), Entry(DAN)])
+    return Roster([RosterEntry(CAL, red), RosterEntry(BEA, blue), RosterEntry(ANN, red), RosterEntry(DAN)])
 
 
 @pytest.mark.parametrize("name", ["Team Red", "team_red", "TEAM-RED", "Team  Red", "lab6-team-red"])
@@ -29,9 +29,9 @@ def test_each_member_has_what_the_group_has_handed_in(tmp_path: Path, name: str)
     """Case and what stands between words do not count; the paths are the same, names and numbers the member's own."""
     files = [f"{name}/my_robot.urdf", f"{name[:-1]}x.zip"]
     for place in (lay_out(tmp_path / "class", *files), pack(tmp_path / "class.zip", files)):
-        intake = take_in(place, roster())
+        intake = read_class(place, roster())
         assert len(intake) == 3
-        assert [(each.student, each.paths) for each in intake.hand_ins()][:2] == [(ANN, (name,)), (CAL, (name,))]
+        assert [(each.student, each.paths) for each in intake.submissions()][:2] == [(ANN, (name,)), (CAL, (name,))]
         assert (intake.unmatched, intake.absent) == (tuple(list(taken(intake))[2:]), (BEA, DAN))
         assert intake.notes == (SHARED.format(1),)
 
@@ -39,7 +39,7 @@ def test_each_member_has_what_the_group_has_handed_in(tmp_path: Path, name: str)
 @pytest.mark.parametrize("name", ["Team", "Red", "TeamRed", "Team Red 2", "Team Reds"])
 def test_only_the_whole_name_counts(tmp_path: Path, name: str) -> None:
     """A group with another name is a stranger, as without groups."""
-    intake = take_in(lay_out(tmp_path, f"{name}/my_robot.urdf", "x.zip"), roster())
+    intake = read_class(lay_out(tmp_path, f"{name}/my_robot.urdf", "x.zip"), roster())
     assert sorted(taken(intake)) == sorted(intake.unmatched) == sorted([name, "x"])
     assert len(intake.absent) == 4
     assert not intake.notes
@@ -48,7 +48,7 @@ def test_only_the_whole_name_counts(tmp_path: Path, name: str) -> None:
 def test_who_has_handed_in_keeps_that(tmp_path: Path) -> None:
     """The group's is that of the others, and a note says so; where all have their own it is a stranger's."""
     lay_out(tmp_path, "ccedar.zip", "team-red/", "bbirch.urdf", "team-blue.zip")
-    intake = take_in(tmp_path, roster())
+    intake = read_class(tmp_path, roster())
     assert taken(intake) == {
         "100": ("team-red",),
         "200": ("bbirch.urdf",),
@@ -66,7 +66,7 @@ def test_who_has_handed_in_keeps_that(tmp_path: Path) -> None:
 
 def test_of_two_of_a_group_none_counts(tmp_path: Path) -> None:
     """Nobody can tell which is the group's: its members are contested."""
-    intake = take_in(lay_out(tmp_path, "team_red/", "Team Red/"), roster())
+    intake = read_class(lay_out(tmp_path, "team_red/", "Team Red/"), roster())
     assert taken(intake) == {"Team Red": ("Team Red",), "team_red": ("team_red",)}
     assert intake.notes == ("Team Red, team_red are each named like one group: left unassigned",)
     assert (intake.contested, intake.absent) == ((CAL, ANN), (BEA, DAN))
@@ -74,12 +74,12 @@ def test_of_two_of_a_group_none_counts(tmp_path: Path) -> None:
 
 def test_a_student_goes_before_a_group(tmp_path: Path) -> None:
     """Where a hand-in has the name of both, or might be of several students, it is not the group's."""
-    intake = take_in(lay_out(tmp_path, "aash/"), roster(red="aash"))
+    intake = read_class(lay_out(tmp_path, "aash/"), roster(red="aash"))
     assert taken(intake) == {"100": ("aash",)}
-    twins = Roster([Entry(Student("1", "Sam"), "sam"), Entry(Student("2", "Sam"), "sam")])
-    intake = take_in(tmp_path, twins)
+    twins = Roster([RosterEntry(Student("1", "Sam"), "sam"), RosterEntry(Student("2", "Sam"), "sam")])
+    intake = read_class(tmp_path, twins)
     assert intake.unmatched == ("aash",)
-    intake = take_in(lay_out(tmp_path / "twins", "sam/"), twins)
+    intake = read_class(lay_out(tmp_path / "twins", "sam/"), twins)
     assert (intake.unmatched, len(intake.absent), len(intake.contested)) == (("sam",), 0, 2)
 
 
@@ -87,7 +87,7 @@ def test_a_section_is_no_group(tmp_path: Path) -> None:
     """A folder called like a section that holds hand-ins of its students is nobody's, and a note says so."""
     files = ["Section 1/aash/my_robot.urdf", "Section 1/ccedar.zip", "Section 2/bbirch.zip", "Section 2/readme.txt"]
     place = lay_out(tmp_path, *files)
-    intake = take_in(place, roster("Section 1", "Section 2"))
+    intake = read_class(place, roster("Section 1", "Section 2"))
     assert taken(intake) == {"200": ("Section 2",), "Section 1": ("Section 1",)}
     assert "Section 1 is named like a group, but holds submissions of several students" in intake.notes
 
@@ -98,7 +98,7 @@ def test_a_group_in_moodle_and_in_a_roster_file(tmp_path: Path) -> None:
     known = read_roster(tmp_path / "roster.csv")
     assert [entry.section for entry in known.entries] == ["Team Red", "A", "team red"]
     top = lay_out(tmp_path / "class", "Team Red_7_assignsubmission_file/lab6.zip")
-    hand_ins = list(take_in(top, known).hand_ins())
+    hand_ins = list(read_class(top, known).submissions())
     assert [each.student.key for each in hand_ins] == ["aash", "ccedar"]
     assert {each.paths for each in hand_ins} == {("Team Red_7_assignsubmission_file/lab6.zip",)}
     assert {(each.student.moodle, each.student.name) for each in hand_ins} == {("", "")}
@@ -107,14 +107,14 @@ def test_a_group_in_moodle_and_in_a_roster_file(tmp_path: Path) -> None:
 def test_the_order_is_that_of_the_keys(tmp_path: Path) -> None:
     """Whatever the order of the roster, and every time the same."""
     names = [f"team {number:02}" for number in range(20)]
-    entries = [Entry(Student(f"s{number:03}"), names[number % 20]) for number in range(100)]
+    entries = [RosterEntry(Student(f"s{number:03}"), names[number % 20]) for number in range(100)]
     lay_out(tmp_path, *(f"{name}/" for name in names), "zoe/")
     wanted = {**{f"s{number:03}": (names[number % 20],) for number in range(100)}, "zoe": ("zoe",)}
     for seed in range(3):
         random.Random(seed).shuffle(entries)
-        intake = take_in(tmp_path, Roster(entries))
+        intake = read_class(tmp_path, Roster(entries))
         assert list(taken(intake).items()) == list(wanted.items())
-        assert list(intake.hand_ins()) == list(intake.hand_ins())
+        assert list(intake.submissions()) == list(intake.submissions())
         assert (len(intake), intake.unmatched, intake.absent) == (101, ("zoe",), ())
 
 
@@ -123,4 +123,4 @@ def test_an_assignment_is_nbgraders(tmp_path: Path, layout: str) -> None:
     """Named for another layout it would do nothing, which is an error."""
     lay_out(tmp_path, "ann/my_robot.urdf", "bea.zip")
     with pytest.raises(InputError, match="--assignment goes with the layout nbgrader only"):
-        take_in(tmp_path, layout=layout, assignment="ps1")
+        read_class(tmp_path, layout=layout, assignment="ps1")

@@ -11,9 +11,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.intake.intake import LAYOUTS, take_in
-from grader.classroom.intake.layouts.layout import MOST_LINES
-from grader.classroom.intake.roster import Entry, Roster
+from grader.classroom.intake.intake import LAYOUTS, read_class
+from grader.classroom.intake.layouts.layout import MAX_LINES
+from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.students import Student
 from grader.errors import InputError
 from tests.classroom.class_folders import lay_out, pack, taken
@@ -26,7 +26,7 @@ CAL = Student("300", "Cal Cedar", "cal@example.org", "ccedar", canvas="33")
 
 
 def roster(*students: Student) -> Roster:
-    return Roster(Entry(student) for student in students or (ANN, BEA, CAL))
+    return Roster(RosterEntry(student) for student in students or (ANN, BEA, CAL))
 
 
 @pytest.mark.parametrize(
@@ -41,7 +41,7 @@ def roster(*students: Student) -> Roster:
 def test_what_holds_no_class_is_refused(tmp_path: Path, paths: tuple[str, ...], message: str) -> None:
     """A folder without a submission is an error of one line."""
     with pytest.raises(InputError, match=message) as caught:
-        take_in(lay_out(tmp_path / "class", *paths))
+        read_class(lay_out(tmp_path / "class", *paths))
     assert "\n" not in str(caught.value)
 
 
@@ -55,11 +55,11 @@ def test_what_is_no_class_is_refused(tmp_path: Path) -> None:
         ("class.zip", "as a zip"),
     ):
         with pytest.raises(InputError, match=message):
-            take_in(tmp_path / name)
+            read_class(tmp_path / name)
     with pytest.raises(InputError, match="there is no layout 'moodel'; there are: auto, folders"):
-        take_in(tmp_path, layout="moodel")
+        read_class(tmp_path, layout="moodel")
     with pytest.raises(InputError):
-        take_in(Path("nul\0byte"))
+        read_class(Path("nul\0byte"))
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
@@ -67,7 +67,7 @@ def test_a_layout_that_is_told_finds_nothing_or_something(tmp_path: Path, layout
     """A layout that does not fit raises an InputError, or takes what it can; nothing else happens."""
     lay_out(tmp_path, "ann/my_robot.urdf", "bea.zip", "notes.txt")
     try:
-        assert take_in(tmp_path, layout=layout).layout == layout
+        assert read_class(tmp_path, layout=layout).layout == layout
     except InputError as error:
         assert "\n" not in str(error)
 
@@ -79,47 +79,47 @@ def test_no_symlink_is_a_submission(tmp_path: Path) -> None:
     os.symlink(tmp_path / "outside", tmp_path / "class" / "bea")
     os.symlink("ann", tmp_path / "class" / "cal")
     os.symlink("loop", tmp_path / "class" / "loop")
-    intake = take_in(tmp_path / "class")
+    intake = read_class(tmp_path / "class")
     assert taken(intake) == {"ann": ("ann",)}
-    assert intake.left_out == tuple(f"{name} is a symlink, and was not followed" for name in ("bea", "cal", "loop"))
+    assert intake.ignored == tuple(f"{name} is a symlink, and was not followed" for name in ("bea", "cal", "loop"))
 
 
 def test_left_out_is_bounded(tmp_path: Path) -> None:
     """Of very many files that are no submissions the first are named, the others counted."""
-    lay_out(tmp_path, "ann/", *(f"note{index:05}.txt" for index in range(30 * MOST_LINES)))
-    lines = take_in(tmp_path).left_out
-    assert len(lines) == MOST_LINES + 1
+    lay_out(tmp_path, "ann/", *(f"note{index:05}.txt" for index in range(30 * MAX_LINES)))
+    lines = read_class(tmp_path).ignored
+    assert len(lines) == MAX_LINES + 1
     assert lines[0].startswith("note00000.txt ")
-    assert lines[-2].startswith(f"note{MOST_LINES - 1:05}.txt ")
-    assert lines[-1] == f"and {29 * MOST_LINES} more"
+    assert lines[-2].startswith(f"note{MAX_LINES - 1:05}.txt ")
+    assert lines[-1] == f"and {29 * MAX_LINES} more"
 
 
 def test_a_zip_is_listed_where_it_is(tmp_path: Path) -> None:
     """A zip gives what its folder would give: names that lead out are left out, and litter is passed over."""
     names = ["ann/my_robot/urdf/my_robot.urdf", "bea.zip", "__MACOSX/bea.zip", "../cal.zip", "/dan.zip", "notes.txt"]
-    intake = take_in(pack(tmp_path / "class.zip", names))
+    intake = read_class(pack(tmp_path / "class.zip", names))
     assert taken(intake) == {"ann": ("ann",), "bea": ("bea.zip",)}
-    assert [line.split()[0] for line in intake.left_out] == ["../cal.zip", "/dan.zip", "notes.txt"]
+    assert [line.split()[0] for line in intake.ignored] == ["../cal.zip", "/dan.zip", "notes.txt"]
 
 
 def test_one_folder_around_everything_is_stepped_into(tmp_path: Path) -> None:
     """The one folder that holds the class is gone into, and stays in the paths; a single submission is not."""
-    assert taken(take_in(pack(tmp_path / "a.zip", ["lab6/ann.zip", "lab6/bea/a.urdf"]))) == {
+    assert taken(read_class(pack(tmp_path / "a.zip", ["lab6/ann.zip", "lab6/bea/a.urdf"]))) == {
         "ann": ("lab6/ann.zip",),
         "bea": ("lab6/bea",),
     }
     alone = ["ann/src/my_robot/package.xml", "ann/answers.txt"]
-    assert taken(take_in(pack(tmp_path / "b.zip", alone))) == {"ann": ("ann",)}
-    assert taken(take_in(pack(tmp_path / "c.zip", ["ann/my_robot.urdf"]))) == {"ann": ("ann",)}
-    assert taken(take_in(pack(tmp_path / "d.zip", ["aash/x/a.urdf", "aash/y/"]), roster())) == {"100": ("aash",)}
+    assert taken(read_class(pack(tmp_path / "b.zip", alone))) == {"ann": ("ann",)}
+    assert taken(read_class(pack(tmp_path / "c.zip", ["ann/my_robot.urdf"]))) == {"ann": ("ann",)}
+    assert taken(read_class(pack(tmp_path / "d.zip", ["aash/x/a.urdf", "aash/y/"]), roster())) == {"100": ("aash",)}
 
 
 def test_a_zip_of_too_many_members_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The number of members is bounded."""
-    monkeypatch.setattr("grader.classroom.intake.zip_listing.MOST_MEMBERS", 3)
-    assert len(take_in(pack(tmp_path / "a.zip", ["a.zip", "b.zip", "c.zip"]))) == 3
+    monkeypatch.setattr("grader.classroom.intake.zip_listing.MAX_MEMBERS", 3)
+    assert len(read_class(pack(tmp_path / "a.zip", ["a.zip", "b.zip", "c.zip"]))) == 3
     with pytest.raises(InputError, match="holds more than 3 files"):
-        take_in(pack(tmp_path / "b.zip", ["a.zip", "b.zip", "c.zip", "d.zip"]))
+        read_class(pack(tmp_path / "b.zip", ["a.zip", "b.zip", "c.zip", "d.zip"]))
 
 
 def test_links_in_a_zip_are_not_followed(tmp_path: Path) -> None:
@@ -129,25 +129,25 @@ def test_links_in_a_zip_are_not_followed(tmp_path: Path) -> None:
         link.create_system, link.external_attr = 3, 0o120777 << 16
         archive.writestr(link, "/etc/passwd")
         archive.writestr("bea.zip", b"")
-    intake = take_in(tmp_path / "class.zip")
+    intake = read_class(tmp_path / "class.zip")
     assert taken(intake) == {"bea": ("bea.zip",)}
-    assert intake.left_out == ("ann.zip is a symlink in an archive, and was not followed",)
+    assert intake.ignored == ("ann.zip is a symlink in an archive, and was not followed",)
 
 
 def test_the_roster_says_whose_each_is(tmp_path: Path) -> None:
     """Hand-ins get the roster's students and order; nobody's are strangers, and who has none is absent."""
     lay_out(tmp_path, "ccedar.zip", "Bea Birch/", "zoe.zip")
-    intake = take_in(tmp_path, roster())
+    intake = read_class(tmp_path, roster())
     assert taken(intake) == {"200": ("Bea Birch",), "300": ("ccedar.zip",), "zoe": ("zoe.zip",)}
     assert intake.unmatched == ("zoe",)
     assert intake.absent == (ANN,)
-    assert next(intake.hand_ins()).student == BEA
-    assert list(intake.hand_ins()) == list(intake.hand_ins())
+    assert next(intake.submissions()).student == BEA
+    assert list(intake.submissions()) == list(intake.submissions())
 
 
 def test_of_two_submissions_of_one_student_the_certain_one_counts(tmp_path: Path) -> None:
     """The one with the student's own login is theirs; another that only has their name is unmatched, and the notes say so."""
-    intake = take_in(lay_out(tmp_path, "Ann Ash/", "aash.zip"), roster())
+    intake = read_class(lay_out(tmp_path, "Ann Ash/", "aash.zip"), roster())
     assert taken(intake) == {"100": ("aash.zip",), "Ann Ash": ("Ann Ash",)}
     assert intake.unmatched == ("Ann Ash",)
     assert intake.notes == ("Ann Ash may be of 100 as well, whose aash counts: left unassigned",)
@@ -158,7 +158,7 @@ def test_of_two_submissions_of_one_student_the_certain_one_counts(tmp_path: Path
 )
 def test_between_equal_claims_nobody_decides(tmp_path: Path, names: tuple[str, str]) -> None:
     """Of two that are equally certain, or both uncertain, none is assigned; the student is contested, not absent."""
-    intake = take_in(lay_out(tmp_path, *names), roster())
+    intake = read_class(lay_out(tmp_path, *names), roster())
     assert "100" not in taken(intake)
     assert (intake.contested, intake.absent) == ((ANN,), (BEA, CAL))
     assert "may each be of 100: left unassigned, and what 100 had before stays" in intake.notes[0]
@@ -167,7 +167,7 @@ def test_between_equal_claims_nobody_decides(tmp_path: Path, names: tuple[str, s
 def test_an_unmatched_submission_never_takes_a_key_of_the_roster(tmp_path: Path) -> None:
     """A submission that may be of two students is nobody's, and does not stand under the key of one of them."""
     lay_out(tmp_path, "sam.zip")
-    intake = take_in(tmp_path, roster(Student("sam"), Student("7", login="sam")))
+    intake = read_class(tmp_path, roster(Student("sam"), Student("7", login="sam")))
     assert taken(intake) == {"./sam.zip": ("sam.zip",)}
     assert intake.notes == ("sam may be of several in the roster: left unassigned",)
     assert (len(intake.contested), intake.absent) == (2, ())
@@ -175,7 +175,7 @@ def test_an_unmatched_submission_never_takes_a_key_of_the_roster(tmp_path: Path)
 
 def test_a_case_variant_takes_no_key_over(tmp_path: Path) -> None:
     """Beside the exact key another case is nobody's, and its key cannot be mistaken for the student's."""
-    intake = take_in(lay_out(tmp_path, "sam.zip", "SAM/"), roster(Student("sam"), Student("Sam2")))
+    intake = read_class(lay_out(tmp_path, "sam.zip", "SAM/"), roster(Student("sam"), Student("Sam2")))
     assert taken(intake) == {"./SAM": ("SAM",), "sam": ("sam.zip",)}
     assert intake.notes == ("SAM may be of sam as well, whose sam counts: left unassigned",)
 
@@ -183,8 +183,8 @@ def test_a_case_variant_takes_no_key_over(tmp_path: Path) -> None:
 def test_the_rosters_word_on_time_counts(tmp_path: Path) -> None:
     """Where the roster says when, or whether late, that goes before what the LMS says."""
     lay_out(tmp_path, "cedarcal_LATE_33_1_lab6.zip", "ashann_LATE_11_2_lab6.zip")
-    entries = [Entry(CAL, is_late=False, submitted="2026-09-01T10:00:00Z"), Entry(ANN)]
-    ann, cal = take_in(tmp_path, Roster(entries)).hand_ins()
+    entries = [RosterEntry(CAL, is_late=False, submitted="2026-09-01T10:00:00Z"), RosterEntry(ANN)]
+    ann, cal = read_class(tmp_path, Roster(entries)).submissions()
     assert (ann.is_late, ann.submitted, ann.student.canvas) == (True, "", "11")
     assert (cal.is_late, cal.submitted, cal.student) == (False, "2026-09-01T10:00:00Z", CAL)
 
@@ -193,7 +193,7 @@ def test_bytes_that_are_no_utf_8_still_open(tmp_path: Path) -> None:
     """A name of any bytes gets a printable key of its own, and its path leads to the file."""
     for name in (b"caf\xe9", b"caf\xe8", b"line\nbreak", b"line\\x0abreak"):
         os.mkdir(os.fsencode(tmp_path) + b"/" + name)
-    found = taken(take_in(tmp_path))
+    found = taken(read_class(tmp_path))
     assert len(found) == 4
     assert all(key.isprintable() for key in found)
     assert all((tmp_path / path).is_dir() for (path,) in found.values())
@@ -207,7 +207,7 @@ def test_any_names_are_taken_in(names: list[str]) -> None:
         with zipfile.ZipFile(place, "w") as archive:
             for name in dict.fromkeys(["ann.zip", "bea.zip", *names]).keys() - {"package.xml"}:
                 archive.writestr(zipfile.ZipInfo(name or "x"), b"")
-        hand_ins = list(take_in(place).hand_ins())
+        hand_ins = list(read_class(place).submissions())
     keys = [each.student.key for each in hand_ins]
     assert keys == sorted(set(keys))
     assert all(key.isprintable() for key in keys)
@@ -217,13 +217,13 @@ def test_a_very_large_class_costs_little(tmp_path: Path) -> None:
     """Each submission takes hardly more time than a look at its name, and hardly more memory than the name."""
     folder = large_class(tmp_path / "class", LARGE)
     with processor_time(30e-6 * LARGE):  # three times of what it takes
-        intake = take_in(folder)
-        assert sum(1 for _ in intake.hand_ins()) == LARGE
+        intake = read_class(folder)
+        assert sum(1 for _ in intake.submissions()) == LARGE
     folder = large_class(tmp_path / "smaller", LARGE // 10)
     tracemalloc.start()
     try:
-        intake = take_in(folder)
-        assert sum(1 for _ in intake.hand_ins()) == LARGE // 10
+        intake = read_class(folder)
+        assert sum(1 for _ in intake.submissions()) == LARGE // 10
         assert tracemalloc.get_traced_memory()[1] < 3 * LARGE // 10 * sys.getsizeof("student000000.urdf")
     finally:
         tracemalloc.stop()

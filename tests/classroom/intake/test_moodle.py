@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.intake.intake import take_in
-from grader.classroom.intake.roster import Entry, Roster
+from grader.classroom.intake.intake import read_class
+from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.students import Student
 from tests.classroom.class_folders import lay_out, pack, taken
 
@@ -21,21 +21,21 @@ def test_a_download_is_recognised(tmp_path: Path, ending: str) -> None:
     names = [f"{name}_{FOLDER}{ending}" for name in ("Jane Doe_12", "O'Neil, Sam_13", "Jörg Müller_14", "עדה לוי_15")]
     files = [f"{name}/lab6.zip" for name in names]
     for place in (lay_out(tmp_path / "class", *files), pack(tmp_path / "class.zip", files)):
-        intake = take_in(place)
+        intake = read_class(place)
         assert intake.layout == "moodle"
-        assert sorted(each.paths[0] for each in intake.hand_ins()) == sorted(files)
-        assert [each.student.name for each in intake.hand_ins()] == [
+        assert sorted(each.paths[0] for each in intake.submissions()) == sorted(files)
+        assert [each.student.name for each in intake.submissions()] == [
             "Jane Doe",
             "Jörg Müller",
             "O'Neil, Sam",
             "עדה לוי",
         ]
-        assert next(intake.hand_ins()).student == Student("Jane Doe_12", "Jane Doe", moodle="12")
+        assert next(intake.submissions()).student == Student("Jane Doe_12", "Jane Doe", moodle="12")
 
 
 def test_one_participant_in_a_zip(tmp_path: Path) -> None:
     """A download of one folder is not gone into."""
-    intake = take_in(pack(tmp_path / "class.zip", [f"Jane Doe_12_{FOLDER}/lab6.zip"]))
+    intake = read_class(pack(tmp_path / "class.zip", [f"Jane Doe_12_{FOLDER}/lab6.zip"]))
     assert taken(intake) == {"Jane Doe_12": (f"Jane Doe_12_{FOLDER}/lab6.zip",)}
 
 
@@ -59,7 +59,7 @@ def test_a_lone_file_is_the_hand_in(tmp_path: Path, files: tuple[str, ...], path
     wanted = f"{top}/{path}" if path else top
     names = [f"{top}/", *(f"{top}/{name}" for name in files)]
     for place in (lay_out(tmp_path / "class", *names), pack(tmp_path / "class.zip", names)):
-        (hand_in,) = take_in(place).hand_ins()
+        (hand_in,) = read_class(place).submissions()
         assert (hand_in.paths, hand_in.names, hand_in.student.key) == ((wanted,), (), "Jane Doe_12")
 
 
@@ -67,7 +67,7 @@ def test_a_lone_link_is_not_the_hand_in(tmp_path: Path) -> None:
     """One to another participant's file is left where it is, and is not followed there."""
     lay_out(tmp_path, f"Jane Doe_12_{FOLDER}/a.urdf", f"Sam_13_{FOLDER}/")
     (tmp_path / f"Sam_13_{FOLDER}/b.urdf").symlink_to(tmp_path / f"Jane Doe_12_{FOLDER}/a.urdf")
-    assert taken(take_in(tmp_path)) == {
+    assert taken(read_class(tmp_path)) == {
         "Jane Doe_12": (f"Jane Doe_12_{FOLDER}/a.urdf",),
         "Sam_13": (f"Sam_13_{FOLDER}",),
     }
@@ -78,7 +78,7 @@ def test_files_side_by_side(tmp_path: Path) -> None:
     lay_out(
         tmp_path, f"Jane Doe_12_{FOLDER}_lab_6.zip", f"Jane Doe_12_{FOLDER}_Task1_9_step.png", f"Sam_13_{FOLDER}_a.urdf"
     )
-    jane, sam = take_in(tmp_path).hand_ins()
+    jane, sam = read_class(tmp_path).submissions()
     assert jane.names == ("Task1_9_step.png", "lab_6.zip")
     assert jane.paths == tuple(f"Jane Doe_12_{FOLDER}_{name}" for name in jane.names)
     assert (sam.paths, sam.names) == ((f"Sam_13_{FOLDER}_a.urdf",), ("a.urdf",))
@@ -89,10 +89,10 @@ def test_a_text_beside_the_files(tmp_path: Path) -> None:
     top, text = f"Jane Doe_12_{FOLDER}", "Jane Doe_12_assignsubmission_onlinetext"
     files = (f"{top}/my_robot/urdf/my_robot.urdf", f"{top}/step.png", f"{text}/onlinetext.html")
     for place in (lay_out(tmp_path / "class", *files), pack(tmp_path / "class.zip", files)):
-        (hand_in,) = take_in(place).hand_ins()
+        (hand_in,) = read_class(place).submissions()
         assert hand_in.paths == files
         assert hand_in.names == ("my_robot/urdf/my_robot.urdf", "step.png", "onlinetext/onlinetext.html")
-    (alone,) = take_in(lay_out(tmp_path / "other", f"{text}/onlinetext.html")).hand_ins()
+    (alone,) = read_class(lay_out(tmp_path / "other", f"{text}/onlinetext.html")).submissions()
     assert (alone.paths, alone.student.moodle) == ((text,), "12")
 
 
@@ -101,7 +101,7 @@ def test_an_empty_text_is_no_part(tmp_path: Path) -> None:
     text = "assignsubmission_onlinetext"
     lay_out(tmp_path, f"Jane Doe_12_{FOLDER}/a.urdf", f"Jane Doe_12_{text}/")
     lay_out(tmp_path, f"Sam_13_{FOLDER}/step.png", f"Sam_13_{text}/", f"Zoe_14_{FOLDER}/", f"Zoe_14_{text}/a.html")
-    assert taken(take_in(tmp_path)) == {
+    assert taken(read_class(tmp_path)) == {
         "Jane Doe_12": (f"Jane Doe_12_{FOLDER}/a.urdf",),
         "Sam_13": (f"Sam_13_{FOLDER}",),
         "Zoe_14": (f"Zoe_14_{text}",),
@@ -111,27 +111,27 @@ def test_an_empty_text_is_no_part(tmp_path: Path) -> None:
 def test_empty_folders_and_too_many_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """What cannot be put side by side leaves the folder of files as the hand-in."""
     top, text = f"Jane Doe_12_{FOLDER}", "Jane Doe_12_assignsubmission_onlinetext"
-    (empty,) = take_in(lay_out(tmp_path, f"{top}/", f"{text}/")).hand_ins()
+    (empty,) = read_class(lay_out(tmp_path, f"{top}/", f"{text}/")).submissions()
     assert (empty.paths, empty.names) == ((top,), ())
-    monkeypatch.setattr("grader.classroom.intake.layouts.moodle._MOST_FILES", 2)
-    intake = take_in(lay_out(tmp_path, *(f"{top}/{name}" for name in "abc"), f"{text}/onlinetext.html"))
+    monkeypatch.setattr("grader.classroom.intake.layouts.moodle._MAX_FILES", 2)
+    intake = read_class(lay_out(tmp_path, *(f"{top}/{name}" for name in "abc"), f"{text}/onlinetext.html"))
     assert taken(intake) == {"Jane Doe_12": (top,)}
-    assert intake.left_out == (f"{top} has more than 2 files: what stands beside it was not read",)
+    assert intake.ignored == (f"{top} has more than 2 files: what stands beside it was not read",)
 
 
 @pytest.mark.parametrize("word", ["Participant", "Teilnehmerin", "参加者"])
 def test_hidden_names(tmp_path: Path, word: str) -> None:
     """Where every name is the same word, nobody is called so."""
     lay_out(tmp_path, f"{word}_12_{FOLDER}/", f"{word}_13_{FOLDER}/", "README.md")
-    intake = take_in(tmp_path)
-    assert [each.student for each in intake.hand_ins()] == [Student(f"{word}_{n}", moodle=n) for n in ("12", "13")]
-    assert intake.left_out == ("README.md is not named as Moodle names what was handed in",)
+    intake = read_class(tmp_path)
+    assert [each.student for each in intake.submissions()] == [Student(f"{word}_{n}", moodle=n) for n in ("12", "13")]
+    assert intake.ignored == ("README.md is not named as Moodle names what was handed in",)
 
 
 def test_teams(tmp_path: Path) -> None:
     """A team has its group's number, or none."""
-    intake = take_in(lay_out(tmp_path, f"Team Red_7_{FOLDER}/", f"Default group_{FOLDER}/"))
-    assert [each.student for each in intake.hand_ins()] == [
+    intake = read_class(lay_out(tmp_path, f"Team Red_7_{FOLDER}/", f"Default group_{FOLDER}/"))
+    assert [each.student for each in intake.submissions()] == [
         Student("Default group", "Default group"),
         Student("Team Red_7", "Team Red", moodle="7"),
     ]
@@ -154,7 +154,7 @@ def test_the_roster_knows_numbers_and_names(tmp_path: Path) -> None:
         Student("d", "Max Min", login="max"),
         Student("e", "O'Neil, Sam"),
     ]
-    intake = take_in(tmp_path, Roster(Entry(each) for each in students))
+    intake = read_class(tmp_path, Roster(RosterEntry(each) for each in students))
     assert list(taken(intake)) == ["Ann Ash_14", "a", "b", "e", "max_15"]
     assert intake.notes == ("Ann Ash_14 has the name of c, but another number: left unassigned",)
 
@@ -172,6 +172,6 @@ def test_any_download_is_grouped_again(people: dict[int, str]) -> None:
     names = {str(number): " ".join(name.split()).strip(".") or "x" for number, name in people.items()}
     with tempfile.TemporaryDirectory() as folder:
         place = pack(Path(folder, "class.zip"), [f"{name}_{number}_{FOLDER}/a.zip" for number, name in names.items()])
-        found = {each.student.moodle: each.student.name for each in take_in(place).hand_ins()}
+        found = {each.student.moodle: each.student.name for each in read_class(place).submissions()}
     are_hidden = len(set(names.values())) == 1
     assert found == {number: "" if are_hidden else name for number, name in names.items()}

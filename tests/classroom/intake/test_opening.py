@@ -13,8 +13,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.gradebook.sources import Origin, Quoting
-from grader.classroom.intake.opening import fingerprint, is_bulk, open_hand_in
+from grader.classroom.gradebook.sources import SubmissionFiles, SubmissionSources
+from grader.classroom.intake.opening import fingerprint, is_bulk, open_submission
 from grader.errors import InputError
 from grader.files import reading
 from grader.files.folder import read_folder
@@ -32,7 +32,7 @@ def later() -> int:
 
 def digest(top: Path, *paths: str, names: tuple[str, ...] = (), key: str = "ann") -> str:
     """The digest of a hand-in."""
-    return open_hand_in(str(top), paths, names, key).digest
+    return open_submission(str(top), paths, names, key).digest
 
 
 def mark(top: Path, *paths: str) -> str:
@@ -193,12 +193,12 @@ def test_several_files_are_one_hand_in(tmp_path: Path) -> None:
     for name in ("ann_1_my_robot.urdf", "ann_2_notes.txt"):
         (tmp_path / name).write_bytes(URDF)
     paths = ("ann_1_my_robot.urdf", "ann_2_notes.txt")
-    opened = open_hand_in(str(tmp_path), paths, ("my_robot.urdf", "notes.txt"), "ann")
+    opened = open_submission(str(tmp_path), paths, ("my_robot.urdf", "notes.txt"), "ann")
     assert opened.tree is not None
     assert set(opened.tree.files) == {"my_robot.urdf", "notes.txt"}
     submission = opened.submission(LAB6)
     assert (submission.id, submission.path) == ("ann", "my_robot.urdf")
-    unnamed = open_hand_in(str(tmp_path), paths, (), "ann")
+    unnamed = open_submission(str(tmp_path), paths, (), "ann")
     assert unnamed.tree is not None
     assert set(unnamed.tree.files) == set(paths)
     digests = {
@@ -217,7 +217,7 @@ def test_links_among_several_files_are_refused(tmp_path: Path) -> None:
         (tmp_path / "b.txt").unlink(missing_ok=True)
         (tmp_path / "b.txt").symlink_to(target)
         with pytest.raises(InputError, match=r"b\.txt is a symlink, and was not followed"):
-            open_hand_in(str(tmp_path), ("a.urdf", "b.txt"), (), "ann")
+            open_submission(str(tmp_path), ("a.urdf", "b.txt"), (), "ann")
 
 
 @pytest.mark.parametrize("opens_in_folders", [True, False])
@@ -270,7 +270,7 @@ def test_what_cannot_be_opened_is_one_line(make: Callable[[Path], None], tmp_pat
     """It is an InputError, for a class as for one alone."""
     make(tmp_path)
     with pytest.raises(InputError) as caught:
-        open_hand_in(str(tmp_path), ("ann.urdf",), (), "ann")
+        open_submission(str(tmp_path), ("ann.urdf",), (), "ann")
     assert "\n" not in str(caught.value)
 
 
@@ -278,7 +278,7 @@ def test_neither_a_urdf_nor_a_folder_or_archive(tmp_path: Path) -> None:
     """Such as a text file that somebody has called so."""
     (tmp_path / "ann.txt").write_text("text")
     with pytest.raises(InputError, match=r"ann\.txt is neither a URDF nor a folder or archive"):
-        open_hand_in(str(tmp_path), ("ann.txt",), (), "ann")
+        open_submission(str(tmp_path), ("ann.txt",), (), "ann")
 
 
 def test_a_zip_that_was_replaced_is_read_anew(tmp_path: Path) -> None:
@@ -290,7 +290,7 @@ def test_a_zip_that_was_replaced_is_read_anew(tmp_path: Path) -> None:
         with zipfile.ZipFile(place, "w") as archive:
             archive.writestr("ann.urdf", URDF.replace(b"'a'", f"'{name}'".encode()))
         assert is_bulk(str(place))
-        seen.append(open_hand_in(str(place), ("ann.urdf",), (), "ann").data)
+        seen.append(open_submission(str(place), ("ann.urdf",), (), "ann").data)
     assert [b"one" in seen[0], b"other" in seen[1]] == [True, True]  # type: ignore[operator]
 
 
@@ -299,16 +299,16 @@ def test_quoted_as_long_as_it_is_the_same(tmp_path: Path) -> None:
     shutil.copytree(ROOT / "submissions/lidar-buried", tmp_path / "ann")
     while not (now := fingerprint(str(tmp_path), ("ann",), time.time_ns())):
         pass  # until it has settled
-    origin = Origin(str(tmp_path), ("ann",), (), "ann", now)
-    source = Quoting(origin, LAB6)("my_robot.urdf")
+    origin = SubmissionFiles(str(tmp_path), ("ann",), (), "ann", now)
+    source = SubmissionSources(origin, LAB6)("my_robot.urdf")
     assert source is not None
-    assert Quoting(origin, LAB6)("missing.urdf") is None
-    assert Quoting(origin._replace(fingerprint=""), LAB6)("my_robot.urdf") is None
+    assert SubmissionSources(origin, LAB6)("missing.urdf") is None
+    assert SubmissionSources(origin._replace(fingerprint=""), LAB6)("my_robot.urdf") is None
     with (tmp_path / "ann/my_robot.urdf").open("a") as file:
         file.write("\n")
-    assert Quoting(origin, LAB6)("my_robot.urdf") is None
+    assert SubmissionSources(origin, LAB6)("my_robot.urdf") is None
     shutil.rmtree(tmp_path / "ann")
-    assert Quoting(origin, LAB6)("my_robot.urdf") is None
+    assert SubmissionSources(origin, LAB6)("my_robot.urdf") is None
 
 
 # --- A class as a folder and as one zip -------------------------------------------------------------------------------
@@ -373,7 +373,7 @@ def test_side_by_side_in_a_zip_as_in_a_folder(tmp_path: Path) -> None:
     """The same digest and the same files: folders of builds and hidden files are passed over in both."""
     files = {"1": URDF, "2": b"notes", "3": URDF, "4": b"hidden"}
     names = ("my_robot.urdf", "onlinetext/notes.html", "build/my_robot.urdf", ".hidden")
-    opened = [open_hand_in(str(top), tuple(files), names, "ann") for top in _both(tmp_path, files)]
+    opened = [open_submission(str(top), tuple(files), names, "ann") for top in _both(tmp_path, files)]
     assert opened[0].digest == opened[1].digest
     for each in opened:
         assert each.tree is not None
@@ -388,6 +388,6 @@ def test_what_is_refused_in_a_folder_is_refused_in_a_zip(name: str, tmp_path: Pa
     said = set()
     for top in _both(tmp_path, {f"lab/{name}": b"7z\xbc\xaf\x27\x1c" if name.endswith("7z") else b"text"}):
         with pytest.raises(InputError) as caught:
-            open_hand_in(str(top), (f"lab/{name}",), (), "ann")
+            open_submission(str(top), (f"lab/{name}",), (), "ann")
         said.add(str(caught.value).replace(f"{top}/", ""))
     assert len(said) == 1

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.classroom.intake.names import iso_time
-from grader.classroom.intake.roster import Entry, Roster
+from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.intake.roster_file import read_roster
 from grader.classroom.students import Student
 from grader.errors import InputError
@@ -19,7 +19,7 @@ def read(tmp_path: Path, text: str | bytes) -> Roster:
     return read_roster(place)
 
 
-def only(tmp_path: Path, text: str) -> Entry:
+def only(tmp_path: Path, text: str) -> RosterEntry:
     (entry,) = read(tmp_path, text).entries
     return entry
 
@@ -78,7 +78,7 @@ def test_everything_that_a_row_may_say(tmp_path: Path) -> None:
         "First name,Surname,Login,GitHub username,SIS ID,Canvas ID,Moodle ID,Group,Due date,Extension,Submitted at,Late,Shoe\n"
         "Ann,Ash,aash,annie,s1,11,22,A,2026-09-01T23:59+02:00,2 days,2026-09-02 10:00:00Z,1.5,44\n"
     )
-    assert only(tmp_path, text) == Entry(
+    assert only(tmp_path, text) == RosterEntry(
         Student("s1", "Ann Ash", "", "aash", "s1", "11", "22"),
         section="A",
         due="2026-09-01T23:59:00+02:00",

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.classroom.lms.canvas import fill_gradebook
-from grader.classroom.lms.grades import Grade, has_decimal_comma, points_text, read_points
-from grader.classroom.lms.preflight import Conflict, Filled, Left
+from grader.classroom.lms.grades import LmsGrade, has_decimal_comma, points_text, read_points
+from grader.classroom.lms.preflight import Conflict, Filled, RowNote
 from grader.classroom.lms.tables import read_table
 from grader.classroom.students import Student
 from grader.errors import InputError
@@ -20,15 +20,15 @@ HEADER = "Student,ID,SIS User ID,SIS Login ID,Section,Lab 6 (98765)"
 POINTS = "    Points Possible,,,,,100.00"
 
 
-def graded(key: str, total: str | None = "58.5", why_not: str = "", **known: Any) -> Grade:
-    return Grade(Student(key, **known), None if total is None else Decimal(total), why_not=why_not)
+def graded(key: str, total: str | None = "58.5", why_not: str = "", **known: Any) -> LmsGrade:
+    return LmsGrade(Student(key, **known), None if total is None else Decimal(total), why_not=why_not)
 
 
 def gradebook(*rows: str, header: str = HEADER, points: str = POINTS, end: str = "\n") -> bytes:
     return "".join(row + end for row in (header, points, *rows) if row).encode()
 
 
-def fill(data: bytes, *grades: Grade, column: str = "", out_of: str = "100", any_maximum: bool = False) -> Filled:
+def fill(data: bytes, *grades: LmsGrade, column: str = "", out_of: str = "100", any_maximum: bool = False) -> Filled:
     wanted = ("lab6", "A wheeled base")
     return fill_gradebook(data, grades, out_of=Decimal(out_of), wanted=wanted, column=column, any_maximum=any_maximum)
 
@@ -86,9 +86,9 @@ def test_the_surest_key_decides() -> None:
     )
     assert lines(filled)[2:] == ['"Roe, Rick",12,,,A,10.00']
     assert filled.preflight.unknown == (
-        Left(3, "Doe, Jane", "no student of the gradebook has this number, address or name"),
+        RowNote(3, "Doe, Jane", "no student of the gradebook has this number, address or name"),
     )
-    assert filled.preflight.missing == (Left(0, "Rick Roe", "has a grade, but no row in the file"),)
+    assert filled.preflight.missing == (RowNote(0, "Rick Roe", "has a grade, but no row in the file"),)
     assert not filled.preflight.matches
 
 

@@ -12,11 +12,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.checks.outcome import Outcome
-from grader.classroom.lms.comments import remarks_on
-from grader.classroom.lms.feedback import LIMIT, Remark, feedback_html, is_our_feedback
-from grader.classroom.lms.grades import Grade
+from grader.classroom.lms.comments import feedback_items
+from grader.classroom.lms.feedback import LIMIT, FeedbackItem, feedback_html, is_our_feedback
+from grader.classroom.lms.grades import LmsGrade
 from grader.classroom.lms.moodle import fill_worksheet
-from grader.classroom.lms.preflight import Conflict, Filled, Left
+from grader.classroom.lms.preflight import Conflict, Filled, RowNote
 from grader.classroom.lms.spreadsheet import neutral
 from grader.classroom.lms.tables import read_table
 from grader.classroom.students import Student
@@ -29,12 +29,12 @@ HEADER = (
     '"Last modified (submission)","Last modified (grade)","Feedback comments"'
 )
 COMMENT = feedback_html(
-    Decimal("58.5"), Decimal(100), [Remark("The base", Decimal(2), Decimal(4), "it is 0.1 m too low")]
+    Decimal("58.5"), Decimal(100), [FeedbackItem("The base", Decimal(2), Decimal(4), "it is 0.1 m too low")]
 )
 
 
-def graded(key: str, total: str | None = "58.5", feedback: str = "", why_not: str = "", **known: Any) -> Grade:
-    return Grade(Student(key, **known), None if total is None else Decimal(total), feedback, why_not)
+def graded(key: str, total: str | None = "58.5", feedback: str = "", why_not: str = "", **known: Any) -> LmsGrade:
+    return LmsGrade(Student(key, **known), None if total is None else Decimal(total), feedback, why_not)
 
 
 def row(
@@ -55,7 +55,7 @@ def worksheet(*rows: str, header: str = HEADER, end: str = "\n") -> bytes:
 
 def fill(
     data: bytes,
-    *grades: Grade,
+    *grades: LmsGrade,
     column: str = "",
     feedback_column: str = "",
     out_of: str = "100",
@@ -113,7 +113,7 @@ def test_a_suspended_student_has_a_plain_name() -> None:
     """The span and the picture that Moodle puts around a suspended student's name are no part of it."""
     name = '<span class=""usersuspended"">Jane &amp; Doe <img src=""x"" title=""Suspended"" /></span>'
     filled = fill(worksheet(row(7, name)), graded("x", None, why_not="pending", name="Jane & Doe"))
-    assert filled.preflight.ungraded == (Left(2, "Jane & Doe", "pending"),)
+    assert filled.preflight.ungraded == (RowNote(2, "Jane & Doe", "pending"),)
 
 
 def test_blind_marking() -> None:
@@ -308,14 +308,16 @@ def skipped(name: str, because: str = "loads", ruling: ManualMark | None = None)
 def test_what_has_one_cause_is_one_remark() -> None:
     """Criteria that are skipped because another failed, or wait for the same reason, are told once; messages begin large."""
     loads = result("loads", Outcome("failed", "the file has no root"))
-    text = feedback_html(Decimal(0), Decimal(11), list(remarks_on([loads, *map(skipped, ("box", "tall", "essay"))])))
+    text = feedback_html(
+        Decimal(0), Decimal(11), list(feedback_items([loads, *map(skipped, ("box", "tall", "essay"))]))
+    )
     assert re.findall("<li>(.*?)</li>", text) == [
         "About loads: 0 of 3. The file has no root",
         "3 criteria are not decided, because loads failed: 0 of 7.",
     ]
     waits = Outcome("pending", "nobody can tell; a person has to look")
-    assert list(remarks_on([result(name, waits) for name in ("box", "tall")])) == [
-        Remark("2 criteria wait for a person", Decimal(0), Decimal(3), "Nobody can tell; a person has to look")
+    assert list(feedback_items([result(name, waits) for name in ("box", "tall")])) == [
+        FeedbackItem("2 criteria wait for a person", Decimal(0), Decimal(3), "Nobody can tell; a person has to look")
     ]
 
 
@@ -329,7 +331,7 @@ def test_what_has_a_cause_of_its_own_stays() -> None:
         result("essay", asks),
         result("picture", asks._replace(measured='xyz="0" is off', message='xyz="0" is off')),
     ]
-    assert [(each.title, each.message) for each in remarks_on(found)] == [
+    assert [(each.title, each.message) for each in feedback_items(found)] == [
         ("About box", "nice try"),
         ("About tall", "Not decided, because box failed"),
         ("About essay", "A person has to mark it"),
@@ -342,7 +344,7 @@ def test_feedback() -> None:
     text = feedback_html(
         Decimal("99.996"),
         Decimal(100),
-        [Remark("<b>", Decimal("1.50"), Decimal(2), 'say "a\nb" \\'), Remark("c", Decimal(0), Decimal(1))],
+        [FeedbackItem("<b>", Decimal("1.50"), Decimal(2), 'say "a\nb" \\'), FeedbackItem("c", Decimal(0), Decimal(1))],
     )
     assert text.startswith(
         "<p>Graded automatically: 99.99 of 100 points.</p>"
@@ -361,7 +363,7 @@ def test_feedback_that_an_editor_has_written_anew() -> None:
 
 def test_feedback_has_an_end() -> None:
     """A long comment says how many remarks it leaves out."""
-    remarks = [Remark(f"Criterion {n}", Decimal(0), Decimal(1), "x" * 200) for n in range(90)]
+    remarks = [FeedbackItem(f"Criterion {n}", Decimal(0), Decimal(1), "x" * 200) for n in range(90)]
     text = feedback_html(Decimal(0), Decimal(90), remarks)
     shown = text.count("Criterion")
     assert 10 < shown < 90
@@ -370,12 +372,12 @@ def test_feedback_has_an_end() -> None:
 
 
 REMARKS = st.builds(
-    Remark, st.text(max_size=900), st.decimals(-5, 5, places=2), st.just(Decimal(5)), st.text(max_size=900)
+    FeedbackItem, st.text(max_size=900), st.decimals(-5, 5, places=2), st.just(Decimal(5)), st.text(max_size=900)
 )
 
 
 @given(st.lists(REMARKS, max_size=8))
-def test_feedback_is_always_safe(remarks: list[Remark]) -> None:
+def test_feedback_is_always_safe(remarks: list[FeedbackItem]) -> None:
     """Any text: one line, within the limit, no tags but ours, no formula, and known again."""
     text = feedback_html(Decimal(1), Decimal(2), remarks)
     assert len(text) <= LIMIT
@@ -391,7 +393,7 @@ def test_feedback_is_always_safe(remarks: list[Remark]) -> None:
 @given(st.text(st.sampled_from('<>&=+-@;" a'), max_size=12))
 def test_feedback_shows_the_message(message: str) -> None:
     """What a reader sees is the message, character for character but for runs of spaces."""
-    text = feedback_html(Decimal(1), Decimal(2), [Remark("t", Decimal(1), Decimal(2), message)])
+    text = feedback_html(Decimal(1), Decimal(2), [FeedbackItem("t", Decimal(1), Decimal(2), message)])
     item = re.search(r"<li>t: 1 of 2\.(.*?)</li>", text)
     assert item is not None
     assert html.unescape(item[1]).strip() == " ".join(message.split())

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.grades import Standings
+from grader.classroom.gradebook.grades import Grades
 from tests.classroom.class_runs import (
     class_with_roster,
     contents,
@@ -75,8 +75,8 @@ def test_a_class_is_graded_as_each_submission_alone(name: str, request: pytest.F
     assert len(one) >= 100
     refused = 0
     with Gradebook(tmp_path / "one.db") as book:
-        for standing in Standings(book).all():
-            (path,) = standing.origin.paths
+        for standing in Grades(book).all():
+            (path,) = standing.files.paths
             code, alone = report_here(folder / path, tmp_path / "alone.json")
             if code != 2:  # in a folder that can be read there may still be nothing else that can
                 assert standing.verdict in ("graded", "unreadable")
@@ -134,8 +134,8 @@ def test_files_side_by_side_are_graded_as_a_folder_of_them(tmp_path: Path) -> No
     reports = batch(folder, tmp_path / "out")
     several = 0
     with Gradebook(tmp_path / "out.db") as book:
-        for standing in Standings(book).all():
-            paths, names = standing.origin.paths, standing.origin.names
+        for standing in Grades(book).all():
+            paths, names = standing.files.paths, standing.files.names
             if (
                 len(paths) > 1 and standing.verdict == "graded" and not standing.is_late
             ):  # which is a note in the report
@@ -324,7 +324,7 @@ def test_reports_quote_files_only_as_they_were(tmp_path: Path) -> None:
     from grader.usecases.class_reports import report_of
 
     with Gradebook(tmp_path / "lab6.db") as book:
-        standings = Standings(book)
+        standings = Grades(book)
         texts = {key: render(report_of(standings, standings.find(key)), Format.TERMINAL) for key in ("ann", "bea")}
     assert quoted not in texts["ann"]
     assert quoted in texts["bea"]

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from grader.classroom.run.pool import Lost, Processes, processors
+from grader.classroom.run.pool import Processes, WorkerError, processors
 from grader.classroom.run.worker import prepare
 from tests.command_line import PATIENCE
 
@@ -28,7 +28,7 @@ def pool() -> Iterator[Processes]:
 def lost(future: "Future[Any]") -> str:
     """Why there is no result."""
     error = future.exception(PATIENCE)
-    assert isinstance(error, Lost), error
+    assert isinstance(error, WorkerError), error
     return str(error)
 
 
@@ -117,7 +117,7 @@ def test_all_workers_ended_at_once(pool: Processes) -> None:
         future = pool.submit(len, "abc")
         results.append(future.exception(PATIENCE) or future.result())
     assert results[-1] == 3
-    assert all(each == 3 or isinstance(each, Lost) for each in results)
+    assert all(each == 3 or isinstance(each, WorkerError) for each in results)
 
 
 def _pid_after(seconds: float) -> int:

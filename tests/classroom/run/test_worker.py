@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.gradebook.result import Graded
-from grader.classroom.run.worker import Class, Task, grade_all
+from grader.classroom.gradebook.result import GradingResult
+from grader.classroom.run.worker import ClassContext, Task, grade_all
 from tests.classroom.class_runs import report_here
 from tests.samples import LAB6, ROOT
 
@@ -47,9 +47,9 @@ UNREADABLE = {
 }
 
 
-def graded(top: Path, *paths: str) -> Graded:
+def graded(top: Path, *paths: str) -> GradingResult:
     """What comes of a hand-in below a folder."""
-    (result,) = grade_all(Class(str(top), LAB6.data, str(LAB6.path)), [Task("ann", paths)])
+    (result,) = grade_all(ClassContext(str(top), LAB6.data, str(LAB6.path)), [Task("ann", paths)])
     return result
 
 
@@ -84,9 +84,9 @@ def test_the_report_stays_what_it_is(tmp_path: Path) -> None:
     assert result.score == told["score"] * 10_000
     assert b"(--max-size raises it)" in zlib.decompress(result.record)
     assert (
-        grade_all(Class(str(tmp_path), LAB6.data, str(LAB6.path)), [Task("ann", ("ann",), graded=result.digest)])[
-            0
-        ].verdict
+        grade_all(
+            ClassContext(str(tmp_path), LAB6.data, str(LAB6.path)), [Task("ann", ("ann",), graded=result.digest)]
+        )[0].verdict
         == "unchanged"
     )
 

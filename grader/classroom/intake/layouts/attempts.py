@@ -4,13 +4,13 @@ import re
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
-from grader.classroom.intake.layouts.layout import LeftOut
+from grader.classroom.intake.layouts.layout import IgnoredFiles
 from grader.classroom.intake.listing import Listing
 from grader.classroom.intake.names import ENDINGS, ending_of, without_copy
 from grader.text import printable_path
 
 _ATTEMPT = re.compile(r"(?:attempt|submission|try|versuch|abgabe)[ _-]?([0-9]{1,6})", re.IGNORECASE)
-_MOST_ATTEMPTS = 1_000
+_MAX_ATTEMPTS = 1_000
 
 
 class Attempts(NamedTuple):
@@ -26,7 +26,7 @@ def attempts_in(listing: Listing, folder: str) -> Attempts | None:
     first = listing.first(folder)
     if first is None or _number(first) is None:  # as nearly every folder is told
         return None
-    children = listing.children(folder, _MOST_ATTEMPTS)
+    children = listing.children(folder, _MAX_ATTEMPTS)
     found: list[tuple[int, bool, str]] = []
     for names, is_folder in ((children.folders, True), (children.files, False)):
         for name in names:
@@ -55,7 +55,7 @@ def _number(name: str) -> int | None:
 
 
 def last_copy(
-    names: Iterable[tuple[int, str]], is_folder: Callable[[str], bool], left_out: LeftOut, start: str
+    names: Iterable[tuple[int, str]], is_folder: Callable[[str], bool], ignored: IgnoredFiles, start: str
 ) -> Attempts:
     """Of names with the numbers that a browser gave them the highest; of two with one number see `folders`."""
     by_number: dict[int, list[str]] = {}
@@ -66,7 +66,7 @@ def last_copy(
         best, *others = sorted(same, key=lambda name: (_rank(name, is_folder=is_folder(name)), name))
         chosen.append((number, best))
         for other in others:
-            left_out.add(start + other, f"was passed over: {printable_path(best)} has the same name, and counts")
+            ignored.add(start + other, f"was passed over: {printable_path(best)} has the same name, and counts")
     *earlier, last = chosen
     return Attempts(last[1], len(chosen), tuple(name for _, name in earlier))
 

@@ -11,11 +11,11 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import NamedTuple
 
-from grader.classroom.intake.layouts.layout import LeftOut, Listed, listed
+from grader.classroom.intake.layouts.layout import IgnoredFiles, SubmissionList, listed
 from grader.classroom.intake.listing import Children
 from grader.classroom.intake.names import ending_of
 from grader.classroom.matching import is_word
-from grader.classroom.students import HandIn, Student
+from grader.classroom.students import ClassSubmission, Student
 
 _NAME = re.compile(
     r"(?:(?P<late_anon>LATE_)?anon_(?P<anon>[1-9A-HJ-NP-Za-km-z]{5})|(?P<name>.*?)(?P<late>_LATE)?_(?P<user>[0-9]{1,20}))"
@@ -28,7 +28,7 @@ _REPEATED = re.compile(
 )
 
 
-class _Saved(NamedTuple):
+class _CanvasFile(NamedTuple):
     """One file of a download: whose it is, and what the student called it."""
 
     path: str
@@ -55,23 +55,23 @@ def fits(children: Children) -> bool:
     return len(fitting) >= 3 * others
 
 
-def shelve(children: Children, start: str, left_out: LeftOut) -> Listed:
+def find_submissions(children: Children, start: str, ignored: IgnoredFiles) -> SubmissionList:
     """The hand-ins of a download, one for each user. Folders count as files that someone has unpacked."""
-    by_user: dict[tuple[bool, str], list[_Saved]] = defaultdict(list)
+    by_user: dict[tuple[bool, str], list[_CanvasFile]] = defaultdict(list)
     for name in (*children.folders, *children.files):
         saved = _saved(name)
         if saved is None:
-            left_out.add(start + name, "is not named as Canvas names what was handed in")
+            ignored.add(start + name, "is not named as Canvas names what was handed in")
         else:
             by_user[saved.is_anonymous, saved.user].append(saved)
-    left_out.add_all((start + name, reason) for name, reason in children.refused)
-    known = {user: _certain(saved, start, left_out) for user, saved in by_user.items()}
+    ignored.add_all((start + name, reason) for name, reason in children.refused)
+    known = {user: _certain(saved, start, ignored) for user, saved in by_user.items()}
     shelf = listed(_hand_in(saved, start) for saved in known.values() if saved)
     contested = (_student(each) for user, saved in by_user.items() if not known[user] for each in saved)
     return replace(shelf, contested=tuple(dict.fromkeys(contested)))
 
 
-def _certain(saved: list[_Saved], start: str, left_out: LeftOut) -> list[_Saved]:
+def _certain(saved: list[_CanvasFile], start: str, ignored: IgnoredFiles) -> list[_CanvasFile]:
     """The files of a user without those that may be another user's.
 
     Users choose their names, and one may end in a number: `mallory_77` with the id 99 has a file `mallory_77_99_...`. Canvas writes
@@ -82,24 +82,22 @@ def _certain(saved: list[_Saved], start: str, left_out: LeftOut) -> list[_Saved]
     certain = {each.name for each in saved if len(each.maybe_users) < 2}
     for each in saved:
         if each.name not in certain:
-            left_out.add(
-                start + each.path, f"may be of another user than {each.user}: its name can be read in two ways"
-            )
+            ignored.add(start + each.path, f"may be of another user than {each.user}: its name can be read in two ways")
     return [each for each in saved if each.name in certain]
 
 
-def _is_lower(saved: _Saved | None) -> bool:
+def _is_lower(saved: _CanvasFile | None) -> bool:
     return saved is not None and not any(letter.isupper() for letter in saved.name)
 
 
-def _saved(name: str) -> _Saved | None:
+def _saved(name: str) -> _CanvasFile | None:
     if name.count("_") < 2:
         return None
     found = _NAME.fullmatch(name)
     if found is None or not all(is_word(letter) or letter == "-" for letter in found["name"] or ""):
         return None
     anonymous = found["anon"]
-    return _Saved(
+    return _CanvasFile(
         name,
         "anon" if anonymous else found["name"],
         anonymous or found["user"],
@@ -111,12 +109,12 @@ def _saved(name: str) -> _Saved | None:
     )
 
 
-def _hand_in(saved: Iterable[_Saved], start: str) -> HandIn:
+def _hand_in(saved: Iterable[_CanvasFile], start: str) -> ClassSubmission:
     last, earlier = _attempts(saved)
     first = min(
         last, key=lambda each: (len(each.maybe_users) > 1, each.name)
     )  # one that can be read in one way, if there is
-    return HandIn(
+    return ClassSubmission(
         _student(first),
         tuple(start + each.path for each in last),
         is_late=any(each.is_late for each in last),
@@ -126,7 +124,7 @@ def _hand_in(saved: Iterable[_Saved], start: str) -> HandIn:
     )
 
 
-def _student(saved: _Saved) -> Student:
+def _student(saved: _CanvasFile) -> Student:
     """Whose a file is; where its name can be read in several ways, with all the numbers that may be the user's."""
     is_certain = len(saved.maybe_users) < 2
     key = f"{saved.name}_{saved.user}"
@@ -135,14 +133,14 @@ def _student(saved: _Saved) -> Student:
     return Student(key, canvas=saved.user)
 
 
-def _attempts(saved: Iterable[_Saved]) -> tuple[list[_Saved], list[list[_Saved]]]:
+def _attempts(saved: Iterable[_CanvasFile]) -> tuple[list[_CanvasFile], list[list[_CanvasFile]]]:
     """The files that count, and for each of them the earlier ones of that name, in order.
 
     `step-1.png` is a later `step.png` only where there is a `step.png`: without it, the number is the student's own.
     """
     given = sorted(saved, key=lambda each: (each.attachment, each.path))
     plain = {each.file for each in given}
-    by_file: dict[str, list[_Saved]] = defaultdict(list)
+    by_file: dict[str, list[_CanvasFile]] = defaultdict(list)
     for each in given:
         found = _REPEATED.fullmatch(each.file)
         first = f"{found['stem']}{found['ending']}" if found else each.file

@@ -11,11 +11,11 @@ from itertools import groupby
 from typing import NamedTuple
 
 from grader.classroom.intake.layouts.attempts import attempts_in, last_copy
-from grader.classroom.intake.layouts.layout import LeftOut, place_key
+from grader.classroom.intake.layouts.layout import IgnoredFiles, place_key
 from grader.classroom.intake.layouts.prefix import class_prefix, has_prefix
 from grader.classroom.intake.listing import Children, Listing
 from grader.classroom.intake.names import ending_of, without_copy
-from grader.classroom.students import HandIn, Student
+from grader.classroom.students import ClassSubmission, Student
 from grader.files.ignore_rules import BUILD_FOLDERS
 
 _NO_SUBMISSION = "is not a folder, an archive or a URDF"
@@ -30,7 +30,7 @@ class _Copy(NamedTuple):
     earlier: tuple[str, ...]
 
 
-class FolderShelf:
+class FolderSubmissions:
     """Hand-ins of which only the names are kept: the rest is worked out when it is asked for."""
 
     assignments: frozenset[str] = frozenset()
@@ -58,7 +58,7 @@ class FolderShelf:
             login=stem if key != stem or stem != name.removesuffix(self._ending(name)) else "",
         )
 
-    def hand_in(self, index: int) -> HandIn:
+    def hand_in(self, index: int) -> ClassSubmission:
         """What was handed in; a folder is looked into for attempts."""
         name = self._names[index]
         path = self._start + name
@@ -68,13 +68,13 @@ class FolderShelf:
         found = None if self._ending(name) else attempts_in(self._listing, path)
         if found is not None:
             path, attempt, earlier = found.last, found.number, (*earlier, *found.earlier)
-        return HandIn(self.student(index), (path,), attempt=attempt, earlier=earlier)
+        return ClassSubmission(self.student(index), (path,), attempt=attempt, earlier=earlier)
 
     def place(self, index: int) -> str:
         """The path of the student's folder or file; of several copies that of the last one."""
         return self._start + self._names[index]
 
-    def fill(self, names: list[str], knows: Callable[[str], bool] | None, left_out: LeftOut) -> None:
+    def fill(self, names: list[str], knows: Callable[[str], bool] | None, ignored: IgnoredFiles) -> None:
         """Put the names on the shelf: one for each student, in the order of their keys."""
         names.sort(key=self._shared_by_copies)
         for _, group in groupby(names, key=self._shared_by_copies):
@@ -82,7 +82,7 @@ class FolderShelf:
             plain = self._plain(same[0])
             if len(same) > 1 or self._own_stem(same[0]) != plain:
                 for stem, copies in self._by_student(plain, same, knows):
-                    last, number, earlier = last_copy(copies, self._folders_among(same), left_out, self._start)
+                    last, number, earlier = last_copy(copies, self._folders_among(same), ignored, self._start)
                     self._names.append(last)
                     self._copies[last] = _Copy(stem, number, earlier)
             else:
@@ -158,26 +158,26 @@ def _is_text(name: str) -> bool:
     return True
 
 
-def shelve(
+def find_submissions(
     listing: Listing,
     children: Children,
     start: str,
-    left_out: LeftOut,
+    ignored: IgnoredFiles,
     rubric_id: str = "",
     knows: Callable[[str], bool] | None = None,
-) -> FolderShelf:
+) -> FolderSubmissions:
     """The hand-ins of a class folder; `knows` says whether a name stands in the roster."""
     folders = [name for name in children.folders if name not in BUILD_FOLDERS]
-    left_out.add_all((start + name, _BUILT) for name in children.folders if name in BUILD_FOLDERS)
+    ignored.add_all((start + name, _BUILT) for name in children.folders if name in BUILD_FOLDERS)
     files: list[str] = []
     for name in children.files:
         if ending_of(name):
             files.append(name)
         else:
-            left_out.add(start + name, _NO_SUBMISSION)
-    left_out.add_all((start + name, reason) for name, reason in children.refused)
+            ignored.add(start + name, _NO_SUBMISSION)
+    ignored.add_all((start + name, reason) for name, reason in children.refused)
     prefix = class_prefix(folders or [name.removesuffix(ending_of(name)) for name in files], rubric_id, knows)
-    shelf = FolderShelf(listing, start, prefix, frozenset(name for name in folders if ending_of(name)))
+    shelf = FolderSubmissions(listing, start, prefix, frozenset(name for name in folders if ending_of(name)))
     folders += files
-    shelf.fill(folders, knows, left_out)
+    shelf.fill(folders, knows, ignored)
     return shelf

@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 from hashlib import sha256
 from typing import Protocol
 
-from grader.classroom.students import HandIn, Student
+from grader.classroom.students import ClassSubmission, Student
 from grader.text import printable_path
 
-MOST_LINES = 200
+MAX_LINES = 200
 _HERE = "./"  # with which no name begins
 
 
-class Shelf(Protocol):
+class Submissions(Protocol):
     """Hand-ins, sorted by their students' keys, which are printable and differ. A student is told without a look into the files."""
 
     @property
@@ -31,7 +31,7 @@ class Shelf(Protocol):
     def student(self, index: int) -> Student:
         """Who has handed in, as far as the names say."""
 
-    def hand_in(self, index: int) -> HandIn:
+    def hand_in(self, index: int) -> ClassSubmission:
         """What was handed in."""
 
     def place(self, index: int) -> str:
@@ -39,10 +39,10 @@ class Shelf(Protocol):
 
 
 @dataclass(frozen=True, slots=True)
-class Listed:
+class SubmissionList:
     """A shelf whose hand-ins are all at hand."""
 
-    hand_ins: Sequence[HandIn]
+    hand_ins: Sequence[ClassSubmission]
     assignments: frozenset[str] = frozenset()
     contested: tuple[Student, ...] = ()
 
@@ -53,7 +53,7 @@ class Listed:
         """Who has handed in."""
         return self.hand_ins[index].student
 
-    def hand_in(self, index: int) -> HandIn:
+    def hand_in(self, index: int) -> ClassSubmission:
         """What was handed in."""
         return self.hand_ins[index]
 
@@ -62,7 +62,7 @@ class Listed:
         return self.hand_ins[index].paths[0]
 
 
-def listed(hand_ins: Iterable[HandIn]) -> Listed:
+def listed(hand_ins: Iterable[ClassSubmission]) -> SubmissionList:
     """A shelf of these submissions. A key that is not printable, or that several have, is replaced by the key of the place."""
     given = list(hand_ins)
     counts = Counter(each.student.key for each in given)
@@ -76,7 +76,7 @@ def listed(hand_ins: Iterable[HandIn]) -> Listed:
         each if key == each.student.key else replace(each, student=replace(each.student, key=key))
         for each, key in zip(given, keys, strict=True)
     ]
-    return Listed(sorted(made, key=lambda each: each.student.key))
+    return SubmissionList(sorted(made, key=lambda each: each.student.key))
 
 
 def place_key(path: str) -> str:
@@ -94,7 +94,7 @@ def is_place_key(key: str) -> bool:
     return key.startswith(_HERE)
 
 
-class LeftOut:
+class IgnoredFiles:
     """What is no submission, and why: the first lines in the order of the alphabet, and a count of the rest."""
 
     def __init__(self) -> None:
@@ -105,8 +105,8 @@ class LeftOut:
         """Leave something out; `reason` goes on where the name ends."""
         self._lines.append(f"{printable_path(path)} {reason}")
         self._count += 1
-        if len(self._lines) > 10 * MOST_LINES:
-            self._lines = sorted(self._lines)[:MOST_LINES]
+        if len(self._lines) > 10 * MAX_LINES:
+            self._lines = sorted(self._lines)[:MAX_LINES]
 
     def add_all(self, refused: Iterable[tuple[str, str]]) -> None:
         """Leave out names, each with its reason."""
@@ -114,7 +114,7 @@ class LeftOut:
             self.add(name, reason)
 
     def lines(self) -> tuple[str, ...]:
-        """At most MOST_LINES lines, and one more that says how many there would be."""
-        shown = sorted(self._lines)[:MOST_LINES]
+        """At most MAX_LINES lines, and one more that says how many there would be."""
+        shown = sorted(self._lines)[:MAX_LINES]
         more = self._count - len(shown)
         return (*shown, f"and {more} more") if more else tuple(shown)

@@ -6,17 +6,17 @@ nbgrader writes that time as `%Y-%m-%d %H:%M:%S.%f %Z`, in UTC unless it is conf
 from collections import defaultdict
 from dataclasses import replace
 
-from grader.classroom.intake.layouts.layout import LeftOut, Listed, listed
+from grader.classroom.intake.layouts.layout import IgnoredFiles, SubmissionList, listed
 from grader.classroom.intake.listing import Children, Listing
 from grader.classroom.intake.names import utc_time
-from grader.classroom.students import HandIn, Student
+from grader.classroom.students import ClassSubmission, Student
 from grader.errors import InputError
 from grader.text import printable_path
 
 _SUBMITTED = "submitted"
 _STAMP = "timestamp.txt"
 _LONGEST_STAMP = 100  # bytes
-_MOST_NAMED = 10
+_MAX_NAMED = 10
 
 
 def find_course(listing: Listing, children: Children, start: str, top: str, rubric_id: str) -> str | None:
@@ -34,7 +34,9 @@ def find_course(listing: Listing, children: Children, start: str, top: str, rubr
     return start if is_known or stamped else None
 
 
-def shelve(listing: Listing, start: str, left_out: LeftOut, assignment: str, rubric_id: str) -> Listed:
+def find_submissions(
+    listing: Listing, start: str, ignored: IgnoredFiles, assignment: str, rubric_id: str
+) -> SubmissionList:
     """The hand-ins for one assignment; raises InputError where it cannot be told which."""
     found = _assignments(listing, start)
     name = _chosen(found, assignment, rubric_id)
@@ -42,14 +44,14 @@ def shelve(listing: Listing, start: str, left_out: LeftOut, assignment: str, rub
     given = set(found[name])
     for student in children.folders:
         if student not in given:
-            left_out.add(start + student, f"holds nothing for the assignment {printable_path(name)}")
+            ignored.add(start + student, f"holds nothing for the assignment {printable_path(name)}")
     for file in children.files:
-        left_out.add(start + file, "is not a student's folder")
-    left_out.add_all((start + each, reason) for each, reason in children.refused)
+        ignored.add(start + file, "is not a student's folder")
+    ignored.add_all((start + each, reason) for each, reason in children.refused)
     paths = {student: f"{start}{student}/{name}" for student in found[name]}
     stamps = listing.starts((f"{path}/{_STAMP}" for path in paths.values()), _LONGEST_STAMP)
     submitted = listed(
-        HandIn(Student(student, login=student), (path,), submitted=_time(stamps.get(f"{path}/{_STAMP}", b"")))
+        ClassSubmission(Student(student, login=student), (path,), submitted=_time(stamps.get(f"{path}/{_STAMP}", b"")))
         for student, path in paths.items()
     )
     return replace(submitted, assignments=frozenset({f"nbgrader {printable_path(name)}"}))
@@ -65,7 +67,7 @@ def _assignments(listing: Listing, start: str) -> dict[str, list[str]]:
 
 
 def _chosen(found: dict[str, list[str]], assignment: str, rubric_id: str) -> str:
-    named = ", ".join(printable_path(name) for name in sorted(found)[:_MOST_NAMED]) or "none"
+    named = ", ".join(printable_path(name) for name in sorted(found)[:_MAX_NAMED]) or "none"
     if assignment:
         if assignment in found:
             return assignment

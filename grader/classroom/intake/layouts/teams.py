@@ -8,15 +8,15 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 
-from grader.classroom.intake.layouts.folders import shelve as shelve_folders
-from grader.classroom.intake.layouts.layout import LeftOut, Listed, listed
+from grader.classroom.intake.layouts.folders import find_submissions as find_folder_submissions
+from grader.classroom.intake.layouts.layout import IgnoredFiles, SubmissionList, listed
 from grader.classroom.intake.listing import Children, Listing
 from grader.classroom.intake.names import ending_of
-from grader.classroom.students import HandIn
+from grader.classroom.students import ClassSubmission
 
-_MOST_TEAMS = 10_000  # beyond which nobody looks for teams unasked
-_MOST_NAMES = 1_000  # in one folder
-_MOST_SEEN = 300  # entries that are looked at for a URDF
+_MAX_TEAMS = 10_000  # beyond which nobody looks for teams unasked
+_MAX_NAMES = 1_000  # in one folder
+_MAX_SEEN = 300  # entries that are looked at for a URDF
 _PARTS = frozenset(
     {
         "src", "urdf", "launch", "rviz", "config", "resource", "resources", "test", "tests", "build", "install", "log",
@@ -52,37 +52,37 @@ def find_labs(
     """The lab folders that hold students' folders, each with its team; `is_told` where the user says that there are teams."""
     labs: dict[str, str] = {}
     pattern = lab_folder(rubric_id)
-    if len(children.folders) > _MOST_TEAMS and not is_told:
+    if len(children.folders) > _MAX_TEAMS and not is_told:
         return labs
     for team in sorted(children.folders):
-        for name in sorted(listing.children(start + team, _MOST_NAMES).folders):
+        for name in sorted(listing.children(start + team, _MAX_NAMES).folders):
             lab = f"{start}{team}/{name}"
             if pattern.fullmatch(name) and _holds_students(listing, lab, knows, is_told=is_told):
                 labs[lab] = team
     return labs
 
 
-def shelve(
+def find_submissions(
     listing: Listing,
     children: Children,
     start: str,
-    left_out: LeftOut,
+    ignored: IgnoredFiles,
     rubric_id: str,
     knows: Callable[[str], bool] | None,
     labs: dict[str, str],
-) -> Listed:
+) -> SubmissionList:
     """The hand-ins of the students in these lab folders, and of the teams without one."""
     teams = set(labs.values())
     rest = children._replace(folders=[name for name in children.folders if name not in teams])
-    alone = shelve_folders(listing, rest, start, left_out, rubric_id, knows)
+    alone = find_folder_submissions(listing, rest, start, ignored, rubric_id, knows)
     hand_ins = [alone.hand_in(index) for index in range(len(alone))]
     for lab, team in labs.items():
-        shelf = shelve_folders(listing, listing.children(lab), f"{lab}/", left_out)
+        shelf = find_folder_submissions(listing, listing.children(lab), f"{lab}/", ignored)
         hand_ins += (_of_team(shelf.hand_in(index), team) for index in range(len(shelf)))
     return replace(listed(hand_ins), contested=alone.contested)
 
 
-def _of_team(hand_in: HandIn, team: str) -> HandIn:
+def _of_team(hand_in: ClassSubmission, team: str) -> ClassSubmission:
     """A submission in a team's folder: its key has the team in front, so that no other team can take it over."""
     student = hand_in.student
     name = student.login or student.key
@@ -101,7 +101,7 @@ def is_package(children: Children) -> bool:
 
 
 def _holds_students(listing: Listing, lab: str, knows: Callable[[str], bool] | None, *, is_told: bool) -> bool:
-    inner = listing.children(lab, _MOST_NAMES)
+    inner = listing.children(lab, _MAX_NAMES)
     names = inner.folders + [name.removesuffix(ending_of(name)) for name in inner.files if ending_of(name)]
     if not names or is_package(inner):
         return False
@@ -117,7 +117,7 @@ def _holds_students(listing: Listing, lab: str, knows: Callable[[str], bool] | N
 def _has_robot(listing: Listing, folder: str) -> bool | None:
     """Whether a URDF or a package is somewhere in a folder; None where the folder is itself a package."""
     waiting = [folder]
-    left = _MOST_SEEN
+    left = _MAX_SEEN
     while waiting and left > 0:
         where = waiting.pop(0)
         children = listing.children(where, left)

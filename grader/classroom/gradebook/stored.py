@@ -3,7 +3,7 @@
 import json
 from typing import Any, NamedTuple
 
-from grader.classroom.students import HandIn, Student
+from grader.classroom.students import ClassSubmission, Student
 
 _STUDENT = ("key", "name", "email", "login", "sis", "canvas", "moodle")
 
@@ -34,7 +34,7 @@ JOIN run ON run.id = seen.run
 """
 
 
-class Known(NamedTuple):
+class StoredSubmission(NamedTuple):
     """What the gradebook has of a student: the newest result, what it was made from, and what was told of the student."""
 
     student: int
@@ -71,7 +71,7 @@ class Known(NamedTuple):
         """Whether the student was on the roster."""
         return bool(self.told[len(_STUDENT)])
 
-    def is_same(self, hand_in: HandIn, enrolment: Enrolment | None) -> bool:
+    def is_same(self, hand_in: ClassSubmission, enrolment: Enrolment | None) -> bool:
         """Whether nothing new is said of the student and the hand-in, whatever is in it."""
         return (
             not self.is_gone
@@ -82,12 +82,12 @@ class Known(NamedTuple):
         )
 
 
-def known_of(row: tuple[Any, ...]) -> Known:
+def known_of(row: tuple[Any, ...]) -> StoredSubmission:
     """What a row of KNOWN says."""
     (
         identity, result, rubric, version, digest, verdict, fingerprint, place, is_late, submitted, is_gone, source, *told,
     ) = row  # fmt: skip
-    return Known(
+    return StoredSubmission(
         identity, result, rubric, version, digest, verdict, fingerprint, place, is_late, submitted, is_gone, source,
         tuple(told),
     )  # fmt: skip
@@ -98,7 +98,7 @@ def storable(text: str) -> str:
     return text.encode("utf-8", "backslashreplace").decode()
 
 
-def place_of(hand_in: HandIn) -> str:
+def place_of(hand_in: ClassSubmission) -> str:
     """Where a hand-in is, as JSON: paths, names, attempt, paths of earlier attempts."""
     return json.dumps((hand_in.paths, hand_in.names, hand_in.attempt, hand_in.earlier))
 

@@ -43,7 +43,7 @@ def _has_common_student(book: Gradebook, intake: Intake, identities: Identities)
     keys = chain(intake.keys(), (student.key for student in intake.contested))
     if any(next(book.rows("SELECT 1 FROM student WHERE key = ?", key), None) for key in keys):
         return True
-    return any(identities.of(hand_in) for hand_in in intake.hand_ins())
+    return any(identities.of(hand_in) for hand_in in intake.submissions())
 
 
 def _some(names: set[str]) -> str:
