@@ -1,4 +1,4 @@
-"""The documentation keeps up with the code, and its commands and links are real."""
+"""The documentation matches the code, and its commands and links work."""
 
 import re
 import runpy
@@ -10,32 +10,47 @@ from grader import __version__
 
 ROOT = Path(__file__).parent.parent
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
-MADE = runpy.run_path(str(ROOT / "docs" / "make.py"))["pages"]()
+GENERATED = runpy.run_path(str(ROOT / "docs" / "make.py"))["pages"]()
 
 
-@pytest.mark.parametrize("name", MADE)
-def test_a_made_page_is_current(name: str) -> None:
-    """What docs/make.py would write is what is there."""
-    assert (ROOT / "docs" / name).read_text(encoding="utf-8") == MADE[name], "run python docs/make.py"
+@pytest.mark.parametrize("name", GENERATED)
+def test_a_generated_page_is_current(name: str) -> None:
+    """The page is what docs/make.py writes now."""
+    assert (ROOT / "docs" / name).read_text(encoding="utf-8") == GENERATED[name], "run python docs/make.py"
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_links_lead_somewhere(page: Path) -> None:
+def test_links_are_files(page: Path) -> None:
     """Every relative link of a page is a file of the project."""
     for target in re.findall(r"\]\(([^)#]+)", page.read_text(encoding="utf-8")):
         if not target.startswith("http"):
             assert (page.parent / target).exists(), f"{page.name}: {target}"
 
 
+def anchors(page: Path) -> set[str]:
+    """Return the anchors that GitHub gives the headings of a page."""
+    text = re.sub(r"^```.*?^```$", "", page.read_text(encoding="utf-8"), flags=re.DOTALL | re.MULTILINE)
+    headings = re.findall(r"^#+ (.*)$", text, re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_anchors_are_headings(page: Path) -> None:
+    """Every link to a section of a page leads to a heading of that page."""
+    for target, anchor in re.findall(r"\]\(([^)#]*)#([^)]+)\)", page.read_text(encoding="utf-8")):
+        if not target.startswith("http"):
+            assert anchor in anchors(page.parent / target if target else page), f"{page.name}: {target}#{anchor}"
+
+
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
 def test_codes_and_criteria_exist(page: Path) -> None:
-    """A code that a page names is in the catalogue."""
+    """Every problem code on a page is in the catalogue."""
     codes = set(re.findall(r"(?:URDF|PKG|LCH|RVZ)\d{3}", page.read_text(encoding="utf-8")))
-    assert all(f"## {code}" in MADE["problems.md"] for code in codes)
+    assert all(f"## {code}" in GENERATED["problems.md"] for code in codes)
 
 
 def test_the_lab_page_names_every_criterion() -> None:
-    """Each criterion of the rubric has its row, those of the two wheels share one."""
+    """Each criterion of the rubric has a row; the two wheels share rows."""
     from grader.grading.rubric import load_rubric
 
     text = (ROOT / "docs" / "lab6.md").read_text(encoding="utf-8")
@@ -50,7 +65,7 @@ def test_every_dependency_has_its_reason() -> None:
 
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     decisions = (ROOT / "docs" / "decisions.md").read_text(encoding="utf-8")
-    extras = [each for group in project["optional-dependencies"].values() for each in group]
+    extras = [requirement for group in project["optional-dependencies"].values() for requirement in group]
     for requirement in [*project["dependencies"], *extras]:
         name = re.split(r"[<>=\[ ]", requirement)[0].removesuffix("-stubs").removeprefix("types-")
         assert name in decisions, name
@@ -65,13 +80,13 @@ def test_the_readme_has_two_commands_first() -> None:
 
 
 def test_the_changelog_knows_the_version() -> None:
-    """The version is in the changelog, or what is new since stands under Unreleased."""
+    """The changelog lists the version, or has changes under Unreleased."""
     text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     assert f"## [{__version__}]" in text or "## [Unreleased]" in text
 
 
 def test_every_test_that_the_security_page_names_exists() -> None:
-    """A row of the table is shown by a test, or by all tests of a file."""
+    """Each row names a test, or a file of tests."""
     text = (ROOT / "docs" / "security.md").read_text(encoding="utf-8")
     named = re.findall(r"\| `([\w/]+/test_\w+\.py)(?:::(\w+))?` \|", text)
     assert len(named) > 20
