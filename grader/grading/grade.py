@@ -20,7 +20,7 @@ from grader.robot.catalogue import (
 )
 from grader.robot.kinematics import Configuration
 from grader.robot.shapes import UnknownShape
-from grader.source import Location, Spot
+from grader.source import LazyLocation, Location
 from grader.submission.submission import Submission
 from grader.submission.urdf import NeedsExpansion, Read
 from grader.text import quoted
@@ -119,7 +119,7 @@ class _Run:
         first = self.missed.setdefault(key, criterion.id)
         if first != criterion.id:
             return Result(criterion, _skipped(first), first)
-        at = missing.location.location() if isinstance(missing.location, Spot) else missing.location
+        at = missing.location.resolve() if isinstance(missing.location, LazyLocation) else missing.location
         outcome = Outcome("failed", str(missing), location=at if isinstance(at, Location) else None)
         if missing.kind == "visual":
             return Result(criterion, self._dropped(outcome, missing.name))

@@ -10,7 +10,7 @@ from grader.robot import catalogue
 from grader.robot.model import Joint, Origin
 from grader.robot.numbers import NumberError, number, vector
 from grader.robot.transforms import Vector
-from grader.source import Mark, Source
+from grader.source import LazyLocation, Source
 from grader.text import quoted
 from grader.xml.parsing import Element
 
@@ -36,13 +36,13 @@ class Notes:
         self._elements = list(root.iter())
         self._indices = {element: index for index, element in enumerate(self._elements)}
 
-    def mark(self, element: Element) -> Mark:
+    def location(self, element: Element) -> LazyLocation:
         """The place of an element, to be worked out when it is needed."""
-        return Mark(self.source, self._indices[element])
+        return LazyLocation(self.source, self._indices[element])
 
     def element(self, joint: Joint) -> Element:
         """The element that a joint was read from."""
-        return self._elements[joint.mark.tag] if joint.mark is not None else self.root
+        return self._elements[joint.location.tag] if joint.location is not None else self.root
 
     def add(self, kind: Kind, message: str, element: Element, attribute: str | None = None) -> None:
         """Note a problem at an element, or at one of its attributes if it has it."""
@@ -88,9 +88,9 @@ class Part:
         consequence = self._consequence if self._link is None else self._consequence.format(quoted(self._link))
         self._notes.add(self._kind, f"{reason}; {consequence}", element, attribute)
 
-    def mark(self, element: Element) -> Mark:
+    def location(self, element: Element) -> LazyLocation:
         """The place of an element."""
-        return self._notes.mark(element)
+        return self._notes.location(element)
 
     def number(self, element: Element, attribute: str, default: Default) -> float | Default:
         """An attribute's number; the default where it is left out or, with a note, where it cannot be read."""
@@ -129,7 +129,7 @@ class Part:
             return None
         if rpy != (0.0, 0.0, 0.0) and max(map(abs, rpy)) > _FULL_TURN:
             self._suspect_degrees(element, rpy)
-        return Origin(xyz, rpy, self._notes.mark(element))
+        return Origin(xyz, rpy, self._notes.location(element))
 
     def _unreadable(self, element: Element, attribute: str, text: str, error: NumberError) -> None:
         self.fail(f"{attribute}={shown(text)} of <{element.tag}> cannot be read: {error}", element, attribute)

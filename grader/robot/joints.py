@@ -44,8 +44,8 @@ def read_joint(element: Element, notes: Notes) -> Joint:
         axis,
         limit,
         mimic,
-        notes.mark(element),
-        notes.mark(inside["axis"]) if "axis" in inside else None,
+        notes.location(element),
+        notes.location(inside["axis"]) if "axis" in inside else None,
     )
 
 

@@ -14,10 +14,10 @@ _INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 def read_link(element: Element, notes: Notes, materials: Materials) -> Link:
     """One link with what ROS 2 keeps of it: a bad inertial loses all shapes, a bad shape those behind it."""
     name = element.get("name")
-    mark = notes.mark(element)
+    location = notes.location(element)
     if name is None:
         notes.add(catalogue.LINK_WITHOUT_NAME, "this link has no name; ROS 2 keeps it as an empty link ''", element)
-        return Link("", mark=mark)
+        return Link("", location=location)
     inertial, dropping = None, False
     visuals: list[Visual] = []
     collisions: list[Collision] = []
@@ -39,7 +39,7 @@ def read_link(element: Element, notes: Notes, materials: Materials) -> Link:
             dropping = dropping or collision is None
             if collision is not None and not dropping:
                 collisions.append(collision)
-    return Link(name, tuple(visuals), tuple(collisions), inertial, mark)
+    return Link(name, tuple(visuals), tuple(collisions), inertial, location)
 
 
 def _read_inertial(element: Element, notes: Notes, link: str) -> Inertial | None:
@@ -72,8 +72,8 @@ def _read_visual(element: Element, notes: Notes, link: str, materials: Materials
     if part.bad or geometry is None or origin is None:
         return None
     if material is None or materials is None:
-        return Visual(geometry, origin, mark=part.mark(element))
-    return Visual(geometry, origin, *materials.assign(material, link), part.mark(element))
+        return Visual(geometry, origin, location=part.location(element))
+    return Visual(geometry, origin, *materials.assign(material, link), part.location(element))
 
 
 def _read_collision(element: Element, notes: Notes, link: str) -> Collision | None:
@@ -83,7 +83,7 @@ def _read_collision(element: Element, notes: Notes, link: str) -> Collision | No
     geometry = _read_geometry(element, inside.get("geometry"), part, notes)
     if part.bad or geometry is None or origin is None:
         return None
-    return Collision(geometry, origin, part.mark(element))
+    return Collision(geometry, origin, part.location(element))
 
 
 def _read_geometry(owner: Element, element: Element | None, part: Part, notes: Notes) -> Geometry | None:
@@ -94,17 +94,17 @@ def _read_geometry(owner: Element, element: Element | None, part: Part, notes: N
         part.fail("<geometry> is empty", element)
         return None
     shape = element[0]
-    mark = part.mark(shape)
+    location = part.location(shape)
     match shape.tag:
         case "box":
             if shape.get("size") is None:
                 part.fail("<box> has no size", shape)
             size = part.vector(shape, "size")
-            geometry: Geometry | None = Box(size, mark) if size is not None else None
+            geometry: Geometry | None = Box(size, location) if size is not None else None
         case "cylinder":
-            geometry = Cylinder(part.needed(shape, "radius"), part.needed(shape, "length"), mark)
+            geometry = Cylinder(part.needed(shape, "radius"), part.needed(shape, "length"), location)
         case "sphere":
-            geometry = Sphere(part.needed(shape, "radius"), mark)
+            geometry = Sphere(part.needed(shape, "radius"), location)
         case "mesh":
             geometry = _read_mesh(shape, part)
         case unknown:
@@ -122,7 +122,7 @@ def _read_mesh(shape: Element, part: Part) -> Mesh | None:
     scale = part.vector(shape, "scale") if shape.get("scale") is not None else (1.0, 1.0, 1.0)
     if filename is None or scale is None:
         return None
-    return Mesh(filename, scale, part.mark(shape))
+    return Mesh(filename, scale, part.location(shape))
 
 
 def _note_negative(geometry: Geometry | None, shape: Element, notes: Notes) -> None:

@@ -34,7 +34,7 @@ class Materials:
             message = f"material {quoted(name or '')} is defined twice under <robot>; ROS 2 loads nothing"
             notes.add(catalogue.DUPLICATE_MATERIAL, message, element, "name")
             return
-        self.known[name or ""] = material or Material(name or "", mark=notes.mark(element))
+        self.known[name or ""] = material or Material(name or "", location=notes.location(element))
 
     def assign(self, element: Element, link: str) -> tuple[Material | None, str]:
         """The material that a visual gets, and its name: a registered one wins, else the one in place is registered."""
@@ -77,8 +77,8 @@ class Materials:
                 self._notes.printed(f"{name} {text}", colour, "rgba")
         if channels is None and filename is None:
             return None, complained
-        mark = self._notes.mark(element if colour is None else colour)
-        return Material(name, channels or _BLACK, filename or "", mark), complained
+        location = self._notes.location(element if colour is None else colour)
+        return Material(name, channels or _BLACK, filename or "", location), complained
 
     def _undefined(self, name: str, element: Element, link: str) -> None:
         notes = self._notes
@@ -87,7 +87,7 @@ class Materials:
             self._defined = {each.get("name") or "": each for each in reversed(every)}
         later = self._defined.get(name)
         if later is not None:
-            line = notes.mark(later).location().line
+            line = notes.location(later).resolve().line
             hint = f" before its definition in line {line}; define it directly under <robot>"
         else:
             hint = f", which is defined nowhere{notes.did_you_mean(name, self._defined)}"

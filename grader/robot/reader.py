@@ -101,7 +101,7 @@ def _read_robot(root: Element, notes: Notes) -> Robot:
     for element in root.iterchildren("link"):
         link = read_link(element, notes, materials)
         if link.name in links:
-            line = notes.mark(links[link.name][1]).location().line
+            line = notes.location(links[link.name][1]).resolve().line
             message = f"there is a link {quoted(link.name)} already, in line {line}; ROS 2 loads nothing of the file"
             notes.add(catalogue.DUPLICATE_LINK, message, element, "name")
         else:
@@ -132,7 +132,7 @@ def _read_joints(root: Element, notes: Notes) -> tuple[Joint, ...]:
         if element.get("name") is None:
             continue
         if joint.name in seen:
-            line = notes.mark(seen[joint.name]).location().line
+            line = notes.location(seen[joint.name]).resolve().line
             message = f"there is a joint {quoted(joint.name)} already, in line {line}; ROS 2 loads nothing of the file"
             notes.add(catalogue.DUPLICATE_JOINT, message, element, "name")
         seen.setdefault(joint.name, element)

@@ -6,7 +6,7 @@ from itertools import islice
 from grader.robot import catalogue
 from grader.robot.diagnostics import Notes
 from grader.robot.model import Joint, Robot
-from grader.robot.parent_joints import holding_joints
+from grader.robot.parent_joints import parent_joints
 from grader.text import quoted
 from grader.xml.parsing import Element
 
@@ -21,7 +21,7 @@ Edges = dict[str, list[Joint]]
 def check_tree(robot: Robot, links: dict[str, Element], notes: Notes) -> None:
     """Note everything that keeps the links from being one tree. `links` gives the elements by name."""
     _check_names(robot, links, notes)
-    held = holding_joints(robot)
+    held = parent_joints(robot)
     roots = [link.name for link in robot.links if link.name not in held]
     if len(roots) == 1 and len(held) == len(robot.joints) and _all_reached(roots[0], robot.joints, len(links)):
         return
