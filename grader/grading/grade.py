@@ -23,7 +23,6 @@ from grader.robot.shapes import UnknownShape
 from grader.source import LazyLocation, Location
 from grader.submission.submission import Submission
 from grader.submission.urdf import NeedsExpansion, Read
-from grader.text import quoted
 
 # Problems that say why a measurement came out as it did.
 _TELLING = (BAD_COLOUR, COLOUR_COUNT, DEGREES, UNDEFINED_MATERIAL)
@@ -136,7 +135,7 @@ class _Run:
     def _dropped(self, outcome: Outcome, link: str) -> Outcome:
         """A link that shows nothing, with the reason why ROS 2 has dropped what the file gives it."""
         for problem in self._problems:
-            if problem.kind in (BAD_VISUAL, BAD_INERTIAL) and f"link {quoted(link)}" in problem.message:
+            if problem.kind in (BAD_VISUAL, BAD_INERTIAL) and problem.subject == link:
                 return outcome._replace(message=f"{outcome.message}: {problem.message}", location=problem.location)
         return outcome
 

@@ -21,7 +21,7 @@ _LONGEST_NAME = 60
 _SPACE = " \t\n\v\f\r"
 
 
-class Finding(NamedTuple):
+class Difference(NamedTuple):
     """A difference or an error at a character offset."""
 
     kind: Kind
@@ -36,7 +36,7 @@ class Scan:
     xml: bytes = b""
     offsets: list[int] = field(default_factory=list)
     first_tag: int = 0
-    findings: list[Finding] = field(default_factory=list)
+    differences: list[Difference] = field(default_factory=list)
 
 
 class Scanner:
@@ -62,7 +62,7 @@ class Scanner:
             position = self._node(position)
         scanned = self._scanned
         if self._errors:
-            scanned.findings = [each for each in scanned.findings if each.kind is not catalogue.NOT_WELL_FORMED]
+            scanned.differences = [each for each in scanned.differences if each.kind is not catalogue.NOT_WELL_FORMED]
         else:
             self._note_roots()
             scanned.xml = "".join(self._out).encode()
@@ -241,7 +241,7 @@ class Scanner:
             self._find(catalogue.SEVERAL_ROOTS, message, other.offset)
 
     def _find(self, kind: Kind, message: str, offset: int) -> None:
-        self._scanned.findings.append(Finding(kind, message, offset))
+        self._scanned.differences.append(Difference(kind, message, offset))
 
     def _refuse(self, kind: Kind, message: str, offset: int) -> None:
         self._errors += 1
