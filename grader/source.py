@@ -1,4 +1,4 @@
-"""Where things stand in the text of a file: line and column of a tag or of one of its attributes."""
+"""Locations in the text of a file: line and column of a tag or of one of its attributes."""
 
 import re
 from bisect import bisect_right
@@ -14,7 +14,7 @@ _ATTRIBUTE = re.compile(r"""\s*([^\s=/>"']+)\s*=\s*(?:"[^"]*"|'[^']*')""")
 
 @dataclass(frozen=True, slots=True)
 class Location:
-    """A place in a file of the submission; line and column count from 1, columns in characters."""
+    """A location in a file of the submission; line and column count from 1, columns in characters."""
 
     path: str
     line: int
@@ -22,7 +22,7 @@ class Location:
 
 
 class Source:
-    """The text of one file. Places are worked out when they are asked for: most never are."""
+    """The text of one file, in which locations are computed on demand: most never are."""
 
     __slots__ = ("_lines", "_tags", "path", "text")
 
@@ -34,7 +34,7 @@ class Source:
         self._lines: list[int] | None = None
 
     def at(self, offset: int) -> Location:
-        """The place of a character offset."""
+        """Return the location of a character offset."""
         if self._lines is None:
             lengths = (len(line) for line in self.text.split("\n"))
             self._lines = list(accumulate((length + 1 for length in lengths), initial=0))
@@ -45,21 +45,23 @@ class Source:
         return Location(self.path, line, offset - start + 1)
 
     def tag(self, index: int, attribute: str | None = None) -> Location:
-        """The place of the start tag with this index in document order, or of an attribute in it if it is there."""
-        if self._tags is None:
-            self._tags = [match.start() for match in _START_TAG.finditer(self.text) if len(match[0]) == 1]
-        start = self._tags[index]
+        """Return the location of the start tag with this index in document order, or of an attribute if it has it."""
+        start = self._start_tags()[index]
         return self.at(start if attribute is None else self._attribute(start, attribute))
 
-    def below(self, index: int, name: str) -> int:
-        """The index of the first start tag of this name behind another one; that one where there is none."""
-        self.tag(index)
+    def _start_tags(self) -> list[int]:
+        if self._tags is None:
+            self._tags = [match.start() for match in _START_TAG.finditer(self.text) if len(match[0]) == 1]
+        return self._tags
+
+    def next_tag(self, index: int, name: str) -> int:
+        """Return the index of the first start tag of this name after another one; that one if there is none."""
         opening = re.compile(rf"<\s*{re.escape(name)}(?![^\s=/>])")
-        tags = self._tags or []
-        return next((each for each in range(index + 1, len(tags)) if opening.match(self.text, tags[each])), index)
+        tags = self._start_tags()
+        return next((other for other in range(index + 1, len(tags)) if opening.match(self.text, tags[other])), index)
 
     def line(self, number: int) -> str:
-        """The text of a line, counted from 1, without its end."""
+        """Return the text of a line, counted from 1, without its line break."""
         lines = self.text.split("\n", number)
         return lines[number - 1].rstrip("\r").removeprefix("\ufeff") if 0 < number <= len(lines) else ""
 
@@ -73,29 +75,18 @@ class Source:
         return start
 
 
-class Mark(NamedTuple):
-    """An element's place in a source, worked out on demand; `tag` counts its start tag in document order, from 0."""
+class LazyLocation(NamedTuple):
+    """The place of an element or of one of its attributes, which is computed on demand: most never are.
+
+    `tag` counts the element's start tag in document order, from 0. With `inside` the first element of this name in it is meant.
+    """
 
     source: Source
     tag: int
-
-    def below(self, name: str) -> "Mark":
-        """The first element of this name that follows: one that is known to be inside."""
-        return Mark(self.source, self.source.below(self.tag, name))
-
-    def location(self, attribute: str | None = None) -> Location:
-        """The place of the tag, or of one of its attributes."""
-        return self.source.tag(self.tag, attribute)
-
-
-class Spot(NamedTuple):
-    """An element or one of its attributes, whose place is worked out on demand."""
-
-    mark: Mark
     attribute: str | None = None
-    inside: str | None = None  # the name of an element in it that is meant instead
+    inside: str | None = None
 
-    def location(self) -> Location:
-        """The place of the attribute if it is there, else of the tag."""
-        mark = self.mark if self.inside is None else self.mark.below(self.inside)
-        return mark.location(self.attribute)
+    def resolve(self) -> Location:
+        """Return the location of the attribute if the element has it, else of the tag."""
+        tag = self.tag if self.inside is None else self.source.next_tag(self.tag, self.inside)
+        return self.source.tag(tag, self.attribute)

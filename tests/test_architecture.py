@@ -31,7 +31,7 @@ INNER = {
 LIBRARIES = {
     "typer": {"cli"},
     "rich": {"cli", "report", "usecases"},
-    "lxml": {"xml", "robot", "report"},  # a report may be XML
+    "lxml": {"xml", "report"},  # a report may be XML
     "yaml": {"package"},
     "ast": {"static_python", "package", "xacro"},
     "imagesize": {"documents"},

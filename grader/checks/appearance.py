@@ -24,7 +24,11 @@ def shows_box(robot: Configuration, *, link: str, size: Vector, tolerance: float
     edges = [(_edges(visual), visual) for visual in found]
     actual, visual = min(edges, key=lambda each: _largest_gap(each[0], size))
     turned = actual is None or within(max(map(abs, minus(_sorted(actual), _sorted(size)))), 0.0, tolerance)
-    at = place(visual.origin.mark, "rpy") if turned and any(visual.origin.rpy) else place(visual.geometry.mark, "size")
+    at = (
+        place(visual.origin.location, "rpy")
+        if turned and any(visual.origin.rpy)
+        else place(visual.geometry.location, "size")
+    )
     if actual is None:
         return failed(f"the box of {link!r} is turned: its edges are not along the axes of {link!r}", at)
     fine = all(within(a, b, tolerance) for a, b in zip(actual, size, strict=True))
@@ -43,10 +47,10 @@ def shows_cylinder(robot: Configuration, *, link: str, radius: float, length: fl
     right_radius = within(actual[0], radius, tolerance)
     fine = right_radius and within(actual[1], length, tolerance)
     message = f"{link!r} shows a cylinder of radius {point(actual[:1])} m and length {point(actual[1:])} m"
-    at = place(best.mark)
+    at = place(best.location)
     if not fine:
         message += f", expected radius {point((radius,))} m and length {point((length,))} m"
-        at = place(best.mark, "length" if right_radius else "radius")
+        at = place(best.location, "length" if right_radius else "radius")
     return judged(fine, message, actual=actual, expected=expected, tolerance=tolerance, unit="m", at=at)
 
 
@@ -57,7 +61,7 @@ def shows_sphere(robot: Configuration, *, link: str, radius: float, tolerance: f
         return _other_shape(robot, link, "sphere")
     best = min(found, key=lambda shape: abs(abs(shape.radius) - radius))
     what = f"the radius of the sphere that {link!r} shows"
-    at = place(best.mark, "radius")
+    at = place(best.location, "radius")
     return measured(what, actual=abs(best.radius), expected=radius, tolerance=tolerance, unit="m", at=at)
 
 
@@ -76,7 +80,7 @@ def shows_colour(
     message = f"{link!r} is shown in {_channels(colour)} {point(actual)}"
     if not fine:
         message += f", expected {point(colour)}"
-    at = place(visual.material.mark, "rgba")
+    at = place(visual.material.location, "rgba")
     return judged(fine, message, actual=actual, expected=colour, tolerance=tolerance, at=at)
 
 
@@ -93,7 +97,7 @@ def shows_grey(robot: Configuration, *, link: str, at_least: float, tolerance: f
         message += ", which is no grey: red, green and blue differ"
     elif not is_light:
         message += f", darker than {at_least:g}"
-    at = place(visual.material.mark, "rgba")
+    at = place(visual.material.location, "rgba")
     return judged(is_grey and is_light, message, actual=actual, expected=at_least, tolerance=tolerance, at=at)
 
 
@@ -107,7 +111,7 @@ def shows_nothing(robot: Configuration, *, link: str) -> Outcome:
     if not shown:
         return passed(f"{link!r} shows nothing")
     message = f"{link!r} shows {shape_name(shown[0].geometry)}, expected a link without a visual"
-    return failed(message, place(shown[0].mark))
+    return failed(message, place(shown[0].location))
 
 
 def _edges(visual: Visual) -> Vector | None:
@@ -136,7 +140,7 @@ def _largest_gap(actual: Vector | None, expected: Vector) -> float:
 def _other_shape(robot: Configuration, link: str, wanted: str) -> Outcome:
     visual = body(robot, link)
     message = f"{link!r} shows {shape_name(visual.geometry)}, expected a {wanted}"
-    raise MissingElement(wanted, link, message=message, location=place(visual.geometry.mark))
+    raise MissingElement(wanted, link, message=message, location=place(visual.geometry.location))
 
 
 def _is_only_a_picture(material: Material) -> bool:
@@ -151,7 +155,9 @@ def _colourless(link: str, visual: Visual) -> Outcome:
         message = f"{link!r} has no colour: ROS 2 knows no colour of the material {visual.material_name!r} here"
     else:
         message = f"{link!r} has no material, so RViz shows its default red"
-    return failed(message, place(visual.mark, "name", "material") if visual.material_name else place(visual.mark))
+    return failed(
+        message, place(visual.location, "name", "material") if visual.material_name else place(visual.location)
+    )
 
 
 def _channels(colour: tuple[float, ...]) -> str:

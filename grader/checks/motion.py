@@ -9,7 +9,7 @@ from grader.robot.kinematics import Configuration
 from grader.robot.model import Cylinder, Joint
 from grader.robot.shapes import extent, farthest, volume
 from grader.robot.transforms import Vector, cross, dot, minus, unit
-from grader.source import Spot
+from grader.source import LazyLocation
 
 _SMALL_ANGLE = 1e-3  # rad; also metres for a sliding joint
 _STANDSTILL = 1e-9  # metres
@@ -65,8 +65,8 @@ def axis_along(
     fine = off <= tolerance + SLACK
     if not fine:
         message += f", expected {point(expected)}: {quantity(off, 'deg')} off"
-    joint = robot.holding.get(link)
-    at = place(joint.origin.mark if joint and joint.origin else None, "rpy") or place(robot.link(link).mark)
+    joint = robot.parent_joints.get(link)
+    at = place(joint.origin.location if joint and joint.origin else None, "rpy") or place(robot.link(link).location)
     return judged(fine, message, actual=actual, expected=expected, tolerance=tolerance, unit="deg", at=at)
 
 
@@ -76,13 +76,13 @@ def turns_about_itself(robot: Configuration, *, link: str, base: str, tolerance:
     visual = max(cylinders, key=lambda each: volume(each.geometry)) if cylinders else body(robot, link)
     if not isinstance(visual.geometry, Cylinder):
         message = f"{link!r} shows no cylinder, so it has no axis to turn about"
-        raise MissingElement("cylinder", link, message=message, location=place(visual.geometry.mark))
+        raise MissingElement("cylinder", link, message=message, location=place(visual.geometry.location))
     joint = _turning_joint(robot, link, base)
     T_joint_wheel = pose_of(robot, link, visual, joint.child)
     turning, own = robot.axis(joint), T_joint_wheel.rotate((0.0, 0.0, 1.0))
     tilt = min(_angle(turning, own), 180.0 - _angle(turning, own))
     away = hypot(*cross(turning, T_joint_wheel.translation))
-    at = place(joint.axis_mark, "xyz") or place(joint.mark)
+    at = place(joint.axis_location, "xyz") or place(joint.location)
     if tilt > angle + SLACK:
         message = (
             f"{link!r} wobbles: the axis of joint {joint.name!r} is {quantity(tilt, 'deg')} off the cylinder's axis"
@@ -94,16 +94,21 @@ def turns_about_itself(robot: Configuration, *, link: str, base: str, tolerance:
         message = (
             f"{link!r} turns off its centre: joint {joint.name!r} turns it about a line {size(away, 'm')} beside it"
         )
-    at = place(visual.origin.mark, "xyz") or at
+    at = place(visual.origin.location, "xyz") or at
     return judged(fine, message, actual=away, expected=0.0, tolerance=tolerance, unit="m", at=at)
 
 
-def _axis_place(joint: Joint) -> Spot | None:
+def _axis_place(joint: Joint) -> LazyLocation | None:
     """Where an axis got its direction: from the joint's own turn, if it is the z axis of a frame that is turned."""
     origin = joint.origin
-    if origin is not None and any(origin.rpy) and joint.axis_mark is not None and unit(joint.axis or _NONE) == _Z_AXIS:
-        return place(origin.mark, "rpy")
-    return place(joint.axis_mark, "xyz") or place(joint.mark)
+    if (
+        origin is not None
+        and any(origin.rpy)
+        and joint.axis_location is not None
+        and unit(joint.axis or _NONE) == _Z_AXIS
+    ):
+        return place(origin.location, "rpy")
+    return place(joint.axis_location, "xyz") or place(joint.location)
 
 
 def _turning_joint(robot: Configuration, link: str, base: str) -> Joint:
@@ -112,7 +117,7 @@ def _turning_joint(robot: Configuration, link: str, base: str) -> Joint:
     moving = [joint for joint in way if joint.type in _TURNING_TYPES]
     if not moving:
         message = f"no joint between {base!r} and {link!r} turns"
-        raise MissingElement("moving joint", link, message=message, location=place(way[-1].mark if way else None))
+        raise MissingElement("moving joint", link, message=message, location=place(way[-1].location if way else None))
     return moving[-1]
 
 

@@ -6,7 +6,7 @@ from math import isfinite
 from typing import Literal, NamedTuple
 
 from grader.robot.transforms import Vector
-from grader.source import Location, Mark, Spot
+from grader.source import LazyLocation, Location
 
 Status = Literal["passed", "failed", "skipped", "pending", "errored"]
 Value = bool | float | str | tuple[float, ...] | tuple[str, ...] | Mapping[str, str] | None
@@ -74,9 +74,9 @@ def passed(message: str) -> Outcome:
     return Outcome("passed", message)
 
 
-def failed(message: str, at: Spot | None = None) -> Outcome:
+def failed(message: str, at: LazyLocation | None = None) -> Outcome:
     """The fact is not true of the submission; `at` is where to look."""
-    return Outcome("failed", message, location=at.location() if at else None)
+    return Outcome("failed", message, location=at.resolve() if at else None)
 
 
 def judged_as(status: Status, message: str, at: Location | None = None) -> Outcome:
@@ -92,10 +92,10 @@ def judged(
     expected: Value,
     tolerance: float | None = None,
     unit: str | None = None,
-    at: Spot | None = None,
+    at: LazyLocation | None = None,
 ) -> Outcome:
     """A measurement that passes or fails; only a failure has a place to look at."""
-    location = at.location() if at and not fine else None
+    location = at.resolve() if at and not fine else None
     return Outcome("passed" if fine else "failed", message, actual, expected, tolerance, unit, location)
 
 
@@ -112,7 +112,7 @@ def measured(
     tolerance: float,
     unit: str,
     sides: tuple[str, str] = ("too large", "too small"),
-    at: Spot | None = None,
+    at: LazyLocation | None = None,
 ) -> Outcome:
     """One number against the one that is expected, as in "the bottom is at -0.1 m, expected 0 m: 100 mm too low"."""
     fine = within(actual, expected, tolerance)
@@ -123,7 +123,7 @@ def measured(
 
 
 def measured_point(
-    what: str, *, actual: Vector, expected: Vector, tolerance: float, frame: str, at: Spot | None = None
+    what: str, *, actual: Vector, expected: Vector, tolerance: float, frame: str, at: LazyLocation | None = None
 ) -> Outcome:
     """A point in metres against the one that is expected; each coordinate must be within the tolerance."""
     off = [
@@ -163,9 +163,9 @@ def point(values: tuple[float, ...]) -> str:
     return " ".join(map(_short, values))
 
 
-def place(mark: Mark | None, attribute: str | None = None, inside: str | None = None) -> Spot | None:
-    """Where an element stands in the file, if it stands there at all; or one of its attributes, or an element inside."""
-    return Spot(mark, attribute, inside) if mark is not None else None
+def place(element: LazyLocation | None, attribute: str | None = None, inside: str | None = None) -> LazyLocation | None:
+    """Return where one of an element's attributes is in the file, or an element inside; None for an element made in code."""
+    return element._replace(attribute=attribute, inside=inside) if element is not None else None
 
 
 def listing(names: tuple[str, ...] | list[str]) -> str:

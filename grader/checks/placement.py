@@ -25,7 +25,7 @@ from grader.robot.model import Box, Geometry, Mesh, Visual
 from grader.robot.separation import penetration
 from grader.robot.shapes import UnknownShape, extent
 from grader.robot.transforms import Transform, Vector, dot, minus, unit
-from grader.source import Spot
+from grader.source import LazyLocation
 
 _AHEAD: Vector = (1.0, 0.0, 0.0)
 _LEFT: Vector = (0.0, 1.0, 0.0)
@@ -68,13 +68,13 @@ def centre_at(
     if rigid:
         way = robot.between(relative_to, link)
         loose = next((joint for joint in way if joint.type != "fixed"), None)
-        held = robot.holding.get(link)
+        held = robot.parent_joints.get(link)
         if loose is not None and held is not None and held in way and loose is not held:
             message = f"joint {held.name!r} holds {link!r} to {held.parent!r}, which moves: joint {loose.name!r} is {loose.type}"
-            return failed(message, place(held.mark, "link", "parent"))
+            return failed(message, place(held.location, "link", "parent"))
         if loose is not None:
             message = f"joint {loose.name!r} between {relative_to!r} and {link!r} is {loose.type}, expected fixed"
-            return failed(message, place(loose.mark, "type"))
+            return failed(message, place(loose.location, "type"))
     at = _culprit(robot, link, visual, relative_to, minus(pose.translation, xyz))
     return measured_point(
         f"the centre of what {link!r} shows",
@@ -82,7 +82,7 @@ def centre_at(
         expected=xyz,
         tolerance=tolerance,
         frame=relative_to,
-        at=at or place(visual.mark),
+        at=at or place(visual.location),
     )
 
 
@@ -105,7 +105,7 @@ def bottom_at_height(
         tolerance=tolerance,
         unit="m",
         sides=("too high", "too low"),
-        at=place(visual.origin.mark, "xyz") or place(visual.mark),
+        at=place(visual.origin.location, "xyz") or place(visual.location),
     )
 
 
@@ -173,7 +173,7 @@ def clear_of(robot: Configuration, *, link: str, of: str, tolerance: float) -> O
     if fine and isinstance(unknown, Mesh):
         raise UnknownShape(unknown)
     message = f"{link!r} does not cut into {of!r}" if fine else f"{link!r} cuts {size(deepest, 'm')} deep into {of!r}"
-    at = place(culprit.origin.mark, "xyz") or place(culprit.mark)
+    at = place(culprit.origin.location, "xyz") or place(culprit.location)
     return judged(fine, message, actual=round(deepest, 4), expected=0.0, tolerance=tolerance, unit="m", at=at)
 
 
@@ -245,18 +245,18 @@ def _turned(pose: Transform) -> float:
     return degrees(acos(max(-1.0, min(1.0, (a + e + i - 1.0) / 2.0))))
 
 
-def _culprit(robot: Configuration, link: str, visual: Visual, relative_to: str, off: Vector) -> Spot | None:
+def _culprit(robot: Configuration, link: str, visual: Visual, relative_to: str, off: Vector) -> LazyLocation | None:
     """Which origin to look at where a visual is off: its own if it is moved along that line, else the joint's."""
     T_relative_link = robot.pose(link, relative_to=relative_to)
     moved, error = unit(T_relative_link.rotate(visual.origin.xyz)), unit(off)
     if moved is not None and error is not None and abs(dot(moved, error)) > _ALONG:
-        return place(visual.origin.mark, "xyz")
-    return _origin_place(robot, link) or place(visual.mark)
+        return place(visual.origin.location, "xyz")
+    return _origin_place(robot, link) or place(visual.location)
 
 
 def _common_place(
     robot: Configuration, wrong: dict[str, float], lowest: dict[str, float], relative_to: str, tolerance: float
-) -> Spot | None:
+) -> LazyLocation | None:
     """Where to look if some heights are off: where the frame is put if all are off alike, else where the first is put."""
     first, value = next(iter(wrong.items()))
     alike = len(wrong) == len(lowest) > 1 and all(within(each, value, tolerance) for each in wrong.values())
@@ -264,9 +264,9 @@ def _common_place(
     return _origin_place(robot, way[0].child if way else first)
 
 
-def _origin_place(robot: Configuration, link: str) -> Spot | None:
+def _origin_place(robot: Configuration, link: str) -> LazyLocation | None:
     """Where the origin is written that puts a link into its parent."""
-    joint = robot.holding.get(link)
+    joint = robot.parent_joints.get(link)
     if joint is None:
-        return place(robot.link(link).mark)
-    return place(joint.origin.mark if joint.origin else None, "xyz") or place(joint.mark)
+        return place(robot.link(link).location)
+    return place(joint.origin.location if joint.origin else None, "xyz") or place(joint.location)

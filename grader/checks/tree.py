@@ -32,9 +32,9 @@ def held_by(robot: Configuration, *, link: str, parent: str, joint_type: JointTy
     if chain is None:
         return _not_below(robot, link, parent)
     if not chain:
-        return failed(f"{link!r} is itself the parent, so no joint holds it", place(robot.link(link).mark))
-    held = robot.holding[link]
-    at = place(held.mark, "type")
+        return failed(f"{link!r} is itself the parent, so no joint holds it", place(robot.link(link).location))
+    held = robot.parent_joints[link]
+    at = place(held.location, "type")
     moving = [joint for joint in chain if joint.type != "fixed"]
     wanted = [] if joint_type == "fixed" else [joint_type]
     if [joint.type for joint in moving] == wanted:
@@ -49,13 +49,13 @@ def held_by(robot: Configuration, *, link: str, parent: str, joint_type: JointTy
         kind = f"has the type {wrong.type!r}, which does not exist{guess}" if wrong.type else "has no type"
         message = f"joint {wrong.name!r}, which holds {link!r}, {kind}"
         if not wanted or len(unknown) < len(moving):
-            return failed(message, place(wrong.mark, "type"))
-        raise MissingElement("moving joint", link, message=message, location=place(wrong.mark, "type"))
+            return failed(message, place(wrong.location, "type"))
+        raise MissingElement("moving joint", link, message=message, location=place(wrong.location, "type"))
     if len(moving) > 1:
         names = listing([joint.name for joint in moving])
         expected = "only fixed joints" if not wanted else f"one {joint_type} joint"
         return failed(f"several joints move {link!r}: {names}; expected {expected}", at)
-    at = place(moving[0].mark, "type")
+    at = place(moving[0].location, "type")
     return failed(f"joint {moving[0].name!r}, which holds {link!r}, is {moving[0].type}, expected {joint_type}", at)
 
 
@@ -70,8 +70,8 @@ def joints_named(robot: Configuration, *, parent: str, joints: Mapping[str, str]
     for name, link in joints.items():
         if _is_named(robot, name, link, parent):
             continue
-        held = robot.holding.get(link)
-        at = at or (place(held.mark, "name") if held else None)
+        held = robot.parent_joints.get(link)
+        at = at or (place(held.location, "name") if held else None)
         wrong.append(
             f"{link!r} is held by {held.name!r}, not {name!r}" if held else f"no joint {name!r} holds {link!r}"
         )
@@ -84,7 +84,7 @@ def _is_named(robot: Configuration, name: str, link: str, parent: str) -> bool:
     if not robot.robot.has_link(link):
         return False
     named = [joint for joint in robot.robot.joints if joint.name == name]
-    held = robot.holding.get(link)
+    held = robot.parent_joints.get(link)
     if held is not None:
         joined = robot.robot.has_link(parent) and robot.root_of(parent) == robot.root_of(link)
         way = robot.between(parent, link) if joined else (held,)
@@ -96,29 +96,29 @@ def root_of_tree(robot: Configuration, *, link: str, holds: str) -> Outcome:
     """A link is the root of the tree, and fixed joints lead from it to another link."""
     robot.link(link)
     chain = robot.chain(holds, above=link)
-    if link in robot.holding:
-        held = robot.holding[link]
+    if link in robot.parent_joints:
+        held = robot.parent_joints[link]
         return failed(
-            f"{link!r} is not the root: joint {held.name!r} makes it a child of {held.parent!r}", place(held.mark)
+            f"{link!r} is not the root: joint {held.name!r} makes it a child of {held.parent!r}", place(held.location)
         )
     if chain is None:
         return _not_below(robot, holds, link)
     loose = [joint for joint in chain if joint.type != "fixed"]
     if loose:
         message = f"joint {loose[0].name!r} between {link!r} and {holds!r} is {loose[0].type}, expected fixed"
-        return failed(message, place(loose[0].mark, "type"))
+        return failed(message, place(loose[0].location, "type"))
     return passed(f"{link!r} is the root, and {holds!r} is fixed to it")
 
 
 def _not_below(robot: Configuration, link: str, parent: str) -> Outcome:
     robot.pose(link, relative_to=parent)  # raises where nothing joins the two
-    held = robot.holding.get(link)
+    held = robot.parent_joints.get(link)
     if held is None:
         above = _last(robot.chain(parent, above=link))
         message = f"{link!r} is above {parent!r}: joint {above.name!r} has them as parent and child the other way round"
-        return failed(message, place(above.mark))
+        return failed(message, place(above.location))
     message = f"joint {held.name!r} holds {link!r} to {held.parent!r}, expected {parent!r} as the parent"
-    return failed(message, place(held.mark, "link", "parent"))
+    return failed(message, place(held.location, "link", "parent"))
 
 
 def _last(chain: tuple[Joint, ...] | None) -> Joint:

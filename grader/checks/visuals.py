@@ -6,7 +6,7 @@ from grader.checks.outcome import place
 from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Cylinder, Geometry, Mesh, Sphere, Visual
-from grader.robot.motion import behind
+from grader.robot.motion import placed_by
 from grader.robot.shapes import extent, is_empty, volume
 from grader.robot.transforms import Transform, Vector
 
@@ -19,7 +19,7 @@ def visuals(robot: Configuration, link: str) -> tuple[Visual, ...]:
         robot.shown[link] = shown
     if not shown:
         message = f"link {link!r} shows nothing that has a size"
-        raise MissingElement("visual", link, message=message, location=place(robot.link(link).mark))
+        raise MissingElement("visual", link, message=message, location=place(robot.link(link).location))
     return shown
 
 
@@ -45,13 +45,13 @@ def body(robot: Configuration, link: str, shape: ShapeName = "any") -> Visual:
 
 def pose_of(robot: Configuration, link: str, visual: Visual, relative_to: str) -> Transform:
     """T_relative_visual; raises MissingElement where it is not defined."""
-    return behind(robot.pose(link, relative_to=relative_to), visual.origin)
+    return placed_by(robot.pose(link, relative_to=relative_to), visual.origin)
 
 
 def span(robot: Configuration, link: str, relative_to: str, direction: Vector) -> tuple[float, float]:
     """The lowest and highest coordinate of all that a link shows, along a unit direction of another link's frame."""
     pose = robot.pose(link, relative_to=relative_to)
-    spans = [extent(visual.geometry, behind(pose, visual.origin), direction) for visual in visuals(robot, link)]
+    spans = [extent(visual.geometry, placed_by(pose, visual.origin), direction) for visual in visuals(robot, link)]
     lows, highs = zip(*spans, strict=True)
     return min(lows), max(highs)
 

@@ -20,10 +20,9 @@ from grader.robot.catalogue import (
 )
 from grader.robot.kinematics import Configuration
 from grader.robot.shapes import UnknownShape
-from grader.source import Location, Spot
+from grader.source import LazyLocation, Location
 from grader.submission.submission import Submission
 from grader.submission.urdf import NeedsExpansion, Read
-from grader.text import quoted
 
 # Problems that say why a measurement came out as it did.
 _TELLING = (BAD_COLOUR, COLOUR_COUNT, DEGREES, UNDEFINED_MATERIAL)
@@ -119,7 +118,7 @@ class _Run:
         first = self.missed.setdefault(key, criterion.id)
         if first != criterion.id:
             return Result(criterion, _skipped(first), first)
-        at = missing.location.location() if isinstance(missing.location, Spot) else missing.location
+        at = missing.location.resolve() if isinstance(missing.location, LazyLocation) else missing.location
         outcome = Outcome("failed", str(missing), location=at if isinstance(at, Location) else None)
         if missing.kind == "visual":
             return Result(criterion, self._dropped(outcome, missing.name))
@@ -136,7 +135,7 @@ class _Run:
     def _dropped(self, outcome: Outcome, link: str) -> Outcome:
         """A link that shows nothing, with the reason why ROS 2 has dropped what the file gives it."""
         for problem in self._problems:
-            if problem.kind in (BAD_VISUAL, BAD_INERTIAL) and f"link {quoted(link)}" in problem.message:
+            if problem.kind in (BAD_VISUAL, BAD_INERTIAL) and problem.subject == link:
                 return outcome._replace(message=f"{outcome.message}: {problem.message}", location=problem.location)
         return outcome
 

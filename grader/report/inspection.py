@@ -113,7 +113,7 @@ def _show_rest(console: Console, count: int) -> None:
 
 def _show_tree(robot: Configuration, console: Console) -> None:
     below: dict[str, list[Joint]] = {}
-    for joint in robot.holding.values():
+    for joint in robot.parent_joints.values():
         below.setdefault(joint.parent, []).append(joint)
     branch, last = symbol(console, "\u251c\u2500 ", "|- "), symbol(console, "\u2514\u2500 ", "`- ")
     bar = symbol(console, "\u2502  ", "|  ")
@@ -134,7 +134,7 @@ def _show_tree(robot: Configuration, console: Console) -> None:
             console.print(line, overflow="ignore", no_wrap=True, crop=False)
             waiting += _branches(below.get(joint.child, []), (indent + ("   " if is_last else bar))[-60:])
     if not left:
-        _show_rest(console, len(robot.roots) + len(robot.holding))
+        _show_rest(console, len(robot.roots) + len(robot.parent_joints))
 
 
 def _branches(joints: list[Joint], indent: str) -> list[tuple[Joint, str, bool]]:

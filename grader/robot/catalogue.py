@@ -1,186 +1,189 @@
-"""Every kind of problem that a URDF can have, with what ROS 2 does about it. `docs/problems.md` is generated from it."""
+"""The kinds of problems that a URDF can have, with what ROS 2 does about them. `docs/problems.md` is generated from it."""
 
 from grader.problems import drops, kinds_in, notes, rejects, warns
 from grader.xml import catalogue as xml_catalogue
 
 NO_ROBOT = rejects(
     "URDF013",
-    "No <robot> at the top of the file",
-    'A URDF is one <robot name="..."> that holds the links and joints. ROS 2 finds none at the top level and loads nothing.',
+    "No <robot> at the top level",
+    'A URDF is one <robot name="..."> that contains the links and joints. ROS 2 rejects a file without it.',
 )
 RAW_XACRO = warns(
     "URDF014",
-    "xacro that has not been expanded",
-    "ROS 2's URDF reader does not know xacro: <xacro:...> tags are ignored and ${...} is not a number. Expand the file first: "
-    "`ros2 run xacro xacro my_robot.urdf.xacro > my_robot.urdf`.",
+    "xacro that is not expanded",
+    "ROS 2's URDF reader does not support xacro: it ignores <xacro:...> tags, and ${...} is not a number. Expand the file "
+    "first: `ros2 run xacro xacro my_robot.urdf.xacro > my_robot.urdf`.",
 )
 ROBOT_WITHOUT_NAME = rejects(
-    "URDF020", "A robot without a name", 'ROS 2 demands <robot name="...">; an empty name is accepted.'
+    "URDF020", "A robot without a name", 'ROS 2 requires <robot name="...">; the name may be empty.'
 )
 BAD_VERSION = rejects(
     "URDF021",
-    "A URDF version that ROS 2 does not know",
-    'The `version` of <robot> must be of the form x.y, and ROS 2 Jazzy knows 1.0 only. Leave it out, or write version="1.0".',
+    "An unsupported URDF version",
+    'The `version` of <robot> must be of the form x.y, and ROS 2 Jazzy supports only 1.0. Remove it, or write version="1.0".',
 )
-NO_LINKS = rejects("URDF022", "A robot without links", "ROS 2 loads a robot only if it has at least one <link>.")
+NO_LINKS = rejects("URDF022", "A robot without links", "ROS 2 requires at least one <link>.")
 LINK_WITHOUT_NAME = drops(
     "URDF030",
     "A link without a name",
-    "ROS 2 logs an error and keeps an empty link named '' without what it shows. Two of them are a duplicate.",
+    "ROS 2 logs an error and keeps an empty link named '', without its visuals. Two of them are duplicates.",
 )
 DUPLICATE_LINK = rejects(
     "URDF031",
-    "Two links with one name",
-    "Link names must be unique; ROS 2 loads nothing. It comes about by copy and paste: rename the copy.",
+    "Two links with the same name",
+    "Link names must be unique; otherwise ROS 2 rejects the file. The usual cause is copy and paste: rename the copy.",
 )
 DUPLICATE_JOINT = rejects(
     "URDF032",
-    "Two joints with one name",
-    "Joint names must be unique; ROS 2 loads nothing. It comes about by copy and paste: rename the copy.",
+    "Two joints with the same name",
+    "Joint names must be unique; otherwise ROS 2 rejects the file. The usual cause is copy and paste: rename the copy.",
 )
 DUPLICATE_MATERIAL = rejects(
     "URDF033",
-    "Two materials with one name directly under <robot>",
-    "A material may be defined under <robot> only once; ROS 2 loads nothing. Materials without a name all count as one name.",
+    "Two materials with the same name directly under <robot>",
+    "Each material name may be defined under <robot> only once; otherwise ROS 2 rejects the file. Materials without a name "
+    "count as materials with the same name.",
 )
-JOINT_WITHOUT_NAME = rejects("URDF034", "A joint without a name", 'ROS 2 demands <joint name="..." type="...">.')
+JOINT_WITHOUT_NAME = rejects("URDF034", "A joint without a name", 'ROS 2 requires <joint name="..." type="...">.')
 BAD_INERTIAL = drops(
     "URDF040",
-    "An <inertial> that cannot be read",
-    "ROS 2 logs an error and drops the link's visuals and collisions with it. An inertial needs <mass value> and <inertia> "
+    "An invalid <inertial>",
+    "ROS 2 logs an error and drops the link's inertial, visuals and collisions. An inertial needs <mass value> and <inertia> "
     "with ixx, ixy, ixz, iyy, iyz, izz, all plain numbers.",
 )
 BAD_VISUAL = drops(
     "URDF041",
-    "A <visual> that cannot be read",
-    "ROS 2 logs an error and drops this visual, every visual of the link behind it, and all its collisions. A visual needs "
+    "An invalid <visual>",
+    "ROS 2 logs an error and drops this visual, every later visual of the link, and all its collisions. A visual needs "
     "<geometry> with <box size>, <cylinder radius length>, <sphere radius> or <mesh filename>.",
 )
 BAD_COLLISION = drops(
     "URDF042",
-    "A <collision> that cannot be read",
-    "ROS 2 logs an error and drops this collision and every collision of the link behind it.",
+    "An invalid <collision>",
+    "ROS 2 logs an error and drops this collision and every later collision of the link.",
 )
 FORMAT_DIRECTIVE = rejects(
     "URDF043",
-    "A %n in a value that ROS 2 cannot read",
-    "ROS 2 prints the value that it cannot read through printf, where %n writes to memory: the program can crash.",
+    "A %n in an invalid value",
+    "ROS 2 prints a value that it cannot read through printf, where %n writes to memory: the program can crash.",
 )
 UNNAMED_MATERIAL = drops(
     "URDF050",
     "A material without a name",
-    "ROS 2 logs an error; no link can use the material, as there is no name to refer to.",
+    "ROS 2 logs an error. No link can use the material, because links refer to it by its name.",
 )
 UNDEFINED_MATERIAL = drops(
     "URDF051",
-    "A material that is not defined, or not yet",
-    "The link is shown without the colour. Materials directly under <robot> are known everywhere; one defined inside a link "
-    "is known from that link on, in file order. Define it under <robot>.",
+    "A material that is not defined, or used before its definition",
+    "The link is shown without the colour. A material directly under <robot> is defined for every link; one inside a link is "
+    "defined for that link and the links after it. Define it under <robot>.",
 )
 BAD_COLOUR = drops(
     "URDF052",
-    "A colour that cannot be read",
-    'rgba holds four numbers from 0 to 1: red, green, blue, opacity, as in rgba="0 0.6 0 1". ROS 2 logs an error; a material '
+    "An invalid colour",
+    'rgba takes four numbers from 0 to 1: red, green, blue, opacity, as in rgba="0 0.6 0 1". ROS 2 logs an error; a material '
     "under <robot> becomes black, one inside a link stays undefined. Divide values in 0..255 by 255.",
 )
 COLOUR_COUNT = warns(
     "URDF053",
     "A colour without exactly four numbers",
-    "rgba holds four numbers: red, green, blue, opacity. With another count ROS 2 silently shows black. Add the opacity: 1.",
+    "rgba takes four numbers: red, green, blue, opacity. With another count ROS 2 silently shows black. Add the opacity: 1.",
 )
 COLOURLESS_MATERIAL = drops(
     "URDF054",
     "A material under <robot> without a colour",
-    "ROS 2 logs an error and makes it black. Give it <color rgba> or <texture filename>.",
+    "ROS 2 logs an error and makes it black. Add <color rgba> or <texture filename>.",
 )
 REDEFINED_MATERIAL = warns(
     "URDF055",
     "A second definition of a material, which is ignored",
-    "Of several definitions of one material name the first counts, and those under <robot> come before those in links.",
+    "ROS 2 uses the first definition of a material name; those under <robot> come before those in links.",
 )
 TYPE_MISSING = rejects(
     "URDF060",
     "A joint without a type",
-    "ROS 2 demands a type: fixed, continuous, revolute, prismatic, floating or planar.",
+    "ROS 2 requires a type: fixed, continuous, revolute, prismatic, floating or planar.",
 )
 TYPE_UNKNOWN = rejects(
     "URDF061",
-    "A joint type that does not exist",
-    "The types are fixed, continuous, revolute, prismatic, floating and planar, in lower case without spaces. ROS 2 loads "
-    "nothing with any other.",
+    "An unknown joint type",
+    "The types are fixed, continuous, revolute, prismatic, floating and planar, in lower case without spaces. ROS 2 rejects a "
+    "file with any other.",
 )
 BAD_JOINT_ORIGIN = rejects(
     "URDF062",
-    "A joint origin that cannot be read",
-    'xyz and rpy hold three numbers each, separated by spaces: <origin xyz="0.15 0 0.225" rpy="0 0 0"/>. ROS 2 loads nothing.',
+    "An invalid joint origin",
+    'xyz and rpy take three numbers each, separated by spaces: <origin xyz="0.15 0 0.225" rpy="0 0 0"/>. ROS 2 rejects a file '
+    "with any other value.",
 )
 BAD_AXIS = rejects(
     "URDF063",
-    "A joint axis that cannot be read",
-    'An axis holds three numbers, separated by spaces: <axis xyz="0 0 1"/>. ROS 2 loads nothing (it does not look at the axis '
-    "of fixed and floating joints).",
+    "An invalid joint axis",
+    'An axis takes three numbers, separated by spaces: <axis xyz="0 0 1"/>. ROS 2 rejects a file with any other value, but '
+    "ignores the axis of fixed and floating joints.",
 )
 LIMIT_MISSING = rejects(
     "URDF064",
     "A revolute or prismatic joint without limits",
-    'ROS 2 demands <limit lower upper effort velocity> for them. For a wheel that turns without end use type="continuous".',
+    'These joints require <limit lower upper effort velocity>. For a wheel that turns without end use type="continuous".',
 )
 BAD_LIMIT = rejects(
     "URDF065",
-    "A joint limit that is incomplete or cannot be read",
-    "Any <limit>, even of a fixed or continuous joint, needs effort and velocity, and only plain numbers. ROS 2 loads nothing.",
+    "An incomplete or invalid joint limit",
+    "Every <limit>, even of a fixed or continuous joint, needs effort and velocity, and only plain numbers. Otherwise ROS 2 "
+    "rejects the file.",
 )
 BAD_DYNAMICS = rejects(
     "URDF066",
-    "A joint's <dynamics> that is empty or cannot be read",
-    "<dynamics> needs damping, friction or both, as plain numbers. ROS 2 loads nothing.",
+    "An empty or invalid <dynamics>",
+    "<dynamics> needs damping, friction or both, as plain numbers. Otherwise ROS 2 rejects the file.",
 )
 BAD_MIMIC = rejects(
     "URDF067",
-    "A joint's <mimic> that names no joint or cannot be read",
-    "<mimic> needs the name of a joint; multiplier and offset are plain numbers. ROS 2 loads nothing.",
+    "A <mimic> without a joint, or with an invalid number",
+    "<mimic> needs the name of a joint; multiplier and offset are plain numbers. Otherwise ROS 2 rejects the file.",
 )
 BAD_SAFETY = rejects(
     "URDF068",
-    "A joint's <safety_controller> that is incomplete or cannot be read",
-    "<safety_controller> needs k_velocity; all its values are plain numbers. ROS 2 loads nothing.",
+    "An incomplete or invalid <safety_controller>",
+    "<safety_controller> needs k_velocity; all its values are plain numbers. Otherwise ROS 2 rejects the file.",
 )
 BAD_CALIBRATION = rejects(
     "URDF069",
-    "A joint's <calibration> that cannot be read",
-    "rising and falling are plain numbers. ROS 2 loads nothing.",
+    "An invalid <calibration>",
+    "rising and falling are plain numbers. Otherwise ROS 2 rejects the file.",
 )
 NO_PARENT_OR_CHILD = rejects(
     "URDF070",
     "A joint without parent or child",
-    'A joint holds one link to another: it needs <parent link="..."/> and <child link="..."/>. ROS 2 loads nothing.',
+    'A joint connects two links: it needs <parent link="..."/> and <child link="..."/>. Otherwise ROS 2 rejects the file.',
 )
 UNKNOWN_LINK = rejects(
     "URDF071",
-    "A joint that names a link which does not exist",
-    "Names are compared letter by letter, case included. ROS 2 loads nothing.",
+    "A joint with a link that does not exist",
+    "Names must match exactly, including upper and lower case. Otherwise ROS 2 rejects the file.",
 )
 DEFAULT_AXIS = notes(
     "URDF072",
     "A moving joint without an axis",
-    "ROS 2 takes the x axis (1 0 0) of the joint's frame. Say which axis is meant.",
+    "ROS 2 uses the x axis (1 0 0) of the joint's frame. State the axis.",
 )
 ZERO_AXIS = warns(
     "URDF073",
     "A joint axis of length zero",
-    "ROS 2 loads the file, but the pose of everything behind this joint is undefined (NaN), and TF drops it. An <axis> "
-    "without xyz is 0 0 0, too.",
+    "ROS 2 loads the file, but the pose of every link below this joint is undefined (NaN), and TF drops it. An <axis> without "
+    "xyz is 0 0 0, too.",
 )
 SCALED_AXIS = notes(
     "URDF074",
     "A joint axis whose length is not 1",
-    "Only the direction counts: ROS 2 normalises the axis, so its length changes no speed and no distance.",
+    "Only the direction counts: ROS 2 normalizes the axis, so its length changes neither speed nor distance.",
 )
 EMPTY_RANGE = warns(
     "URDF075",
-    "Joint limits that leave nothing to move",
-    "lower and upper default to 0 and ROS 2 does not check them: a joint whose lower limit is not below its upper one cannot "
-    "be moved by its sliders and controllers.",
+    "Joint limits without a range",
+    "lower and upper default to 0, and ROS 2 does not check them: sliders and controllers cannot move a joint whose lower "
+    "limit is not below its upper limit.",
 )
 MIMIC_TARGET = warns(
     "URDF076",
@@ -190,57 +193,57 @@ MIMIC_TARGET = warns(
 UNPUBLISHED_JOINT = notes(
     "URDF077",
     "A floating or planar joint",
-    "robot_state_publisher does not publish floating joints and treats planar ones as fixed: something else has to publish "
+    "robot_state_publisher does not publish floating joints and treats planar joints as fixed: another node has to publish "
     "the transform.",
 )
 NEGATIVE_SIZE = warns(
     "URDF078",
-    "A size below zero",
-    "ROS 2 does not check sizes. What is shown for a negative one depends on the program that draws it.",
+    "A negative size",
+    "ROS 2 does not check sizes. How a negative size is shown depends on the program that draws it.",
 )
 TWO_ROOTS = rejects(
     "URDF080",
-    "Links that are not joined to the rest",
-    "All links must form one tree: every link but one is the child of a joint. ROS 2 finds several roots and loads nothing. "
-    "Add the missing joint, or mend the link names in the joints.",
+    "Links that are not connected to the robot",
+    "All links must form one tree: every link but one is the child of a joint. ROS 2 rejects a file with several roots. Add "
+    "the missing joint, or fix the link names in the joints.",
 )
 NO_ROOT = rejects(
     "URDF081",
     "A tree without a root",
-    "Every link is the child of some joint, so the links form a loop, and ROS 2 finds nowhere to begin. One link, the root, "
-    "must not be the child of any joint.",
+    "Every link is the child of a joint, so the links form a loop, and ROS 2 rejects the file. One link, the root, must not be "
+    "the child of any joint.",
 )
 CYCLE = rejects(
     "URDF082",
     "A loop of joints",
-    "Following the joints from parent to child comes back to the same link. robot_state_publisher follows the loop for ever "
-    "and crashes. A robot in a URDF is a tree.",
+    "Following the joints from parent to child leads back to the same link. robot_state_publisher follows the loop without "
+    "end and crashes. A robot in a URDF is a tree.",
 )
 DETACHED_CYCLE = drops(
     "URDF083",
-    "Links on a loop apart from the robot",
-    "These links form a loop that is not joined to the root. ROS 2 loads the file, but they are not in the tree and not shown.",
+    "A detached loop of links",
+    "These links form a loop that is not connected to the root. ROS 2 loads the file, but leaves them out of the tree.",
 )
 TWO_PARENTS = warns(
     "URDF084",
-    "A link that two joints claim as their child",
-    "ROS 2 loads the file; the joint that comes last in the alphabet holds the link, the others have no effect on it.",
+    "A link that is the child of two joints",
+    "ROS 2 loads the file and uses the joint that comes last in name order; the others have no effect on the link.",
 )
 TOO_MANY_PATHS = rejects(
     "URDF085",
-    "A tree that branches and meets again too often",
-    "Links with two parents are visited once for every path that leads to them. Here the paths are so many that ROS 2 does "
-    "not finish loading.",
+    "A tree with too many paths",
+    "ROS 2 visits a link with two parents once for every path that leads to it. Here the paths are so many that it does not "
+    "finish loading.",
 )
 REPEATED_ELEMENT = notes(
     "URDF090",
-    "An element that may stand only once",
-    "Of several <origin>, <geometry>, <parent>, <child> or the like in one place the first counts; ROS 2 ignores the others.",
+    "A repeated element",
+    "ROS 2 reads only the first of several <origin>, <geometry>, <parent>, <child> and the like in the same place.",
 )
 MISSPELT = notes(
     "URDF091",
-    "A tag or attribute that ROS 2 does not know and ignores",
-    "Unknown names are skipped in silence. This one looks like a misspelling of a known one.",
+    "An unknown tag or attribute, which is ignored",
+    "ROS 2 silently ignores unknown names. This one looks like a misspelling of a known name.",
 )
 DEGREES = warns(
     "URDF092",
@@ -250,19 +253,19 @@ DEGREES = warns(
 ROOT_INERTIA = notes(
     "URDF093",
     "A root link with an inertia",
-    "robot_state_publisher warns of it, because KDL ignores the inertia of the root. Use a root link without one, such as "
+    "robot_state_publisher warns because KDL ignores the inertia of the root. Use a root link without one, such as "
     "base_footprint.",
 )
 COMMENT_TRAP = notes(
     "URDF094",
     "A comment that can break a launch file",
-    "Where a launch file passes robot_description without ParameterValue(..., value_type=str), ROS 2 reads the URDF as YAML, "
-    "and a comment with a colon and a space, or with a tab, stops the launch.",
+    "If a launch file passes robot_description without ParameterValue(..., value_type=str), ROS 2 reads the URDF as YAML, and "
+    "a comment that contains a colon and a space, or a tab, stops the launch.",
 )
 UNLISTED = notes(
     "URDF099",
     "More problems than are listed",
-    "Only the first thousand problems of a file are listed. Mend these first; many of the others may go with them.",
+    "Only the first thousand problems of a file are listed. Fix these first; many of the others may disappear with them.",
 )
 
 CATALOGUE = kinds_in([*vars(xml_catalogue).values(), *globals().values()])

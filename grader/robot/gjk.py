@@ -13,7 +13,7 @@ _GAP_ERROR = 1e-10  # metres between the two bounds on a gap; its direction errs
 _GAP_STEPS = 200  # pairs of robot parts take fewer than 40; the cap is for what rounding may do
 
 
-def widest_gap(a: Shape, b: Shape, T_a_b: Transform) -> Vector | None:
+def separating_direction(a: Shape, b: Shape, T_a_b: Transform) -> Vector | None:
     """The unit direction from a to b of the gap between their cores, or None where these touch or cut into each other.
 
     It points to what is nearest the origin among all differences between points of b and of a (Gilbert, Johnson and

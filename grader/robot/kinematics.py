@@ -1,15 +1,15 @@
-"""Forward kinematics: where every link is when the joints are at given positions."""
+"""Forward kinematics: the pose of every link with the joints at given positions."""
 
 from collections.abc import Mapping
 from math import isfinite
-from typing import NamedTuple
 
 from grader.errors import MissingElement
+from grader.robot.frames import Frames, undefined_pose
 from grader.robot.model import Joint, Link, Robot, Visual
-from grader.robot.motion import Position, check_position, motion_of, past
-from grader.robot.parent_joints import holding_joints
+from grader.robot.motion import Position, check_position, motion_of
+from grader.robot.parent_joints import parent_joints
+from grader.robot.positions import Positions
 from grader.robot.transforms import IDENTITY, Transform, Vector, unit
-from grader.source import Spot
 from grader.text import quoted
 
 
@@ -17,7 +17,7 @@ class Configuration:
     """A robot with its joints at `positions`: radians or metres; the joints that are not named are at 0.
 
     A planar joint takes x, y (metres in the plane across its axis) and an angle; a floating joint takes x, y, z, roll,
-    pitch, yaw. A mimic joint follows, unless it is named itself. Links that no joint leads to are roots, so a forest is
+    pitch, yaw. A mimic joint follows, unless it is named itself. Links without a parent joint are roots, so a forest is
     solved tree by tree. Every link is solved once: linear in the number of links, without recursion.
     """
 
@@ -28,41 +28,45 @@ class Configuration:
         *,
         holding: Mapping[str, Joint] | None = None,
     ) -> None:
-        """`holding` is holding_joints(robot), if it is known already; positions are taken as checked then.
+        """`holding` is parent_joints(robot), if it is known already; positions are not validated then.
 
         Raises MissingElement for a joint that is not there, ValueError for a position of the wrong shape.
         """
         self.robot = robot
         self.positions = dict(positions or {})
-        self.holding = holding_joints(robot) if holding is None else holding
-        self._relative: dict[tuple[str, str | None], Transform] = {}
+        self.parent_joints = parent_joints(robot) if holding is None else holding
         if holding is None:
             for name, position in self.positions.items():
                 check_position(robot.joint(name), position)
-        self.shown: dict[str, tuple[Visual, ...]] = {}  # kept by those who ask what a link shows
-        self._placed: dict[str, _Placed] = {}
-        self._lost: dict[str, str] = {}  # links on or behind a loop of joints, with one name for the loop
-        self._followed: dict[str, float] = {}
+        self.shown: dict[str, tuple[Visual, ...]] = {}  # a cache for the checks of what a link shows
+        self._positions = Positions(robot, self.positions)
+        self._frames = Frames(robot, self.parent_joints, self._positions)
+        self._relative: dict[tuple[str, str | None], Transform] = {}
+
+    @property
+    def holding(self) -> Mapping[str, Joint]:
+        """The parent joints, by the name that plug-in checks know."""
+        return self.parent_joints
 
     def link(self, name: str) -> Link:
-        """The link of this name; raises MissingElement."""
+        """Return the link of this name; raises MissingElement."""
         return self.robot.link(name)
 
     def joint(self, name: str) -> Joint:
-        """The joint of this name; raises MissingElement."""
+        """Return the joint of this name; raises MissingElement."""
         return self.robot.joint(name)
 
     @property
     def roots(self) -> tuple[str, ...]:
-        """The links that no joint holds, in file order."""
-        return tuple(link.name for link in self.robot.links if link.name not in self.holding)
+        """The links without a parent joint, in file order."""
+        return tuple(link.name for link in self.robot.links if link.name not in self.parent_joints)
 
     def root_of(self, link: str) -> str:
-        """The root of the tree that a link belongs to; raises MissingElement for a link on a loop of joints."""
-        return self._place(link).root
+        """Return the root of the tree that a link is in; raises MissingElement for a link on a loop of joints."""
+        return self._frames.of(link).root
 
     def pose(self, link: str, *, relative_to: str | None = None) -> Transform:
-        """T_root_link, or T_relative_link: the link's frame in another link's frame.
+        """Return T_root_link, or T_relative_link: the link's frame in another link's frame.
 
         Raises MissingElement where there is no such link, no chain of joints between the two, or no defined pose
         (an axis of length zero, an origin that cannot be read).
@@ -76,45 +80,45 @@ class Configuration:
         if relative_to == link:
             self.link(link)
             return IDENTITY
-        ours = self._place(link)
-        theirs = self._place(relative_to) if relative_to is not None else self._place(ours.root)
-        if ours.root != theirs.root:
-            roots = " and ".join(sorted((ours.root, theirs.root)))
-            message = f"no chain of joints leads from {quoted(relative_to or theirs.root)} to {quoted(link)}"
-            raise MissingElement("connection", roots, message=message, location=_spot(self.link(link)))
-        if ours.island != theirs.island:
-            deeper = max(ours, theirs, key=lambda each: each.depth)  # the way crosses into the deeper island
-            raise _undefined(self.holding[deeper.island])
-        if relative_to is None or relative_to == ours.island:
-            return ours.pose
-        pose = theirs.pose.inverse() @ ours.pose
+        frame = self._frames.of(link)
+        base = self._frames.of(relative_to if relative_to is not None else frame.root)
+        if frame.root != base.root:
+            roots = " and ".join(sorted((frame.root, base.root)))
+            message = f"no chain of joints leads from {quoted(relative_to or base.root)} to {quoted(link)}"
+            raise MissingElement("connection", roots, message=message, location=self.link(link).location)
+        if frame.group != base.group:
+            deeper = max(frame, base, key=lambda either: either.depth)  # the chain crosses into the deeper group
+            raise undefined_pose(self.parent_joints[deeper.group])
+        if relative_to is None or relative_to == frame.group:
+            return frame.pose
+        pose = base.pose.inverse() @ frame.pose
         if not isfinite(sum(pose.translation)):
-            raise _undefined(self.between(relative_to, link)[-1])
+            raise undefined_pose(self.between(relative_to, link)[-1])
         return pose
 
     def axis(self, joint: str | Joint) -> Vector:
-        """The unit axis of a joint in its child link's frame; raises MissingElement where it has no direction."""
+        """Return the unit axis of a joint in its child link's frame; raises MissingElement where it has no direction."""
         found = self.joint(joint) if isinstance(joint, str) else joint
         direction = unit(found.axis) if found.axis is not None else None
         if direction is None:
-            raise _undefined(found)
+            raise undefined_pose(found)
         return direction
 
     def chain(self, link: str, *, above: str | None = None) -> tuple[Joint, ...] | None:
-        """The joints that lead to a link, top down, from its root or from the link `above`; None if that is not above."""
+        """Return the joints that lead to a link, top down, from its root or from `above`; None if that is not above it."""
         self.link(link)
         joints: list[Joint] = []
         name = link
-        while name != above and name in self.holding and len(joints) <= len(self.holding):
-            joints.append(self.holding[name])
-            name = self.holding[name].parent
+        while name != above and name in self.parent_joints and len(joints) <= len(self.parent_joints):
+            joints.append(self.parent_joints[name])
+            name = self.parent_joints[name].parent
         if above is not None and name != above:
             self.link(above)
             return None
         return tuple(reversed(joints))
 
     def between(self, one: str, other: str) -> tuple[Joint, ...]:
-        """The joints on the way from one link to another; raises MissingElement where there is no way."""
+        """Return the joints on the path from one link to another; raises MissingElement where there is no path."""
         below = self.chain(other, above=one)
         if below is not None:
             return below
@@ -127,17 +131,20 @@ class Configuration:
         return (*reversed(up[shared:]), *down[shared:])
 
     def moved(self, joint: str | Joint, position: Position) -> "Configuration":
-        """The same robot with one joint elsewhere; raises ValueError for a position that it cannot have."""
+        """Return the same robot with one joint elsewhere; raises ValueError for a position that it cannot have."""
         found = self.joint(joint) if isinstance(joint, str) else joint
         check_position(found, position)
-        return Configuration(self.robot, {**self.positions, found.name: position}, holding=self.holding)
+        return Configuration(self.robot, {**self.positions, found.name: position}, holding=self.parent_joints)
 
     def displacement(self, link: str, joint: Joint, angle: float, *, relative_to: str) -> Transform:
-        """Where points on a link go, both seen from another link, when a joint that turns or slides moves by `angle` from here."""
+        """Return the motion of points on a link when a joint that turns or slides moves by `angle` (rad or m) from here.
+
+        Both the points and the motion are in the frame of `relative_to`.
+        """
         self.axis(joint)  # raises where it has no direction
-        way = self.chain(link, above=relative_to) or ()
-        if joint in way and not self.positions and all(each.mimic is None for each in way):
-            T_relative_joint = self.pose(joint.child, relative_to=relative_to)  # what is behind the joint turns as one
+        chain = self.chain(link, above=relative_to) or ()
+        if joint in chain and not self.positions and all(above.mimic is None for above in chain):
+            T_relative_joint = self.pose(joint.child, relative_to=relative_to)  # what is below the joint turns as one
             turn = motion_of(joint, angle)
             return T_relative_joint @ (turn or IDENTITY) @ T_relative_joint.inverse()
         position = self.position(joint)
@@ -146,100 +153,5 @@ class Configuration:
         return moved @ self.pose(link, relative_to=relative_to).inverse()
 
     def position(self, joint: Joint) -> Position:
-        """Where a joint is: its own position, that of the joint that it mimics, or 0."""
-        if joint.mimic is None or joint.name in self.positions:
-            return self.positions.get(joint.name, 0.0)
-        return self._mimicked(joint)
-
-    def _mimicked(self, joint: Joint) -> float:
-        """A mimic joint's position. What is found on the way is kept: long chains are followed once."""
-        way: list[Joint] = []
-        followed: set[str] = set()
-        value = (
-            0.0  # of a joint that does not exist or is not moved by one number, and of joints that go round in a circle
-        )
-        while joint.name not in followed:
-            own = self._followed.get(joint.name, self.positions.get(joint.name))
-            if own is not None or joint.mimic is None:
-                value = own if isinstance(own, int | float) else 0.0
-                break
-            way.append(joint)
-            followed.add(joint.name)
-            if not self.robot.has_joint(joint.mimic.joint):
-                break
-            joint = self.joint(joint.mimic.joint)
-        else:
-            self._followed.update(dict.fromkeys(followed, 0.0))
-            return 0.0
-        for each in reversed(way):
-            assert each.mimic is not None  # only such joints are put on the way
-            value = self._followed[each.name] = each.mimic.multiplier * value + each.mimic.offset
-        return value
-
-    def _place(self, link: str) -> "_Placed":
-        """Where a link is. Links are placed when they are asked for, each once, from the nearest placed link above.
-
-        Behind a joint with an undefined pose a new island begins: the poses behind it are still known relative to each
-        other, and one defect does not hide another.
-        """
-        found = self._placed.get(link)
-        return found if found is not None else self._solve(link)
-
-    def _solve(self, link: str) -> "_Placed":
-        self.link(link)
-        holding, placed = self.holding, self._placed
-        way: dict[str, Joint] = {}
-        name = link
-        while name not in placed and name in holding:
-            if name in self._lost or name in way:
-                raise self._lose(link, name, way)
-            way[name] = holding[name]
-            name = holding[name].parent
-        above = placed.get(name) or placed.setdefault(name, _Placed(name, name, IDENTITY, 0))
-        for joint in reversed(way.values()):
-            pose = past(above.pose, joint, self.position(joint))
-            if pose is not None and isfinite(sum(pose.translation)):
-                above = _Placed(above.root, above.island, pose, above.depth)
-            else:
-                above = _Placed(above.root, joint.child, IDENTITY, above.depth + 1)
-            placed[joint.child] = above
-        return above
-
-    def _lose(self, link: str, name: str, way: Mapping[str, Joint]) -> MissingElement:
-        loop = self._lost.get(name) or min(way)
-        self._lost.update(dict.fromkeys(way, loop))
-        message = f"link {quoted(link)} hangs on a loop of joints: it is in no tree"
-        return MissingElement("connection", loop, message=message, location=_spot(self.link(link)))
-
-
-class _Placed(NamedTuple):
-    """Where a link is: the root of its tree, the link from which its pose is measured, T_island_link, and how many
-    islands are above its own.
-    """
-
-    root: str
-    island: str
-    pose: Transform
-    depth: int
-
-
-def _undefined(joint: Joint) -> MissingElement:
-    mark, attribute, inside = joint.mark, None, None
-    if joint.origin is None:
-        reason = "its origin cannot be read"
-        inside = "origin"
-    elif joint.axis is None:
-        reason = "its axis cannot be read"
-        mark, attribute = joint.axis_mark, "xyz"
-    elif unit(joint.axis) is None:
-        reason = "its axis is 0 0 0"
-        mark, attribute = joint.axis_mark, "xyz"
-    else:
-        reason = "its numbers are too large"
-    message = f"the pose behind joint {quoted(joint.name)} is undefined: {reason}"
-    spot = Spot(mark, attribute, inside) if mark is not None else None
-    return MissingElement("pose behind joint", joint.name, message=message, location=spot)
-
-
-def _spot(link: Link) -> Spot | None:
-    return Spot(link.mark) if link.mark is not None else None
+        """Return the position of a joint: its own, that of the joint that it mimics, or 0."""
+        return self._positions.of(joint)

@@ -1,7 +1,7 @@
 """Which colour a visual ends up with (`model.cpp`: assignMaterial, `link.cpp`: parseMaterial)."""
 
 from grader.robot import catalogue
-from grader.robot.diagnostics import Notes, children, shown
+from grader.robot.diagnostics import Problems, first_children, shown
 from grader.robot.model import Material
 from grader.robot.numbers import NumberError, rgba
 from grader.text import quoted
@@ -13,28 +13,28 @@ _BLACK = (0.0, 0.0, 0.0, 1.0)
 class Materials:
     """The materials that ROS 2 knows so far. Those under <robot> come first, then those in links, in file order."""
 
-    def __init__(self, notes: Notes) -> None:
-        self._notes = notes
+    def __init__(self, problems: Problems) -> None:
+        self._problems = problems
         self._defined: dict[str, Element] | None = None  # all definitions of the file, once one is looked for in vain
         self.known: dict[str, Material] = {}
 
     def define(self, element: Element) -> None:
         """Read a material directly under <robot>; without a readable colour it is black."""
-        notes = self._notes
+        problems = self._problems
         name = element.get("name")
         if name is None:
-            notes.add(catalogue.UNNAMED_MATERIAL, "this material has no name; no link can use it", element)
+            problems.add(catalogue.UNNAMED_MATERIAL, "this material has no name; no link can use it", element)
         material, _ = self._read(element, name or "", "ROS 2 shows black")
         if name is not None and material is None:
             message = f"material {quoted(name)} has no readable colour; ROS 2 makes it black"
             if element.find("color[@rgba]") is None:
-                notes.add(catalogue.COLOURLESS_MATERIAL, message, element)
-            notes.printed(name, element, "name")
+                problems.add(catalogue.COLOURLESS_MATERIAL, message, element)
+            problems.check_printed(name, element, "name")
         if (name or "") in self.known:
             message = f"material {quoted(name or '')} is defined twice under <robot>; ROS 2 loads nothing"
-            notes.add(catalogue.DUPLICATE_MATERIAL, message, element, "name")
+            problems.add(catalogue.DUPLICATE_MATERIAL, message, element, "name")
             return
-        self.known[name or ""] = material or Material(name or "", mark=notes.mark(element))
+        self.known[name or ""] = material or Material(name or "", location=problems.location(element))
 
     def assign(self, element: Element, link: str) -> tuple[Material | None, str]:
         """The material that a visual gets, and its name: a registered one wins, else the one in place is registered."""
@@ -53,12 +53,12 @@ class Materials:
             found = self.known[name] = own
         elif own is not None and found is not None and (own.rgba, own.texture) != (found.rgba, found.texture):
             message = f"material {quoted(name)} is already defined otherwise; ROS 2 ignores this definition"
-            self._notes.add(catalogue.REDEFINED_MATERIAL, message, element, "name")
+            self._problems.add(catalogue.REDEFINED_MATERIAL, message, element, "name")
         return found, name
 
     def _read(self, element: Element, name: str, consequence: str) -> tuple[Material | None, bool]:
         """The material defined in an element, if it is; and whether a complaint about its colour was noted."""
-        inside = children(element)
+        inside = first_children(element)
         texture, colour = inside.get("texture"), inside.get("color")
         filename = texture.get("filename") if texture is not None else None
         text = colour.get("rgba") if colour is not None else None
@@ -68,28 +68,28 @@ class Materials:
                 channels = rgba(text)
                 if channels is None:
                     message = f"rgba={shown(text)} needs four numbers; ROS 2 silently shows black"
-                    self._notes.add(catalogue.COLOUR_COUNT, message, colour, "rgba")
+                    self._problems.add(catalogue.COLOUR_COUNT, message, colour, "rgba")
                     channels = _BLACK
             except NumberError as error:
                 complained = True
                 message = f"rgba={shown(text)} cannot be read: {error}; {consequence}"
-                self._notes.add(catalogue.BAD_COLOUR, message, colour, "rgba")
-                self._notes.printed(f"{name} {text}", colour, "rgba")
+                self._problems.add(catalogue.BAD_COLOUR, message, colour, "rgba")
+                self._problems.check_printed(f"{name} {text}", colour, "rgba")
         if channels is None and filename is None:
             return None, complained
-        mark = self._notes.mark(element if colour is None else colour)
-        return Material(name, channels or _BLACK, filename or "", mark), complained
+        location = self._problems.location(element if colour is None else colour)
+        return Material(name, channels or _BLACK, filename or "", location), complained
 
     def _undefined(self, name: str, element: Element, link: str) -> None:
-        notes = self._notes
+        problems = self._problems
         if self._defined is None:
-            every = [each for each in notes.root.iter("material") if len(each) and each.get("name")]
-            self._defined = {each.get("name") or "": each for each in reversed(every)}
+            every = [other for other in problems.root.iter("material") if len(other) and other.get("name")]
+            self._defined = {other.get("name") or "": other for other in reversed(every)}
         later = self._defined.get(name)
         if later is not None:
-            line = notes.mark(later).location().line
+            line = problems.line(later)
             hint = f" before its definition in line {line}; define it directly under <robot>"
         else:
-            hint = f", which is defined nowhere{notes.did_you_mean(name, self._defined)}"
+            hint = f", which is defined nowhere{problems.did_you_mean(name, self._defined)}"
         message = f"link {quoted(link)} uses material {quoted(name)}{hint}; ROS 2 shows it without the colour"
-        notes.add(catalogue.UNDEFINED_MATERIAL, message, element, "name")
+        problems.add(catalogue.UNDEFINED_MATERIAL, message, element, "name")

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 from grader.errors import MissingElement
 from grader.names import did_you_mean
-from grader.source import Mark
+from grader.source import LazyLocation
 from grader.text import quoted
 
 Vector = tuple[float, float, float]
@@ -21,7 +21,7 @@ class Origin:
 
     xyz: Vector = (0.0, 0.0, 0.0)
     rpy: Vector = (0.0, 0.0, 0.0)
-    mark: Mark | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,7 @@ class Box:
     """A box about its centre; `size` holds the full edge lengths along x, y, z."""
 
     size: Vector
-    mark: Mark | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +38,7 @@ class Cylinder:
 
     radius: float
     length: float
-    mark: Mark | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +46,7 @@ class Sphere:
     """A sphere about its centre."""
 
     radius: float
-    mark: Mark | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +55,7 @@ class Mesh:
 
     filename: str
     scale: Vector = (1.0, 1.0, 1.0)
-    mark: Mark | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
 
 Geometry = Box | Cylinder | Sphere | Mesh
@@ -68,7 +68,7 @@ class Material:
     name: str
     rgba: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 1.0)
     texture: str = ""
-    mark: Mark | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +79,7 @@ class Visual:
     origin: Origin = Origin()
     material: Material | None = None
     material_name: str = ""
-    mark: Mark | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +88,7 @@ class Collision:
 
     geometry: Geometry
     origin: Origin = Origin()
-    mark: Mark | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +108,7 @@ class Link:
     visuals: tuple[Visual, ...] = ()
     collisions: tuple[Collision, ...] = ()
     inertial: Inertial | None = None
-    mark: Mark | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,8 +146,8 @@ class Joint:
     axis: Vector | None = (1.0, 0.0, 0.0)
     limit: Limit | None = None
     mimic: Mimic | None = None
-    mark: Mark | None = field(default=None, compare=False, repr=False)
-    axis_mark: Mark | None = field(default=None, compare=False, repr=False)
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    axis_location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,19 +17,19 @@ DEGREES_OF_FREEDOM = {"continuous": 1, "revolute": 1, "prismatic": 1, "planar": 
 _NO_TURN = (0.0, 0.0, 0.0)
 
 
-def behind(T_frame_parent: Transform, origin: Origin) -> Transform:
+def placed_by(T_frame_parent: Transform, origin: Origin) -> Transform:
     """T_frame_child: the frame that an origin puts into its parent."""
     if origin.rpy == _NO_TURN:
         return T_frame_parent.shifted(origin.xyz)
     return T_frame_parent @ Transform(rotation_from_rpy(origin.rpy), origin.xyz)
 
 
-def past(T_root_parent: Transform, joint: Joint, position: Position) -> Transform | None:
+def after_joint(T_root_parent: Transform, joint: Joint, position: Position) -> Transform | None:
     """T_root_child behind a joint, or None where it is undefined."""
     motion = motion_of(joint, position)
     if joint.origin is None or motion is None:
         return None
-    T_root_joint = behind(T_root_parent, joint.origin)
+    T_root_joint = placed_by(T_root_parent, joint.origin)
     return T_root_joint if motion is IDENTITY else T_root_joint @ motion
 
 

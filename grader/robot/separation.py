@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from itertools import product
 from math import copysign, hypot
 
-from grader.robot.gjk import widest_gap
+from grader.robot.gjk import separating_direction
 from grader.robot.model import Box, Cylinder, Sphere
 from grader.robot.shapes import Shape, half_width, straight_edges
 from grader.robot.transforms import Transform, Vector, cross, dot, minus, unit
@@ -41,7 +41,7 @@ def separation(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> Separa
     scale = 1.0 if size <= _LARGEST else min(size, 1e308)
     a, b = _shrunk(a, scale), _shrunk(b, scale)
     T_a_b = _moved_in(T_w_a, scale).inverse() @ _moved_in(T_w_b, scale)
-    direction = widest_gap(a, b, T_a_b) or _least_overlap(a, b, T_a_b)
+    direction = separating_direction(a, b, T_a_b) or _least_overlap(a, b, T_a_b)
     return Separation(-_overlap(a, b, T_a_b, direction) * scale, T_w_a.rotate(direction))
 
 

@@ -1,7 +1,7 @@
 """Names that ROS 2 does not know and skips in silence, where they look like misspelt ones; and elements given twice."""
 
 from grader.robot import catalogue
-from grader.robot.diagnostics import Notes
+from grader.robot.diagnostics import Problems
 from grader.text import quoted
 from grader.xml.parsing import Element
 
@@ -66,10 +66,10 @@ _KNOWN_NAMES = frozenset(_ATTRIBUTES)
 _KNOWN_ATTRIBUTES = {tag: frozenset(names) for tag, names in _ATTRIBUTES.items()}
 
 
-def check_spelling(root: Element, notes: Notes) -> None:
+def check_spelling(root: Element, problems: Problems) -> None:
     """Note misspelt names and repeated elements in what urdfdom reads; extensions of other tools are left alone."""
     if not _KNOWN_ATTRIBUTES["robot"].issuperset(root.keys()):
-        _check_attributes(root, notes)
+        _check_attributes(root, problems)
     waiting = [root]
     while waiting:
         element = waiting.pop()
@@ -80,47 +80,51 @@ def check_spelling(root: Element, notes: Notes) -> None:
             tags.append(tag)
             if tag in allowed:
                 if not _KNOWN_ATTRIBUTES[tag].issuperset(child.keys()):
-                    _check_attributes(child, notes)
+                    _check_attributes(child, problems)
                 if tag in _CHILDREN and len(child):
                     waiting.append(child)
             elif tag not in _EXTENSIONS:
-                _check_tag(child, element.tag, allowed, notes)
+                _check_tag(child, element.tag, allowed, problems)
         if element is not root and len(tags) > 1 and (len(set(tags)) < len(tags) or element.tag == "geometry"):
-            _check_repeated(element, tags, notes)
+            _check_repeated(element, tags, problems)
 
 
-def _check_attributes(element: Element, notes: Notes) -> None:
+def _check_attributes(element: Element, problems: Problems) -> None:
     known = _ATTRIBUTES[element.tag]
     given = set(element.keys())
     for name in map(str, element.keys()):
         if name in known or name.startswith("{"):
             continue
-        meant = _SWAPPED.get((element.tag, name)) or notes.closest(name, [each for each in known if each not in given])
+        meant = _SWAPPED.get((element.tag, name)) or problems.closest(
+            name, [each for each in known if each not in given]
+        )
         if meant:
             message = (
                 f"<{element.tag}> has no attribute {quoted(name)}, and ROS 2 ignores it; did you mean {quoted(meant)}?"
             )
-            notes.add(catalogue.MISSPELT, message, element, name)
+            problems.add(catalogue.MISSPELT, message, element, name)
 
 
-def _check_tag(child: Element, parent: str, allowed: tuple[str, ...], notes: Notes) -> None:
-    meant = notes.closest(child.tag, allowed)
+def _check_tag(child: Element, parent: str, allowed: tuple[str, ...], problems: Problems) -> None:
+    meant = problems.closest(child.tag, allowed)
     if meant:
         message = f"ROS 2 ignores <{child.tag}> in <{parent}>; did you mean <{meant}>?"
     elif child.tag in _KNOWN_NAMES:
         message = f"ROS 2 ignores <{child.tag}> in <{parent}>: it does not belong there"
     else:
         return
-    notes.add(catalogue.MISSPELT, message, child)
+    problems.add(catalogue.MISSPELT, message, child)
 
 
-def _check_repeated(element: Element, tags: list[str], notes: Notes) -> None:
+def _check_repeated(element: Element, tags: list[str], problems: Problems) -> None:
     seen: set[str] = set()
     for child, tag in zip(element, tags, strict=True):
         if element.tag == "geometry":
             if seen:
-                notes.add(catalogue.REPEATED_ELEMENT, "a <geometry> has one shape: ROS 2 reads the first only", child)
+                problems.add(
+                    catalogue.REPEATED_ELEMENT, "a <geometry> has one shape: ROS 2 reads the first only", child
+                )
         elif tag in seen and (tag in _SINGLE or (element.tag == "visual" and tag == "material")):
             message = f"<{tag}> stands twice in this <{element.tag}>: ROS 2 reads the first only"
-            notes.add(catalogue.REPEATED_ELEMENT, message, child)
+            problems.add(catalogue.REPEATED_ELEMENT, message, child)
         seen.add(tag)

@@ -1,11 +1,11 @@
-"""lxml told to open nothing: no file, no network, no entity."""
+"""XML read by lxml, which may open nothing: no file, no network, no entity."""
 
 from lxml import etree
 
 Element = etree._Element  # noqa: SLF001  lxml has no public name for it
 XMLSyntaxError = etree.XMLSyntaxError
 
-# Whoever calls hands over bytes that are capped already.
+# Callers limit the number of bytes.
 _PARSER = etree.XMLParser(
     resolve_entities=False,
     no_network=True,
@@ -18,5 +18,5 @@ _PARSER = etree.XMLParser(
 
 
 def parse_xml(data: bytes) -> Element:
-    """The root element of an XML text; raises XMLSyntaxError."""
+    """Return the root element of an XML text; raises XMLSyntaxError."""
     return etree.fromstring(data, _PARSER)

@@ -85,8 +85,8 @@ CASES = (
         passing=mounted(),
         says="ROS 2 loads the file and every link is in its one tree",
         failing=scene(BASE, LIDAR),
-        complains="'lidar' is not joined to the robot: no joint has it as its child (roots are 'base', 'lidar');"
-        " ROS 2 loads nothing of the file",
+        complains="'lidar' is not connected to the robot: no joint has it as its child (roots are 'base', 'lidar');"
+        " ROS 2 rejects the file",
         at='name="lidar"',
     ),
     Case(

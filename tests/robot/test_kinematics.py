@@ -391,7 +391,7 @@ def test_a_forest_is_solved_tree_by_tree() -> None:
             configuration.between(one, other)
 
 
-def test_an_unreadable_origin_makes_an_island() -> None:
+def test_an_unreadable_origin_begins_a_frame_group() -> None:
     """Behind it poses are known relative to each other; the other links do not notice."""
     broken = robot(
         joint("ab", origin=at(1, 0, 0)),
@@ -404,14 +404,14 @@ def test_an_unreadable_origin_makes_an_island() -> None:
     assert configuration.pose("e", relative_to="d").translation == (0.0, 0.0, 1.0)
     assert configuration.pose("d", relative_to="c").translation == (0.0, 0.0, 1.0)
     for one, other in (("c", None), ("d", None), ("d", "b"), ("a", "e")):
-        with pytest.raises(MissingElement, match="behind joint 'bc' is undefined: its origin cannot be read"):
+        with pytest.raises(MissingElement, match="below joint 'bc' is undefined: its origin cannot be read"):
             configuration.pose(one, relative_to=other)
     assert configuration.root_of("e") == "a"
     assert [each.name for each in configuration.between("e", "a")] == ["ce", "bc", "ab"]
 
 
-def test_two_islands_name_a_joint_that_is_to_blame() -> None:
-    """Between two islands the message speaks of one of the joints with an unreadable origin."""
+def test_two_frame_groups_name_a_joint_between_them() -> None:
+    """Between two frame groups the message names one of the joints with an unreadable origin."""
     broken = robot(joint("ab", origin=None), joint("ac", origin=None), joint("cd", origin=at(1, 0, 0)))
     with pytest.raises(MissingElement, match=r"joint '(ab|ac)' is undefined: its origin cannot be read"):
         Configuration(broken).pose("b", relative_to="d")
@@ -447,7 +447,7 @@ def test_of_two_parents_the_last_joint_by_name_holds(names: tuple[str, str]) -> 
     joints = [Joint(name, "fixed", "a", "b", at(index, 0, 0)) for index, name in enumerate(names)]
     for order in (joints, joints[::-1]):
         configuration = Configuration(robot(*order))
-        assert configuration.holding["b"].name == max(names)
+        assert configuration.parent_joints["b"].name == max(names)
         assert configuration.pose("b").translation[0] == names.index(max(names))
 
 
@@ -457,7 +457,7 @@ def test_links_on_a_loop_have_no_pose(ring: str) -> None:
     loop = [joint(f"{one}{other}") for one, other in zip(ring, ring[1:] + ring[0], strict=True)]
     configuration = Configuration(robot(*loop, joint(f"{ring[0]}y"), joint("yz"), joint("uv", origin=at(1, 0, 0))))
     for link in (*ring, "y", "z"):
-        with pytest.raises(MissingElement, match=f"'{link}' hangs on a loop of joints"):
+        with pytest.raises(MissingElement, match=f"'{link}' is on or below a loop of joints"):
             configuration.pose(link)
         with pytest.raises(MissingElement):
             configuration.pose(link, relative_to="v")

@@ -130,14 +130,14 @@ def test_all_roots_are_named() -> None:
     """ROS 2 names two; we name them all."""
     read = read_urdf(robot(links("a", "b", "c", "d", "e") + joint("a", "b")).encode())
     text = message(read, "URDF080")
-    assert text.startswith("'c', 'd', 'e' are not joined to the robot: no joint has them as its child")
+    assert text.startswith("'c', 'd' and 'e' are not connected to the robot: no joint has them as its child")
     assert "roots are 'a', 'c', 'd', 'e'" in text
 
 
 def test_a_single_loose_link_is_named() -> None:
     """The message is about the small part, not about the robot."""
     read = read_urdf(robot(links("loose", "a", "b") + joint("a", "b")).encode())
-    assert message(read, "URDF080").startswith("'loose' is not joined to the robot: no joint has it as its child")
+    assert message(read, "URDF080").startswith("'loose' is not connected to the robot: no joint has it as its child")
 
 
 @pytest.mark.parametrize(

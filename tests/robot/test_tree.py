@@ -6,7 +6,7 @@ import pytest
 
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint, Link, Robot
-from grader.robot.parent_joints import holding_joints
+from grader.robot.parent_joints import parent_joints
 from grader.robot.reader import read_urdf
 
 
@@ -23,7 +23,7 @@ def robot(*joints: Joint, rejected: bool = True) -> Robot:
 
 def held(*joints: Joint, rejected: bool = True) -> dict[str, str]:
     """The name of the joint that holds each link."""
-    return {link: each.name for link, each in holding_joints(robot(*joints, rejected=rejected)).items()}
+    return {link: each.name for link, each in parent_joints(robot(*joints, rejected=rejected)).items()}
 
 
 FOOT, WHEEL = joint("base_joint", "foot", "base"), joint("base_wheel_joint", "base", "wheel")
@@ -94,7 +94,7 @@ def test_joints_without_ends_that_exist_hold_nothing() -> None:
     """A parent or child that is missing or left out makes no way."""
     links = (Link("base"), Link("wheel"))
     for broken in (joint("j", "nowhere", "wheel"), joint("j", "base", "nowhere"), joint("j", "", "wheel")):
-        assert holding_joints(Robot("r", links, (broken,), rejected=True)) == {}
+        assert parent_joints(Robot("r", links, (broken,), rejected=True)) == {}
 
 
 def test_a_long_chain_in_any_order_is_read_at_once() -> None:
@@ -115,7 +115,7 @@ def test_a_file_is_read_fairly_only_where_it_is_rejected() -> None:
         text = f'<robot name="r">{"".join(map(parts, ("a", "b", "c")))}{"".join(joints)}</robot>'
         found = read_urdf(text.encode(), "r.urdf").robot
         assert found is not None
-        return {link: each.name for link, each in holding_joints(found).items()}
+        return {link: each.name for link, each in parent_joints(found).items()}
 
     two = (written("p", "a", "b"), written("q", "a", "b"))
     assert read(*two, written("r", "b", "c")) == {"b": "q", "c": "r"}

@@ -23,9 +23,9 @@ def decoded(raw: bytes) -> str:
 
 def assert_sound(scan: Scan, text: str) -> None:
     """The XML parses and has an offset for each element, at its <; without XML there is a reason, or no robot."""
-    for finding in scan.findings:
-        assert 0 <= finding.offset <= len(text)
-        assert finding.message
+    for found in scan.differences:
+        assert 0 <= found.offset <= len(text)
+        assert found.message
     if not scan.xml:
         return
     root = etree.fromstring(scan.xml, _PARSER)
@@ -33,7 +33,7 @@ def assert_sound(scan: Scan, text: str) -> None:
     assert len(list(root.iter())) == len(scan.offsets)
     assert all(text[offset] == "<" for offset in scan.offsets)
     assert scan.offsets == sorted(scan.offsets)
-    assert not any(finding.kind.effect == "rejects" for finding in scan.findings)
+    assert not any(found.kind.effect == "rejects" for found in scan.differences)
 
 
 @settings(max_examples=2000, deadline=None)

@@ -1,8 +1,7 @@
-"""TinyXML2's dialect of XML, brought into XML's form so that lxml can read it.
+"""The TinyXML2 dialect of XML, translated into well-formed XML for lxml.
 
-ROS 2 reads URDF with TinyXML2, which accepts much that XML forbids and refuses a little that XML allows. A URDF's meaning is
+ROS 2 reads URDF with TinyXML2, which accepts much that XML forbids and rejects a little that XML allows. A URDF's meaning is
 in its tags and attributes alone, so the translation keeps these, in order, and leaves out text, comments and declarations.
-Nothing outside this package knows of the dialect.
 """
 
 import re
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from grader.xml.tinyxml2.scanner import Scan
 
-# lxml turns a line break or tab in a value into a space, TinyXML2 keeps it. Only the bytes that matter are looked at.
+# lxml turns a line break or tab in a value into a space, TinyXML2 keeps it. The search skips all other bytes.
 _UNIMPORTANT = bytes(sorted(set(range(256)) - set(b"=\"'\t\n\r")))
 _BROKEN_VALUE = re.compile(rb"""=[\t\n\r]*(?:"[='\t\n\r]*?[\t\n\r]|'[="\t\n\r]*?[\t\n\r])""")
 _DEFAULT_NAMESPACE = re.compile(rb"xmlns[ \t\r\n]*=")
@@ -22,12 +21,12 @@ _PLAIN_START = re.compile(
 
 
 def without_mark(data: bytes) -> bytes:
-    """A text without its byte-order mark, over which TinyXML2 goes in silence."""
+    """Return a text without its byte-order mark, which TinyXML2 skips."""
     return data.removeprefix(_BYTE_ORDER_MARK)
 
 
 def is_plain(data: bytes) -> bool:
-    """Whether a text that lxml accepts means the same to TinyXML2: then no translation is needed."""
+    """Return whether a text that lxml accepts means the same to TinyXML2, so that no translation is needed."""
     return (
         b"\0" not in data
         and data.find(b"<?", 1) < 0
@@ -40,6 +39,6 @@ def is_plain(data: bytes) -> bool:
 
 def translate(text: str) -> "Scan":
     """Read a text by TinyXML2's rules and write its first <robot> as XML, with the offset of every tag kept."""
-    from grader.xml.tinyxml2.scanner import Scanner  # most files are plain, and its patterns take long to compile
+    from grader.xml.tinyxml2.scanner import Scanner  # late: most files are plain, and compiling its patterns takes long
 
     return Scanner(text).scan()

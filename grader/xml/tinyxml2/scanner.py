@@ -7,22 +7,20 @@ from typing import NamedTuple
 from grader.problems import Kind
 from grader.xml import catalogue
 from grader.xml.tinyxml2.tags import REFERENCE, MalformedTagError, Tag, read_tag, short, skip_blank
-from grader.xml.tinyxml2.values import ILLEGAL, escape
+from grader.xml.tinyxml2.values import ILLEGAL
+from grader.xml.tinyxml2.writer import RobotWriter
 
-_PLAIN_NAME = re.compile(r"(?!(?i:xml))[A-Za-z_][A-Za-z0-9_.\-]*")
 _DECLARATION = re.compile(
     r"""xml\s+version\s*=\s*["']1\.[0-9]+["'](\s+encoding\s*=\s*["'](?i:utf-8|us-ascii)["'])?[^<>]*"""
 )
 _NAMESPACE = re.compile(r"xmlns:([^\s=]+)")
 _MAX_DEPTH = 500  # TINYXML2_MAX_ELEMENT_DEPTH; the document itself is the first level
-_KEPT_DEPTH = 32  # urdfdom never looks deeper than robot/link/visual/geometry/box
-_MOST_ERRORS = 20
-_LONGEST_NAME = 60
+_MAX_ERRORS = 20
 _SPACE = " \t\n\v\f\r"
 
 
-class Finding(NamedTuple):
-    """A difference or an error at a character offset."""
+class Difference(NamedTuple):
+    """A difference from XML, or an error, at a character offset."""
 
     kind: Kind
     message: str
@@ -31,12 +29,12 @@ class Finding(NamedTuple):
 
 @dataclass(slots=True)
 class Scan:
-    """The first top-level <robot> as XML, empty where there is none, with the offset of each of its start tags."""
+    """The first top-level <robot> as XML, empty if there is none, with the offset of each of its start tags."""
 
     xml: bytes = b""
     offsets: list[int] = field(default_factory=list)
     first_tag: int = 0
-    findings: list[Finding] = field(default_factory=list)
+    differences: list[Difference] = field(default_factory=list)
 
 
 class Scanner:
@@ -44,11 +42,9 @@ class Scanner:
 
     def __init__(self, text: str) -> None:
         self._text = text
-        self._scanned = Scan()
-        self._out: list[str] = []
-        self._stack: list[
-            tuple[Tag, str]
-        ] = []  # the open tags, each with the name under which it was written, if it was
+        self._writer = RobotWriter()
+        self._differences: list[Difference] = []
+        self._open_tags: list[tuple[Tag, str]] = []  # each with the name that was written, if it was
         self._top_level: list[Tag] = []
         self._declared: set[str] | None = None  # the prefixes of the file, once one is met
         self._noted: set[str] = set()
@@ -58,31 +54,28 @@ class Scanner:
     def scan(self) -> Scan:
         """Read the whole text."""
         position = self._start()
-        while position is not None and self._errors < _MOST_ERRORS:
+        while position is not None and self._errors < _MAX_ERRORS:
             position = self._node(position)
-        scanned = self._scanned
+        first_tag = self._top_level[0].offset if self._top_level else 0
         if self._errors:
-            scanned.findings = [each for each in scanned.findings if each.kind is not catalogue.NOT_WELL_FORMED]
-        else:
-            self._note_roots()
-            scanned.xml = "".join(self._out).encode()
-        return scanned
+            errors = [found for found in self._differences if found.kind is not catalogue.NOT_WELL_FORMED]
+            return Scan(b"", self._writer.offsets, first_tag, errors)
+        self._check_roots()
+        return Scan(self._writer.xml, self._writer.offsets, first_tag, self._differences)
 
     def _start(self) -> int | None:
         text = self._text
         if text.startswith(("\udcff\udcfe", "\udcfe\udcff")) or "\0" in text[:4]:
-            self._refuse(catalogue.NOT_UTF8, "this is not UTF-8 text; ROS 2 cannot read it", 0)
-            return None
+            return self._refuse(catalogue.NOT_UTF8, "the file is not UTF-8 text; ROS 2 cannot read it", 0)
         end = text.find("\0")
         if end >= 0:
-            self._find(catalogue.IGNORED_REST, "ROS 2 reads only up to this NUL byte", end)
+            self._add(catalogue.IGNORED_REST, "ROS 2 ignores everything after this NUL byte", end)
             text = self._text = text[:end]
         position = skip_blank(text, 0)
         if text.startswith("\ufeff", position):
             position += 1
         if position == len(text):
-            self._refuse(catalogue.EMPTY_DOCUMENT, "the file is empty; ROS 2 loads nothing", 0)
-            return None
+            return self._refuse(catalogue.EMPTY_DOCUMENT, "the file is empty; ROS 2 rejects it", 0)
         illegal = ILLEGAL.search(text)
         if illegal:
             what = "invalid UTF-8" if illegal[0] >= "\ud800" else "a control character"
@@ -90,118 +83,111 @@ class Scanner:
         return position
 
     def _node(self, start: int) -> int | None:
-        """Read what stands at this offset; the offset behind it, or None at the end."""
+        """Read the node at this offset; return the offset after it, or None at the end."""
         text = self._text
         position = skip_blank(text, start)
         if position == len(text):
-            self._end()
-            return None
+            return self._end()
         if text[position] != "<":
             return self._text_node(position)
         if text.startswith("<?", position):
             return self._declaration(position)
         self._only_declarations = False
         if text.startswith("<!--", position):
-            return self._comment(position)
+            end = self._delimited(position, "<!--", "-->", "comment")
+            if end is not None and "--" in text[position + 4 : end - 2]:
+                self._differ("comment", "-- inside a comment", position)
+            return end
         if text.startswith("<![CDATA[", position):
-            return self._cdata(position)
+            if not self._open_tags:
+                self._differ("cdata", "a CDATA section outside the robot", position)
+            return self._delimited(position, "<![CDATA[", "]]>", "CDATA section")
         if text.startswith("<!", position):
-            return self._unknown(position)
+            end = self._delimited(position, "<!", ">", "<!")
+            if end is not None and "doctype" not in self._noted:
+                self._noted.add("doctype")
+                message = "ROS 2 skips a DOCTYPE and does not expand the entities that it defines"
+                self._add(catalogue.DOCTYPE, message, position)
+            return end
         try:
             tag, end = read_tag(text, position, self._differ)
         except MalformedTagError as error:
-            self._refuse(catalogue.MALFORMED_TAG, f"{error}; ROS 2 loads nothing of the file", error.offset)
+            self._refuse(catalogue.MALFORMED_TAG, f"{error}; ROS 2 rejects the file", error.offset)
             return error.resume
         return self._close(tag, end) if tag.form == "close" else self._open(tag, end)
 
-    def _end(self) -> None:
-        if self._stack and not self._errors:
-            tag = self._stack[-1][0]
-            message = f"<{short(tag.name)}> is never closed: the file ends first; ROS 2 loads nothing"
-            self._refuse(catalogue.MISMATCHED_TAG, message, tag.offset)
+    def _end(self) -> int | None:
+        if not self._open_tags or self._errors:
+            return None
+        tag = self._open_tags[-1][0]
+        message = f"<{short(tag.name)}> is not closed before the end of the file; ROS 2 rejects it"
+        return self._refuse(catalogue.MISMATCHED_TAG, message, tag.offset)
 
     def _text_node(self, position: int) -> int | None:
         end = self._text.find("<", position)
-        if end < 0 and self._stack:
-            self._end()
-        elif end < 0:
-            message = "there is text behind the end of the robot; ROS 2 loads nothing"
+        if end < 0 and self._open_tags:
+            return self._end()
+        if end < 0:
+            message = "there is text after the robot; ROS 2 rejects the file"
             if not self._top_level:
-                message = f"this is not XML: it begins with {short(self._text.strip()[:20])!r}; ROS 2 loads nothing"
-            self._refuse(catalogue.STRAY_TEXT, message, position)
-        elif not self._stack:
+                message = f"this is not XML: it begins with {short(self._text.strip()[:20])!r}; ROS 2 rejects the file"
+            return self._refuse(catalogue.STRAY_TEXT, message, position)
+        if not self._open_tags:
             self._only_declarations = False
             self._differ("text", "text outside the robot", position)
         elif reference := REFERENCE.search(self._text, position, end):
-            self._differ("reference", "a bare & (it is written &amp;)", reference.start())
-        return end if end >= 0 else None
+            self._differ("reference", "a bare & (write &amp;)", reference.start())
+        return end
 
     def _declaration(self, position: int) -> int | None:
-        end = self._text.find("?>", position + 2)
-        if end < 0:
-            self._refuse(catalogue.UNTERMINATED, "this <? is never closed with ?>; ROS 2 loads nothing", position)
+        end = self._delimited(position, "<?", "?>", "<?")
+        if end is None:
             return None
-        if self._stack or not self._only_declarations:
-            message = "an XML declaration may stand only at the very top of the file; ROS 2 loads nothing"
+        if self._open_tags or not self._only_declarations:
+            message = "an XML declaration must be at the very top of the file; ROS 2 rejects the file"
             self._refuse(catalogue.MISPLACED_DECLARATION, message, position)
         elif position > 0 and not self._text.startswith("\ufeff<"):
             self._differ("declaration", "something before the XML declaration", position)
-        elif not _DECLARATION.fullmatch(self._text, position + 2, end):
+        elif not _DECLARATION.fullmatch(self._text, position + 2, end - 2):
             self._differ("declaration", "an XML declaration without a known version or encoding", position)
-        return end + 2
-
-    def _comment(self, position: int) -> int | None:
-        end = self._delimited(position, "<!--", "-->", "comment")
-        if end is not None and "--" in self._text[position + 4 : end - 2]:
-            self._differ("comment", "-- inside a comment", position)
-        return end
-
-    def _cdata(self, position: int) -> int | None:
-        if not self._stack:
-            self._differ("cdata", "a CDATA section outside the robot", position)
-        return self._delimited(position, "<![CDATA[", "]]>", "CDATA section")
-
-    def _unknown(self, position: int) -> int | None:
-        end = self._delimited(position, "<!", ">", "<!")
-        if end is not None and "doctype" not in self._noted:
-            self._noted.add("doctype")
-            message = "ROS 2 skips a DOCTYPE and leaves the entities that it defines as they stand"
-            self._find(catalogue.DOCTYPE, message, position)
         return end
 
     def _delimited(self, position: int, opening: str, closing: str, what: str) -> int | None:
         end = self._text.find(closing, position + len(opening))
         if end < 0:
-            message = f"this {what} is never closed with {closing}; ROS 2 loads nothing"
-            self._refuse(catalogue.UNTERMINATED, message, position)
-            return None
+            message = f"this {what} is not closed with {closing}; ROS 2 rejects the file"
+            return self._refuse(catalogue.UNTERMINATED, message, position)
         return end + len(closing)
 
     def _open(self, tag: Tag, end: int) -> int | None:
         prefix, colon, _ = tag.name.partition(":")
         if colon and "prefix" not in self._noted and prefix not in self._prefixes():
             self._differ("prefix", f"the prefix of <{short(tag.name)}> is not declared with xmlns", tag.offset)
-        written = self._write(tag)
+        depth = len(self._open_tags)
+        if not depth:
+            self._top_level.append(tag)
+        written = self._writer.open(tag, depth) if not depth or self._open_tags[-1][1] else ""
         if tag.form == "open":
-            self._stack.append((tag, written))
-            if len(self._stack) + 1 >= _MAX_DEPTH and not self._errors:
-                self._refuse(catalogue.TOO_DEEP, "tags are nested too deep for ROS 2, which loads nothing", tag.offset)
-                return None
+            self._open_tags.append((tag, written))
+            if depth + 2 >= _MAX_DEPTH and not self._errors:
+                return self._refuse(catalogue.TOO_DEEP, "tags are nested too deep; ROS 2 rejects the file", tag.offset)
         return end
 
     def _close(self, tag: Tag, end: int) -> int | None:
-        if not self._stack:
-            if not self._errors:
-                self._stop(tag, end)
-                return None
-            return end
-        opened, written = self._stack.pop()
+        if not self._open_tags:
+            if self._errors:
+                return end
+            self._differ("stray", f"the closing tag </{short(tag.name)}>, which closes nothing", tag.offset)
+            if self._text[end:].strip(_SPACE):
+                message = "ROS 2 stops reading at this closing tag, which closes nothing"
+                self._add(catalogue.IGNORED_REST, message, tag.offset)
+            return None
+        opened, written = self._open_tags.pop()
         if written:
-            self._out.append(f"</{written}>")
+            self._writer.close(written)
         if opened.name != tag.name and not self._errors:
             line = self._text.count("\n", 0, opened.offset) + 1
-            still_open = f"<{short(opened.name)}> of line {line} is still open"
-            message = f"</{short(tag.name)}> stands where {still_open}; ROS 2 loads nothing"
+            message = f"</{short(tag.name)}> closes <{short(opened.name)}> of line {line}; ROS 2 rejects the file"
             self._refuse(catalogue.MISMATCHED_TAG, message, tag.offset)
         return end
 
@@ -210,51 +196,23 @@ class Scanner:
             self._declared = set(_NAMESPACE.findall(self._text))
         return self._declared
 
-    def _write(self, tag: Tag) -> str:
-        """Write a tag of the first top-level <robot> as XML; its name there, or nothing for what is left out."""
-        if self._stack:
-            wanted = self._stack[-1][1] != "" and len(self._stack) < _KEPT_DEPTH
-        else:
-            wanted = tag.name == "robot" and not self._out
-            self._scanned.first_tag = self._scanned.first_tag if self._top_level else tag.offset
-            self._top_level.append(tag)
-        if not wanted:
-            return ""
-        self._scanned.offsets.append(tag.offset)
-        name = tag.name if _is_plain_name(tag.name) else "_"
-        values = "".join(f' {each}="{escape(value)}"' for each, value in tag.attributes.items() if _is_plain_name(each))
-        self._out.append(f"<{name}{values}{'>' if tag.form == 'open' else '/>'}")
-        return name
-
-    def _stop(self, tag: Tag, end: int) -> None:
-        self._differ("stray", f"the closing tag </{short(tag.name)}>, which closes nothing", tag.offset)
-        if self._text[end:].strip(_SPACE):
-            self._find(
-                catalogue.IGNORED_REST, "ROS 2 stops reading at this closing tag, which closes nothing", tag.offset
-            )
-
-    def _note_roots(self) -> None:
+    def _check_roots(self) -> None:
         robot = next((tag for tag in self._top_level if tag.name == "robot"), None)
         other = next((tag for tag in self._top_level if tag is not robot), None)
         if robot and other:
-            message = f"ROS 2 takes the first <robot> at the top level and ignores <{short(other.name)}> beside it"
-            self._find(catalogue.SEVERAL_ROOTS, message, other.offset)
+            message = f"ROS 2 reads the first <robot> at the top level and ignores <{short(other.name)}> beside it"
+            self._add(catalogue.SEVERAL_ROOTS, message, other.offset)
 
-    def _find(self, kind: Kind, message: str, offset: int) -> None:
-        self._scanned.findings.append(Finding(kind, message, offset))
+    def _add(self, kind: Kind, message: str, offset: int) -> None:
+        self._differences.append(Difference(kind, message, offset))
 
-    def _refuse(self, kind: Kind, message: str, offset: int) -> None:
+    def _refuse(self, kind: Kind, message: str, offset: int) -> int | None:
+        """Add an error; return None, for callers that cannot go on."""
         self._errors += 1
-        self._find(kind, message, offset)
+        self._add(kind, message, offset)
+        return None
 
     def _differ(self, key: str, what: str, offset: int) -> None:
         if key not in self._noted:
             self._noted.add(key)
-            self._find(
-                catalogue.NOT_WELL_FORMED, f"ROS 2 reads past this, but it is not well-formed XML: {what}", offset
-            )
-
-
-def _is_plain_name(name: str) -> bool:
-    # Names that XML or lxml may refuse never mean anything to urdfdom; the longest that does has 17 letters.
-    return len(name) < _LONGEST_NAME and _PLAIN_NAME.fullmatch(name) is not None
+            self._add(catalogue.NOT_WELL_FORMED, f"ROS 2 accepts this, but it is not well-formed XML: {what}", offset)

@@ -1,4 +1,4 @@
-"""One tag as TinyXML2 reads it (`XMLElement::ParseDeep`, `ParseAttributes`), or why it cannot."""
+"""One tag as TinyXML2 reads it (`XMLElement::ParseDeep`, `ParseAttributes`), or why it rejects it."""
 
 import re
 from collections.abc import Callable
@@ -6,13 +6,13 @@ from typing import Literal, NamedTuple
 
 from grader.xml.tinyxml2.values import decode
 
-Note = Callable[[str, str, int], None]  # a kind of difference from XML, what it is, and its offset
+Note = Callable[[str, str, int], None]  # the kind of a difference from XML, its description and its offset
 
 _BLANK = re.compile(r"[ \t\n\v\f\r]*")
 _NAME = re.compile(r"[A-Za-z_:\u0080-\U0010ffff][A-Za-z0-9_:.\-\u0080-\U0010ffff]*")
-_MEANT = {"parent": "link", "child": "link", "origin": "xyz", "axis": "xyz", "box": "size", "color": "rgba"}
+_MAIN_ATTRIBUTES = {"parent": "link", "child": "link", "origin": "xyz", "axis": "xyz", "box": "size", "color": "rgba"}
 
-# A bare & or an entity that XML does not know.
+# A bare & or an entity that XML does not define.
 REFERENCE = re.compile(r"&(?!(?:amp|lt|gt|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)")
 
 
@@ -26,7 +26,7 @@ class Tag(NamedTuple):
 
 
 class MalformedTagError(Exception):
-    """A tag that TinyXML2 refuses, with the offset to look at, and the one from which reading may go on."""
+    """A tag that TinyXML2 rejects, with the offset of the error, and the one at which reading can go on."""
 
     def __init__(self, message: str, offset: int, resume: int) -> None:
         super().__init__(message)
@@ -35,20 +35,20 @@ class MalformedTagError(Exception):
 
 
 def skip_blank(text: str, position: int) -> int:
-    """The first offset from here on that holds no white space, as C's isspace knows it."""
+    """Return the first offset from here on that is not white space, as C's isspace defines it."""
     match = _BLANK.match(text, position)
     return match.end() if match else position
 
 
 def read_tag(text: str, start: int, note: Note) -> tuple[Tag, int]:
-    """The tag whose < stands at `start`, and the offset behind it; raises MalformedTagError."""
+    """Return the tag whose < is at `start`, and the offset after it; raises MalformedTagError."""
     position = skip_blank(text, start + 1)
     closing = text.startswith("/", position)
     if position > start + 1:
-        note("space", "white space behind <", start)
+        note("space", "white space after <", start)
     found = _NAME.match(text, position + closing)
     if found is None:
-        raise MalformedTagError("a tag's name must follow < at once", start, behind(text, start))
+        raise MalformedTagError("there is no tag name after <", start, resume_after(text, start))
     name = found[0]
     attributes, position = _read_attributes(text, start, found.end(), name, note)
     form: Literal["open", "close", "empty"] = "close" if closing else "open"
@@ -59,8 +59,8 @@ def read_tag(text: str, start: int, note: Note) -> tuple[Tag, int]:
     return Tag(name, form, attributes, start), position + 1
 
 
-def behind(text: str, position: int) -> int:
-    """Where to go on behind a broken tag: after its > or before the next <."""
+def resume_after(text: str, position: int) -> int:
+    """Return the offset at which to go on after a malformed tag: after its > or before the next <."""
     closed, opened = text.find(">", position), text.find("<", position + 1)
     if closed >= 0 and (opened < 0 or closed < opened):
         return closed + 1
@@ -68,13 +68,13 @@ def behind(text: str, position: int) -> int:
 
 
 def short(text: str) -> str:
-    """A name for a message, cut where it is very long; bytes that are no UTF-8 are spelt out."""
+    """Return a name for a message, cut where it is very long; bytes that are not UTF-8 are spelt out."""
     cut = text if len(text) <= 40 else text[:37] + "..."
     return cut.encode("utf-8", "backslashreplace").decode()
 
 
 def _read_attributes(text: str, start: int, position: int, tag: str, note: Note) -> tuple[dict[str, str], int]:
-    """The attributes of a tag, and the offset of the > or /> that ends it."""
+    """Return the attributes of a tag, and the offset of the > or /> that ends it."""
     attributes: dict[str, str] = {}
     while True:
         at = skip_blank(text, position)
@@ -90,57 +90,57 @@ def _read_attributes(text: str, start: int, position: int, tag: str, note: Note)
 
 
 def _unclosed_quote(text: str, start: int, tag: str, attributes: dict[str, str]) -> MalformedTagError | None:
-    """The likelier reason for an error: a value that has swallowed the next tag, because its quote is not closed."""
-    swallowed = next((each for each, value in attributes.items() if "\n" in value and "<" in value), None)
-    if swallowed is None:
+    """Return the likelier error, if a value contains the next tag because its quote is not closed."""
+    unclosed = next((name for name, value in attributes.items() if "\n" in value and "<" in value), None)
+    if unclosed is None:
         return None
-    message = f"the quote of {short(swallowed)!r} in <{short(tag)}> is not closed before the next tag"
+    message = f"the quote of {short(unclosed)!r} in <{short(tag)}> is not closed before the next tag"
     return MalformedTagError(message, start, max(text.find("\n", start), start + 1))
 
 
 def _read_attribute(text: str, start: int, position: int, tag: str, attributes: dict[str, str], note: Note) -> int:
-    """Put the attribute that stands here to the others; the offset behind it."""
+    """Add the attribute at this offset to the others; return the offset after it."""
     name = _NAME.match(text, position)
     if name is None:
         raise _misfit(text, start, position, tag)
     shown, offset = f"{short(name[0])!r} in <{short(tag)}>", name.start()
     at = skip_blank(text, name.end())
     if not text.startswith("=", at):
-        message = f"<{short(tag)}> holds {short(name[0])!r} without a value"
-        raise MalformedTagError(message, offset, behind(text, name.end()))
+        message = f"the attribute {short(name[0])!r} of <{short(tag)}> has no value"
+        raise MalformedTagError(message, offset, resume_after(text, name.end()))
     at = skip_blank(text, at + 1)
     quote = text[at : at + 1]
     if quote not in ('"', "'"):
-        raise MalformedTagError(f"the value of {shown} is not in plain quotes", offset, behind(text, at))
+        raise MalformedTagError(f"the value of {shown} is not in straight quotes", offset, resume_after(text, at))
     end = text.find(quote, at + 1)
     if end < 0:
-        raise MalformedTagError(f"the quote of {shown} is never closed", offset, behind(text, at))
+        raise MalformedTagError(f"the quote of {shown} is not closed", offset, resume_after(text, at))
     raw = text[at + 1 : end]
     if "<" in raw:
-        note("less", "< inside a value (it is written &lt;)", offset)
+        note("less", "< inside a value (write &lt;)", offset)
     if "&" in raw and REFERENCE.search(raw):
-        note("reference", "a bare & or an unknown entity (& is written &amp;)", offset)
+        note("reference", "a bare & or an unknown entity (write &amp;)", offset)
     if name[0] in attributes:
-        message = f"the attribute {short(name[0])!r} is given twice in <{short(tag)}>"
-        raise MalformedTagError(message, offset, behind(text, end + 1))
+        message = f"duplicate attribute {short(name[0])!r} in <{short(tag)}>"
+        raise MalformedTagError(message, offset, resume_after(text, end + 1))
     attributes[name[0]] = decode(raw)
     return end + 1
 
 
 def _misfit(text: str, start: int, at: int, name: str) -> MalformedTagError:
-    """The error for what stands where an attribute should: said of the likely culprit."""
+    """Return the error for something that is not an attribute, with its likely cause."""
     shown = short(name)
     if at == len(text):
         return MalformedTagError(f"the file ends inside the tag <{shown}>", start, at)
     match text[at]:
         case "=":
-            message = f'<{shown}= has no attribute name; it is written <{shown} {_MEANT.get(name, "name")}="...">'
-            return MalformedTagError(message, start, behind(text, at))
+            message = f'<{shown}= has no attribute name; write <{shown} {_MAIN_ATTRIBUTES.get(name, "name")}="...">'
+            return MalformedTagError(message, start, resume_after(text, at))
         case "<":
             return MalformedTagError(f"<{shown}> is not closed with > before the next tag", start, at)
         case ",":
-            message = f"a comma stands between the attributes of <{shown}>; a space is enough"
+            message = f"there is a comma between the attributes of <{shown}>; separate them with spaces"
         case _:
             word = text[at : at + 12].split(" ", maxsplit=1)[0]
             message = f"{word!r} in <{shown}> is not an attribute"
-    return MalformedTagError(message, at, behind(text, at))
+    return MalformedTagError(message, at, resume_after(text, at))

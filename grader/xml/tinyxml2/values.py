@@ -1,4 +1,4 @@
-"""Attribute values: decoded as TinyXML2 decodes them, and spelt so that XML can hold them."""
+"""Attribute values: decoded as TinyXML2 decodes them, and escaped for XML."""
 
 import re
 
@@ -10,12 +10,12 @@ _ESCAPES = str.maketrans(
     {"&": "&amp;", "<": "&lt;", '"': "&quot;", "\t": "&#9;", "\n": "&#10;", "\r": "&#13;", "\v": "&#9;", "\f": "&#9;"}
 )
 
-# What XML 1.0 cannot hold, not even as a reference; undecodable bytes are surrogates here.
+# Characters that XML 1.0 does not allow, not even as a reference; bytes that are not UTF-8 are surrogates here.
 ILLEGAL = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
 
 def decode(raw: str) -> str:
-    """An attribute's value as TinyXML2's StrPair::GetStr gives it, up to the first NUL."""
+    """Return an attribute's value as TinyXML2's StrPair::GetStr does, up to the first NUL."""
     if "\r" in raw or "\n" in raw:
         raw = re.sub("\r\n|\n\r|\r", "\n", raw)
     if "&" not in raw:
@@ -34,9 +34,9 @@ def decode(raw: str) -> str:
 
 
 def _copy(source: bytes, start: int, end: int, decoded: bytearray) -> None:
-    """Append what stands between two references.
+    """Append the text between two references.
 
-    TinyXML2 decodes in place and passes over an & that begins no reference without writing: what stood there before stays.
+    TinyXML2 decodes in place and skips an & that begins no reference without writing it: the byte that was there stays.
     """
     write = len(decoded)
     decoded += source[start:end]
@@ -49,19 +49,21 @@ def _copy(source: bytes, start: int, end: int, decoded: bytearray) -> None:
 
 
 class _References:
-    """What each &# of a value stands for (`XMLUtil::GetCharacterRef`), asked from left to right.
+    """The characters that each &# of a value refers to (`XMLUtil::GetCharacterRef`), asked from left to right.
 
-    A reference by number reaches to the next semicolon, and its digits are read backwards from there.
+    A numeric reference extends to the next semicolon, and its digits are read backwards from there.
     """
 
     def __init__(self, source: bytes) -> None:
         self._source = source
         self._semicolon = -1
-        self._hexadecimal: tuple[int, int] | None = None  # where the digits before the semicolon begin, and their value
+        self._hexadecimal: tuple[int, int] | None = (
+            None  # the offset of the digits before the semicolon, and their value
+        )
         self._decimal: tuple[int, int] | None = None
 
     def at(self, offset: int) -> tuple[bytes, int]:
-        """What the &# at this offset stands for, and how many bytes it takes."""
+        """Return the bytes that the &# at this offset refers to, and how many bytes it takes itself."""
         source = self._source
         if len(source) == offset + 2:
             return b"", 1
@@ -82,7 +84,7 @@ class _References:
         return (_encoded(code), self._semicolon + 1 - offset) if complete else (b"&", 1)
 
     def _number(self, digits: bytes, radix: int) -> tuple[int, int]:
-        # TinyXML2 10 multiplies in 32 bits and adds in 64, so that very long numbers come out as others.
+        # TinyXML2 10 multiplies in 32 bits and adds in 64, so very long numbers overflow.
         first, code, factor = self._semicolon, 0, 1
         while first > 0 and self._source[first - 1] in digits:
             first -= 1
@@ -92,7 +94,7 @@ class _References:
 
 
 def _encoded(code: int) -> bytes:
-    """UTF-8, past the last code point and over surrogates as well; nothing for what takes more than four bytes."""
+    """Return a code point as UTF-8, as TinyXML2 does for surrogates and past the last one; nothing beyond four bytes."""
     if code < _FIRST_SURROGATE or _LAST_SURROGATE < code <= _LAST_CODE_POINT:
         return chr(code).encode()
     if code < _LAST_CODE_POINT:
@@ -103,7 +105,7 @@ def _encoded(code: int) -> bytes:
 
 
 def escape(value: str) -> str:
-    """A value between double quotes in XML; what XML cannot hold is spelt out, so that names stay apart."""
+    """Return a value for double quotes in XML; characters that XML does not allow are spelt out, so that names stay different."""
     return ILLEGAL.sub(_spell, value.translate(_ESCAPES))
 
 

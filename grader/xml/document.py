@@ -1,0 +1,36 @@
+"""An XML file as TinyXML2 reads it, with the place of every tag."""
+
+from typing import NamedTuple
+
+from grader.problems import Problem
+from grader.source import Location, Source
+from grader.xml import tinyxml2
+from grader.xml.parsing import Element, XMLSyntaxError, parse_xml
+
+
+class Document(NamedTuple):
+    """The root element, with everything that TinyXML2 or XML has against the text; `start` is the place of the first tag.
+
+    The root is None where TinyXML2 refuses the text, or finds no <robot> at its top level.
+    """
+
+    root: Element | None
+    source: Source
+    problems: list[Problem]
+    start: Location
+
+
+def read_document(data: bytes, path: str) -> Document:
+    """Read the bytes of a URDF; never raises. Text that lxml may not read as TinyXML2 does is translated first."""
+    text = data.decode("utf-8", "surrogateescape")
+    body = tinyxml2.without_mark(data)
+    if tinyxml2.is_plain(body):
+        source = Source(path, text)
+        try:
+            return Document(parse_xml(body), source, [], source.at(0))
+        except XMLSyntaxError:
+            pass
+    scan = tinyxml2.translate(text)
+    source = Source(path, text, scan.offsets)
+    problems = [Problem(found.kind, found.message, source.at(found.offset)) for found in scan.differences]
+    return Document(parse_xml(scan.xml) if scan.xml else None, source, problems, source.at(scan.first_tag))
