@@ -575,22 +575,22 @@ def test_files_by_patterns() -> None:
     [
         (
             setup("import os\n", ""),
-            "the name 'os' is used, but not defined or imported",
+            "the name 'os' is not defined or imported",
             "os.path.join('share', package_name), ['package.xml']",
         ),
         (
             setup("from glob import glob\n", ""),
-            "the name 'glob' is used, but not defined or imported",
+            "the name 'glob' is not defined or imported",
             "glob('urdf/*')",
         ),
         (
             setup("from glob import glob", "import glob"),
-            "glob is a module here, which cannot be called: write glob.glob(...)",
+            "glob is a module here and cannot be called: write glob.glob(...)",
             "glob('urdf/*')",
         ),
         (
             setup("package_name = 'my_robot'\n", ""),
-            "the name 'package_name' is used, but not defined or imported",
+            "the name 'package_name' is not defined or imported",
             "package_name,\n",
         ),
     ],
