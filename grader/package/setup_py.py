@@ -86,7 +86,7 @@ def _evaluate(code: Code, tree: Tree, order: str) -> tuple[Setup, bool]:
     listing = Listing(tree, order)
     functions = {**standard_functions(_ROOT), **file_functions(listing, _ROOT)}
     interpreter = Interpreter(functions, {"__file__": f"{_ROOT}/setup.py"})
-    interpreter.run(code.tree)
+    interpreter.run(code)
     calls = [call for call in interpreter.calls if call.name in _SETUPS]
     data_files = DataFiles(tree, listing, _ROOT, _positions(code, interpreter.records))
     name = calls[0].kwargs.get("name") if calls else None

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from grader.static_python.control_flow import EvaluationStopped, ExitFlow, LoopFlow, RaisedFlow, ReturnFlow
 from grader.static_python.evaluation import FunctionTable
+from grader.static_python.parse import Code
 from grader.static_python.statements import StatementEvaluator
 from grader.static_python.values import Call, Function, Position, Scope, Unknown, Value, items_of, position_of, truth
 
@@ -21,12 +22,14 @@ class Interpreter(StatementEvaluator):
         """`names` are those that Python itself binds, such as __file__."""
         super().__init__(functions, {"__name__": "__main__", **names})
         self.stop_reason = ""  # why the file is not evaluated to its end
+        self._has_generators = True
         self._generators: dict[ast.AST, bool] = {}
 
-    def run(self, tree: ast.Module) -> Scope:
+    def run(self, code: Code) -> Scope:
         """Evaluate a whole file and return the scope of its names. Never raises."""
+        self._has_generators = "yield" in code.source.text
         try:
-            self._block(tree.body, self.module)
+            self._block(code.tree.body, self.module)
         except (EvaluationStopped, RecursionError) as error:
             self._stop(error)
         except (ReturnFlow, LoopFlow, ExitFlow):  # also a break outside of a loop, which ast accepts
@@ -94,7 +97,7 @@ class Interpreter(StatementEvaluator):
         self,
         bodies: list[list[ast.stmt]],
         scope: Scope,
-        node: ast.AST,
+        node: ast.stmt | ast.excepthandler,
         reason: str = "a condition is known only at run time",
     ) -> None:
         """Evaluate blocks of which only a run decides which are executed."""
@@ -111,9 +114,9 @@ class Interpreter(StatementEvaluator):
         scope.bind(node.name, decorated if node.decorator_list else function)
 
     def _function_body(self, node: _Definition, scope: Scope, at: Position) -> Value:
-        if node not in self._generators:
+        if self._has_generators and node not in self._generators:
             self._generators[node] = any(isinstance(inner, ast.Yield | ast.YieldFrom) for inner in ast.walk(node))
-        if self._generators[node]:
+        if self._generators.get(node):
             return Unknown("a generator function is not supported", at)
         before = self.uncertainty
         try:

@@ -33,10 +33,12 @@ class SimpleEvaluator(Evaluation):
     def evaluate(self, node: ast.expr, scope: Scope) -> Value:
         """Return the value of an expression; Unknown, with the reason, where it cannot be determined."""
         self.step()
+        if isinstance(node, ast.Constant):
+            return node.value
+        if isinstance(node, ast.Name):
+            return self.find(node, scope)
         value = self.evaluate_kind(node, scope)
-        if isinstance(value, str | list | tuple | dict) and not isinstance(
-            node, ast.Name | ast.Subscript | ast.Constant
-        ):
+        if isinstance(value, str | list | tuple | dict) and not isinstance(node, ast.Subscript):
             self.step(len(value) // 64)  # a large value takes time to make
         return value
 
@@ -44,10 +46,6 @@ class SimpleEvaluator(Evaluation):
         """Return the value of an expression, without the checks of `evaluate`."""
         at = position_of(node)
         match node:
-            case ast.Constant(value=value):
-                return value
-            case ast.Name():
-                return self.find(node, scope)
             case ast.Attribute(value=owner, attr=name):
                 return attribute(self, self.evaluate(owner, scope), name, at)
             case ast.Call():

@@ -27,9 +27,9 @@ class Position(NamedTuple):
 START = Position(1, 1)
 
 
-def position_of(node: ast.AST) -> Position:
-    """Return the position of a node; the start of the file for a node without one."""
-    return Position(getattr(node, "lineno", 1), getattr(node, "col_offset", 0) + 1)
+def position_of(node: ast.expr | ast.stmt | ast.excepthandler) -> Position:
+    """Return the position of a node."""
+    return Position(node.lineno, node.col_offset + 1)
 
 
 @dataclass(frozen=True, slots=True)

@@ -68,7 +68,7 @@ def value_of(expression: str, tree: Tree, root: str = "/root", order: str = ORDE
     )
     assert isinstance(code, Code)
     interpreter = Interpreter({**standard_functions(root), **file_functions(Listing(tree, order), root)}, {})
-    value = interpreter.run(code.tree).names["value"]
+    value = interpreter.run(code).names["value"]
     return interpreter.errors[0] if interpreter.errors else value
 
 
@@ -213,4 +213,4 @@ def test_many_searches_through_many_files_end_soon(expression: str) -> None:
             f"import os\nfrom glob import glob\nfrom pathlib import Path\nvalue = {expression}\n".encode(), "setup.py"
         )
         assert isinstance(code, Code)
-        Interpreter({**standard_functions("/root"), **file_functions(Listing(tree), "/root")}, {}).run(code.tree)
+        Interpreter({**standard_functions("/root"), **file_functions(Listing(tree), "/root")}, {}).run(code)

@@ -100,7 +100,7 @@ def _python(data: bytes, path: str, installed: str, context: Context, include: I
     if isinstance(code, SyntaxFault):
         return Launch(path, code.source, LaunchFault(f"Python cannot read the file: {code.message}", code.location))
     interpreter = Interpreter(launch_functions(), {"__file__": f"{PREFIX}/{installed}", "__name__": _MODULE})
-    names = interpreter.run(code.tree).names
+    names = interpreter.run(code).names
     findings = Findings(lambda position: location_in(code.source, position))
     visitor = ActionVisitor(findings, include, interpreter.call_from_outside)
     match names.get(_ENTRY):
