@@ -12,7 +12,7 @@ from grader.package.package import MANIFEST, Package
 from grader.submission.submission import Submission
 
 if TYPE_CHECKING:
-    from grader.package.data_files import Copy
+    from grader.package.data_files import InstalledFile
     from grader.package.file_functions import EmptyGlob
     from grader.package.manifest import Manifest
     from grader.package.setup_py import Setup
@@ -148,7 +148,7 @@ def _installed(package: Package, files: Sequence[str], kind: Kind | None) -> Out
             continue  # that it is missing is told, and counted, as what it is
         owner = _owner(stop.path, package) or "urdf"  # one mistake costs one criterion: of what is neither, the first
         if owner == kind or posixpath.dirname(stop.path) in {posixpath.dirname(path) for path in files}:
-            return judged_as("failed", f"the build stops here: {stop.words}", at=setup.location(stop.at))
+            return judged_as("failed", f"the build stops here: {stop.message}", at=setup.location(stop.at))
     copies = [copy for copy in setup.copies if copy.source in files]
     shares = tuple(f"share/{name}/" for name in package.names)
     inside = [copy for copy in copies if copy.target.startswith(shares)]
@@ -167,7 +167,7 @@ def _installed(package: Package, files: Sequence[str], kind: Kind | None) -> Out
     raise _not_installed(package, setup, files, kind)
 
 
-def _elsewhere(copy: "Copy", share: str, setup: "Setup") -> Outcome:
+def _elsewhere(copy: "InstalledFile", share: str, setup: "Setup") -> Outcome:
     message = f"a build installs {copy.source} as {copy.target}, but ROS 2 looks for a package's files below {share}"
     return judged_as("failed", message, at=setup.location(copy.at))
 

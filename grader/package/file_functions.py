@@ -1,83 +1,92 @@
-"""Functions with which a Python file looks for files of its own package: answered from the package's list of files."""
+"""Functions that search a package for files, as setup.py calls them: evaluated on the list of the package's files."""
 
 import posixpath
 import re
 from collections.abc import Callable
+from functools import partial
 from pathlib import PurePosixPath
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from grader.files.ignore_rules import ignored_part
 from grader.package.globbing import BeyondError, Listing
-from grader.static_python.values import Made, Spot, Steering, TooHard, Unknown, Value, unknown_in
-
-if TYPE_CHECKING:
-    from grader.static_python.machine import Library, Machine
+from grader.static_python.control_flow import EvaluationStopped
+from grader.static_python.evaluation import Evaluation, FunctionTable
+from grader.static_python.functions import path_text
+from grader.static_python.values import Call, Position, Unknown, Value, WalkFolders, unknown_in
 
 WRITING = "builtins.open(w)"  # the name of a call that opens a file to write into it
-_OUTSIDE = "it looks at files outside of the package"
+_OUTSIDE = "it reads files outside of the package"
+_GLOB_OPTIONS = {"pathname", "root_dir", "recursive", "include_hidden"}
+_MAX_RECORDED = 200  # paths of one search whose position is kept
 
 
 class EmptyGlob(NamedTuple):
-    """A pattern that finds no file."""
+    """A pattern that matches no file."""
 
     pattern: str
-    at: Spot
+    at: Position
 
 
-class Found(NamedTuple):
-    """What a search for files has found, as it is spelt there."""
+class FoundPaths(NamedTuple):
+    """The paths that a search for files returned."""
 
     paths: tuple[str | PurePosixPath, ...]
-    at: Spot
+    at: Position
 
 
-_MOST_NOTED = 200  # paths of one search whose place is kept
-
-
-def file_functions(listing: Listing, root: str) -> "Library":
-    """The functions by full name; `root` is the absolute path that the package's folder goes by."""
-    package = _Package(listing, root)
-    named: dict[str, Callable[..., Value]] = {
-        "glob.glob": package.glob,
-        "glob.iglob": package.glob,
-        "glob.escape": package.escape,
-        "os.listdir": package.listdir,
-        "os.walk": package.walk,
-        "os.chdir": package.chdir,
-        "builtins.open": package.open,
-        "pathlib.Path.iterdir": package.iterdir,
-        "pathlib.Path.glob": package.path_glob,
-        "pathlib.Path.rglob": package.path_rglob,
+def file_functions(listing: Listing, root: str) -> FunctionTable:
+    """Return the functions by full name; `root` is the absolute path that stands for the package's folder."""
+    folder = _PackageFolder(listing, root)
+    functions: dict[str, Callable[[Evaluation, Call], Value]] = {
+        "glob.glob": folder.glob,
+        "glob.iglob": folder.glob,
+        "glob.escape": folder.escape,
+        "os.listdir": folder.listdir,
+        "os.walk": folder.walk,
+        "os.chdir": folder.chdir,
+        "builtins.open": folder.open,
+        "pathlib.Path.iterdir": folder.iterdir,
+        "pathlib.Path.glob": folder.path_glob,
+        "pathlib.Path.rglob": partial(folder.path_glob, prefix="**/"),
     }
-    named["os.path.exists"] = named["pathlib.Path.exists"] = package.of_path(lambda path: path is not None)
-    named["os.path.isfile"] = named["pathlib.Path.is_file"] = package.of_path(lambda path: path in listing.files)
-    named["os.path.isdir"] = named["pathlib.Path.is_dir"] = package.of_path(lambda path: path in listing.folders)
-    return {name: _answered(function, listing) for name, function in named.items()}
+    tests: dict[str, Callable[[str | None], bool]] = {
+        "exists": lambda path: path is not None,
+        "is_file": lambda path: path in listing.files,
+        "is_dir": lambda path: path in listing.folders,
+    }
+    for name, test in tests.items():
+        functions[f"pathlib.Path.{name}"] = partial(folder.test, test)
+        functions[f"os.path.{name.replace('_', '')}"] = partial(folder.test, test)
+    return {name: partial(_evaluated, function, listing) for name, function in functions.items()}
 
 
-def _answered(function: Callable[..., Value], listing: Listing) -> Callable[..., Value]:
-    def answer(machine: "Machine", args: list[Value], kwargs: dict[str, Value], spot: Spot) -> Value:
-        before = listing.looked_at
-        try:
-            return function(machine, args, kwargs, spot)
-        except BeyondError as error:
-            return Unknown(str(error), spot)
-        finally:
-            machine.step((listing.looked_at - before) // 10)  # a search through many files takes its time
+def _evaluated(
+    function: Callable[[Evaluation, Call], Value], listing: Listing, evaluation: Evaluation, call: Call
+) -> Value:
+    """Evaluate a search, count its steps and record whether its result depends on the order of the files in a folder."""
+    before = listing.names_read
+    try:
+        found = function(evaluation, call)
+    except BeyondError as error:
+        return Unknown(str(error), call.at)
+    finally:
+        evaluation.step((listing.names_read - before) // 10)
+    if isinstance(found, list):
+        steps = [names for step in found if isinstance(step, tuple) for names in step[1:]]  # of os.walk
+        listing.order_matters |= any(len(names) > 1 for names in (found, *steps))
+    return found
 
-    return answer
 
-
-class _Package:
-    """The package's folder, in which a file looks for others."""
+class _PackageFolder:
+    """The package's folder, as the functions see it."""
 
     def __init__(self, listing: Listing, root: str) -> None:
         self.listing = listing
         self.root = root
 
     def inside(self, value: Value) -> str:
-        """A path or pattern relative to the package's folder. Raises BeyondError."""
-        text = str(value) if isinstance(value, str | PurePosixPath) else None
+        """Return a path or pattern relative to the package's folder. Raises BeyondError."""
+        text = path_text(value)
         if text == self.root:
             return "."
         if text is not None and text.startswith(self.root + "/"):
@@ -88,120 +97,117 @@ class _Package:
         return text
 
     def real(self, value: Value) -> str | None:
-        """The file or folder that a path leads to; None where there is nothing. Raises BeyondError."""
+        """Return the file or folder at a path; None where there is nothing. Raises BeyondError."""
         path = self.inside(value)
         real = self.listing.real(path)
         if real is None and ignored_part(posixpath.normpath(path)):
-            raise BeyondError(f"{path} is among files that are not looked at")
+            raise BeyondError(f"{path} is an ignored file")
         return real
 
-    def glob(self, machine: "Machine", args: list[Value], kwargs: dict[str, Value], spot: Spot) -> Value:
-        pattern = args[0] if args else kwargs.get("pathname")
-        start = kwargs.get("root_dir")
-        options = [kwargs.get(name, False) for name in ("recursive", "include_hidden")]
+    def glob(self, evaluation: Evaluation, call: Call) -> Value:
+        pattern, start = call.argument(0, "pathname"), call.kwargs.get("root_dir")
+        options = [call.kwargs.get(name, False) for name in ("recursive", "include_hidden")]
         if isinstance(pattern, PurePosixPath):
-            machine.fault("glob needs a text, and this is a path: write str(...) around it", spot)
+            evaluation.error("glob takes a string, and this is a path: write str(...) around it", call.at)
         unknown = unknown_in([pattern, start, *options])
-        plain = all(isinstance(each, int | None) for each in options) and isinstance(start, str | PurePosixPath | None)
-        if unknown or not plain or not isinstance(pattern, str) or not kwargs.keys() <= _GLOB_OPTIONS or len(args) > 1:
-            return unknown or Unknown("this search for files is not followed", spot)
-        recursive, hidden = map(bool, options)
+        plain = all(isinstance(value, int | None) for value in options) and isinstance(
+            start, str | PurePosixPath | None
+        )
+        is_supported = plain and call.kwargs.keys() <= _GLOB_OPTIONS and len(call.args) <= 1
+        if unknown or not is_supported or not isinstance(pattern, str):
+            return unknown or Unknown("this search for files is not supported", call.at)
         if pattern == self.root:
             return [pattern]
         above = self.root + "/" if pattern.startswith(self.root + "/") else ""
         folder = "" if start is None or above else self.inside(start)
         pattern = pattern.removeprefix(above)
+        recursive, hidden = map(bool, options)
         found = self.listing.glob(pattern, recursive=recursive, hidden=hidden, start=folder, above=above)
-        if not found:
-            machine.notes.append(EmptyGlob(posixpath.join(folder, pattern), spot))
-        machine.notes.append(Found(tuple(found[:_MOST_NOTED]), spot))
+        self._record(evaluation, posixpath.join(folder, pattern), found, call.at)
         return found
 
-    def escape(self, _: "Machine", args: list[Value], __: dict[str, Value], spot: Spot) -> Value:
-        if len(args) == 1 and isinstance(args[0], str):
-            return re.sub(r"([*?\[])", r"[\1]", args[0])
-        return unknown_in(args) or Unknown("this is not followed as a text", spot)
+    def escape(self, _: Evaluation, call: Call) -> Value:
+        if len(call.args) == 1 and isinstance(call.args[0], str):
+            return re.sub(r"([*?\[])", r"[\1]", call.args[0])
+        return call.unknown("the pattern is known only at run time")
 
-    def path_glob(
-        self, machine: "Machine", args: list[Value], kwargs: dict[str, Value], spot: Spot, start: str = ""
-    ) -> Value:
-        pattern = args[1] if len(args) == 2 else kwargs.get("pattern") if len(args) == 1 else None
-        if not isinstance(pattern, str) or not kwargs.keys() <= {"pattern"}:
-            return unknown_in(args) or Unknown("this search for files is not followed", spot)
-        found = self.listing.path_glob(self.inside(args[0]), start + pattern)
-        if not found:
-            machine.notes.append(EmptyGlob(str(PurePosixPath(self.inside(args[0])) / pattern), spot))
-        machine.notes.append(Found(tuple(args[0] / path for path in found[:_MOST_NOTED]), spot))
-        return [args[0] / path for path in found]
+    def path_glob(self, evaluation: Evaluation, call: Call, prefix: str = "") -> Value:
+        pattern = call.argument(1, "pattern")
+        if (
+            not isinstance(pattern, str)
+            or not call.kwargs.keys() <= {"pattern"}
+            or len(call.args) + len(call.kwargs) != 2
+        ):
+            return call.unknown("this search for files is not supported")
+        folder = self.inside(call.args[0])
+        found = [call.args[0] / path for path in self.listing.path_glob(folder, prefix + pattern)]
+        self._record(evaluation, str(PurePosixPath(folder) / pattern), found, call.at)
+        return found
 
-    def path_rglob(self, machine: "Machine", args: list[Value], kwargs: dict[str, Value], spot: Spot) -> Value:
-        return self.path_glob(machine, args, kwargs, spot, "**/")
+    def test(self, answer: Callable[[str | None], bool], _: Evaluation, call: Call) -> Value:
+        if len(call.args) != 1 or call.kwargs:
+            return call.unknown("this test of a path is not supported")
+        return answer(self.real(call.args[0]))
 
-    def of_path(self, answer: Callable[[str | None], bool]) -> Callable[..., Value]:
-        def follow(_: "Machine", args: list[Value], kwargs: dict[str, Value], spot: Spot) -> Value:
-            if len(args) != 1 or kwargs:
-                return unknown_in(args) or Unknown("this is not followed", spot)
-            return answer(self.real(args[0]))
+    def listdir(self, evaluation: Evaluation, call: Call) -> Value:
+        path = call.argument(0, "path")
+        return self._names(evaluation, "." if path is None else path, call.at)
 
-        return follow
+    def iterdir(self, evaluation: Evaluation, call: Call) -> Value:
+        return [call.args[0] / name for name in self._names(evaluation, call.args[0], call.at)]
 
-    def names(self, machine: "Machine", path: Value, spot: Spot) -> list[Value]:
-        """The names in a folder, which has to be one."""
+    def walk(self, _: Evaluation, call: Call) -> Value:
+        if len(call.args) != 1 or not call.kwargs.keys() <= {"topdown", "followlinks"}:
+            return call.unknown("this walk through folders is not supported")
+        real = self.real(call.args[0])
+        steps: list[Value] = []
+        pending = [(real, str(call.args[0]))] if real is not None and real in self.listing.folders else []
+        while pending:
+            folder, spelled = pending.pop()
+            paths = {name: f"{folder}/{name}" if folder else name for name in self.listing.names(folder)}
+            folders = [name for name, path in paths.items() if path in self.listing.folders]
+            steps.append((spelled, WalkFolders(folders), [name for name in paths if name not in folders]))
+            pending += [(paths[name], posixpath.join(spelled, name)) for name in reversed(folders)]
+        return steps
+
+    def chdir(self, _: Evaluation, call: Call) -> Value:
+        try:
+            stays = len(call.args) == 1 and self.real(call.args[0]) == ""
+        except BeyondError:
+            stays = False
+        if not stays:
+            raise EvaluationStopped("a change of the working folder is not supported")
+
+    def open(self, evaluation: Evaluation, call: Call) -> Value:
+        opened = Call("builtins.open", call.args, call.kwargs, call.at)
+        path, mode = call.argument(0, "file"), call.argument(1, "mode")
+        if mode is not None and (not isinstance(mode, str) or set(mode) & set("wax+")):
+            evaluation.calls.append(Call(WRITING, call.args, call.kwargs, call.at))
+            evaluation.may_fail()
+            return opened
+        try:
+            real = self.real(path)
+        except BeyondError:
+            evaluation.may_fail()
+            return opened
+        if real is None:
+            evaluation.error(f"there is no file {str(path)!r}", call.at, FileNotFoundError)
+        elif real in self.listing.folders:
+            evaluation.error(f"{str(path)!r} is a folder, not a file", call.at, IsADirectoryError)
+        return opened
+
+    def _names(self, evaluation: Evaluation, path: Value, at: Position) -> list[Value]:
+        """Return the names in a folder; it is an error if there is none."""
         real = self.real(path)
         if real in self.listing.folders:
             return list(self.listing.names(real or ""))
         if real is None:
-            machine.fault(f"there is no folder {str(path)!r}", spot, FileNotFoundError)
+            evaluation.error(f"there is no folder {str(path)!r}", at, FileNotFoundError)
         else:
-            machine.fault(f"{str(path)!r} is a file, not a folder", spot, NotADirectoryError)
+            evaluation.error(f"{str(path)!r} is a file, not a folder", at, NotADirectoryError)
         return []
 
-    def listdir(self, machine: "Machine", args: list[Value], kwargs: dict[str, Value], spot: Spot) -> Value:
-        path = args[0] if args else kwargs.get("path")
-        return self.names(machine, "." if path is None else path, spot)
-
-    def iterdir(self, machine: "Machine", args: list[Value], _: dict[str, Value], spot: Spot) -> Value:
-        return [args[0] / name for name in self.names(machine, args[0], spot)]
-
-    def walk(self, _: "Machine", args: list[Value], kwargs: dict[str, Value], spot: Spot) -> Value:
-        if len(args) != 1 or not kwargs.keys() <= {"topdown", "followlinks"}:
-            return unknown_in(args) or Unknown("this walk through folders is not followed", spot)
-        real = self.real(args[0])
-        steps: list[Value] = []
-        waiting = [(real, str(args[0]))] if real is not None and real in self.listing.folders else []
-        while waiting:
-            here, spelt = waiting.pop()
-            paths = {name: f"{here}/{name}" if here else name for name in self.listing.names(here)}
-            folders = [name for name, path in paths.items() if path in self.listing.folders]
-            steps.append((spelt, Steering(folders), [name for name in paths if name not in folders]))
-            waiting += [(paths[name], posixpath.join(spelt, name)) for name in reversed(folders)]
-        return steps
-
-    def chdir(self, _: "Machine", args: list[Value], __: dict[str, Value], ___: Spot) -> Value:
-        try:
-            stays = len(args) == 1 and self.real(args[0]) == ""
-        except BeyondError:
-            stays = False
-        if not stays:
-            raise TooHard("it changes the working folder: what follows is not told")
-
-    def open(self, machine: "Machine", args: list[Value], kwargs: dict[str, Value], spot: Spot) -> Value:
-        made = Made("builtins.open", args, kwargs, spot)
-        path, mode = made.argument(0, "file"), made.argument(1, "mode")
-        if mode is not None and (not isinstance(mode, str) or set(mode) & set("wax+")):
-            machine.made.append(Made(WRITING, args, kwargs, spot))
-            machine.may_fail()
-            return made
-        try:
-            real = self.real(path)
-        except BeyondError:
-            machine.may_fail()
-            return made
-        if real is None:
-            machine.fault(f"there is no file {str(path)!r}", spot, FileNotFoundError)
-        elif real in self.listing.folders:
-            machine.fault(f"{str(path)!r} is a folder, not a file", spot, IsADirectoryError)
-        return made
-
-
-_GLOB_OPTIONS = {"pathname", "root_dir", "recursive", "include_hidden"}
+    def _record(self, evaluation: Evaluation, pattern: str, found: list[Value], at: Position) -> None:
+        if not found:
+            evaluation.records.append(EmptyGlob(pattern, at))
+        evaluation.records.append(FoundPaths(tuple(found[:_MAX_RECORDED]), at))

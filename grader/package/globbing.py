@@ -14,9 +14,9 @@ ORDERS = ("sorted", "reversed", "rotated")
 _MAGIC = re.compile(r"[*?\[]")
 _OUTSIDE = "it looks for files outside of the package"
 _COMPILED = "__pycache__"  # what is in it was never written by anyone
-_MOST_FOUND = 20_000
-_MOST_PATTERN = 1_024
-_MOST_PARTS = 50
+_MAX_FOUND = 20_000
+_MAX_PATTERN = 1_024
+_MAX_PARTS = 50
 
 
 class BeyondError(Exception):
@@ -26,14 +26,15 @@ class BeyondError(Exception):
 class Listing:
     """The folders of a tree with what is in them, named in one of the possible orders.
 
-    Paths are relative to the tree's root. `looked_at` counts the names that were gone through so far.
+    Paths are relative to the tree's root. `names_read` counts the names that were gone through so far.
     """
 
     def __init__(self, tree: Tree, order: str = ORDERS[0]) -> None:
         self.files = tree.files
         self.folders = tree.folders | tree.unseen | {""}
         self._unseen = {path for path in tree.unseen if path.rpartition("/")[2] != _COMPILED}
-        self.looked_at = 0
+        self.names_read = 0
+        self.order_matters = False  # whether a search has returned several names
         self._children: dict[str, list[str]] = {}
         for path in sorted([*tree.files, *tree.folders, *tree.unseen], reverse=order == "reversed"):
             folder, _, name = path.rpartition("/")
@@ -46,7 +47,7 @@ class Listing:
         if folder in self._unseen:
             raise BeyondError("it looks into a folder that is not looked at here")
         found = self._children.get(folder, [])
-        self.looked_at += 1 + len(found)
+        self.names_read += 1 + len(found)
         return found
 
     def real(self, path: str) -> str | None:
@@ -77,7 +78,7 @@ class Listing:
         """
         if pattern.startswith("/"):
             raise BeyondError(_OUTSIDE)
-        if len(pattern) > _MOST_PATTERN or pattern.count("/") > _MOST_PARTS:
+        if len(pattern) > _MAX_PATTERN or pattern.count("/") > _MAX_PARTS:
             raise BeyondError("the pattern is too long to follow")
         found = _Search(self, start, recursive=recursive, hidden=hidden).find(pattern, folders_only=False)
         return [above + path for path in dict.fromkeys(found) if above or path]
@@ -86,13 +87,7 @@ class Listing:
         """The paths below a folder that pathlib's glob finds there, as Python 3.12 does. Raises BeyondError."""
         parts = [part for part in pattern.split("/") if part not in ("", ".")]
         odd = any("**" in part and part != "**" for part in parts) or ".." in parts or pattern.startswith("/")
-        if (
-            odd
-            or not parts
-            or pattern.endswith(("/", "/."))
-            or len(parts) > _MOST_PARTS
-            or len(pattern) > _MOST_PATTERN
-        ):
+        if odd or not parts or pattern.endswith(("/", "/.")) or len(parts) > _MAX_PARTS or len(pattern) > _MAX_PATTERN:
             raise BeyondError("a pattern of this kind is not followed")
         start = self.real(folder)
         found = [""] if start in self.folders else []
@@ -187,7 +182,7 @@ def _join(folder: str, name: str) -> str:
 
 
 def _bounded(found: list[str]) -> list[str]:
-    if len(found) > _MOST_FOUND:
+    if len(found) > _MAX_FOUND:
         raise BeyondError("it finds too many files to follow")
     return found
 

@@ -174,7 +174,16 @@ class Package:
         return next(iter([*installed, *meant]), None)
 
     def rviz(self, path: str) -> "RvizFile":
-        """An RViz file, read."""
+        """Return an RViz file."""
+        if path not in self._rviz_files:
+            self._rviz_files[path] = self._read_rviz(path)
+        return self._rviz_files[path]
+
+    @cached_property
+    def _rviz_files(self) -> "dict[str, RvizFile]":
+        return {}
+
+    def _read_rviz(self, path: str) -> "RvizFile":
         from grader.package.rviz import RvizFile, read_rviz
 
         try:

@@ -1,24 +1,23 @@
-"""What a build would install by a package's setup.py: told by following the file, which is never run."""
+"""What a build would install by a package's setup.py: the file is evaluated, never run."""
 
 import ast
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from grader.files.tree import Tree
-from grader.package.data_files import Copy, Entries, Stop
-from grader.package.file_functions import WRITING, EmptyGlob, Found, file_functions
+from grader.package.data_files import DataFiles, InstalledFile, InstallError
+from grader.package.file_functions import WRITING, EmptyGlob, FoundPaths, file_functions
 from grader.package.globbing import ORDERS, Listing
 from grader.source import Location, Source
-from grader.static_python.library import plain_functions
-from grader.static_python.machine import Machine
-from grader.static_python.methods import FOLDER
+from grader.static_python.control_flow import EvaluationStopped, PythonError
+from grader.static_python.functions import standard_functions
+from grader.static_python.interpreter import Interpreter
 from grader.static_python.parse import Code, SyntaxFault
-from grader.static_python.values import Fault, Spot, TooHard, Unknown, at
+from grader.static_python.values import PACKAGE_FOLDER, START, Position, Unknown, position_of
 
-_ROOT = f"/{FOLDER}"
-_START = Spot(1, 1)
+_ROOT = f"/{PACKAGE_FOLDER}"
 _SETUPS = ("setuptools.setup", "distutils.core.setup", "?.setup")
-# Calls that make, move or delete files: what is there afterwards is not told.
+# Calls that make, move or delete files: the files that exist afterwards are not known.
 _CHANGES = (
     WRITING, "os.link", "os.makedirs", "os.mkdir", "os.popen", "os.remove", "os.rename", "os.replace", "os.rmdir",
     "os.spawn", "os.exec", "os.symlink", "os.system", "os.unlink", "pathlib.Path.", "shutil.", "subprocess.", "tarfile.",
@@ -30,94 +29,97 @@ _CHANGES = (
 class Setup:
     """What is known of a setup.py. `fault` is set where Python cannot read it: nothing else is known then.
 
-    `unknown` has what could not be told: a file that is not among `copies` may be installed all the same.
+    `unknown` has what cannot be determined: a file that is not among `copies` may be installed all the same.
     """
 
     path: str
     source: Source
     fault: SyntaxFault | None = None
     name: str | None = None
-    copies: tuple[Copy, ...] = ()
-    stops: tuple[Stop, ...] = ()
+    copies: tuple[InstalledFile, ...] = ()
+    stops: tuple[InstallError, ...] = ()
     empty: tuple[EmptyGlob, ...] = ()
-    faults: tuple[Fault, ...] = ()
+    faults: tuple[PythonError, ...] = ()
     unknown: tuple[Unknown, ...] = ()
     is_called: bool = True
-    called_at: Spot = _START
+    called_at: Position = START
 
-    def location(self, spot: Spot) -> Location:
-        """A place in the file."""
-        return place(self.source, spot)
+    def location(self, position: Position) -> Location:
+        """Return the location of a position in the file."""
+        return location_in(self.source, position)
 
     def installed(self) -> dict[str, str]:
-        """Each installed file's source by its path below the prefix."""
+        """Return each installed file's source by its path below the prefix."""
         return {copy.target: copy.source for copy in self.copies}
 
 
-def place(source: Source, spot: Spot) -> Location:
-    """A place as Python counts it, in bytes, as a place in characters."""
-    line = source.line(spot.line)
-    column = len(line.encode("utf-8", "surrogateescape")[: spot.column - 1].decode("utf-8", "ignore"))
-    return Location(source.path, spot.line, column + 1)
+def location_in(source: Source, position: Position) -> Location:
+    """Return the location of a position that Python gives: it counts columns in bytes, a location in characters."""
+    line = source.line(position.line)
+    column = len(line.encode("utf-8", "surrogateescape")[: position.column - 1].decode("utf-8", "ignore"))
+    return Location(source.path, position.line, column + 1)
 
 
 def read_setup(code: Code | SyntaxFault, tree: Tree) -> Setup:
-    """Follow a setup.py whose package has these files. Never raises."""
-    path = code.source.path
+    """Evaluate the setup.py of a package with these files. Never raises.
+
+    The file system lists a folder in any order. Where a search finds several files, other orders are evaluated as well; what
+    differs between them is unknown.
+    """
     if isinstance(code, SyntaxFault):
-        return Setup(path, code.source, code)
-    setup = _follow(code, tree, ORDERS[0])
-    others = () if any(each.at == Spot(1, 1) for each in setup.unknown) else ORDERS[1:]
-    if any(_outcome(_follow(code, tree, order)) != _outcome(setup) for order in others):
-        doubt = Unknown("what is installed depends on the order in which folders are listed", Spot(1, 1))
-        return replace(setup, copies=(), stops=(), unknown=(*setup.unknown, doubt))
+        return Setup(code.source.path, code.source, code)
+    setup, order_matters = _evaluate(code, tree, ORDERS[0])
+    if order_matters:
+        others = (_evaluate(code, tree, order)[0] for order in ORDERS[1:])
+        if any(_outcome(other) != _outcome(setup) for other in others):
+            doubt = Unknown("the result depends on the order in which folders are listed", START)
+            return replace(setup, copies=(), stops=(), unknown=(*setup.unknown, doubt))
     return setup
 
 
-def _outcome(setup: Setup) -> tuple[set[Copy], set[Stop], set[Fault]]:
+def _outcome(setup: Setup) -> tuple[set[InstalledFile], set[InstallError], set[PythonError]]:
     return set(setup.copies), set(setup.stops), set(setup.faults)
 
 
-def _follow(code: Code, tree: Tree, order: str) -> Setup:
-    """What a file comes to where folders are listed in some order."""
-    path = code.source.path
+def _evaluate(code: Code, tree: Tree, order: str) -> tuple[Setup, bool]:
+    """Evaluate a file with folders listed in some order; return the result and whether it may depend on that order."""
     listing = Listing(tree, order)
-    library = {**plain_functions(_ROOT), **file_functions(listing, _ROOT)}
-    machine = Machine(code, library, special={"__file__": f"{_ROOT}/setup.py"})
-    machine.run()
-    calls = [made for made in machine.made if made.name in _SETUPS]
-    reader = Entries(tree, listing, _ROOT, _places(code, machine.notes))
+    functions = {**standard_functions(_ROOT), **file_functions(listing, _ROOT)}
+    interpreter = Interpreter(functions, {"__file__": f"{_ROOT}/setup.py"})
+    interpreter.run(code)
+    calls = [call for call in interpreter.calls if call.name in _SETUPS]
+    data_files = DataFiles(tree, listing, _ROOT, _positions(code, interpreter.records))
     name = calls[0].kwargs.get("name") if calls else None
     try:
         for call in calls:
-            reader.read(call)
-    except TooHard as error:
-        reader.unknown.append(Unknown(str(error), calls[0].at))
-    reader.finish(next((made for made in machine.made if made.name.startswith(_CHANGES)), None))
-    if machine.stopped:
-        reader.unknown.append(Unknown(machine.stopped, Spot(1, 1)))
-    return Setup(
-        path,
-        code.source,
-        None,
-        name if isinstance(name, str) else None,
-        tuple(reader.copies),
-        tuple(reader.stops),
-        tuple(dict.fromkeys(note for note in machine.notes if isinstance(note, EmptyGlob))),
-        tuple(sorted(machine.faults, key=lambda fault: fault.at)),
-        tuple(reader.unknown),
-        bool(calls) or bool(machine.stopped),
-        calls[0].at if calls else _START,
+            data_files.read(call)
+    except EvaluationStopped as error:
+        data_files.unknown.append(Unknown(str(error), calls[0].at))
+    data_files.finish(next((call for call in interpreter.calls if call.name.startswith(_CHANGES)), None))
+    if interpreter.stop_reason:
+        data_files.unknown.append(Unknown(interpreter.stop_reason, START))
+    setup = Setup(
+        path=code.source.path,
+        source=code.source,
+        name=name if isinstance(name, str) else None,
+        copies=tuple(data_files.copies),
+        stops=tuple(data_files.stops),
+        empty=tuple(dict.fromkeys(record for record in interpreter.records if isinstance(record, EmptyGlob))),
+        faults=tuple(sorted(interpreter.errors, key=lambda error: error.at)),
+        unknown=tuple(data_files.unknown),
+        is_called=bool(calls) or bool(interpreter.stop_reason),
+        called_at=calls[0].at if calls else START,
     )
+    return setup, listing.order_matters and not interpreter.stop_reason
 
 
-def _places(code: Code, notes: Iterable[object]) -> dict[str, Spot]:
-    """Where a path in data_files comes from: the search that found it, or the text that it is written as."""
-    places: dict[str, Spot] = {}
-    for note in notes:
-        if isinstance(note, Found):
-            places |= dict.fromkeys(map(str, note.paths), note.at)
+def _positions(code: Code, records: Iterable[object]) -> dict[str, Position]:
+    """Return where each path of data_files comes from: the search that found it, or the string that it is written as."""
+    positions: dict[str, Position] = {}
+    for record in records:
+        if isinstance(record, FoundPaths):
+            positions |= dict.fromkeys(map(str, record.paths), record.at)
     for node in ast.walk(code.tree):
         if isinstance(node, ast.Constant) and isinstance(node.value, str):
-            places.setdefault(node.value, at(node))
-    return places
+            positions.setdefault(node.value, position_of(node))
+    return positions

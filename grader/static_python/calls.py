@@ -1,19 +1,15 @@
-"""Attributes and calls of a followed file."""
+"""Attributes and calls of any value."""
 
 from pathlib import PurePosixPath
-from typing import TYPE_CHECKING
 
-from grader.static_python import methods
-from grader.static_python.containers import MOST_ITEMS
-from grader.static_python.names import attribute_fault
-from grader.static_python.operators import KINDS
-from grader.static_python.values import Bound, Function, Made, Named, Spot, Unknown, Value, unknown_in
+from grader.static_python.evaluation import Evaluation
+from grader.static_python.imports import attribute_error
+from grader.static_python.methods import call_method, path_attribute
+from grader.static_python.operators import TYPE_NAMES
+from grader.static_python.values import BoundMethod, Call, Function, Position, QualifiedName, Unknown, Value
 
-if TYPE_CHECKING:
-    from grader.static_python.machine import Machine
-
-_LEAVES = ("sys.exit", "os._exit", "builtins.exit", "builtins.quit")
-_NAMING = ("builtins.exec", "builtins.globals", "builtins.locals", "builtins.vars")
+_EXITS = ("sys.exit", "os._exit", "builtins.exit", "builtins.quit")
+_BINDS_NAMES = ("builtins.exec", "builtins.globals", "builtins.locals", "builtins.vars")
 _CONSTANTS = {
     "os.sep": "/",
     "os.path.sep": "/",
@@ -24,86 +20,59 @@ _CONSTANTS = {
 }
 
 
-def attribute(machine: "Machine", owner: Value, name: str, spot: Spot) -> Value:
-    """The value of an attribute; a method that is about to be called is Bound."""
+def attribute(evaluation: Evaluation, owner: Value, name: str, at: Position) -> Value:
+    """Return the value of an attribute; a method is returned as a BoundMethod."""
     match owner:
         case Unknown():
             return owner
-        case Named(name="?glob"):
-            return Named(f"glob.{name}")
-        case Named(name="glob.glob") if name in ("glob", "iglob"):
-            machine.fault(
-                f"glob is a function here, so glob.{name} is not defined: write glob(...)", spot, AttributeError
-            )
-            return Named("glob.glob")
-        case Named(name=full):
-            known = machine.library.get(f"{full}.{name}")
-            fault = attribute_fault(full, name) if known is None else None
-            if fault is not None:
-                machine.fault(fault, spot, AttributeError)
-            constant = _CONSTANTS.get(f"{full}.{name}")
-            return constant if known is None and constant is not None else Named(f"{full}.{name}")
+        case QualifiedName(name="?glob"):  # used without an import: an attribute shows that the module is meant
+            return QualifiedName(f"glob.{name}")
+        case QualifiedName(name="glob.glob") if name in ("glob", "iglob"):
+            message = f"glob is a function here, so glob.{name} is not defined: write glob(...)"
+            evaluation.error(message, at, AttributeError)
+            return owner
+        case QualifiedName(name=module):
+            full = f"{module}.{name}"
+            if full in evaluation.functions:
+                return QualifiedName(full)
+            error = attribute_error(module, name)
+            if error is not None:
+                evaluation.error(error, at, AttributeError)
+            return _CONSTANTS.get(full, QualifiedName(full))
         case PurePosixPath():
-            return methods.path_attribute(owner, name)
+            return path_attribute(owner, name, at)
         case _:
-            return Bound(owner, name)
+            return BoundMethod(owner, name)
 
 
-def call(
-    machine: "Machine",
-    function: Value,
-    args: list[Value],
-    kwargs: dict[str, Value],
-    spot: Spot,
-    *,
-    is_unpacked: bool = False,
-) -> Value:
-    """The value of a call; `is_unpacked` tells that some of its arguments come from a list."""
+def call_value(evaluation: Evaluation, function: Value, call: Call) -> Value:
+    """Return the value of a call of any value. The call gets its name here; one that is not evaluated is recorded."""
     match function:
         case Unknown():
-            machine.may_fail()
+            evaluation.may_fail()
             return function
-        case Function() if is_unpacked and unknown_in(args) is not None:
-            return Unknown("arguments are unpacked that are not followed", spot)
-        case str() | int() | float() | list() | tuple() | dict() | None | PurePosixPath():
-            machine.fault(
-                f"{KINDS.get(type(function), 'a number')} cannot be called: is there a comma missing before it?", spot
-            )
-            return Unknown("what is called here is not followed", spot)
         case Function():
-            return machine.call_function(function, args, kwargs, spot)
-        case Named(name="glob" | "?glob" as name):
+            return evaluation.call_function(function, call)
+        case QualifiedName(name=name):
             if name == "glob":
-                machine.fault("glob is a module here, which cannot be called: write glob.glob(...)", spot)
-            return _named(machine, "glob.glob", args, kwargs, spot)
-        case Named(name=name):
-            return _named(machine, name, args, kwargs, spot)
-        case Bound(owner=Made() as owner, name=name) if f"{owner.name}.{name}" in machine.library:
-            return machine.library[f"{owner.name}.{name}"](machine, args, kwargs, spot)
-        case Bound(owner=Made() as owner, name=name):
-            made = Made(f"{owner.name}.{name}", args, kwargs, spot, owner)
-            owner.calls.append(made)
-            return _make(machine, made)
-        case Bound(owner=owner, name=name):
-            return methods.call(machine, owner, name, args, kwargs, spot)
+                evaluation.error("glob is a module here and cannot be called: write glob.glob(...)", call.at)
+            call.name = "glob.glob" if name in ("glob", "?glob") else name
+        case BoundMethod(owner=Call() as owner, name=name):
+            call.name, call.owner = f"{owner.name}.{name}", owner
+            if call.name not in evaluation.functions:
+                owner.method_calls.append(call)
+        case BoundMethod(owner=owner, name=name):
+            return call_method(evaluation, owner, name, call)
         case _:
-            return Unknown("what is called here is not followed", spot)
-
-
-def _named(machine: "Machine", name: str, args: list[Value], kwargs: dict[str, Value], spot: Spot) -> Value:
-    known = machine.library.get(name)
-    return known(machine, args, kwargs, spot) if known is not None else _make(machine, Made(name, args, kwargs, spot))
-
-
-def _make(machine: "Machine", made: Made) -> Value:
-    if made.name in _LEAVES:
-        machine.leave(made)
-    if made.name in _NAMING:
-        machine.module.names["*"] = Unknown("names may be set here", made.at)
-    if not made.name.startswith("builtins.open"):
-        machine.may_fail()
-    if len(machine.made) < MOST_ITEMS:
-        machine.made.append(made)
-    if machine.unsure is not None:
-        made.kwargs.setdefault("?", machine.unsure)
-    return made
+            type_name = TYPE_NAMES.get(type(function), "a path" if isinstance(function, PurePosixPath) else "")
+            if type_name:
+                evaluation.error(f"{type_name} cannot be called: is there a comma missing before it?", call.at)
+            return Unknown("this call is not supported", call.at)
+    evaluate = evaluation.functions.get(call.name)
+    if evaluate is not None:
+        return evaluate(evaluation, call)
+    if call.name in _EXITS:
+        evaluation.exit(call)
+    if call.name in _BINDS_NAMES:
+        evaluation.module.names["*"] = Unknown("names may be bound here", call.at)
+    return evaluation.record(call)

@@ -1,271 +1,219 @@
-"""Methods of plain values: texts, lists, dicts and paths."""
+"""Attributes and methods of plain values: strings, lists, dicts and paths. Most are Python's own, run on bounded values."""
 
 import re
 from pathlib import PurePosixPath
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from grader.static_python.values import Made, Spot, Steering, Unknown, Value, unknown_in
+from grader.static_python.evaluation import Evaluation
+from grader.static_python.operators import extend, forget, join_path
+from grader.static_python.values import (
+    MAX_ITEMS,
+    MAX_TEXT,
+    PACKAGE_FOLDER,
+    UNKNOWN_KEYS,
+    BoundMethod,
+    Call,
+    Position,
+    Unknown,
+    Value,
+    WalkFolders,
+    as_text,
+    names_package_folder,
+    unknown_in,
+)
 
-if TYPE_CHECKING:
-    from grader.static_python.machine import Machine
-
-FOLDER = "<package>"
-_MOST_TEXT = 100_000
-_MOST_PATH = 4_096
-_MOST_PARTS = 100
-_MOST_PART = 255
-_MOST_PIECES = 20_000
+_MAX_PARTS = 100  # of a path
+_MAX_NAME = 255  # characters of a file name
 _WRITES = ("mkdir", "rename", "replace", "rmdir", "symlink_to", "touch", "unlink", "write_bytes", "write_text")
 _TEXT_METHODS = frozenset(
     {"strip", "lstrip", "rstrip", "lower", "upper", "title", "capitalize", "removeprefix", "removesuffix", "startswith",
      "endswith", "split", "rsplit", "splitlines", "partition", "rpartition", "count", "find", "isdigit"}
 )  # fmt: skip
+_PATH_ATTRIBUTES = ("name", "stem", "suffix", "parent", "parents", "parts")
 
 
-def as_text(value: Value) -> str | None:
-    """What str() makes of a plain value; None of others."""
-    if isinstance(value, int) and value.bit_length() > 1000:
-        return None  # Python itself refuses to write the longest
-    if isinstance(value, str | int | float | PurePosixPath | None):
-        return str(value)
-    return None
+def path_attribute(path: PurePosixPath, name: str, at: Position) -> Value:
+    """Return an attribute of a path; every other name is a method that is about to be called."""
+    if name not in _PATH_ATTRIBUTES:
+        return BoundMethod(path, name)
+    if name in ("name", "stem", "parts") and PACKAGE_FOLDER in str(getattr(path, name)):
+        return Unknown("the name of the package's folder is not known", at)
+    if name in ("parents", "parts") and len(path.parts) > _MAX_PARTS:
+        return Unknown("a path is too long", at)
+    value = getattr(path, name)
+    return list(value) if name == "parents" else value
 
 
-def path_of(parts: list[Value], spot: Spot) -> Value:
-    """The path that is joined from texts and paths."""
-    if sum(len(str(part)) for part in parts) > _MOST_PATH:
-        return Unknown("the path grows too long", spot)
-    return PurePosixPath(*parts)
-
-
-def names_the_folder(path: str) -> bool:
-    """Whether a text holds the stand-in for the name of the package's folder, which is not known."""
-    return FOLDER in path.removeprefix(f"/{FOLDER}")
-
-
-def percent(template: str, value: Value, spot: Spot) -> Value:
-    """A text with %s in it, filled."""
-    values = list(value) if isinstance(value, tuple) else [value]
-    texts = [as_text(each) for each in values]
-    pieces = template.replace("%%", "\0").split("%s")
-    long = len(template) + sum(len(each or "") for each in texts) > _MOST_TEXT
-    odd = "\0" in template or any("%" in piece for piece in pieces)
-    if len(pieces) != len(texts) + 1 or None in texts or odd or long:
-        return Unknown("a formatted text of this kind is not followed", spot)
-    filled = [piece + (text or "") for piece, text in zip(pieces, [*texts, ""], strict=True)]
-    return "".join(filled).replace("\0", "%")
-
-
-def call(machine: "Machine", owner: Value, name: str, args: list[Value], kwargs: dict[str, Value], spot: Spot) -> Value:
-    """The value of a method of a plain value; Unknown for methods that are not followed."""
-    unknown = unknown_in([*args, *kwargs.values()]) if not isinstance(owner, list | dict) else None
+def call_method(evaluation: Evaluation, owner: Value, name: str, call: Call) -> Value:
+    """Return the value of a method of a plain value; Unknown for a method that is not supported."""
+    unknown = unknown_in([*call.args, *call.kwargs.values()]) if not isinstance(owner, list | dict) else None
     if unknown is not None:
         return unknown
-    result: Value = None
     match owner:
         case str():
-            machine.step(len(owner) // 32)
-            result = _text(owner, name, args, kwargs, spot)
+            evaluation.step(len(owner) // 32)
+            return _text(owner, name, call)
         case list():
-            machine.step(len(owner) // 64 if name not in ("append", "extend") else 0)
-            result = _list(machine, owner, name, args, kwargs, spot)
+            evaluation.step(len(owner) // 64 if name not in ("append", "extend") else 0)
+            return _list(evaluation, owner, name, call)
         case dict():
-            machine.step(len(owner) // 64)
-            result = _dict(machine, owner, name, args, kwargs, spot)
+            evaluation.step(len(owner) // 64)
+            return _dict(evaluation, owner, name, call)
         case PurePosixPath():
-            result = _path(machine, owner, name, args, kwargs, spot)
+            return _path(evaluation, owner, name, call)
         case _:
-            result = Unknown(f"the method {name} of this is not followed", spot)
+            return Unknown(f"the method {name} of this value is not supported", call.at)
+
+
+def in_order(evaluation: Evaluation, items: list[Value], call: Call) -> list[Value]:
+    """Return a list in the order that sorted, or its own sort, gives it."""
+    evaluation.step(len(items) // 16)
+    key, is_reversed = call.kwargs.get("key"), call.kwargs.get("reverse", False)
+    keys = [item if key is None else evaluation.apply(key, item, call.at) for item in items]
+    comparable = any(all(isinstance(value, kind) for value in keys) for kind in (str, PurePosixPath, int))
+    if unknown_in(items) is not None or not comparable or not isinstance(is_reversed, int):
+        return items if len(items) < 2 else [Unknown("the order of this list is known only at run time", call.at)]
+    order = sorted(range(len(items)), key=keys.__getitem__, reverse=bool(is_reversed))
+    return [items[index] for index in order]
+
+
+def _text(text: str, name: str, call: Call) -> Value:
+    unknown = Unknown(f"this use of the string method {name} is not supported", call.at)
+    if names_package_folder(text):
+        return unknown
+    match name, call.args:
+        case "join", [list() | tuple() as items]:
+            parts = [item for item in items if isinstance(item, str)]
+            fits = sum(map(len, parts)) + len(text) * len(parts) <= MAX_TEXT
+            return text.join(parts) if len(parts) == len(items) and fits else unknown
+        case "format", _:
+            return _format(text, call, unknown)
+        case "replace", [str() as old, str() as new]:
+            return text.replace(old, new) if len(text) + (text.count(old) + 1) * len(new) <= MAX_TEXT else unknown
+    if name not in _TEXT_METHODS or call.kwargs:
+        return unknown
+    try:
+        result: Any = getattr(text, name)(*call.args)
+    except (TypeError, ValueError, OverflowError):
+        return unknown
+    if isinstance(result, list | tuple):
+        return list(result) if len(result) <= MAX_ITEMS else unknown
     return result
 
 
-def path_attribute(path: PurePosixPath, name: str) -> Value:
-    """An attribute of a path; what is no plain attribute is a method about to be called."""
-    from grader.static_python.values import Bound
-
-    match name:
-        case "name" | "stem" | "parts" if FOLDER in str(getattr(path, name)):
-            return Unknown("the name of the package's folder is told only by a run", Spot(1, 1))
-        case "parents" | "parts" if len(path.parts) > _MOST_PARTS:
-            return Unknown("the path is too long", Spot(1, 1))
-        case "name" | "stem" | "suffix":
-            return getattr(path, name)
-        case "parent":
-            return path.parent
-        case "parents":
-            return list(path.parents)
-        case "parts":
-            return path.parts
-        case _:
-            return Bound(path, name)
-
-
-def _text(text: str, name: str, args: list[Value], kwargs: dict[str, Value], spot: Spot) -> Value:
-    unknown = Unknown(f"the text method {name} is not followed here", spot)
-    if names_the_folder(text):
+def _format(text: str, call: Call, unknown: Unknown) -> Value:
+    """Return text.format(...), for fields that are names or numbers."""
+    fields: dict[str, str | None] = {str(index): as_text(value) for index, value in enumerate(call.args)}
+    fields |= {key: as_text(value) for key, value in call.kwargs.items()}
+    automatic = iter(range(len(call.args)))
+    used = [key or str(next(automatic, -1)) for key in re.findall(r"\{(\w*)\}", text)]
+    texts = [value for key in used if (value := fields.get(key)) is not None]
+    plain = re.split(r"\{\w*\}", text)
+    if len(texts) != len(used) or "{{" in text or "}}" in text or "{" in "".join(plain):
         return unknown
-    if name == "join" and len(args) == 1 and isinstance(args[0], list | tuple):
-        parts = [each for each in args[0] if isinstance(each, str)]
-        fits = sum(map(len, parts)) + len(text) * len(parts) <= _MOST_TEXT
-        return text.join(parts) if len(parts) == len(args[0]) and fits else unknown
-    if name == "format":
-        return _format(text, args, kwargs, unknown)
-    if name == "replace" and len(args) == 2 and all(isinstance(each, str) for each in args):
-        grown = len(text) + (text.count(args[0]) + 1) * len(args[1])
-        return text.replace(args[0], args[1]) if grown <= _MOST_TEXT else unknown
-    if name in _TEXT_METHODS and not kwargs:
-        try:
-            result: Any = getattr(text, name)(*args)
-        except (TypeError, ValueError, OverflowError):
-            return unknown
-        if isinstance(result, list | tuple) and len(result) > _MOST_PIECES:
-            return unknown
-        return list(result) if isinstance(result, list | tuple) else result
-    return unknown
+    filled = "".join(piece for pair in zip(plain, [*texts, ""], strict=True) for piece in pair)
+    return filled if len(filled) <= MAX_TEXT else unknown
 
 
-def _format(text: str, args: list[Value], kwargs: dict[str, Value], unknown: Unknown) -> Value:
-    named: dict[str, str | None] = {str(index): as_text(value) for index, value in enumerate(args)}
-    named |= {key: as_text(value) for key, value in kwargs.items()}
-    automatic = iter(range(len(args)))
-    missing = False
-
-    def fill(match: re.Match[str]) -> str:
-        nonlocal missing
-        key = match[1] or str(next(automatic, -1))
-        value = named.get(key)
-        missing |= value is None
-        return value or ""
-
-    if "{{" in text or "}}" in text:
-        return unknown
-    filled = re.sub(r"\{(\w*)\}", fill, text)
-    return unknown if missing or "{" in re.sub(r"\{\w*\}", "", text) or len(filled) > _MOST_TEXT else filled
-
-
-def _list(
-    machine: "Machine", items: list[Value], name: str, args: list[Value], kwargs: dict[str, Value], spot: Spot
-) -> Value:
-    from grader.static_python.containers import MOST_ITEMS, extend, lose
-    from grader.static_python.library import in_order
-
-    machine.may_fail()
-    known = machine.unsure is None and not any(isinstance(each, Unknown) for each in items)
-    if isinstance(items, Steering) and name not in ("copy", "index", "count"):
-        name = "steer"
-    match name, args:
+def _list(evaluation: Evaluation, items: list[Value], name: str, call: Call) -> Value:
+    evaluation.may_fail()
+    is_known = evaluation.uncertainty is None and not any(isinstance(item, Unknown) for item in items)
+    unknown = Unknown(f"this use of the list method {name} is not supported", call.at)
+    if isinstance(items, WalkFolders) and name not in ("copy", "index", "count"):
+        forget(items, unknown)
+    match name, call.args:
         case "append", [value]:
-            if len(items) < MOST_ITEMS:
-                items.append(machine.unsure or value)
-            return None
+            if len(items) < MAX_ITEMS:
+                items.append(evaluation.uncertainty or value)
         case "extend", [value]:
-            extend(machine, items, value, spot)
-            return None
-        case "insert", [int() as index, value] if len(items) < MOST_ITEMS:
-            items.insert(max(-MOST_ITEMS, min(index, MOST_ITEMS)), machine.unsure or value)
-            return None
+            extend(evaluation, items, value, call.at)
+        case "insert", [int() as index, value] if len(items) < MAX_ITEMS:
+            items.insert(max(-MAX_ITEMS, min(index, MAX_ITEMS)), evaluation.uncertainty or value)
         case "copy", []:
             return list(items)
-        case "sort", [] if known and isinstance(ordered := in_order(machine, items, kwargs, spot), list):
-            items[:] = ordered
-            return None
-        case "reverse", [] if known:
-            items.reverse()
-            return None
-        case (("index" | "count"), [str() as value]) if known and (value in items or name == "count"):
-            return items.index(value) if name == "index" else items.count(value)
-        case "remove", [str() | PurePosixPath() as value] if known and value in items:
+        case "sort", [] if is_known:
+            items[:] = in_order(evaluation, items, call)
+        case (("reverse" | "clear"), []) if is_known:
+            getattr(items, name)()
+        case "count", [str() as value] if is_known:
+            return items.count(value)
+        case "index", [str() as value] if is_known and value in items:
+            return items.index(value)
+        case "remove", [str() | PurePosixPath() as value] if is_known and value in items:
             items.remove(value)
-            return None
-        case "pop", ([] | [int()]) if known and -len(items) <= (args[0] if args else -1) < len(items):
-            return items.pop(*args)
-        case "clear", [] if known:
-            items.clear()
-            return None
+        case "pop", ([] | [int()]) if is_known and -len(items) <= (call.args[0] if call.args else -1) < len(items):
+            return items.pop(*call.args)
         case (("index" | "count"), _):
-            return Unknown(f"the list method {name} is not followed here", spot)
-        case _:
-            unknown = Unknown(f"the list method {name} is not followed here", spot)
-            lose(items, unknown)
             return unknown
+        case _:
+            forget(items, unknown)
+            return unknown
+    return None
 
 
-def _dict(
-    machine: "Machine", table: dict[Any, Value], name: str, args: list[Value], kwargs: dict[str, Value], spot: Spot
-) -> Value:
-    from grader.static_python.containers import lose
-
-    known = machine.unsure is None and "**" not in table
-    unknown = Unknown(f"the dict method {name} is not followed here", spot)
-    machine.may_fail()
-    match name, args:
-        case "items", []:
-            return list(table.items())
-        case "keys", []:
-            return list(table)
-        case "values", []:
-            return list(table.values())
+def _dict(evaluation: Evaluation, table: dict[Any, Value], name: str, call: Call) -> Value:
+    is_complete = UNKNOWN_KEYS not in table
+    is_known = evaluation.uncertainty is None and is_complete
+    unknown = Unknown(f"this use of the dict method {name} is not supported", call.at)
+    evaluation.may_fail()
+    match name, call.args:
+        case (("items" | "keys" | "values"), []):
+            return list(getattr(table, name)())
         case "copy", []:
             return dict(table)
-        case "get", _ if "**" in table:
+        case "get", _ if not is_complete:
             return unknown
         case "get", [str() | int() as key, *default]:
             return table.get(key, default[0] if default else None)
         case "setdefault", [str() | int() as key, value]:
-            return table.setdefault(key, machine.unsure or value)
-        case "update", [dict() as other] if len(table) + len(other) < 20_000:
-            table.update({key: machine.unsure or value for key, value in {**other, **kwargs}.items()})
+            return table.setdefault(key, evaluation.uncertainty or value)
+        case "update", ([] | [dict()]) if len(table) + sum(map(len, call.args)) < MAX_ITEMS:
+            added = {**(call.args[0] if call.args else {}), **call.kwargs}
+            table.update({key: evaluation.uncertainty or value for key, value in added.items()})
             return None
-        case "update", [] if len(table) < 20_000:
-            table.update({key: machine.unsure or value for key, value in kwargs.items()})
-            return None
-        case "pop", [str() | int() as key, *default] if known and (key in table or default):
+        case "pop", [str() | int() as key, *default] if is_known and (key in table or default):
             return table.pop(key, *default[:1])
-        case "clear", [] if known:
+        case "clear", [] if is_known:
             table.clear()
             return None
         case _:
-            lose(table, unknown)
+            forget(table, unknown)
             return unknown
 
 
-def _path(
-    machine: "Machine", path: PurePosixPath, name: str, args: list[Value], kwargs: dict[str, Value], spot: Spot
-) -> Value:
-    texts = [each for each in args if isinstance(each, str | PurePosixPath)]
+def _path(evaluation: Evaluation, path: PurePosixPath, name: str, call: Call) -> Value:
+    texts = [value for value in call.args if isinstance(value, str | PurePosixPath)]
+    functions = evaluation.functions
     match name, texts:
         case (("as_posix" | "__str__" | "__fspath__"), []):
             return str(path)
         case "expanduser", _ if str(path).startswith("~"):
-            return Unknown("whose home folder is meant is told only by a run", spot)
-        case (("resolve" | "absolute" | "expanduser"), []):
-            known = machine.library.get("os.path.abspath")
-            made = known(machine, [str(path)], {}, spot) if known is not None and name != "expanduser" else None
-            return PurePosixPath(made) if isinstance(made, str) else path
-        case "joinpath", _ if len(texts) == len(args):
-            return path_of([path, *texts], spot)
-        case (("with_name" | "with_suffix" | "with_stem"), [str() as text]) if len(text) <= _MOST_PART:
+            return Unknown("the home folder is known only at run time", call.at)
+        case "expanduser", []:
+            return path
+        case (("resolve" | "absolute"), []):
+            absolute = functions.get("os.path.abspath")
+            found = absolute(evaluation, Call("", [str(path)], {}, call.at)) if absolute is not None else None
+            return PurePosixPath(found) if isinstance(found, str) else path
+        case "joinpath", _ if len(texts) == len(call.args):
+            return join_path([path, *texts], call.at)
+        case (("with_name" | "with_suffix" | "with_stem" | "relative_to"), [value]) if len(str(value)) <= _MAX_NAME:
             try:
-                return getattr(path, name)(text)
-            except ValueError:
-                return Unknown("this path cannot be changed so", spot)
-        case "relative_to", [other]:
-            try:
-                return path.relative_to(other)
-            except ValueError:
-                return Unknown("this path is not below that one", spot)
+                return getattr(path, name)(value)
+            except (ValueError, TypeError):
+                return Unknown(f"the path method {name} fails here", call.at)
         case (("read_text" | "open"), _):
-            known = machine.library.get("builtins.open")
-            given = [str(path), *args] if name == "open" else [str(path)]
-            opened = Made("builtins.open", given, {}, spot) if known is None else known(machine, given, kwargs, spot)
-            if not isinstance(opened, Made):
-                return opened
-            return Made("builtins.open.read", [], {}, spot, opened) if name == "read_text" else opened
+            opener = functions.get("builtins.open")
+            given = Call("builtins.open", [str(path), *(call.args if name == "open" else ())], {}, call.at)
+            given.kwargs = call.kwargs if opener is not None else {}
+            opened = given if opener is None else opener(evaluation, given)
+            is_read = name == "read_text" and isinstance(opened, Call)
+            return Call("builtins.open.read", [], {}, call.at, opened) if is_read else opened
         case _:
-            known = machine.library.get(f"pathlib.Path.{name}")
-            if known is not None:
-                return known(machine, [path, *args], kwargs, spot)
+            given = Call(f"pathlib.Path.{name}", [path, *call.args], call.kwargs, call.at)
+            if given.name in functions:
+                return functions[given.name](evaluation, given)
             if name in _WRITES:
-                machine.made.append(Made(f"pathlib.Path.{name}", [path, *args], kwargs, spot))
-            machine.may_fail()
-            return Unknown(f"the path method {name} is not followed", spot)
+                evaluation.calls.append(given)
+            evaluation.may_fail()
+            return Unknown(f"the path method {name} is not supported", call.at)

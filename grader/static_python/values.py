@@ -1,82 +1,115 @@
-"""What the expressions of a followed Python file come to: plain values, or stand-ins for what only a run would tell."""
+"""Abstract values: what an expression evaluates to without being run. A plain Python value, or a stand-in for another one."""
 
 import ast
-from collections.abc import Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import PurePosixPath
 from typing import Any, NamedTuple
 
-_MOST_SEEN = 20_000
+MAX_ITEMS = 20_000  # of a list or dict
+MAX_TEXT = 100_000  # characters
+UNKNOWN_KEYS = (
+    "**"  # the key of an entry that stands for keys that are not known, in a dict and among keyword arguments
+)
+PACKAGE_FOLDER = "<package>"  # stands for the name of the package's folder, which the submission does not determine
 
-# A plain value is a text, number, bool, None, list, tuple, dict, set or PurePosixPath, or one of the stand-ins below.
+# A plain value is a str, number, bool, None, list, tuple, dict or PurePosixPath; a set is a list without duplicates.
 Value = Any
 
 
-class Spot(NamedTuple):
-    """Where an expression stands; line and column count from 1, columns in characters."""
+class Position(NamedTuple):
+    """A place in a Python file; line and column count from 1."""
 
     line: int
     column: int
 
 
+START = Position(1, 1)
+
+
+def position_of(node: ast.expr | ast.stmt | ast.excepthandler) -> Position:
+    """Return the position of a node."""
+    return Position(node.lineno, node.col_offset + 1)
+
+
 @dataclass(frozen=True, slots=True)
 class Unknown:
-    """A value that cannot be told without running the file, and the reason."""
+    """A value that cannot be determined statically, and the reason. An operation with it is unknown for the same reason."""
 
     reason: str
-    at: Spot
+    at: Position
+
+    def __add__(self, right: Value) -> Value:
+        return [self, *right] if isinstance(right, list) else self
+
+    def __radd__(self, left: Value) -> Value:
+        return [*left, self] if isinstance(left, list) else self
+
+    def _with(self, _: Value) -> "Unknown":
+        return self
+
+    __truediv__ = __rtruediv__ = __mod__ = __or__ = __ror__ = _with
 
 
 @dataclass(frozen=True, slots=True)
-class Named:
-    """A module, or something in one, by its full name: os.path.join."""
+class QualifiedName:
+    """A module, or something in one that is not evaluated, by its full name: os.path.join."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
-class Bound:
-    """An attribute of a value that is about to be called: the join of ', '.join(names)."""
+class BoundMethod:
+    """A method of a value, about to be called: the join of ', '.join(names)."""
 
     owner: Value
     name: str
 
 
 @dataclass(eq=False, slots=True)
-class Made:
-    """What a call of something outside the file gives: its full name and its arguments.
+class Call:
+    """A call of something by its full name; as a value, the result of a call that is not evaluated.
 
-    `owner` is what it is a method of; `calls` are the methods that were called on it since.
+    `owner` is the call whose result it is a method of; `method_calls` are the methods that were called on its own result.
+    `uncertainty` is set where the call may not be reached.
     """
 
     name: str
     args: list[Value]
     kwargs: dict[str, Value]
-    at: Spot
-    owner: Value = None
-    calls: list["Made"] = field(default_factory=list)
+    at: Position
+    owner: "Call | None" = None
+    method_calls: list["Call"] = field(default_factory=list)
+    uncertainty: Unknown | None = None
 
     def argument(self, position: int, *names: str) -> Value:
-        """An argument by its position or by one of its names; None where it is not given."""
+        """Return an argument by its position or by one of its names; None where it is missing."""
         for name in names:
             if name in self.kwargs:
                 return self.kwargs[name]
         return self.args[position] if position < len(self.args) else None
 
+    def unknown(self, reason: str) -> Unknown:
+        """Return the first argument that is unknown, else an unknown result with this reason."""
+        return unknown_in(self.args) or Unknown(reason, self.at)
+
 
 @dataclass(eq=False, slots=True)
 class Function:
-    """A function that the file defines, the scope that it was defined in, and the defaults of its parameters."""
+    """A function or lambda of the file. `body` evaluates it in a scope, for a call at a position."""
 
-    node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
+    parameters: ast.arguments
     scope: "Scope"
-    defaults: dict[str, Value] = field(default_factory=dict)
+    defaults: dict[str, Value]
+    body: Callable[["Scope", Position], Value]
+    at: Position
 
 
 @dataclass(eq=False, slots=True)
 class Scope:
-    """The names that are known at some point, and those around them.
+    """The names that are bound in a scope, and the scope around it.
 
-    `declared` has the scopes of names that are global or nonlocal here; `is_loop` marks the inside of a comprehension.
+    `declared` has the scopes of names that are global or nonlocal here; `is_loop` marks the scope of a comprehension.
     """
 
     names: dict[str, Value] = field(default_factory=dict)
@@ -85,7 +118,7 @@ class Scope:
     is_loop: bool = False
 
     def find(self, name: str) -> Value:
-        """The value of a name; raises KeyError."""
+        """Return the value of a name; raises KeyError."""
         scope: Scope | None = self.declared.get(name, self)
         while scope is not None:
             if name in scope.names:
@@ -94,11 +127,11 @@ class Scope:
         raise KeyError(name)
 
     def bind(self, name: str, value: Value) -> None:
-        """Give a name a value, where it belongs."""
+        """Give a name a value, in the scope that it belongs to."""
         self.declared.get(name, self).names[name] = value
 
     def holder(self, name: str) -> "Scope":
-        """The nearest scope around this one that has a name, else the outermost."""
+        """Return the nearest scope around this one that binds a name, else the outermost."""
         scope = self
         while scope.outer is not None:
             scope = scope.outer
@@ -107,58 +140,72 @@ class Scope:
         return scope
 
 
-class Steering(list[Value]):
-    """A list of folders that os.walk has given: a change of it would change where the walk goes on."""
-
-
-class TooHard(Exception):
-    """The file does something after which nothing more is told of it."""
-
-
-class Fault(NamedTuple):
-    """Something that stops Python when it comes to this place: a name that is not defined, an import that fails."""
-
-    message: str
-    at: Spot
-
-
-class Choice(NamedTuple):
-    """The keyword arguments of a call, unpacked: what is known of them, and whether that is all."""
-
-    known: Mapping[str, Value]
-    complete: bool
+class WalkFolders(list[Value]):
+    """A list of folders from os.walk: a change of it changes where the walk continues."""
 
 
 def unknown_in(value: Value) -> Unknown | None:
-    """The first thing in a value that cannot be told; of a value that is too large to look through, that it is."""
-    waiting, seen, count = [value], set[int](), 0
-    while waiting:
-        each = waiting.pop()
-        if isinstance(each, Unknown):
-            return each
-        if isinstance(each, list | tuple | dict) and id(each) not in seen:
-            seen.add(id(each))
-            count += len(each)
-            if count > _MOST_SEEN:
-                return Unknown("it is too large to follow", Spot(1, 1))
-            waiting += reversed(each.values() if isinstance(each, dict) else each)
+    """Return the first unknown value in a value, and an unknown value for one that is too large to search."""
+    pending, seen, count = [value], set[int](), 0
+    while pending:
+        item = pending.pop()
+        if isinstance(item, Unknown):
+            return item
+        if isinstance(item, list | tuple | dict) and id(item) not in seen:
+            seen.add(id(item))
+            count += len(item)
+            if count > MAX_ITEMS:
+                return Unknown("a value is too large to evaluate", START)
+            pending += reversed(item.values() if isinstance(item, dict) else item)
     return None
 
 
 def size(value: Value) -> int:
-    """About how many parts a value has, which tells how long it takes to work with it."""
-    waiting, count = [value], 0
-    while waiting and count < _MOST_SEEN:
-        each = waiting.pop()
-        if isinstance(each, list | tuple | dict):
-            count += len(each)
-            if len(each) < _MOST_SEEN:
-                waiting += each.values() if isinstance(each, dict) else each
-        elif isinstance(each, str):
-            count += len(each) // 32
+    """Return about how many parts a value has: how many steps an operation with it costs."""
+    pending, count = [value], 0
+    while pending and count < MAX_ITEMS:
+        item = pending.pop()
+        if isinstance(item, list | tuple | dict):
+            count += len(item)
+            if len(item) < MAX_ITEMS:
+                pending += item.values() if isinstance(item, dict) else item
+        elif isinstance(item, str):
+            count += len(item) // 32
     return count
 
 
-def at(node: ast.AST) -> Spot:
-    """Where a node stands; without one, the file's beginning."""
-    return Spot(getattr(node, "lineno", 1), getattr(node, "col_offset", 0) + 1)
+def items_of(value: Value) -> list[Value] | None:
+    """Return what a loop over a value yields; None where this is unknown."""
+    if isinstance(value, list | tuple | dict) or (isinstance(value, str) and len(value) < MAX_ITEMS):
+        return list(value)
+    return None
+
+
+def truth(value: Value) -> bool | None:
+    """Return whether a condition holds; None where this is known only at run time."""
+    match value:
+        case [*items] if items and all(isinstance(item, Unknown) for item in items):
+            return None
+        case {"**": _}:
+            return None
+        case None | str() | int() | float() | list() | tuple() | dict():
+            return bool(value)
+    return True if isinstance(value, PurePosixPath | Function) else None
+
+
+def as_text(value: Value) -> str | None:
+    """Return str() of a plain value; None of others."""
+    if isinstance(value, int) and value.bit_length() > 1000:
+        return None  # Python itself refuses to write the longest
+    return str(value) if isinstance(value, str | int | float | PurePosixPath | None) else None
+
+
+def distinct(values: list[Value]) -> list[Value]:
+    """Return the values of a set, without duplicates."""
+    plain = all(isinstance(value, str | int | float | PurePosixPath | None) for value in values)
+    return list(dict.fromkeys(values)) if plain else values
+
+
+def names_package_folder(path: str) -> bool:
+    """Return whether a text contains the stand-in for the name of the package's folder, other than as the root of a path."""
+    return PACKAGE_FOLDER in path.removeprefix(f"/{PACKAGE_FOLDER}")

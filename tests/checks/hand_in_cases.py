@@ -89,7 +89,7 @@ HAND_IN_CASES = (
         {},
         says="every name that setup.py uses is defined",
         failing=REFERENCE.replacing(SETUP, "from glob import glob\n", ""),
-        complains="the name 'glob' is used, but not defined or imported",
+        complains="the name 'glob' is not defined or imported",
         at=(SETUP, "glob('urdf/*')"),
     ),
     HandInCase(

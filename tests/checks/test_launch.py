@@ -320,12 +320,12 @@ def test_what_only_a_run_tells_is_for_a_person() -> None:
     [
         (
             launch("from launch_ros.actions import Node\n", ""),
-            "the name 'Node' is used, but not defined or imported",
+            "the name 'Node' is not defined or imported",
             "Node(\n            package='joint_state_publisher',",
         ),
         (
             launch("import os\n", ""),
-            "the name 'os' is used, but not defined or imported",
+            "the name 'os' is not defined or imported",
             URDF_PATH,
         ),
         (
@@ -345,7 +345,7 @@ def test_what_only_a_run_tells_is_for_a_person() -> None:
         ),
         (
             DISPLAY.replacing(LAUNCH, "}.items(),", "},"),
-            "launch_arguments is given a dict: write .items() behind it",
+            "launch_arguments is given a dict: add .items() to it",
             "IncludeLaunchDescription(\n",
         ),
     ],
@@ -360,7 +360,7 @@ def test_what_stops_the_launch_fails(hand_in: HandIn, message: str, at: str) -> 
 def test_several_faults_are_counted() -> None:
     """The first fault is told, and how many others there are."""
     hand_in = launch("from launch_ros.actions import Node\n", "", launch("import os\n", ""))
-    assert starts(hand_in)[1] == "the name 'os' is used, but not defined or imported (and 1 more)"
+    assert starts(hand_in)[1] == "the name 'os' is not defined or imported (and 1 more)"
 
 
 @pytest.mark.parametrize(
@@ -378,12 +378,12 @@ def test_several_faults_are_counted() -> None:
         ),
         (
             launch("def generate_launch_description", "def generate_launch_descripton"),
-            "the file defines no function generate_launch_description, which ros2 launch calls",
+            "the file does not define the function generate_launch_description, which ros2 launch calls",
             None,
         ),
         (
             REFERENCE.with_files({LAUNCH: ""}),
-            "the file defines no function generate_launch_description, which ros2 launch calls",
+            "the file does not define the function generate_launch_description, which ros2 launch calls",
             None,
         ),
         (
@@ -419,13 +419,13 @@ def test_a_launch_file_of_which_nothing_is_known(hand_in: HandIn, message: str, 
         (
             IN_YAML.replacing(YAML, "launch:\n", "lunch:\n"),
             YAML,
-            "the file is not one list under launch:; ros2 launch reads nothing of it",
+            "the file is not one list below launch:; ros2 launch starts nothing",
             "lunch:",
         ),
         (
             IN_XML.replacing(XML, "<launch>", "<robot>").replacing(XML, "</launch>", "</robot>"),
             XML,
-            "the root of the file is not <launch>; ros2 launch reads nothing of it",
+            "the root of the file is not <launch>; ros2 launch starts nothing",
             "<robot>",
         ),
     ],
@@ -443,11 +443,11 @@ def test_xml_and_yaml_that_cannot_be_read(hand_in: HandIn, path: str, message: s
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("find-pkg-share", "find", "$(find ...) is of ROS 1; in ROS 2 it is $(find-pkg-share ...)"),
+        ("find-pkg-share", "find", "$(find ...) is a substitution of ROS 1; in ROS 2 write $(find-pkg-share ...)"),
         (
             'pkg="rviz2" exec=',
             'pkg="rviz2" type=',
-            "<node> has no 'type' in ROS 2's launch files; the attribute is called 'exec'",
+            "<node> has no attribute 'type' in ROS 2; write 'exec'",
         ),
         (
             '  <arg name="gui" default="true"/>\n',
@@ -605,7 +605,7 @@ def test_flat_and_nested_paths_have_to_agree() -> None:
         ),
         (
             described(URDF_PATH),
-            "robot_description is given the path of the URDF, not what is in it: read the file first",
+            "robot_description is given the path of the URDF, not its contents: read the file first",
             "Node(\n            package='robot_state_publisher'",
         ),
         (
@@ -779,7 +779,7 @@ def test_an_included_file_that_is_not_installed() -> None:
 def test_a_fault_in_an_included_file() -> None:
     """What is wrong in an included file is told with its place there."""
     fault = INCLUDES.replacing(INNER, "from launch_ros.actions import Node\n", "")
-    message = "the name 'Node' is used, but not defined or imported"
+    message = "the name 'Node' is not defined or imported"
     assert starts(fault) == (
         "failed",
         message,

@@ -399,7 +399,7 @@ def test_the_filein_the_resource_index_counts() -> None:
             "glob('urdf/*')",
             (
                 "data_files lists 'urdf/meshes', but it is a folder, and only files can be installed: "
-                "a pattern such as '*.urdf' leaves it out"
+                "a pattern such as '*.urdf' does not match it"
             ),
         ),
         (
@@ -412,7 +412,7 @@ def test_the_filein_the_resource_index_counts() -> None:
             setup("glob('rviz/*')", "'rviz/my_robot.rviz'"),
             "rviz",
             "'rviz/my_robot.rviz'",
-            "data_files lists 'rviz/my_robot.rviz', but the files of an entry are a text, not a list: write [...] around it",
+            "data_files lists 'rviz/my_robot.rviz', but the files of an entry are a string, not a list: write [...] around it",
         ),
         (
             setup("glob(os.path.join('launch', '*launch.[pxy][yma]*'))", "['launch/robot.launch.py']"),
@@ -442,7 +442,7 @@ def test_an_entry_that_stops_the_build_costs_its_own_kind(hand_in: HandIn, kind:
         ),
         (
             setup("['package.xml']", "'package.xml'"),
-            "data_files lists 'package.xml', but the files of an entry are a text, not a list: write [...] around it",
+            "data_files lists 'package.xml', but the files of an entry are a string, not a list: write [...] around it",
         ),
         (
             setup("    packages=find_packages(exclude=['test']),\n", ""),
@@ -575,22 +575,22 @@ def test_files_by_patterns() -> None:
     [
         (
             setup("import os\n", ""),
-            "the name 'os' is used, but not defined or imported",
+            "the name 'os' is not defined or imported",
             "os.path.join('share', package_name), ['package.xml']",
         ),
         (
             setup("from glob import glob\n", ""),
-            "the name 'glob' is used, but not defined or imported",
+            "the name 'glob' is not defined or imported",
             "glob('urdf/*')",
         ),
         (
             setup("from glob import glob", "import glob"),
-            "glob is a module here, which cannot be called: write glob.glob(...)",
+            "glob is a module here and cannot be called: write glob.glob(...)",
             "glob('urdf/*')",
         ),
         (
             setup("package_name = 'my_robot'\n", ""),
-            "the name 'package_name' is used, but not defined or imported",
+            "the name 'package_name' is not defined or imported",
             "package_name,\n",
         ),
     ],

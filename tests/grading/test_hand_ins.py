@@ -287,7 +287,7 @@ def test_two_defects_are_both_told() -> None:
             REFERENCE.replacing(SETUP, "import os\n", ""),
             "PKG011",
             SETUP,
-            "the name 'os' is used, but not defined or imported",
+            "the name 'os' is not defined or imported",
         ),
         (
             REFERENCE.without("my_robot/resource"),

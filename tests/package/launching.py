@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from grader.package.launch.model import Fault, Launch, Reference
+from grader.package.launch.model import Launch, LaunchFault, Reference
 from grader.package.launch.places import PREFIX
 from grader.package.launch.reader import read_launch
 
@@ -82,7 +82,7 @@ def _node(package: str, executable: str) -> str:
     return executable if package == executable else f"{package}/{executable}"
 
 
-def _fault(fault: Fault) -> str:
+def _fault(fault: LaunchFault) -> str:
     """A fault with its line; the words of the parsers themselves differ between their versions."""
     parsers = ("Python cannot read the file", "not readable as XML", "not readable as YAML")
     message = next((each for each in parsers if fault.message.startswith(f"{each}: ")), fault.message)

@@ -16,8 +16,8 @@ from hypothesis import strategies as st
 from grader.files.tree import File, Tree, make_tree
 from grader.package.file_functions import file_functions
 from grader.package.globbing import ORDERS, BeyondError, Listing
-from grader.static_python.library import plain_functions
-from grader.static_python.machine import Machine
+from grader.static_python.functions import standard_functions
+from grader.static_python.interpreter import Interpreter
 from grader.static_python.parse import Code, parse
 from grader.static_python.values import Unknown, Value
 from tests.patience import processor_time
@@ -67,9 +67,9 @@ def value_of(expression: str, tree: Tree, root: str = "/root", order: str = ORDE
         f"import os\nfrom glob import glob\nfrom pathlib import Path\nvalue = {expression}\n".encode(), "setup.py"
     )
     assert isinstance(code, Code)
-    machine = Machine(code, {**plain_functions(root), **file_functions(Listing(tree, order), root)}, special={})
-    value = machine.run().names["value"]
-    return machine.faults[0] if machine.faults else value
+    interpreter = Interpreter({**standard_functions(root), **file_functions(Listing(tree, order), root)}, {})
+    value = interpreter.run(code).names["value"]
+    return interpreter.errors[0] if interpreter.errors else value
 
 
 def pythons_glob(pattern: str, root: str, *, recursive: bool = True, hidden: bool = False) -> list[str]:
@@ -213,4 +213,4 @@ def test_many_searches_through_many_files_end_soon(expression: str) -> None:
             f"import os\nfrom glob import glob\nfrom pathlib import Path\nvalue = {expression}\n".encode(), "setup.py"
         )
         assert isinstance(code, Code)
-        Machine(code, {**plain_functions("/root"), **file_functions(Listing(tree), "/root")}, special={}).run()
+        Interpreter({**standard_functions("/root"), **file_functions(Listing(tree), "/root")}, {}).run(code)

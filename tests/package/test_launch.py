@@ -53,7 +53,7 @@ TOLD = {
     ),
     "conditions.launch.py": Told(
         nodes="a/equals a/not_equals! a/expression a/no_expression! a/environment? a/compared a/denied! a/calculated? a/one a/wrong?",
-        faults=("24: a condition is 'gui', which is neither true nor false",),
+        faults=("24: a condition is 'gui', expected true or false",),
     ),
     "conditions.launch.xml": Told(
         nodes="a/equal a/unequal! a/calculated a/denied! a/environment? joint_state_publisher_gui/chosen a/none a/still_none",
@@ -62,7 +62,7 @@ TOLD = {
         nodes="robot_state_publisher",
     ),
     "description_of_another_module.launch.py": Told(
-        unknown=("1: what my_robot.launching.generate_launch_description gives is told only by a run",),
+        unknown=("1: the value of my_robot.launching.generate_launch_description is known only at run time",),
     ),
     "environment_variables.launch.py": Told(
         nodes="rviz2 rviz2 rviz2 rviz2",
@@ -70,7 +70,7 @@ TOLD = {
             "11: /<home>/ros2_ws/my_robot.rviz",
             "12: /<home>/a.rviz",
             "13: /<home>/a.rviz",
-            "14: unknown: an operation of this kind is not followed",
+            "14: unknown: this operation is not supported",
         ),
     ),
     "event_handlers.launch.py": Told(
@@ -102,7 +102,7 @@ TOLD = {
     ),
     "helper_of_another_module.launch.py": Told(
         nodes="joint_state_publisher",
-        unknown=("9: what make_rviz starts is told only by a run",),
+        unknown=("9: what make_rviz starts is known only at run time",),
     ),
     "include.launch.xml": Told(
         nodes="rviz2 joint_state_publisher_gui joint_state_publisher",
@@ -123,7 +123,7 @@ TOLD = {
         nodes="rviz2",
         rviz=(f"8: {NO_FILE}",),
         include=("9: my_robot/launch/include_of_itself.launch.py",),
-        faults=("9: it includes itself, without end",),
+        faults=("9: it includes itself",),
     ),
     "include_own.launch.py": Told(
         nodes="rviz2 joint_state_publisher_gui! joint_state_publisher",
@@ -143,17 +143,17 @@ TOLD = {
     "include_with_a_dict.launch.py": Told(
         nodes="joint_state_publisher_gui joint_state_publisher",
         include=("10: my_robot/launch/inner.launch.py",),
-        faults=("10: launch_arguments is given a dict: write .items() behind it",),
+        faults=("10: launch_arguments is given a dict: add .items() to it",),
     ),
     "list_in_the_list.launch.py": Told(
         nodes="rviz2 joint_state_publisher",
         rviz=(f"6: {NO_FILE}",),
-        faults=("7: an action is expected here, and this is a list of some: write * before it",),
+        faults=("7: expected an action, and this is a list of actions: write * before it",),
     ),
     "list_returned.launch.py": Told(
         nodes="rviz2",
         rviz=(f"5: {NO_FILE}",),
-        faults=("4: generate_launch_description returns no LaunchDescription([...])",),
+        faults=("4: generate_launch_description does not return a LaunchDescription([...])",),
     ),
     "loop_over_nodes.launch.py": Told(
         nodes="joint_state_publisher rviz2 turtlesim/turtle_a_node turtlesim/turtle_b_node",
@@ -166,9 +166,9 @@ TOLD = {
     "misspelt_substitution.launch.xml": Told(
         nodes="rviz2 rviz2 rviz2",
         rviz=(
-            "2: unknown: what find-package-share gives is told only by a run",
+            "2: unknown: the result of find-package-share is known only at run time",
             "3: my_robot/rviz/my_robot.rviz",
-            "4: unknown: what my-own gives is told only by a run",
+            "4: unknown: the result of my-own is known only at run time",
         ),
         faults=(
             "2: there is no substitution $(find-package-share ...); did you mean $(find-pkg-share ...)?",
@@ -178,7 +178,7 @@ TOLD = {
     "name_not_imported.launch.py": Told(
         nodes="rviz2",
         rviz=(f"5: {NO_FILE}",),
-        faults=("5: the name 'Node' is used, but not defined or imported",),
+        faults=("5: the name 'Node' is not defined or imported",),
     ),
     "next_to_the_file.launch.py": Told(
         nodes="robot_state_publisher rviz2",
@@ -186,15 +186,15 @@ TOLD = {
         rviz=("16: my_robot/rviz/my_robot.rviz",),
     ),
     "no_launch.launch.xml": Told(
-        syntax="1: the root of the file is not <launch>; ros2 launch reads nothing of it",
+        syntax="1: the root of the file is not <launch>; ros2 launch starts nothing",
     ),
     "no_launch_key.launch.yaml": Told(
-        syntax="1: the file is not one list under launch:; ros2 launch reads nothing of it",
+        syntax="1: the file is not one list below launch:; ros2 launch starts nothing",
     ),
     "no_list_at_all.launch.py": Told(
         nodes="joint_state_publisher rviz2",
         rviz=(f"6: {NO_FILE}",),
-        faults=("8: LaunchDescription takes one list: put [ ] around what is launched",),
+        faults=("8: LaunchDescription takes one list: put [ ] around the actions",),
     ),
     "no_lists_for_parameters.launch.py": Told(
         nodes="robot_state_publisher",
@@ -202,24 +202,24 @@ TOLD = {
         faults=("8: parameters has to be a list: put [ ] around it",),
     ),
     "no_such_function.launch.py": Told(
-        faults=("1: the file defines no function generate_launch_description, which ros2 launch calls",),
+        faults=("1: the file does not define the function generate_launch_description, which ros2 launch calls",),
     ),
     "no_value.launch.xml": Told(
         nodes="robot_state_publisher robot_state_publisher",
-        urdf=("2: unknown: this parameter has no value", "5: unknown: what it is given is told only by a run"),
-        faults=("3: <param> has no 'textfile' in ROS 2's launch files; the attribute is called 'value'",),
-        unknown=("8: what <node_container> starts is told only by a run",),
+        urdf=("2: unknown: this parameter has no value", "5: unknown: its parameters are known only at run time"),
+        faults=("3: <param> has no attribute 'textfile' in ROS 2; write 'value'",),
+        unknown=("8: what <node_container> starts is known only at run time",),
     ),
     "nodes_in_a_container.launch.py": Told(
-        unknown=("8: what a container of nodes starts is not followed",),
+        unknown=("8: the nodes of a container are not supported",),
     ),
     "not_closed.launch.xml": Told(
         syntax="3: not readable as XML",
     ),
     "not_indented.launch.yaml": Told(
         faults=(
-            "2: one action is expected here, under one key; there is node, pkg, exec. Is it indented far enough?",
-            "2: a node has no executable: it is not said which program it is",
+            "2: expected one action below one key, found node, pkg, exec. Is it indented far enough?",
+            "2: a node has no executable: add executable=...",
         ),
         unknown=("2: a node without a package is a program of the machine",),
     ),
@@ -234,9 +234,9 @@ TOLD = {
         nodes="rviz2 joint_state_publisher",
         rviz=(f"7: {NO_FILE}",),
         faults=(
-            "7: Node takes no argument 'node_executable'; did you mean 'executable'?",
-            "7: Node takes no argument 'node_name'",
-            "8: Node takes no argument 'paramters'; did you mean 'parameters'?",
+            "7: Node has no argument 'node_executable'; did you mean 'executable'?",
+            "7: Node has no argument 'node_name'",
+            "8: Node has no argument 'paramters'; did you mean 'parameters'?",
         ),
     ),
     "opaque_function.launch.py": Told(
@@ -247,7 +247,7 @@ TOLD = {
     "opaque_function_that_decides.launch.py": Told(
         nodes="robot_state_publisher",
         urdf=("8: x.urdf",),
-        unknown=("9: it depends on something that only a run would tell",),
+        unknown=("9: a condition is known only at run time",),
         forgotten="joint_state_publisher_gui",
     ),
     "open_read.launch.py": Told(
@@ -256,12 +256,12 @@ TOLD = {
     ),
     "parameters_from_yaml.launch.py": Told(
         nodes="robot_state_publisher rviz2",
-        urdf=("11: unknown: what it is given is told only by a run",),
+        urdf=("11: unknown: its parameters are known only at run time",),
         rviz=(f"12: {NO_FILE}",),
     ),
     "path_instead_of_contents.launch.py": Told(
         nodes="robot_state_publisher",
-        urdf=("9: wrong: robot_description is given the path of the URDF, not what is in it: read the file first",),
+        urdf=("9: wrong: robot_description is given the path of the URDF, not its contents: read the file first",),
     ),
     "path_join_substitution.launch.py": Told(
         nodes="robot_state_publisher rviz2",
@@ -275,7 +275,7 @@ TOLD = {
     ),
     "program_chosen_at_run_time.launch.py": Told(
         unknown=(
-            "9: what choice gives is told only by a run",
+            "9: the result of choice is known only at run time",
             "10: a node without a package is a program of the machine",
         ),
     ),
@@ -292,10 +292,13 @@ TOLD = {
         nodes="rviz2",
         rviz=("2: my_robot/rviz/my_robot.rviz",),
         faults=(
-            "2: quotes cannot go around a substitution in a line of arguments: leave them out",
-            "3: a node has no executable: it is not said which program it is",
+            "2: quotes cannot enclose a substitution in a line of arguments: remove them",
+            "3: a node has no executable: add executable=...",
         ),
-        unknown=("3: this is not followed as a text", "4: a node without a package is a program of the machine"),
+        unknown=(
+            "3: the text of this value is known only at run time",
+            "4: a node without a package is a program of the machine",
+        ),
     ),
     "read_text.launch.py": Told(
         nodes="robot_state_publisher",
@@ -306,24 +309,24 @@ TOLD = {
         urdf=("4: wrong: robot_state_publisher is started without robot_description: it has no robot to publish",),
         rviz=("5: my_robot/rviz/my_robot.rviz",),
         faults=(
-            "2: $(find ...) is of ROS 1; in ROS 2 it is $(find-pkg-share ...)",
-            "2: <arg> has no 'value' in ROS 2's launch files; the attribute is called 'default'",
-            "3: $(arg ...) is of ROS 1; in ROS 2 it is $(var ...)",
-            "3: <param> at this place is of ROS 1, and unknown to ROS 2: a <param> stands inside its <node>",
-            "3: <param> has no 'command' in ROS 2's launch files; the attribute is called 'value'",
-            "4: <node> has no 'type' in ROS 2's launch files; the attribute is called 'exec'",
-            "5: $(find ...) is of ROS 1; in ROS 2 it is $(find-pkg-share ...)",
-            "5: <node> has no 'required' in ROS 2's launch files",
-            "5: <node> has no 'type' in ROS 2's launch files; the attribute is called 'exec'",
+            "2: $(find ...) is a substitution of ROS 1; in ROS 2 write $(find-pkg-share ...)",
+            "2: <arg> has no attribute 'value' in ROS 2; write 'default'",
+            "3: $(arg ...) is a substitution of ROS 1; in ROS 2 write $(var ...)",
+            "3: <param> has no attribute 'command' in ROS 2; write 'value'",
+            "3: <param> in this place is from ROS 1 and not accepted by ROS 2: a <param> belongs in its <node>",
+            "4: <node> has no attribute 'type' in ROS 2; write 'exec'",
+            "5: $(find ...) is a substitution of ROS 1; in ROS 2 write $(find-pkg-share ...)",
+            "5: <node> has no attribute 'required' in ROS 2",
+            "5: <node> has no attribute 'type' in ROS 2; write 'exec'",
         ),
     ),
     "ros2_launch_once_more.launch.py": Told(
-        unknown=("6: it starts ros2 launch once more",),
+        unknown=("6: it starts another ros2 launch",),
     ),
     "rviz_option_in_one_text.launch.py": Told(
         nodes="rviz2 rviz2 rviz2",
         rviz=(
-            "9: wrong: '-d' and the path have to be two entries of arguments: ['-d', path]",
+            "9: wrong: '-d' and the path have to be two items of arguments: ['-d', path]",
             "10: wrong: rviz2 is given -d without the path of a file",
             f"11: {NO_FILE}",
         ),
@@ -374,11 +377,11 @@ TOLD = {
         faults=(
             "16: open takes a path, not a substitution: use Command(['cat ', ...])",
             "18: xacro.process_file takes a path, not a substitution: use Command(['xacro ', ...])",
-            "19: os.path.join takes texts, not substitutions: use PathJoinSubstitution([...])",
+            "19: os.path.join takes strings, not substitutions: use PathJoinSubstitution([...])",
         ),
     ),
     "two_keys.launch.yaml": Told(
-        syntax="1: the file is not one list under launch:; ros2 launch reads nothing of it",
+        syntax="1: the file is not one list below launch:; ros2 launch starts nothing",
     ),
     "urdf_as_argument.launch.py": Told(
         nodes="robot_state_publisher",
@@ -388,9 +391,9 @@ TOLD = {
         nodes="rviz2",
         rviz=("9: /opt/a.rviz",),
         faults=(
-            "4: default of arg has to be a text; YAML takes 'true' for something else without its quotes",
-            "7: default of arg has to be a text; YAML takes '3' for something else without its quotes",
-            "9: if of node has to be a text; YAML takes 'true' for something else without its quotes",
+            "4: default of arg has to be a string, and 'true' is none in YAML: put quotes around it",
+            "7: default of arg has to be a string, and '3' is none in YAML: put quotes around it",
+            "9: if of node has to be a string, and 'true' is none in YAML: put quotes around it",
         ),
     ),
     "whole.launch.xml": Told(
@@ -406,7 +409,7 @@ TOLD = {
     "xacro_file_read_as_it_is.launch.py": Told(
         nodes="robot_state_publisher",
         urdf=(
-            "9: unknown: my_robot.urdf.xacro is read as it is; if anything of xacro is in it, use Command(['xacro ', ...])",
+            "9: unknown: my_robot.urdf.xacro is read without xacro; if it uses xacro, write Command(['xacro ', ...])",
         ),
     ),
     "xacro_parse.launch.py": Told(
@@ -423,7 +426,7 @@ TOLD = {
             "9: /opt/a.urdf.xacro",
             "11: /opt/b.urdf.xacro",
             "13: /opt/my robot.urdf",
-            "15: unknown: what this command prints is told only by a run",
+            "15: unknown: the output of this command is known only at run time",
         ),
     ),
 }
@@ -431,7 +434,7 @@ TOLD = {
 
 @pytest.mark.parametrize("sample", SAMPLES)
 def test_what_is_told(sample: str) -> None:
-    """Nodes, files, faults, and what only a run would tell are found, each with its line."""
+    """Nodes, files, faults, and what known only at run time are found, each with its line."""
     assert told(sample) == TOLD[sample]
 
 
@@ -609,7 +612,7 @@ def test_two_files_that_include_each_other() -> None:
     """A circle of files ends, and is a fault."""
     others = {f"{FOLDER}/{one}.launch.xml": TWO.format(two, two).encode() for one, two in ("ab", "ba")}
     launch = follow(others[f"{FOLDER}/a.launch.xml"], "a.launch.xml", others)
-    assert {fault.message for fault in launch.faults} == {"it includes itself, without end"}
+    assert {fault.message for fault in launch.faults} == {"it includes itself"}
     assert len(launch.nodes) == 3
 
 
@@ -618,7 +621,7 @@ def test_many_includes() -> None:
     others = {f"{FOLDER}/f{n}.launch.xml": TWO.format(f"f{n + 1}", f"f{n + 1}").encode() for n in range(40)}
     with processor_time(2):
         launch = follow(others[f"{FOLDER}/f0.launch.xml"], "f0.launch.xml", others)
-    assert "it includes more launch files than are followed" in {each.message for each in launch.unknown}
+    assert "it includes more than 10 launch files" in {each.message for each in launch.unknown}
     assert len(launch.nodes) < 50
 
 

@@ -1,33 +1,32 @@
 """Whether the condition of an action holds, with the defaults of the launch arguments."""
 
-from grader.package.launch.substitutions import Context, resolve
-from grader.package.launch.truths import truth_of
-from grader.static_python.values import Made, Value
+from grader.package.launch.booleans import boolean
+from grader.package.launch.context import Context
+from grader.package.launch.substitutions import resolve
+from grader.static_python.values import Call, Value
 
 
 def holds(condition: Value, context: Context) -> bool | None:
-    """Whether a condition of a node holds with the defaults; None where only a run would tell."""
+    """Return whether the condition of an action holds; None where this is known only at run time."""
     if condition is None:
         return True
-    if not isinstance(condition, Made):
+    if not isinstance(condition, Call):
         return None
-    last = condition.name.rpartition(".")[2]
-    if last in ("IfCondition", "UnlessCondition"):
+    kind = condition.name.rpartition(".")[2]
+    if kind in ("IfCondition", "UnlessCondition"):
         predicate = condition.argument(0, "predicate_expression")
         if isinstance(predicate, int | float):
-            context.wrong.append(
-                (f"{last} takes a text or a substitution, not {predicate}: write 'true'", condition.at)
-            )
+            message = f"{kind} takes a string or a substitution, not {predicate}: write 'true'"
+            context.add_error(message, condition.at)
         text = resolve(predicate, context)
-        known = truth_of(text)
-        if known is None and isinstance(text, str):
-            context.wrong.append((f"a condition is {text[:40]!r}, which is neither true nor false", condition.at))
-        return known if known is None or last == "IfCondition" else not known
-    if last in ("LaunchConfigurationEquals", "LaunchConfigurationNotEquals"):
+        value = boolean(text)
+        if value is None and isinstance(text, str):
+            context.add_error(f"a condition is {text[:40]!r}, expected true or false", condition.at)
+        return value if value is None or kind == "IfCondition" else not value
+    if kind in ("LaunchConfigurationEquals", "LaunchConfigurationNotEquals"):
         name = condition.argument(0, "launch_configuration_name")
-        value = resolve(condition.argument(1, "expected_value"), context)
+        expected = resolve(condition.argument(1, "expected_value"), context)
         actual = resolve(context.arguments.get(name) if isinstance(name, str) else None, context)
-        if not isinstance(value, str) or not isinstance(actual, str):
-            return None
-        return (value == actual) == (last == "LaunchConfigurationEquals")
+        if isinstance(expected, str) and isinstance(actual, str):
+            return (expected == actual) == (kind == "LaunchConfigurationEquals")
     return None

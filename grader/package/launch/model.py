@@ -1,4 +1,4 @@
-"""What a launch file comes to: the nodes that it starts, and the files that it names."""
+"""The model of a launch file: the nodes that it starts, and the files that it names."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -10,7 +10,7 @@ Purpose = Literal["urdf", "rviz", "include"]
 
 @dataclass(frozen=True, slots=True)
 class StartedNode:
-    """A program that is started: `when` is True, False where a condition keeps it off, None where only a run would tell."""
+    """A program that is started. `when` is True, False where a condition prevents it, None where this is known at run time."""
 
     package: str
     executable: str
@@ -20,9 +20,9 @@ class StartedNode:
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """A file that the launch file names. `path` is as written, with a stand-in in front where only a machine knows the rest.
+    """A file that the launch file names. `path` begins with a stand-in where a folder depends on the machine.
 
-    Where it is None, `reason` says why it cannot be told (`sure` is False) or what is wrong with it.
+    Where it is None, `reason` says why it is unknown (`sure` is False) or what is wrong with it.
     """
 
     purpose: Purpose
@@ -30,12 +30,12 @@ class Reference:
     location: Location
     reason: str = ""
     sure: bool = True
-    by: str = ""  # the program that reads it, where one does: xacro, cat or open
+    by: str = ""  # the program that reads it, if there is one: xacro, cat or open
 
 
 @dataclass(frozen=True, slots=True)
-class Fault:
-    """Something that stops the launch, or keeps a node from what it needs."""
+class LaunchFault:
+    """An error that stops the launch or a node, or something unknown, with its location."""
 
     message: str
     location: Location
@@ -43,21 +43,21 @@ class Fault:
 
 @dataclass(frozen=True, slots=True)
 class Launch:
-    """What is known of a launch file, those that it includes taken in.
+    """What is known of a launch file and of those that it includes.
 
-    `syntax` is set where the file itself cannot be read; `unknown` says what could not be told, each with its place.
+    `syntax` is set where the file itself cannot be read; `unknown` has what cannot be determined.
     """
 
     path: str
     source: Source
-    syntax: Fault | None = None
+    syntax: LaunchFault | None = None
     nodes: tuple[StartedNode, ...] = ()
     references: tuple[Reference, ...] = ()
-    faults: tuple[Fault, ...] = ()
-    unknown: tuple[Fault, ...] = ()
-    forgotten: tuple[StartedNode, ...] = ()  # made in the file, but not part of what it launches
-    unread: str = ""  # why the file could not be read at all: too large, damaged
+    faults: tuple[LaunchFault, ...] = ()
+    unknown: tuple[LaunchFault, ...] = ()
+    forgotten: tuple[StartedNode, ...] = ()  # created in the file, but not part of its LaunchDescription
+    unread: str = ""  # why the file was not read at all: too large, damaged
 
     def named(self, *purposes: Purpose) -> tuple[Reference, ...]:
-        """The files that are named for a purpose."""
-        return tuple(each for each in self.references if each.purpose in purposes)
+        """Return the files that are named for one of these purposes."""
+        return tuple(reference for reference in self.references if reference.purpose in purposes)

@@ -1,272 +1,231 @@
-"""What launch's substitutions come to, with the defaults of the launch arguments."""
+"""The values of launch's substitutions, with the defaults of the launch arguments."""
 
 import posixpath
-import re
-import shlex
-from collections.abc import Iterable
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import PurePosixPath
 
+from grader.package.launch.booleans import BOOLEAN_SUBSTITUTIONS, boolean_substitution, operands_of
+from grader.package.launch.commands import PART_UNKNOWN, file_read
+from grader.package.launch.context import Contents, Context, Resolved
 from grader.package.launch.places import HOME, PREFIX, SHARE
-from grader.package.launch.truths import LOGIC, logical, operands_of
-from grader.static_python.machine import Machine
-from grader.static_python.methods import as_text
-from grader.static_python.parse import SyntaxFault, parse
-from grader.static_python.values import Made, Spot, Unknown, Value
+from grader.static_python.text_expressions import evaluate_text
+from grader.static_python.values import START, Call, Position, Unknown, Value, as_text
 
-CMDLINE = "launch.frontend.command line"  # a line that is split into words, as XML and YAML have them
-UNTOLD = "\0"  # stands in a command for a part that cannot be told
-_MOST_DEPTH = 40
-_MOST_STEPS = 50_000
-_MOST_TEXT = 100_000
-_MOST_EXPRESSION = 1_000
-_GLUED = re.compile(r"(?:xacro|cat)/")
-_PERFORMED = (".perform", ".find")
+COMMAND_LINE = "launch.frontend.command line"  # a line that is split into words, as in XML and YAML
+_MAX_DEPTH = 40
+_MAX_TEXT = 100_000
+_PERFORMED = (".perform", ".find")  # methods of substitutions that return a string
 
 
-@dataclass(frozen=True, slots=True)
-class Contents:
-    """What is in a file, read by open, cat or xacro."""
-
-    path: str
-    by: str
-
-
-@dataclass(slots=True)
-class Context:
-    """The launch arguments that are known so far, and the folder of the launch file as it is installed.
-
-    `when` tells whether the file is launched at all; `left` counts down the steps, also for the files that are included.
-    """
-
-    folder: str
-    arguments: dict[str, Value] = field(default_factory=dict)
-    undeclared: list[tuple[str, Spot]] = field(default_factory=list)
-    wrong: list[tuple[str, Spot]] = field(default_factory=list)
-    when: bool | None = True
-    left: list[int] = field(default_factory=lambda: [_MOST_STEPS])
-
-
-def resolve(value: Value, context: Context, depth: int = 0) -> "str | Contents | Unknown":
-    """The text that a value comes to, or what is in a file; Unknown, with the reason, where only a run would tell."""
-    context.left[0] -= 1
-    if depth > _MOST_DEPTH or context.left[0] < 0:
-        return Unknown("it is too deeply nested", Spot(1, 1))
+def resolve(value: Value, context: Context, depth: int = 0) -> Resolved:
+    """Return the text of a value, or the contents of a file; Unknown where this is known only at run time."""
+    context.steps_left[0] -= 1
+    if depth > _MAX_DEPTH or context.steps_left[0] < 0:
+        return Unknown("a substitution is too deeply nested", START)
     match value:
         case Contents() | Unknown():
             return value
         case str() | int() | float() | PurePosixPath():
             text = as_text(value)
-            return text if text is not None else Unknown("it is too long a number", Spot(1, 1))
+            return text if text is not None else Unknown("a number is too long", START)
+        case [single]:
+            return resolve(single, context, depth + 1)
         case list() | tuple():
-            return _joined(value, context, depth)
-        case Made():
-            return _made(value, context, depth)
+            parts = _texts(value, context, depth)
+            return "".join(parts) if isinstance(parts, list) else parts
+        case Call():
+            return _Substitution(value, context, depth).value()
         case _:
-            return Unknown("this is not followed as a text", Spot(1, 1))
+            return Unknown("the text of this value is known only at run time", START)
 
 
-def _joined(parts: list[Value] | tuple[Value, ...], context: Context, depth: int) -> "str | Contents | Unknown":
-    if len(parts) == 1:
-        return resolve(parts[0], context, depth + 1)
-    text = ""
-    for part in parts:
-        piece = resolve(part, context, depth + 1)
-        if not isinstance(piece, str):
-            return piece if isinstance(piece, Unknown) else Unknown("the content of a file is part of it", Spot(1, 1))
-        text += piece
-        if len(text) > _MOST_TEXT:
-            return Unknown("it grows too long", Spot(1, 1))
-    return text
-
-
-def _made(made: Made, context: Context, depth: int) -> "str | Contents | Unknown":
-    def of(position: int, *names: str) -> "str | Contents | Unknown":
-        return resolve(made.argument(position, *names), context, depth + 1)
-
-    last = made.name.rpartition(".")[2]
-    match last:
-        case _ if made.name == CMDLINE:
-            return _joined(made.args, context, depth)
-        case "TextSubstitution":
-            return of(0, "text")
-        case "LaunchConfiguration":
-            return _configuration(made, context, depth)
-        case "PathJoinSubstitution" if len(made.args) > 1:
-            context.wrong.append(("PathJoinSubstitution takes one list: put [ ] around the parts of the path", made.at))
-            return _path(made.args, context, depth, made.at)
-        case "PathJoinSubstitution":
-            return _path(made.argument(0, "substitutions"), context, depth, made.at)
-        case "PathSubstitution" | "ParameterValue" | "ParameterFile":
-            return of(0, "path", "value", "param_file")
-        case _ if last.endswith("LaunchDescriptionSource"):
-            return of(0, "launch_file_path", "location")
-        case "truediv":
-            return _path(made.args, context, depth, made.at)
-        case (
-            "FindPackageShare" | "FindPackageShareDirectory" | "get_package_share_directory" | "get_package_share_path"
-        ):
-            return below(SHARE, of(0, "package", "package_name"))
-        case "FindPackagePrefix" | "FindPackage" | "get_package_prefix":
-            package = of(0, "package", "package_name")
-            return PREFIX if isinstance(package, str) else package
-        case "ThisLaunchFileDir":
-            return context.folder
-        case "FindExecutable":
-            return of(0, "name")
-        case "Command":
-            return _command(made, context, depth)
-        case "FileContent":
-            path = of(0, "path")
-            return Contents(path, "open") if isinstance(path, str) else path
-        case "PythonExpression":
-            return _expression(of(0, "expression"), made.at)
-        case _ if last in LOGIC:
-            return logical(last, [resolve(each, context, depth + 1) for each in operands_of(made)], made.at)
-        case _:
-            return _of_python(made, last, context, depth)
-
-
-def _of_python(made: Made, last: str, context: Context, depth: int) -> "str | Contents | Unknown":
-    """What a function of Python's or xacro's gives; Unknown for all others."""
-
-    def of(position: int, *names: str) -> "str | Contents | Unknown":
-        return resolve(made.argument(position, *names), context, depth + 1)
-
-    match last:
-        case "join" if made.name == "os.path.join":
-            _needs_texts(made.args, "os.path.join takes texts, not substitutions: use PathJoinSubstitution([...])",
-                         made, context)  # fmt: skip
-            return _path(made.args, context, depth, made.at)
-        case "process_file" | "process" if made.name.startswith("xacro."):
-            _needs_texts(made.args[:1], f"xacro.{last} takes a path, not a substitution: use Command(['xacro ', ...])",
-                         made, context)  # fmt: skip
-            path = of(0, "input_file_name")
-            return Contents(path, "xacro") if isinstance(path, str) else path
-        case "parse":  # xacro.parse(open(path)), or of what is in it
-            return _reread(of(0), "xacro")
-        case "open" if made.name in ("builtins.open", "io.open", "codecs.open"):
-            _needs_texts(made.args[:1], "open takes a path, not a substitution: use Command(['cat ', ...])",
-                         made, context)  # fmt: skip
-            path = of(0, "file")
-            return Contents(path, "open") if isinstance(path, str) else path
-        case "EnvironmentVariable" | "getenv" | "environ[]" | "get" if "nviron" in made.name or last == "getenv":
-            return HOME if of(0, "name") == "HOME" else Unknown("it depends on the environment", made.at)
-        case "expanduser":
-            text = of(0)
-            return text.replace("~", HOME, 1) if isinstance(text, str) and text.startswith("~") else text
-        case "home" if made.name.startswith("pathlib."):
-            return HOME
-        case "perform" | "read" | "toxml" | "toprettyxml" | "documentElement" | "decode" | "strip":
-            return resolve(made.owner, context, depth + 1)
-        case _:
-            return Unknown(f"what {last} gives is told only by a run", made.at)
-
-
-def _needs_texts(values: Iterable[Value], message: str, made: Made, context: Context) -> None:
-    """Note that a function of Python's gets a substitution, which is no text before the launch runs."""
-    if any(
-        isinstance(each, Made)
-        and each.name.startswith(("launch.", "launch_ros."))
-        and not each.name.endswith(_PERFORMED)
-        for each in values
-    ):
-        context.wrong.append((message, made.at))
-
-
-def _reread(value: "str | Contents | Unknown", by: str) -> "str | Contents | Unknown":
-    return Contents(value.path, by) if isinstance(value, Contents) else value
-
-
-def below(folder: str, name: "str | Contents | Unknown") -> "str | Contents | Unknown":
-    """A path below a folder."""
-    return f"{folder}/{name}" if isinstance(name, str) else name
-
-
-def _configuration(made: Made, context: Context, depth: int) -> "str | Contents | Unknown":
-    name = resolve(made.argument(0, "variable_name"), context, depth + 1)
-    if not isinstance(name, str):
-        return name
-    if name in context.arguments:
-        return resolve(context.arguments[name], context, depth + 1)
-    default = made.argument(1, "default")
-    if default is not None:
-        return resolve(default, context, depth + 1)
-    context.undeclared.append((name, made.at))
-    return Unknown(f"the launch argument {name!r} is not declared", made.at)
-
-
-def _path(parts: Value, context: Context, depth: int, spot: Spot) -> "str | Contents | Unknown":
-    if not isinstance(parts, list | tuple):
-        return resolve(parts, context, depth + 1)
-    texts: list[str] = []
-    for part in parts:
-        text = resolve(part, context, depth + 1)
-        if not isinstance(text, str):
-            return text if isinstance(text, Unknown) else Unknown("the content of a file is part of a path", spot)
-        texts.append(text)
-    if sum(map(len, texts)) > _MOST_TEXT:
-        return Unknown("it grows too long", spot)
-    return posixpath.join(*texts) if texts else Unknown("an empty path", spot)
-
-
-def _command(made: Made, context: Context, depth: int) -> "str | Contents | Unknown":
-    """What a command prints: the file that it reads, for xacro and cat."""
-    parts = made.argument(0, "command")
-    pieces = parts if isinstance(parts, list | tuple) else [parts]
-    texts = [resolve(piece, context, depth + 1) for piece in pieces]
-    unknown = next((text for text in texts if isinstance(text, Unknown)), None)
-    command = "".join(text if isinstance(text, str) else UNTOLD for text in texts).strip()[:_MOST_TEXT]
-    if _GLUED.match(command):
-        program = command.split("/")[0]
-        context.wrong.append((f"a space is missing between {program} and the path: write '{program} '", made.at))
-        command = command.replace(program, program + " ", 1)
-    try:
-        words = shlex.split(command)
-    except ValueError:
-        context.wrong.append(("the quotes in this command are not closed", made.at))
-        return Unknown("the quotes in this command are not closed", made.at)
-    by, path = _file_read(words)
-    if path is None or UNTOLD in path:
-        return unknown or Unknown("what this command prints is told only by a run", made.at)
-    return Contents(path, by)
-
-
-def _file_read(words: list[str]) -> tuple[str, str | None]:
-    """Which program reads a file, and which file: of a call of xacro or cat."""
-    if words[:3] == ["ros2", "run", "xacro"]:
-        words = words[3:]
-    program = words[0].rpartition("/")[2].removesuffix(".py") if words else ""
-    if program not in ("xacro", "cat", "type") or "-o" in words:
-        return "", None
-    files = [word for word in words[1:] if not word.startswith("-") and ":=" not in word]
-    return ("xacro" if program == "xacro" else "cat"), (files[0] if len(files) == 1 else None)
-
-
-def _expression(text: "str | Contents | Unknown", spot: Spot) -> "str | Contents | Unknown":
-    """What a Python expression comes to that has only plain values in it."""
-    unknown = Unknown("what this expression comes to is told only by a run", spot)
-    if not isinstance(text, str) or len(text) > _MOST_EXPRESSION:
-        return text if isinstance(text, Unknown) else unknown
-    code = parse(f"value = ({text}\n)".encode("utf-8", "replace"), "")
-    if isinstance(code, SyntaxFault):
-        return unknown
-    machine = Machine(code, {}, special={})
-    value = machine.run().names.get("value")
-    plain = as_text(value) if value is not None and not machine.faults and not machine.stopped else None
-    return plain if plain is not None else unknown
-
-
-def arguments_of(given: Value, context: Context, spot: Spot) -> dict[str, Value] | None:
-    """The launch arguments that an include passes on, with what they come to; None where they cannot be told."""
+def launch_arguments(given: Value, context: Context, at: Position) -> dict[str, Value] | None:
+    """Return the launch arguments that an include passes on, resolved; None where they are unknown."""
     if given is None:
         return {}
     if isinstance(given, dict):
-        context.wrong.append(("launch_arguments is given a dict: write .items() behind it", spot))
+        context.add_error("launch_arguments is given a dict: add .items() to it", at)
         given = list(given.items())
     if not isinstance(given, list | tuple) or not all(
-        isinstance(each, list | tuple) and len(each) == 2 for each in given
+        isinstance(pair, list | tuple) and len(pair) == 2 for pair in given
     ):
         return None
-    named = [(resolve(name, context), resolve(value, context)) for name, value in given]
-    return {name: value for name, value in named if isinstance(name, str)}
+    resolved = [(resolve(name, context), resolve(value, context)) for name, value in given]
+    return {name: value for name, value in resolved if isinstance(name, str)}
+
+
+def _texts(parts: list[Value] | tuple[Value, ...], context: Context, depth: int) -> list[str] | Unknown:
+    """Return the texts of some parts; Unknown if one is unknown or the contents of a file."""
+    texts: list[str] = []
+    length = 0
+    for part in parts:
+        text = resolve(part, context, depth + 1)
+        if not isinstance(text, str):
+            return text if isinstance(text, Unknown) else Unknown("the content of a file is part of a text", START)
+        texts.append(text)
+        length += len(text)
+        if length > _MAX_TEXT:
+            return Unknown("a text grows too long", START)
+    return texts
+
+
+@dataclass(slots=True)
+class _Substitution:
+    """A call of a substitution, or of a function that Python, xacro or ament_index has for the same purpose."""
+
+    call: Call
+    context: Context
+    depth: int
+
+    def value(self) -> Resolved:
+        """Return the text that the call gives, or the contents of a file."""
+        name = self.call.name.rpartition(".")[2]
+        argument = _FIRST_ARGUMENT.get(name)
+        if argument is not None:
+            return self.argument(*argument)
+        method = _METHODS.get(name)
+        if method is not None:
+            return method(self)
+        if self.call.name == COMMAND_LINE:
+            return self.resolve(self.call.args) if self.call.args else ""
+        if name.endswith("LaunchDescriptionSource"):
+            return self.argument("launch_file_path", "location")
+        if name in BOOLEAN_SUBSTITUTIONS:
+            return boolean_substitution(
+                name, [self.resolve(operand) for operand in operands_of(self.call)], self.call.at
+            )
+        return self.python_function(name)
+
+    def python_function(self, name: str) -> Resolved:
+        """Return what a function of Python or xacro gives; Unknown for all others."""
+        full = self.call.name
+        match name:
+            case "join" if full == "os.path.join":
+                self.needs_texts("os.path.join takes strings, not substitutions: use PathJoinSubstitution([...])")
+                return self.path(self.call.args)
+            case "process_file" | "process" if full.startswith("xacro."):
+                self.needs_texts(f"xacro.{name} takes a path, not a substitution: use Command(['xacro ', ...])", 1)
+                return self.contents("xacro", "input_file_name")
+            case "parse":  # xacro.parse(open(path)), or of the contents
+                opened = self.argument()
+                return Contents(opened.path, "xacro") if isinstance(opened, Contents) else opened
+            case "open" if full in ("builtins.open", "io.open", "codecs.open"):
+                self.needs_texts("open takes a path, not a substitution: use Command(['cat ', ...])", 1)
+                return self.contents("open", "file")
+            case "EnvironmentVariable" | "getenv" | "environ[]" | "get" if "nviron" in full or name == "getenv":
+                is_home = self.argument("name") == "HOME"
+                return HOME if is_home else Unknown("the environment is known only at run time", self.call.at)
+            case "expanduser":
+                text = self.argument()
+                return text.replace("~", HOME, 1) if isinstance(text, str) and text.startswith("~") else text
+            case "home" if full.startswith("pathlib."):
+                return HOME
+            case _:
+                return Unknown(f"the result of {name} is known only at run time", self.call.at)
+
+    def resolve(self, value: Value) -> Resolved:
+        return resolve(value, self.context, self.depth + 1)
+
+    def argument(self, *names: str) -> Resolved:
+        return self.resolve(self.call.argument(0, *names))
+
+    def owner(self) -> Resolved:
+        return self.resolve(self.call.owner)
+
+    def contents(self, by: str, *names: str) -> Resolved:
+        path = self.argument(*names)
+        return Contents(path, by) if isinstance(path, str) else path
+
+    def needs_texts(self, message: str, count: int | None = None) -> None:
+        """Add an error if a function of Python gets a substitution, which has no text before the launch runs."""
+        calls = (value for value in self.call.args[:count] if isinstance(value, Call))
+        if any(
+            call.name.startswith(("launch.", "launch_ros.")) and not call.name.endswith(_PERFORMED) for call in calls
+        ):
+            self.context.add_error(message, self.call.at)
+
+    def path(self, parts: Value) -> Resolved:
+        if not isinstance(parts, list | tuple):
+            return self.resolve(parts)
+        texts = _texts(parts, self.context, self.depth)
+        if isinstance(texts, Unknown):
+            return texts
+        return posixpath.join(*texts) if texts else Unknown("a path is empty", self.call.at)
+
+    def joined_path(self) -> Resolved:
+        if len(self.call.args) > 1:
+            message = "PathJoinSubstitution takes one list: put [ ] around the parts of the path"
+            self.context.add_error(message, self.call.at)
+            return self.path(self.call.args)
+        return self.path(self.call.argument(0, "substitutions"))
+
+    def share(self) -> Resolved:
+        package = self.argument("package", "package_name")
+        return f"{SHARE}/{package}" if isinstance(package, str) else package
+
+    def prefix(self) -> Resolved:
+        package = self.argument("package", "package_name")
+        return PREFIX if isinstance(package, str) else package
+
+    def configuration(self) -> Resolved:
+        name = self.argument("variable_name")
+        if not isinstance(name, str):
+            return name
+        value = self.context.arguments.get(name, self.call.argument(1, "default"))
+        if value is not None or name in self.context.arguments:
+            return self.resolve(value)
+        message = f"the launch argument {name!r} is used, but DeclareLaunchArgument does not declare it before"
+        self.context.add_error(message, self.call.at)
+        return Unknown(f"the launch argument {name!r} is not declared", self.call.at)
+
+    def command(self) -> Resolved:
+        """Return the contents of the file that a command prints, for xacro and cat."""
+        parts = self.call.argument(0, "command")
+        pieces = parts if isinstance(parts, list | tuple) else [parts]
+        texts = [self.resolve(piece) for piece in pieces]
+        command = "".join(text if isinstance(text, str) else PART_UNKNOWN for text in texts).strip()[:_MAX_TEXT]
+        errors: list[str] = []
+        by, path = file_read(command, errors)
+        self.context.errors += [(message, self.call.at) for message in errors]
+        if path:
+            return Contents(path, by)
+        if errors:
+            return Unknown(errors[-1], self.call.at)
+        unknown = (text for text in texts if isinstance(text, Unknown))
+        return next(unknown, Unknown("the output of this command is known only at run time", self.call.at))
+
+    def expression(self) -> Resolved:
+        """Return the value of a Python expression that contains plain values only."""
+        text = self.argument("expression")
+        value = evaluate_text(text, {}, {}) if isinstance(text, str) else None
+        plain = as_text(value) if value is not None else None
+        if plain is not None:
+            return plain
+        reason = "the value of this expression is known only at run time"
+        return text if isinstance(text, Unknown) else Unknown(reason, self.call.at)
+
+
+# The calls that give their first argument, with its names.
+_FIRST_ARGUMENT: dict[str, tuple[str, ...]] = {
+    "TextSubstitution": ("text",),
+    "PathSubstitution": ("path",),
+    "ParameterValue": ("value",),
+    "ParameterFile": ("param_file",),
+    "FindExecutable": ("name",),
+}
+_METHODS: dict[str, Callable[[_Substitution], Resolved]] = {
+    **dict.fromkeys(
+        ("perform", "read", "toxml", "toprettyxml", "documentElement", "decode", "strip"), _Substitution.owner
+    ),
+    **dict.fromkeys(("FindPackageShare", "FindPackageShareDirectory"), _Substitution.share),
+    **dict.fromkeys(("get_package_share_directory", "get_package_share_path"), _Substitution.share),
+    **dict.fromkeys(("FindPackagePrefix", "FindPackage", "get_package_prefix"), _Substitution.prefix),
+    "LaunchConfiguration": _Substitution.configuration,
+    "PathJoinSubstitution": _Substitution.joined_path,
+    "ThisLaunchFileDir": lambda substitution: substitution.context.folder,
+    "Command": _Substitution.command,
+    "FileContent": lambda substitution: substitution.contents("open", "path"),
+    "PythonExpression": _Substitution.expression,
+    "truediv": lambda substitution: substitution.path(substitution.call.args),
+}

@@ -1,10 +1,10 @@
-"""The grammar of a value in XML and YAML launch files: texts and $(substitutions ...), as ros2/launch's grammar.lark has it."""
+"""The grammar of values in XML and YAML launch files: text and $(substitutions ...), as in ros2/launch's grammar.lark."""
 
 from grader.names import closest
-from grader.static_python.values import Made, Spot, Value
+from grader.static_python.values import Call, Position, Value
 
-_MOST_DEPTH = 40
-# What a frontend's substitution is called in Python.
+_MAX_DEPTH = 40
+# The Python name of each substitution of the XML and YAML frontends.
 _SUBSTITUTIONS = {
     "find-pkg-share": "launch_ros.substitutions.FindPackageShare",
     "find-pkg-prefix": "launch_ros.substitutions.FindPackagePrefix",
@@ -24,33 +24,33 @@ _SUBSTITUTIONS = {
     "any": "launch.substitutions.AnySubstitution",
     "if": "launch.substitutions.IfElseSubstitution",
 }
-# Substitutions of ROS 1, and what they are called now.
+# The substitutions of ROS 1 and their names in ROS 2.
 _ROS1 = {"find": "find-pkg-share", "arg": "var", "optenv": "env"}
 _ON_STDERR = ("fail", "ignore", "warn", "capture")
 
-Faults = list[tuple[str, Spot]]
+Errors = list[tuple[str, Position]]
 
 
-def read_line(text: str, at: Spot, faults: Faults) -> list[Value]:
-    """A value with its substitutions, as a list of texts and what Python would call them; what is wrong joins `faults`."""
-    return _Line(text, at, faults).pieces("", 0)
+def parse_value(text: str, at: Position, errors: Errors) -> list[Value]:
+    """Return a value as a list of strings and calls of substitutions; what is wrong with it is added to `errors`."""
+    return _ValueParser(text, at, errors).pieces("", 0)
 
 
-class _Line:
-    """A value that is read from its beginning to its end."""
+class _ValueParser:
+    """Parses a value from its beginning to its end."""
 
-    def __init__(self, text: str, at: Spot, faults: Faults) -> None:
+    def __init__(self, text: str, at: Position, errors: Errors) -> None:
         self.text = text
         self.at = at
-        self.faults = faults
+        self.errors = errors
         self.position = 0
 
     def pieces(self, ends: str, depth: int) -> list[Value]:
-        """Texts and substitutions, up to one of the characters that end them."""
+        """Return strings and substitutions, up to one of the characters that end them."""
         found: list[Value] = []
         plain: list[str] = []
         while self.position < len(self.text) and self.text[self.position] not in ends:
-            if self.text.startswith("$(", self.position) and depth < _MOST_DEPTH:
+            if self.text.startswith("$(", self.position) and depth < _MAX_DEPTH:
                 found += ["".join(plain)] if plain else []
                 plain.clear()
                 self.position += 2
@@ -62,8 +62,8 @@ class _Line:
             self.position += 1
         return [*found, "".join(plain)] if plain or not found else found
 
-    def substitution(self, depth: int) -> Made:
-        """What is in the brackets: a name, and values with a space between them, in quotes or not."""
+    def substitution(self, depth: int) -> Call:
+        """Return the substitution in brackets: a name, and values separated by spaces, with or without quotes."""
         start = self.position
         while self.position < len(self.text) and self.text[self.position] not in " \t\n)":
             self.position += 1
@@ -80,20 +80,21 @@ class _Line:
             else:
                 values.append(self.pieces(" \t\n)", depth))
         if self.position >= len(self.text):
-            self.faults.append((f"the bracket of $({name[:40]} is not closed", self.at))
+            self.errors.append((f"the bracket of $({name[:40]} is not closed", self.at))
         self.position += 1
-        return self.named(name, values)
+        return self.call(name, values)
 
-    def named(self, name: str, values: list[Value]) -> Made:
-        """What a substitution is in Python."""
+    def call(self, name: str, values: list[Value]) -> Call:
+        """Return a substitution as the call that it is in Python."""
         if name in _ROS1:
-            self.faults.append((f"$({name} ...) is of ROS 1; in ROS 2 it is $({_ROS1[name]} ...)", self.at))
+            message = f"$({name} ...) is a substitution of ROS 1; in ROS 2 write $({_ROS1[name]} ...)"
+            self.errors.append((message, self.at))
             name = _ROS1[name]
-        if name == "command" and len(values) > 1 and values[1] not in [[each] for each in _ON_STDERR]:
+        if name == "command" and len(values) > 1 and values[1] not in [[mode] for mode in _ON_STDERR]:
             message = "$(command ...) takes its command in quotes: $(command 'xacro ...')"
-            self.faults.append((message, self.at))
+            self.errors.append((message, self.at))
             values = [[part for value in values for part in (*value, " ")]]
         similar = closest(name, _SUBSTITUTIONS) if name not in _SUBSTITUTIONS else None
         if similar:
-            self.faults.append((f"there is no substitution $({name} ...); did you mean $({similar} ...)?", self.at))
-        return Made(_SUBSTITUTIONS.get(name, f"launch.substitutions.{name}"), values, {}, self.at)
+            self.errors.append((f"there is no substitution $({name} ...); did you mean $({similar} ...)?", self.at))
+        return Call(_SUBSTITUTIONS.get(name, f"launch.substitutions.{name}"), values, {}, self.at)

@@ -1,15 +1,17 @@
-"""What a Python file means by names that it has not imported, and which of its imports cannot work."""
+"""Imports: the names that they bind, those that fail, and what undefined names most likely mean."""
 
+import ast
 import sys
+from collections.abc import Sequence
 from importlib import import_module
-from types import ModuleType
 
 from grader.names import closest, did_you_mean
+from grader.static_python.values import QualifiedName
 
-# What is meant where a name is used without its import.
-MODULES = {
+# The usual meaning of a name that is used without its import.
+USUAL_NAMES = {
     "os": "os",
-    "glob": "?glob",  # the module or its function: how it is used tells
+    "glob": "?glob",  # the module or its function; its use decides
     "path": "os.path",
     "join": "os.path.join",
     "Path": "pathlib.Path",
@@ -33,6 +35,7 @@ MODULES = {
     "get_package_share_directory": "ament_index_python.packages.get_package_share_directory",
     "get_package_share_path": "ament_index_python.packages.get_package_share_path",
 }
+_SETUPTOOLS_PUBLIC = ("setup", "find_packages", "find_namespace_packages", "Command", "Distribution", "Extension")
 _SETUPTOOLS = frozenset(
     {"setup", "find_packages", "find_namespace_packages", "Command", "Distribution", "Extension", "Require", "depends",
      "dist", "command", "errors", "extension", "PackageFinder", "PEP420PackageFinder", "sic", "SetuptoolsDeprecationWarning",
@@ -40,13 +43,15 @@ _SETUPTOOLS = frozenset(
      "archive_util", "dep_util", "discovery", "config", "installer", "launch", "logging", "package_index", "convert_path",
      "findall", "distutils", "warnings", "modified"}
 )  # fmt: skip
-# Modules of the standard library that students' setup files import; what is in them is looked up there.
-_LOOKED_UP = frozenset({"os", "os.path", "glob", "pathlib", "sys", "shutil", "itertools", "re"})
-_OTHERS = frozenset({"distutils", "pkg_resources", "wheel", "launch", "launch_ros", "xacro", "ament_index_python"})
+# Modules of the standard library that students' setup files import; their names are read from the modules themselves.
+_INSPECTED = frozenset({"os", "os.path", "glob", "pathlib", "sys", "shutil", "itertools", "re"})
+_INSTALLED_WITH_ROS = frozenset(
+    {"distutils", "pkg_resources", "wheel", "launch", "launch_ros", "xacro", "ament_index_python"}
+)
 
 
-# Where the names of ROS 2's launch are imported from (ros2/launch and ros2/launch_ros, Jazzy).
-_HOMES: dict[str, tuple[str, ...]] = {
+# The modules of ROS 2's launch and the names that are imported from them (ros2/launch and ros2/launch_ros, Jazzy).
+_LAUNCH_NAMES: dict[str, tuple[str, ...]] = {
     "launch": ("LaunchDescription", "LaunchContext", "LaunchService"),
     "launch.actions": (
         "DeclareLaunchArgument", "ExecuteProcess", "GroupAction", "IncludeLaunchDescription", "LogInfo", "OpaqueFunction",
@@ -71,63 +76,53 @@ _HOMES: dict[str, tuple[str, ...]] = {
 }  # fmt: skip
 
 
-def _misplaced(module: str, name: str) -> str | None:
-    """What is wrong with taking a name of launch's from one of its modules, if it is in another one."""
-    if module not in _HOMES or name in _HOMES[module]:
-        return None
-    homes = [home for home, names in _HOMES.items() if name in names]
-    return f"{module} has no {name!r}: it is in {homes[-1]}" if homes else None
-
-
-def some_names(module: str) -> tuple[str, ...]:
-    """Some of what `from module import *` brings, of modules of launch's."""
-    return _HOMES.get(module, ())
-
-
-def import_fault(module: str, name: str) -> str | None:
-    """What is wrong with `import name`, or with `from module import name`, if that can be told; else None."""
+def import_error(module: str, name: str) -> str | None:
+    """Return what is wrong with `import name` or `from module import name`; None where it works or this is unknown."""
     top = (module or name).split(".")[0]
     if module.startswith(".") or not top:
         return None
-    misplaced = _misplaced(module, name)
-    if misplaced is not None:
-        return misplaced
+    homes = [home for home, names in _LAUNCH_NAMES.items() if name in names]
+    if module in _LAUNCH_NAMES and homes and module not in homes:
+        return f"{module} has no {name!r}: import it from {homes[-1]}"
     if top == "setuptools":
         if module == "setuptools" and name not in _SETUPTOOLS and name != "*":
-            return (
-                f"setuptools has no {name!r}{did_you_mean(name, ('setup', 'find_packages', 'find_namespace_packages'))}"
-            )
+            return f"setuptools has no {name!r}{did_you_mean(name, _SETUPTOOLS_PUBLIC[:3])}"
         return None
-    if module in _LOOKED_UP and name != "*":
-        found = _looked_up(module)
-        if not hasattr(found, name):
-            return f"{module} has no {name!r}{did_you_mean(name, dir(found))}"
-        return None
-    if top in sys.stdlib_module_names or top in _OTHERS:
+    if module in _INSPECTED and name != "*":
+        found = import_module(module)  # one of the few above, never a student's choice
+        return None if hasattr(found, name) else f"{module} has no {name!r}{did_you_mean(name, dir(found))}"
+    if top in sys.stdlib_module_names or top in _INSTALLED_WITH_ROS:
         return None
     guess = closest(top, ("os", "glob", "pathlib", "setuptools", "sys", "shutil"))
     return f"there is no module {top!r}; did you mean {guess!r}?" if guess and not top.startswith(guess) else None
 
 
-def attribute_fault(module: str, name: str) -> str | None:
-    """What is wrong with `module.name`, if that can be told; else None."""
-    return import_fault(module, name) if module in _LOOKED_UP or module == "setuptools" else None
+def attribute_error(module: str, name: str) -> str | None:
+    """Return what is wrong with `module.name`; None where it works or this is unknown."""
+    return import_error(module, name) if module in _INSPECTED or module == "setuptools" else None
 
 
-def public_names(module: str) -> tuple[str, ...] | None:
-    """What `from module import *` brings; None where that cannot be told."""
-    if module == "setuptools":
-        return ("setup", "find_packages", "find_namespace_packages", "Command", "Distribution", "Extension")
-    if module not in _LOOKED_UP:
-        return None
-    found = _looked_up(module)
-    return tuple(getattr(found, "__all__", [name for name in dir(found) if not name.startswith("_")]))
-
-
-def is_at_hand(module: str) -> bool:
-    """Whether a module can be imported wherever ROS 2 is built."""
+def is_always_installed(module: str) -> bool:
+    """Return whether a module can be imported wherever ROS 2 packages are built."""
     return module.split(".", maxsplit=1)[0] in {*sys.stdlib_module_names, "setuptools", "distutils"}
 
 
-def _looked_up(module: str) -> ModuleType:
-    return import_module(module)  # one of the few modules above, never a student's choice
+def imported_names(module: str, alias: ast.alias) -> dict[str, QualifiedName]:
+    """Return what `import name` or `from module import name` binds; the name * stands for names that are not known."""
+    if alias.name == "*":
+        names = [*(_public_names(module) or ["", *_LAUNCH_NAMES.get(module, ())])]
+        return {name or "*": QualifiedName(f"{module}.{name or '*'}") for name in names}
+    if module:
+        return {alias.asname or alias.name: QualifiedName(f"{module}.{alias.name}")}
+    top = alias.name.split(".")[0]
+    return {alias.asname: QualifiedName(alias.name)} if alias.asname else {top: QualifiedName(top)}
+
+
+def _public_names(module: str) -> Sequence[str] | None:
+    """Return the names that `from module import *` binds; None where they are not known."""
+    if module == "setuptools":
+        return _SETUPTOOLS_PUBLIC
+    if module not in _INSPECTED:
+        return None
+    found = import_module(module)
+    return getattr(found, "__all__", [name for name in dir(found) if not name.startswith("_")])

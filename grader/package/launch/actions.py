@@ -1,0 +1,194 @@
+"""Visits the actions of a launch description: what they start, include and declare."""
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+from grader.package.launch.conditions import holds
+from grader.package.launch.context import Context
+from grader.package.launch.findings import Findings
+from grader.package.launch.nodes import start_node, start_process, start_urdf_launch
+from grader.package.launch.substitutions import launch_arguments, resolve
+from grader.static_python.values import START, UNKNOWN_KEYS, Call, Function, Position, QualifiedName, Unknown, Value
+
+_MAX_ACTIONS = 5_000
+_MAX_DEPTH = 40
+CIRCULAR_INCLUDE = "it includes itself"
+# Actions that start nothing.
+_IDLE = re.compile(r"(?:Set|Unset|Push|Pop|Log|Append|Prepend|Reset|Replace|Clear|Emit|Shutdown|Unregister)\w*")
+_CONTAINERS = ("ComposableNodeContainer", "LoadComposableNodes", "ComposableNode", "ComposableLifecycleNode")
+
+# Takes the path of a launch file below the prefix and the arguments for it; returns why it is not read, or nothing.
+Include = Callable[[str, Context], str]
+
+
+@dataclass(slots=True)
+class ActionVisitor:
+    """Visits actions and adds what it finds. `when` is whether an action is executed: True, False or None for unknown."""
+
+    findings: Findings
+    include: Include
+    call_function: Callable[[Function, Position, Sequence[Value]], Value]
+    visited: set[int] = field(default_factory=set)  # the ids of the calls that are part of the description
+    steps: int = 0
+
+    def visit(self, value: Value, context: Context, when: bool | None, depth: int = 0) -> None:
+        """Visit an action, or all actions of a list."""
+        self.steps += 1
+        if depth > _MAX_DEPTH or self.steps > _MAX_ACTIONS:
+            self.findings.add_unknown("the launch file has too many actions", START)
+            return
+        match value:
+            case list() | tuple() | dict():
+                for action in value.values() if isinstance(value, dict) else value:
+                    if self.steps > _MAX_ACTIONS:
+                        return
+                    self.visit(action, context, when, depth + 1)
+            case Unknown():
+                self.findings.add_unknown(value.reason, value.at)
+            case QualifiedName():
+                self.findings.add_unknown(f"the value of {value.name} is known only at run time", START)
+            case Call():
+                start = len(context.errors)
+                executed = _executed(value, context, when)
+                self.findings.add_errors(context, start, is_certain=when is True)  # launch evaluates the condition
+                self.visited.add(id(value))
+                self._action(value, context, executed, depth)
+                self.findings.add_errors(context, start, is_certain=executed is True)
+
+    def _action(self, call: Call, context: Context, when: bool | None, depth: int) -> None:
+        kind = call.name.rpartition(".")[2]
+        match kind:
+            case "DeclareLaunchArgument" | "DeclareBooleanLaunchArgument" | "SetLaunchConfiguration":
+                _set_argument(call, context, when, declares=kind.startswith("Declare"))
+            case "Node" | "LifecycleNode":
+                start_node(self.findings, call, context, when)
+            case "ExecuteProcess" | "ExecuteLocal":
+                start_process(self.findings, call, context, when)
+            case "IncludeLaunchDescription":
+                self._include(call, context, when)
+            case "LaunchDescription":
+                self._description(call, context, when, depth)
+            case "GroupAction":
+                self._group(call, context, when, depth)
+            case "TimerAction" | "RosTimer":
+                self._inner(call, call.argument(1, "actions"), context, when, depth)
+            case "RegisterEventHandler":
+                self.visit(call.argument(0, "event_handler"), context, when, depth + 1)
+            case _ if kind.startswith("On") and kind[2:3].isupper():
+                self._event_handler(call, context, when if kind == "OnProcessStart" else when and None, depth)
+            case "OpaqueFunction":
+                self._opaque_function(call, context, when, depth)
+            case _ if kind in _CONTAINERS:
+                self.findings.add_unknown("the nodes of a container are not supported", call.at)
+            case _ if _IDLE.fullmatch(kind) and call.name.startswith(("launch.", "launch_ros.")):
+                self.findings.sets_parameters |= kind in ("SetParameter", "SetParametersFromFile")
+            case _ if not call.name.startswith("?."):
+                self.findings.add_unknown(f"what {kind} starts is known only at run time", call.at)
+
+    def _description(self, call: Call, context: Context, when: bool | None, depth: int) -> None:
+        actions, *others = [call.argument(0, "initial_entities"), *call.args[1:]]
+        if isinstance(actions, Call) or others:
+            context.add_error("LaunchDescription takes one list: put [ ] around the actions", call.at)
+        self._listed(others, call, context, when, depth)
+        self._listed(actions, call, context, when, depth)
+        for method in call.method_calls:
+            if method.name.endswith((".add_action", ".add_entity")):
+                is_called = None if method.uncertainty is not None else True
+                self._listed(method.args, method, context, _both(when, is_called), depth)
+
+    def _listed(self, actions: Value, call: Call, context: Context, when: bool | None, depth: int) -> None:
+        """Visit the actions of a description, which may not contain lists."""
+        if isinstance(actions, list | tuple) and any(isinstance(action, list | tuple) for action in actions):
+            context.add_error("expected an action, and this is a list of actions: write * before it", call.at)
+        self.visit(actions if actions is not None else [], context, when, depth + 1)
+
+    def _inner(self, call: Call, actions: Value, context: Context, when: bool | None, depth: int) -> None:
+        """Visit the actions in another action, which have to be a list."""
+        if isinstance(actions, Call):
+            kind = call.name.rpartition(".")[2]
+            context.add_error(f"{kind} takes a list of actions: put [ ] around them", call.at)
+        self.visit(actions, context, when, depth + 1)
+
+    def _group(self, call: Call, context: Context, when: bool | None, depth: int) -> None:
+        """Visit a group: the launch arguments that it sets end with it, unless scoped is False."""
+        before = dict(context.arguments)
+        own = call.kwargs.get("launch_configurations")
+        for name, value in own.items() if isinstance(own, dict) else ():
+            context.arguments[str(name)] = resolve(value, context)
+        self._inner(call, call.argument(0, "actions"), context, when, depth)
+        if call.kwargs.get("scoped", True) is not False:
+            context.arguments.clear()
+            context.arguments.update(before)
+
+    def _event_handler(self, call: Call, context: Context, when: bool | None, depth: int) -> None:
+        """Visit the actions for an event. Only the start of another process certainly happens."""
+        for name, value in call.kwargs.items():
+            if name.startswith("on_") or name == "entities":
+                actions = self.call_function(value, call.at, ()) if isinstance(value, Function) else value
+                self.visit(actions if actions is not None else [], context, when, depth + 1)
+
+    def _opaque_function(self, call: Call, context: Context, when: bool | None, depth: int) -> None:
+        function, args = call.argument(0, "function"), call.kwargs.get("args") or []
+        if not isinstance(function, Function) or not isinstance(args, list | tuple) or call.kwargs.get("kwargs"):
+            self.findings.add_unknown("the result of an OpaqueFunction is known only at run time", call.at)
+            return
+        actions = self.call_function(function, call.at, (Call("launch.LaunchContext", [], {}, call.at), *args))
+        self.visit(actions if actions is not None else [], context, when, depth + 1)
+
+    def _include(self, call: Call, context: Context, when: bool | None) -> None:
+        if when is False:
+            return
+        path = resolve(call.argument(0, "launch_description_source"), context)
+        given = launch_arguments(call.argument(1, "launch_arguments"), context, call.at)
+        if not isinstance(path, str) or given is None:
+            reason = path.reason if isinstance(path, Unknown) else "the included file is known only at run time"
+            self.findings.add_unknown(reason, call.at)
+            return
+        folder, arguments = path.rpartition("/")[0], {**context.arguments, **given}
+        inner = Context(folder, arguments, when=when, steps_left=context.steps_left)
+        if not start_urdf_launch(self.findings, path, call, inner):
+            reason = self.include(path, inner)
+            if reason == CIRCULAR_INCLUDE and when:
+                self.findings.add_fault(reason, call.at)
+            elif reason:
+                self.findings.add_unknown(reason, call.at)
+            self.findings.refer("include", path, call)
+        context.arguments.update(inner.arguments)  # an included file shares its arguments with the actions that follow
+
+
+def _executed(call: Call, context: Context, when: bool | None) -> bool | None:
+    """Return whether an action is executed; `when` is whether the action around it is."""
+    if when and (call.uncertainty is not None or UNKNOWN_KEYS in call.kwargs):
+        when = None
+    return _both(when, holds(call.kwargs.get("condition"), context))
+
+
+def _both(one: bool | None, other: bool | None) -> bool | None:
+    """Return whether two conditions hold, each of which may be unknown."""
+    if one is False or other is False:
+        return False
+    return None if one is None or other is None else True
+
+
+def _set_argument(call: Call, context: Context, when: bool | None, *, declares: bool) -> None:
+    """Give a launch argument that is declared or set its value."""
+    name = resolve(call.argument(0, "name"), context)
+    if when is False or not isinstance(name, str) or (declares and name in context.arguments):
+        return
+    value = call.argument(1, "default_value", "value")
+    choices = call.kwargs.get("choices")
+    if declares and len(call.args) > 1:
+        context.add_error("DeclareLaunchArgument takes its default by name: default_value=...", call.at)
+    is_limited = declares and isinstance(choices, list | tuple) and all(isinstance(choice, str) for choice in choices)
+    if is_limited and choices and isinstance(value, str) and value not in choices:
+        context.add_error(f"the default {value!r} of {name!r} is not one of its choices", call.at)
+    if isinstance(value, int | float):
+        text = str(value).lower() if isinstance(value, bool) else str(value)
+        context.add_error(f"the value of a launch argument is a string: write {text!r}", call.at)
+    if when is None:
+        context.arguments[name] = Unknown(f"the launch argument {name!r} is set under a condition", call.at)
+    elif value is None:
+        context.arguments[name] = Unknown(f"the launch argument {name!r} has no default", call.at)
+    else:
+        context.arguments[name] = resolve(value, context)

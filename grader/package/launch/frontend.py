@@ -1,0 +1,160 @@
+"""Launch files in XML and YAML: both have the same elements, which are read as entities."""
+
+from dataclasses import dataclass, field
+
+import yaml
+
+from grader.package.launch.model import LaunchFault
+from grader.package.launch.substitution_grammar import Errors
+from grader.package.yaml_nodes import Node, YamlFault, read_yaml
+from grader.source import Location, Source
+from grader.static_python.values import START, Position
+from grader.xml.parsing import Element, XMLSyntaxError, parse_xml
+
+_MAX_DEPTH = 40
+_MAX_ENTITIES = 5_000
+_YAML = yaml.SafeLoader("")  # decides which plain scalars are numbers, booleans or null
+# The attributes that have to be strings.
+_STRINGS = {
+    "arg": ("name", "default", "value"),
+    "let": ("name", "value"),
+    "node": ("pkg", "exec", "name", "namespace", "args", "if", "unless"),
+    "include": ("file", "if", "unless"),
+    "group": ("if", "unless"),
+    "executable": ("cmd", "if", "unless"),
+}
+
+
+@dataclass(slots=True)
+class Entity:
+    """One element of a launch file: <node pkg="..."/>, or `- node: {pkg: ...}`."""
+
+    kind: str
+    at: Position
+    attributes: dict[str, str] = field(default_factory=dict)
+    children: "list[Entity]" = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class Frontend:
+    """The root entity of a file in XML or YAML, with its errors; `syntax` is set where it cannot be read."""
+
+    source: Source
+    root: Entity | None = None
+    syntax: LaunchFault | None = None
+    errors: Errors = field(default_factory=list)
+    unknown: Errors = field(default_factory=list)
+
+
+def read_frontend(data: bytes, path: str, *, is_yaml: bool) -> Frontend:
+    """Read a launch file in XML or YAML. Never raises."""
+    frontend = Frontend(Source(path, data.decode("utf-8", "replace")))
+    try:
+        root = _YamlReader(frontend).root(data, path) if is_yaml else _xml_root(data, frontend.source)
+    except YamlFault as fault:
+        frontend.syntax = LaunchFault(f"not readable as YAML: {fault}", fault.location)
+        return frontend
+    except (XMLSyntaxError, ValueError) as error:
+        line, column = getattr(error, "position", (1, 1))
+        reason = " ".join(str(getattr(error, "msg", error)).split(", line ")[0].split())
+        frontend.syntax = LaunchFault(f"not readable as XML: {reason}", Location(path, max(line, 1), max(column, 1)))
+        return frontend
+    if root is not None and root.kind == "launch":
+        frontend.root = root
+    else:
+        what = "the file is not one list below launch:" if is_yaml else "the root of the file is not <launch>"
+        frontend.syntax = LaunchFault(f"{what}; ros2 launch starts nothing", Location(path, 1, 1))
+    return frontend
+
+
+def _xml_root(data: bytes, source: Source) -> Entity:
+    root = parse_xml(data)
+    indices = {element: index for index, element in enumerate(root.iter("*"))}
+
+    def entity(element: Element, depth: int) -> Entity:
+        try:
+            location = source.tag(indices[element])
+        except IndexError:  # the text is in an encoding in which its tags are not found
+            location = Location(source.path, 1, 1)
+        attributes = dict(element.attrib.items())
+        read = Entity(str(element.tag), Position(location.line, location.column), attributes)  # type: ignore[arg-type]
+        if depth < _MAX_DEPTH:
+            read.children = [entity(child, depth + 1) for child in element.iterchildren("*")]
+        return read
+
+    return entity(root, 0)
+
+
+class _YamlReader:
+    """Reads entities from YAML's lists and mappings; aliases can multiply them, so they are counted."""
+
+    def __init__(self, frontend: Frontend) -> None:
+        self.frontend = frontend
+        self.count = 0
+
+    def root(self, data: bytes, path: str) -> Entity | None:
+        """Return the entity of the whole file; None where its only key is not launch."""
+        root = read_yaml(data, path)
+        node = root.get("launch")
+        if node is None or not isinstance(root.value, dict) or len(root.value) > 1:
+            return None
+        return Entity(
+            "launch", _position(node), {}, self.entries(node if node.items else node.get("children") or node, 0)
+        )
+
+    def entries(self, listed: Node, depth: int) -> list[Entity]:
+        """Return the actions of a list, each below its own key."""
+        found: list[Entity] = []
+        for item in listed.items:
+            table = item.value if isinstance(item.value, dict) else {}
+            if len(table) != 1:
+                names = ", ".join(list(table)[:4]) or "nothing"
+                message = f"expected one action below one key, found {names}. Is it indented far enough?"
+                self.frontend.errors.append((message, _position(item)))
+            found += [self.entity(kind, value, depth + 1) for kind, value in list(table.items())[:1]]
+        return found
+
+    def entity(self, kind: str, node: Node, depth: int) -> Entity:
+        """Return one action or element."""
+        entity = Entity(kind, _position(node))
+        self.count += 1
+        if depth > _MAX_DEPTH or self.count > _MAX_ENTITIES:
+            self.frontend.unknown[:] = [("the launch file has too many elements", START)]
+            return entity
+        if not isinstance(node.value, dict):
+            entity.children += self.entries(node, depth)
+            return entity
+        for key, value in merged(node).items():
+            if value.text is not None:
+                entity.attributes[key] = value.text
+                self.check_string(kind, key, value)
+            elif key == "children":
+                entity.children += self.entries(value, depth)
+            else:
+                entity.children += [self.entity(key, item, depth + 1) for item in value.items or [value]]
+        return entity
+
+    def check_string(self, kind: str, key: str, value: Node) -> None:
+        """Add an error for a number, boolean or null where launch takes strings only."""
+        if value.quoted or key not in _STRINGS.get(kind, ()):
+            return
+        tag: str = _YAML.resolve(yaml.ScalarNode, value.text, (True, False))  # type: ignore[no-untyped-call]
+        if tag.rpartition(":")[2] in ("bool", "int", "float", "null"):
+            message = f"{key} of {kind} has to be a string, and {value.text!r} is none in YAML: put quotes around it"
+            self.frontend.errors.append((message, _position(value)))
+
+
+def merged(node: Node) -> dict[str, Node]:
+    """Return a mapping with what `<<` merges into it."""
+    table = node.value if isinstance(node.value, dict) else {}
+    given = table.get("<<")
+    if given is None:
+        return table
+    found: dict[str, Node] = {}
+    for other in reversed(given.items or [given]):
+        found |= other.value if isinstance(other.value, dict) else {}
+    return {key: value for key, value in {**found, **table}.items() if key != "<<"}
+
+
+def _position(node: Node) -> Position:
+    return Position(node.location.line, node.location.column)

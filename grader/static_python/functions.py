@@ -1,0 +1,208 @@
+"""Functions of Python's standard library that are evaluated: of texts, lists and paths. None of them reads a file."""
+
+import posixpath
+from collections.abc import Callable
+from functools import partial
+from itertools import chain
+from pathlib import PurePosixPath
+from typing import Any
+
+from grader.static_python.evaluation import Evaluation, FunctionTable
+from grader.static_python.methods import in_order
+from grader.static_python.operators import extend
+from grader.static_python.values import (
+    MAX_ITEMS,
+    Call,
+    Unknown,
+    Value,
+    as_text,
+    distinct,
+    items_of,
+    names_package_folder,
+    truth,
+    unknown_in,
+)
+
+_MAX_PATH = 4_096
+_MAX_NUMBER = 10**9
+_PATH_FUNCTIONS = ("dirname", "basename", "normpath", "split", "splitext", "isabs")
+
+
+def standard_functions(working_folder: str) -> FunctionTable:
+    """Return the functions by full name; `working_folder` is where Python runs, as an absolute path."""
+
+    def absolute(path: str) -> str:
+        return posixpath.normpath(posixpath.join(working_folder, path))
+
+    def relative(path: str, start: str = ".") -> str:
+        return posixpath.relpath(absolute(path), absolute(start))
+
+    of_path: dict[str, Callable[..., Value]] = {name: getattr(posixpath, name) for name in _PATH_FUNCTIONS}
+    of_path["relpath"] = relative
+    return {
+        **_FUNCTIONS,
+        **{f"os.path.{name}": partial(_of_path, function) for name, function in of_path.items()},
+        **dict.fromkeys(("os.path.abspath", "os.path.realpath"), partial(_absolute, absolute)),
+        "os.getcwd": lambda *_: working_folder,
+        "pathlib.Path.cwd": lambda *_: PurePosixPath(working_folder),
+    }
+
+
+def path_text(value: Value) -> str | None:
+    """Return the text of a path or string; None for other values."""
+    return str(value) if isinstance(value, str | PurePosixPath) else None
+
+
+def _of_path(function: Callable[..., Value], _: Evaluation, call: Call) -> Value:
+    """Run a function of os.path. The name of the package's folder is not known, so no result may depend on it."""
+    paths = [path_text(value) for value in (*call.args, *call.kwargs.values())]
+    try:
+        found = function(*paths) if None not in paths else None
+    except TypeError:
+        found = None
+    if found is None:
+        return call.unknown("the path is known only at run time")
+    if any(names_package_folder(part) for part in (found if isinstance(found, tuple) else [str(found)])):
+        return Unknown("the name of the package's folder is not known", call.at)
+    return found
+
+
+def _absolute(function: Callable[[str], str], _: Evaluation, call: Call) -> Value:
+    path = path_text(call.args[0]) if call.args else None
+    return function(path) if path is not None else call.unknown("the path is known only at run time")
+
+
+def _join(evaluation: Evaluation, call: Call) -> Value:
+    if any(isinstance(value, list | tuple | dict | int | float | None) for value in call.args):
+        evaluation.error("os.path.join takes strings, and one argument is none: is a bracket misplaced?", call.at)
+    paths = [path for value in call.args if (path := path_text(value)) is not None]
+    if paths and len(paths) == len(call.args) and sum(map(len, paths)) <= _MAX_PATH:
+        return posixpath.join(*paths)
+    if unknown_in(call.args) is None and any(isinstance(value, Call) for value in call.args):
+        return Call("os.path.join", call.args, call.kwargs, call.at)
+    return call.unknown("the path is known only at run time")
+
+
+def _path(evaluation: Evaluation, call: Call) -> Value:
+    path = _join(evaluation, call) if call.args else "."
+    return PurePosixPath(path) if isinstance(path, str) else path
+
+
+def _text(_: Evaluation, call: Call) -> Value:
+    value = call.args[0] if len(call.args) == 1 else []
+    text = as_text(value)
+    if text is None and isinstance(value, Call):
+        return value
+    return text if text is not None else call.unknown("the text is known only at run time")
+
+
+def _of_items(function: Callable[[list[Value]], Value], _: Evaluation, call: Call) -> Value:
+    """Run a function of the items of its first argument."""
+    items = items_of(call.args[0]) if call.args else []
+    return function(items) if items is not None else call.unknown("the items of this value are known only at run time")
+
+
+def _sorted(evaluation: Evaluation, call: Call) -> Value:
+    return _of_items(lambda items: in_order(evaluation, items, call), evaluation, call)
+
+
+def _chain(evaluation: Evaluation, call: Call) -> Value:
+    joined: list[Value] = []
+    for value in call.args:
+        extend(evaluation, joined, value, call.at)
+    return joined
+
+
+def _chain_from_iterable(evaluation: Evaluation, call: Call) -> Value:
+    return _of_items(lambda items: _chain(evaluation, Call("", items, {}, call.at)), evaluation, call)
+
+
+def _sum(evaluation: Evaluation, call: Call) -> Value:
+    items = items_of(call.args[0]) if call.args else []
+    if (len(call.args) == 2 and isinstance(call.args[1], list)) or (items and isinstance(items[0], list)):
+        return _chain_from_iterable(evaluation, call)
+    return call.unknown("a sum of this kind is not supported")
+
+
+def _zip(_: Evaluation, call: Call) -> Value:
+    lists = [items for value in call.args if (items := items_of(value)) is not None]
+    if len(lists) < len(call.args):
+        return call.unknown("the items of this value are known only at run time")
+    return list(zip(*lists, strict=False))
+
+
+def _dict(_: Evaluation, call: Call) -> Value:
+    if not call.args:
+        return dict(call.kwargs)
+    if len(call.args) == 1 and isinstance(call.args[0], dict):
+        return {**call.args[0], **call.kwargs}
+    return call.unknown("a dict of this kind is not supported")
+
+
+def _len(_: Evaluation, call: Call) -> Value:
+    items = items_of(call.args[0]) if call.args else []
+    return (
+        len(items)
+        if items is not None and not unknown_in(items)
+        else call.unknown("the length is known only at run time")
+    )
+
+
+def _bool(_: Evaluation, call: Call) -> Value:
+    value = truth(call.args[0]) if len(call.args) == 1 else None
+    return value if value is not None else call.unknown("the value is known only at run time")
+
+
+def _map(evaluation: Evaluation, call: Call) -> Value:
+    items = items_of(call.args[1]) if len(call.args) == 2 else None
+    if items is None:
+        return call.unknown("a map of this kind is not supported")
+    return [evaluation.apply(call.args[0], item, call.at) for item in items]
+
+
+def _filter(evaluation: Evaluation, call: Call) -> Value:
+    items = items_of(call.args[1]) if len(call.args) == 2 else None
+    if items is None:
+        return call.unknown("a filter of this kind is not supported")
+    function = call.args[0]
+    kept = [truth(item if function is None else evaluation.apply(function, item, call.at)) for item in items]
+    if None in kept:
+        return Unknown("which items pass the filter is known only at run time", call.at)
+    return [item for item, is_kept in zip(items, kept, strict=True) if is_kept]
+
+
+def _range(evaluation: Evaluation, call: Call) -> Value:
+    bounds = [value for value in call.args if type(value) is int and abs(value) <= _MAX_NUMBER]
+    if len(bounds) != len(call.args) or not 1 <= len(bounds) <= 3 or (len(bounds) == 3 and bounds[2] == 0):
+        return call.unknown("a range of this kind is not supported")
+    numbers = range(*bounds)
+    evaluation.step(min(len(numbers), MAX_ITEMS) // 16)
+    return list(numbers) if len(numbers) <= MAX_ITEMS else Unknown("the range is too long", call.at)
+
+
+_OF_ITEMS: dict[tuple[str, ...], Callable[[list[Value]], Any]] = {
+    ("builtins.list", "builtins.tuple", "builtins.iter"): list,
+    ("builtins.set", "builtins.frozenset"): distinct,
+    ("builtins.reversed",): lambda items: items[::-1],
+    ("builtins.enumerate",): lambda items: list(enumerate(items)),
+}
+_FUNCTIONS: FunctionTable = {
+    **dict(
+        chain.from_iterable([(name, partial(_of_items, run)) for name in names] for names, run in _OF_ITEMS.items())
+    ),
+    **dict.fromkeys(("builtins.str", "os.fspath"), _text),
+    **{f"pathlib.{name}": _path for name in ("Path", "PurePath", "PosixPath", "PurePosixPath")},
+    "os.path.join": _join,
+    "builtins.sorted": _sorted,
+    "builtins.dict": _dict,
+    "builtins.len": _len,
+    "builtins.bool": _bool,
+    "builtins.print": lambda *_: None,
+    "builtins.map": _map,
+    "builtins.filter": _filter,
+    "builtins.zip": _zip,
+    "builtins.range": _range,
+    "builtins.sum": _sum,
+    "itertools.chain": _chain,
+    "itertools.chain.from_iterable": _chain_from_iterable,
+}

@@ -1,0 +1,204 @@
+"""Evaluates a whole Python file without running it: its blocks, functions, branches, loops and error handlers."""
+
+import ast
+import builtins
+from collections.abc import Mapping, Sequence
+
+from grader.static_python.control_flow import EvaluationStopped, ExitFlow, LoopFlow, RaisedFlow, ReturnFlow
+from grader.static_python.evaluation import FunctionTable
+from grader.static_python.parse import Code
+from grader.static_python.statements import StatementEvaluator
+from grader.static_python.values import Call, Function, Position, Scope, Unknown, Value, items_of, position_of, truth
+
+_Loop = ast.For | ast.AsyncFor
+_Definition = ast.FunctionDef | ast.AsyncFunctionDef
+_Try = ast.Try | ast.TryStar
+
+
+class Interpreter(StatementEvaluator):
+    """Adds the statements that have blocks."""
+
+    def __init__(self, functions: FunctionTable, names: Mapping[str, Value]) -> None:
+        """`names` are those that Python itself binds, such as __file__."""
+        super().__init__(functions, {"__name__": "__main__", **names})
+        self.stop_reason = ""  # why the file is not evaluated to its end
+        self._has_generators = True
+        self._generators: dict[ast.AST, bool] = {}
+
+    def run(self, code: Code) -> Scope:
+        """Evaluate a whole file and return the scope of its names. Never raises."""
+        self._has_generators = "yield" in code.source.text
+        try:
+            self._block(code.tree.body, self.module)
+        except (EvaluationStopped, RecursionError) as error:
+            self._stop(error)
+        except (ReturnFlow, LoopFlow, ExitFlow):  # also a break outside of a loop, which ast accepts
+            pass
+        return self.module
+
+    def call_from_outside(self, function: Function, at: Position, args: Sequence[Value] = ()) -> Value:
+        """Return the value of a call of one of the file's functions. Never raises."""
+        try:
+            return self.call_function(function, Call("", list(args), {}, at))
+        except (EvaluationStopped, RecursionError) as error:
+            return Unknown(self._stop(error), at)
+        except (ExitFlow, LoopFlow):
+            return Unknown("the file exits here", at)
+
+    def statement(self, node: ast.stmt, scope: Scope) -> None:
+        """Evaluate a statement."""
+        match node:
+            case ast.FunctionDef() | ast.AsyncFunctionDef():
+                self._define(node, scope)
+            case ast.If(test=test, body=body, orelse=other):
+                condition = truth(self.evaluate(test, scope))
+                if condition is None:
+                    self._branches([body, other], scope, node)
+                else:
+                    self._block(body if condition else other, scope)
+            case ast.For() | ast.AsyncFor():
+                self._for(node, scope)
+            case ast.While(test=test, body=body, orelse=other):
+                before = self.uncertainty
+                is_over = truth(self.evaluate(test, scope)) is False
+                # The body twice: its first round may change what the second one does.
+                self._block(other, scope) if is_over else self._branches([body, body, other], scope, node)
+                self.uncertainty = before
+            case ast.Match(subject=subject, cases=cases):
+                self.evaluate(subject, scope)
+                for pattern in ast.walk(node):
+                    if isinstance(pattern, ast.MatchAs | ast.MatchStar) and pattern.name is not None:
+                        scope.bind(pattern.name, Unknown("a pattern is not supported", position_of(node)))
+                self._branches([case.body for case in cases], scope, node)
+            case ast.With() | ast.AsyncWith():
+                for item in node.items:
+                    value = self.evaluate(item.context_expr, scope)
+                    if item.optional_vars is not None:
+                        self.assign(item.optional_vars, value, scope)
+                self._block(node.body, scope)
+            case ast.Try() | ast.TryStar():
+                self._try(node, scope)
+            case _:
+                super().statement(node, scope)
+
+    def _stop(self, error: Exception) -> str:
+        is_deep = isinstance(error, RecursionError)
+        self.stop_reason = "the file is too deeply nested to evaluate" if is_deep else str(error)
+        return self.stop_reason
+
+    def _block(self, body: list[ast.stmt], scope: Scope) -> None:
+        for statement in body:
+            self.step()
+            if self.may_have_failed and self.handlers and self.uncertainty is None:
+                self.uncertainty = Unknown("an earlier error may have been caught", position_of(statement))
+            self.statement(statement, scope)
+
+    def _branches(
+        self,
+        bodies: list[list[ast.stmt]],
+        scope: Scope,
+        node: ast.stmt | ast.excepthandler,
+        reason: str = "a condition is known only at run time",
+    ) -> None:
+        """Evaluate blocks of which only a run decides which are executed."""
+        for body in bodies:
+            with self.uncertain(reason, position_of(node)):
+                self._block(body, scope)
+
+    def _define(self, node: _Definition, scope: Scope) -> None:
+        def body(inner: Scope, at: Position) -> Value:
+            return self._function_body(node, inner, at)
+
+        function = self.function(node.args, scope, position_of(node), body)
+        decorated = Unknown("a decorator is not supported", position_of(node))
+        scope.bind(node.name, decorated if node.decorator_list else function)
+
+    def _function_body(self, node: _Definition, scope: Scope, at: Position) -> Value:
+        if self._has_generators and node not in self._generators:
+            self._generators[node] = any(isinstance(inner, ast.Yield | ast.YieldFrom) for inner in ast.walk(node))
+        if self._generators.get(node):
+            return Unknown("a generator function is not supported", at)
+        before = self.uncertainty
+        try:
+            self._block(node.body, scope)
+        except ReturnFlow as flow:
+            return flow.value if self.uncertainty is before or self.uncertainty is None else self.uncertainty
+        finally:
+            self.uncertainty = before
+        return None
+
+    def _for(self, node: _Loop, scope: Scope) -> None:
+        items = items_of(self.evaluate(node.iter, scope))
+        before = self.uncertainty
+        if items is None:
+            for body in (node.body, node.body, node.orelse):  # the body twice, as that of a while loop
+                with self.uncertain("the items of a loop are known only at run time", position_of(node)):
+                    self.assign(node.target, None, scope)
+                    self._block(body, scope)
+        for item in items or ():
+            self.step()
+            self.assign(node.target, item, scope)
+            try:
+                self._block(node.body, scope)
+            except LoopFlow as flow:
+                if flow.is_break:
+                    break
+        else:
+            self._block(node.orelse if items is not None else [], scope)
+        self.uncertainty = before
+
+    def _try(self, node: _Try, scope: Scope) -> None:
+        if not node.handlers:
+            self._block(node.body, scope)
+        else:
+            before = self.uncertainty
+            raised, may_have_failed = self._guarded(node.body, scope)
+            self.uncertainty = before
+            if raised is not None:
+                self._handle(node, raised, scope)
+            elif may_have_failed:
+                handlers = [handler.body for handler in node.handlers]
+                self._branches(
+                    [node.orelse, *handlers], scope, node, "whether an error is raised is known only at run time"
+                )
+            else:
+                self._block(node.orelse, scope)
+        self._block(node.finalbody, scope)
+
+    def _guarded(self, body: list[ast.stmt], scope: Scope) -> tuple[RaisedFlow | None, bool]:
+        """Evaluate a block whose errors are caught; return the error that is certainly raised, and whether another one may be."""
+        failed_before, self.may_have_failed = self.may_have_failed, False
+        self.handlers += 1
+        try:
+            self._block(body, scope)
+        except RaisedFlow as raised:
+            return raised, True
+        finally:
+            self.handlers -= 1
+            failed, self.may_have_failed = self.may_have_failed, self.may_have_failed or failed_before
+        return None, failed
+
+    def _handle(self, node: _Try, raised: RaisedFlow, scope: Scope) -> None:
+        """Evaluate the first handler that catches an error; raise it again where none does."""
+        for handler in node.handlers:
+            catches = _catches(handler.type, raised.kind)
+            if catches is False:
+                continue
+            if handler.name is not None:
+                scope.bind(handler.name, Unknown("the error is known only at run time", position_of(handler)))
+            if catches:
+                self._block(handler.body, scope)
+                return
+            self._branches([handler.body], scope, handler, "which error is raised is known only at run time")
+        self.error(raised.error.message, raised.error.at, raised.kind)
+
+
+def _catches(kinds: ast.expr | None, raised: type[Exception]) -> bool | None:
+    """Return whether `except kinds:` catches an error; None where this is unknown."""
+    if kinds is None:
+        return True
+    parts = kinds.elts if isinstance(kinds, ast.Tuple) else [kinds]
+    types = [getattr(builtins, part.id, None) if isinstance(part, ast.Name) else None for part in parts]
+    if any(isinstance(kind, type) and issubclass(raised, kind) for kind in types):
+        return True
+    return None if None in types else False
