@@ -15,7 +15,8 @@ class Kind:
     """One kind of problem: a code that never changes, its title, what ROS 2 does and how to mend the file.
 
     The effect of a URDF's problems decides the verdict: ROS 2 rejects the file, drops content of it, or loads it all the same.
-    A problem of another file has an effect of its `other` kind.
+    A problem of another file has an effect of its `other` kind. `is_consequence`: another problem of the same file usually
+    causes it. `detaches_links`: ROS 2 loads the file without links that are apart from the tree.
     """
 
     code: str
@@ -23,15 +24,18 @@ class Kind:
     effect: Effect
     title: str
     explanation: str
+    is_consequence: bool = False
+    detaches_links: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """One problem of one file, in a sentence."""
+    """One problem of one file, in a sentence. `subject` is the name of the link that loses content by it, if one does."""
 
     kind: Kind
     message: str
     location: Location
+    subject: str = ""
 
     @property
     def code(self) -> str:
@@ -44,14 +48,14 @@ class Problem:
         return self.kind.severity
 
 
-def rejects(code: str, title: str, explanation: str) -> Kind:
+def rejects(code: str, title: str, explanation: str, *, is_consequence: bool = False) -> Kind:
     """Return a kind of problem with which ROS 2 loads nothing of the file."""
-    return Kind(code, "error", "rejects", title, explanation)
+    return Kind(code, "error", "rejects", title, explanation, is_consequence=is_consequence)
 
 
-def drops(code: str, title: str, explanation: str) -> Kind:
+def drops(code: str, title: str, explanation: str, *, detaches_links: bool = False) -> Kind:
     """Return a kind of problem with which ROS 2 loads the file without part of its content."""
-    return Kind(code, "warning", "drops", title, explanation)
+    return Kind(code, "warning", "drops", title, explanation, detaches_links=detaches_links)
 
 
 def warns(code: str, title: str, explanation: str) -> Kind:

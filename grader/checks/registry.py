@@ -6,20 +6,13 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal, get_args, get_type_hints
 
 from grader.checks.appearance import shows_box, shows_colour, shows_cylinder, shows_grey, shows_nothing, shows_sphere
+from grader.checks.contact import clear_of, stands_on
 from grader.checks.launch import launch_finds_files, launch_found, launch_starts
 from grader.checks.manual import answered, evidence_shown
 from grader.checks.motion import axis_along, rolls_forward, turns_about_itself
 from grader.checks.outcome import Outcome
 from grader.checks.package import build_installs, installs_files, package_found, package_type, setup_imports
-from grader.checks.placement import (
-    bottom_at_height,
-    bottoms_at_height,
-    centre_at,
-    clear_of,
-    frame_at,
-    stands_on,
-    under_the_base,
-)
+from grader.checks.placement import bottom_at_height, bottoms_at_height, centre_at, frame_at, under_the_base
 from grader.checks.rviz import rviz_display_on, rviz_fixed_frame, rviz_found, rviz_shows_robot
 from grader.checks.tree import held_by, joints_named, root_of_tree, urdf_loads
 from grader.errors import InputError

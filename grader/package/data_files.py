@@ -42,6 +42,7 @@ class Stop(NamedTuple):
     path: str
     reason: str
     at: Spot
+    hint: str = ""  # what the path may mean instead
 
     @property
     def words(self) -> str:
@@ -159,7 +160,7 @@ class Entries:
             self.unknown.append(Unknown(f"{text} is among files that are not looked at", at))
         else:
             guess = did_you_mean(text, self.tree.files) if len(self.stops) < _MOST_GUESSES else ""
-            self.stops.append(Stop(text, f"there is no such file{guess}", at))
+            self.stops.append(Stop(text, "there is no such file", at, guess))
 
     def _narrower(self, folder: str) -> str:
         """A pattern that finds the files beside a folder, but not the folder."""

@@ -203,12 +203,14 @@ TWO_ROOTS = rejects(
     "Links that are not joined to the rest",
     "All links must form one tree: every link but one is the child of a joint. ROS 2 finds several roots and loads nothing. "
     "Add the missing joint, or mend the link names in the joints.",
+    is_consequence=True,
 )
 NO_ROOT = rejects(
     "URDF081",
     "A tree without a root",
     "Every link is the child of some joint, so the links form a loop, and ROS 2 finds nowhere to begin. One link, the root, "
     "must not be the child of any joint.",
+    is_consequence=True,
 )
 CYCLE = rejects(
     "URDF082",
@@ -220,6 +222,7 @@ DETACHED_CYCLE = drops(
     "URDF083",
     "Links on a loop apart from the robot",
     "These links form a loop that is not joined to the root. ROS 2 loads the file, but they are not in the tree and not shown.",
+    detaches_links=True,
 )
 TWO_PARENTS = warns(
     "URDF084",

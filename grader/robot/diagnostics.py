@@ -44,11 +44,14 @@ class Notes:
         """The element that a joint was read from."""
         return self._elements[joint.mark.tag] if joint.mark is not None else self.root
 
-    def add(self, kind: Kind, message: str, element: Element, attribute: str | None = None) -> None:
-        """Note a problem at an element, or at one of its attributes if it has it."""
+    def add(
+        self, kind: Kind, message: str, element: Element, attribute: str | None = None, *, subject: str = ""
+    ) -> None:
+        """Note a problem at an element, or at one of its attributes if it has it; `subject` loses content by it."""
         self.effects.add(kind.effect)
         if len(self.problems) < _MOST_PROBLEMS:
-            self.problems.append(Problem(kind, message, self.source.tag(self._indices[element], attribute)))
+            location = self.source.tag(self._indices[element], attribute)
+            self.problems.append(Problem(kind, message, location, subject))
         else:
             self.unlisted += 1
 
@@ -86,7 +89,7 @@ class Part:
         """Note a defect: the part is lost."""
         self.bad = True
         consequence = self._consequence if self._link is None else self._consequence.format(quoted(self._link))
-        self._notes.add(self._kind, f"{reason}; {consequence}", element, attribute)
+        self._notes.add(self._kind, f"{reason}; {consequence}", element, attribute, subject=self._link or "")
 
     def mark(self, element: Element) -> Mark:
         """The place of an element."""

@@ -236,9 +236,9 @@ def _undefined(joint: Joint) -> MissingElement:
         mark, attribute = joint.axis_mark, "xyz"
     else:
         reason = "its numbers are too large"
-    message = f"the pose behind joint {quoted(joint.name)} is undefined: {reason}"
+    message, detail = f"the pose of a joint's child is undefined: {reason}", f" (joint {quoted(joint.name)})"
     spot = Spot(mark, attribute, inside) if mark is not None else None
-    return MissingElement("pose behind joint", joint.name, message=message, location=spot)
+    return MissingElement("pose behind joint", joint.name, message=message, detail=detail, location=spot)
 
 
 def _spot(link: Link) -> Spot | None:

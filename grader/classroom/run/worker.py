@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 from grader.checks.outcome import Outcome, Status
-from grader.classroom.gradebook.failures import kind_of_miss
 from grader.classroom.gradebook.result import NOT_GRADED, SIGNS, UNITS, Graded, Verdict
 from grader.classroom.intake.opening import fingerprint, open_hand_in
 from grader.classroom.run.pool import NO_MEMORY
@@ -32,6 +31,8 @@ PRELOAD = (
     "grader.submission.find",
     "grader.package.linting",
 )
+
+MAX_MISTAKE = 200  # characters of a mistake that statistics count
 
 
 class Class(NamedTuple):
@@ -153,7 +154,7 @@ def _of(
     for criterion, outcome, *_ in report.results:
         signs[criterion.position] = SIGNS[outcome.status]
         if outcome.status == "failed":
-            misses.append((criterion.position, kind_of_miss(outcome)))
+            misses.append((criterion.position, (outcome.mistake or outcome.message)[:MAX_MISTAKE]))
     score, out_of, pending = (int(each * UNITS) for each in (report.score, report.max_score, report.pending))
     record = zlib.compress(to_record(report, template).encode(), 1)
     return Graded(
