@@ -7,7 +7,6 @@ from pathlib import Path
 from rich.console import Console
 
 from grader.checks.registry import CHECKS, describe
-from grader.grading.arguments import type_words
 from grader.grading.grade import grade
 from grader.grading.rubric import load_rubric
 from grader.report.rubrics import EFFECTS, EVERY_KIND
@@ -71,7 +70,7 @@ def checks() -> str:
             lines += ["", "| argument | what | |", "|---|---|---|"]
         for each in check.parameters.values():
             default = "needed" if each.required else f"`{each.default}` unless told"
-            lines.append(f"| `{each.name}` | {type_words(each.type)} | {default} |")
+            lines.append(f"| `{each.name}` | {each.type.name} | {default} |")
     return "\n".join(lines) + "\n"
 
 

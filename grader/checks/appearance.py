@@ -5,19 +5,17 @@ from itertools import permutations
 from math import cos, radians
 
 from grader.checks.outcome import SLACK, Outcome, failed, judged, measured, passed, pending, place, point, within
+from grader.checks.toml_types import Colour, NonNegative, Size
 from grader.checks.visuals import ShapeName, main_visual, shape_name, visuals
 from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Cylinder, Material, Sphere, Visual
 from grader.robot.transforms import IDENTITY_ROTATION, Vector, rotation_from_rpy
 
-Rgb = tuple[float, float, float]
-Rgba = tuple[float, float, float, float]
-
 _ALIGNED = cos(radians(1.0))
 
 
-def shows_box(robot: Configuration, *, link: str, size: Vector, tolerance: float) -> Outcome:
+def shows_box(robot: Configuration, *, link: str, size: Size, tolerance: NonNegative) -> Outcome:
     """A link shows a box whose edges along the link's x, y and z axes have the given lengths in metres."""
     found = [visual for visual in visuals(robot, link) if isinstance(visual.geometry, Box)]
     if not found:
@@ -34,7 +32,9 @@ def shows_box(robot: Configuration, *, link: str, size: Vector, tolerance: float
     return judged(fine, message, actual=actual, expected=size, tolerance=tolerance, unit="m", at=at)
 
 
-def shows_cylinder(robot: Configuration, *, link: str, radius: float, length: float, tolerance: float) -> Outcome:
+def shows_cylinder(
+    robot: Configuration, *, link: str, radius: NonNegative, length: NonNegative, tolerance: NonNegative
+) -> Outcome:
     """A link shows a cylinder of the given radius and length in metres."""
     found = [visual.geometry for visual in visuals(robot, link) if isinstance(visual.geometry, Cylinder)]
     if not found:
@@ -50,7 +50,7 @@ def shows_cylinder(robot: Configuration, *, link: str, radius: float, length: fl
     return judged(fine, message, actual=actual, expected=expected, tolerance=tolerance, unit="m", at=at)
 
 
-def shows_sphere(robot: Configuration, *, link: str, radius: float, tolerance: float) -> Outcome:
+def shows_sphere(robot: Configuration, *, link: str, radius: NonNegative, tolerance: NonNegative) -> Outcome:
     """A link shows a sphere of the given radius in metres."""
     found = [visual.geometry for visual in visuals(robot, link) if isinstance(visual.geometry, Sphere)]
     if not found:
@@ -62,7 +62,7 @@ def shows_sphere(robot: Configuration, *, link: str, radius: float, tolerance: f
 
 
 def shows_colour(
-    robot: Configuration, *, link: str, colour: Rgb | Rgba, tolerance: float, shape: ShapeName = "any"
+    robot: Configuration, *, link: str, colour: Colour, tolerance: NonNegative, shape: ShapeName = "any"
 ) -> Outcome:
     """A link is shown in a colour: red, green, blue and, where a fourth channel is given, opacity, each in 0..1.
 
@@ -80,7 +80,7 @@ def shows_colour(
     return judged(fine, message, actual=actual, expected=colour, tolerance=tolerance, at=at)
 
 
-def shows_grey(robot: Configuration, *, link: str, at_least: float, tolerance: float) -> Outcome:
+def shows_grey(robot: Configuration, *, link: str, at_least: float, tolerance: NonNegative) -> Outcome:
     """A link is shown in a grey (red = green = blue) of at least the given level in 0..1; opacity does not matter."""
     visual = main_visual(robot, link)
     if visual.material is None or _has_only_texture(visual.material):

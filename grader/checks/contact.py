@@ -13,6 +13,7 @@ from grader.checks.outcome import (
     size,
     within,
 )
+from grader.checks.toml_types import NonNegative
 from grader.checks.visuals import ShapeName, main_visual, origin_place, visual_pose, visuals
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Geometry, Mesh
@@ -26,7 +27,7 @@ _UP: Vector = (0.0, 0.0, 1.0)
 _MAX_PAIRS = 2_000
 
 
-def stands_on(robot: Configuration, *, link: str, on: str, tolerance: float, shape: ShapeName = "any") -> Outcome:
+def stands_on(robot: Configuration, *, link: str, on: str, tolerance: NonNegative, shape: ShapeName = "any") -> Outcome:
     """What a link shows stands on the top of what another shows: no gap, no overlap, within its outline.
 
     Of several visuals of the one below the largest counts, among those of the named shape if there are any.
@@ -51,7 +52,7 @@ def stands_on(robot: Configuration, *, link: str, on: str, tolerance: float, sha
     return judged(fine, message, actual=bottom, expected=top, tolerance=tolerance, unit="m", at=at)
 
 
-def clear_of(robot: Configuration, *, link: str, of: str, tolerance: float) -> Outcome:
+def clear_of(robot: Configuration, *, link: str, of: str, tolerance: NonNegative) -> Outcome:
     """Nothing that a link shows cuts into what another shows, deeper than the tolerance in metres; touching is fine."""
     own = [(visual, visual_pose(robot, link, visual, of)) for visual in visuals(robot, link)]
     others = [(visual.geometry, visual_pose(robot, of, visual, of)) for visual in visuals(robot, of)]

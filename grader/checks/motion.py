@@ -3,6 +3,7 @@
 from math import atan2, degrees, hypot
 
 from grader.checks.outcome import SLACK, Outcome, judged, place, point, quantity, size
+from grader.checks.toml_types import Direction, NonNegative
 from grader.checks.visuals import main_visual, visual_pose, visuals
 from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration
@@ -24,9 +25,9 @@ def rolls_forward(
     *,
     link: str,
     base: str,
-    forward: Vector = (1.0, 0.0, 0.0),
-    up: Vector = (0.0, 0.0, 1.0),
-    tolerance: float,
+    forward: Direction = (1.0, 0.0, 0.0),
+    up: Direction = (0.0, 0.0, 1.0),
+    tolerance: NonNegative,
 ) -> Outcome:
     """Turning a wheel's joint by a small positive angle drives the base forward, if the wheel rolls without slip.
 
@@ -54,7 +55,7 @@ def rolls_forward(
 
 
 def axis_along(
-    robot: Configuration, *, link: str, axis: Vector, relative_to: str, direction: Vector, tolerance: float
+    robot: Configuration, *, link: str, axis: Direction, relative_to: str, direction: Direction, tolerance: NonNegative
 ) -> Outcome:
     """An axis of a link's frame lies along a direction of another link's frame, within `tolerance` degrees."""
     pose = robot.pose(link, relative_to=relative_to)
@@ -69,7 +70,9 @@ def axis_along(
     return judged(fine, message, actual=actual, expected=expected, tolerance=tolerance, unit="deg", at=at)
 
 
-def turns_about_itself(robot: Configuration, *, link: str, base: str, tolerance: float, angle: float) -> Outcome:
+def turns_about_itself(
+    robot: Configuration, *, link: str, base: str, tolerance: NonNegative, angle: NonNegative
+) -> Outcome:
     """A cylinder turns about its own axis: the joint's axis has its direction (`angle`, degrees) and place (metres)."""
     cylinders = [visual for visual in visuals(robot, link) if isinstance(visual.geometry, Cylinder)]
     visual = max(cylinders, key=lambda visual: volume(visual.geometry)) if cylinders else main_visual(robot, link)

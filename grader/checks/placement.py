@@ -16,6 +16,7 @@ from grader.checks.outcome import (
     size,
     within,
 )
+from grader.checks.toml_types import NonNegative
 from grader.checks.visuals import ShapeName, main_visual, origin_place, shape_name, span, visual_pose
 from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration
@@ -31,7 +32,7 @@ _ALONG = 0.9  # the least cosine of the angle between two vectors that count as 
 _UP: Vector = (0.0, 0.0, 1.0)
 
 
-def frame_at(robot: Configuration, *, link: str, relative_to: str, xyz: Vector, tolerance: float) -> Outcome:
+def frame_at(robot: Configuration, *, link: str, relative_to: str, xyz: Vector, tolerance: NonNegative) -> Outcome:
     """The origin of a link's frame is at a point in another link's frame, in metres."""
     pose = robot.pose(link, relative_to=relative_to)
     return measured_point(
@@ -50,7 +51,7 @@ def centre_at(
     link: str,
     relative_to: str,
     xyz: Vector,
-    tolerance: float,
+    tolerance: NonNegative,
     rigid: bool = False,
     shape: ShapeName = "any",
 ) -> Outcome:
@@ -77,7 +78,13 @@ def centre_at(
 
 
 def bottom_at_height(
-    robot: Configuration, *, link: str, relative_to: str, height: float, tolerance: float, shape: ShapeName = "any"
+    robot: Configuration,
+    *,
+    link: str,
+    relative_to: str,
+    height: float,
+    tolerance: NonNegative,
+    shape: ShapeName = "any",
 ) -> Outcome:
     """The lowest point of what a link shows is at a height (z) in another link's frame, in metres.
 
@@ -100,7 +107,7 @@ def bottom_at_height(
 
 
 def bottoms_at_height(
-    robot: Configuration, *, links: list[str], relative_to: str, height: float, tolerance: float
+    robot: Configuration, *, links: list[str], relative_to: str, height: float, tolerance: NonNegative
 ) -> Outcome:
     """Several links all reach down to the same height (z) in another link's frame, in metres."""
     robot.link(relative_to)
@@ -120,7 +127,7 @@ def bottoms_at_height(
 
 
 def under_the_base(
-    robot: Configuration, *, link: str, base: str, wheels: list[str], tolerance: float, angle: float
+    robot: Configuration, *, link: str, base: str, wheels: list[str], tolerance: NonNegative, angle: NonNegative
 ) -> Outcome:
     """A frame has the x, y and orientation of a base's frame and is level with the lowest points of the wheels.
 
