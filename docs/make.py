@@ -7,7 +7,6 @@ from pathlib import Path
 from rich.console import Console
 
 from grader.checks.registry import CHECKS, describe
-from grader.grading.arguments import type_words
 from grader.grading.grade import grade
 from grader.grading.rubric import load_rubric
 from grader.report.rubrics import EFFECTS, EVERY_KIND
@@ -78,7 +77,7 @@ def checks() -> str:
             lines += ["", "| argument | type | default |", "|---|---|---|"]
         for parameter in check.parameters.values():
             default = "required" if parameter.required else f"`{parameter.default}`"
-            lines.append(f"| `{parameter.name}` | {type_words(parameter.type)} | {default} |")
+            lines.append(f"| `{parameter.name}` | {parameter.type.name} | {default} |")
     return "\n".join(lines) + "\n"
 
 

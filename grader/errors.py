@@ -37,15 +37,25 @@ class MissingElement(LookupError):
     """Something that a question needs is not there: a link, a shape, a chain of joints, a defined pose.
 
     `kind` and `name` are alike for questions that fail for the same reason; `known` names what there is instead;
-    `location` is the spot in the file to look at, or None.
+    `location` is the spot in the file to look at, or None. The text is the message and the detail, which is what differs
+    between students who made the same mistake; `mistake` is the message alone.
     """
 
     def __init__(
-        self, kind: str, name: str, known: tuple[str, ...] = (), *, message: str = "", location: object = None
+        self,
+        kind: str,
+        name: str,
+        known: tuple[str, ...] = (),
+        *,
+        message: str = "",
+        detail: str = "",
+        location: object = None,
     ) -> None:
         self.kind = kind
         self.name = name
         self.known = known
         self.location = location
-        listed = ", ".join(repr(each) for each in known[:20]) or "none"
-        super().__init__(message or f"there is no {kind} {name!r}; the file has: {listed}")
+        self.mistake = message or f"there is no {kind} {name!r}"
+        if not message:
+            detail = f"; the file has: {', '.join(map(repr, known[:20])) or 'none'}"
+        super().__init__(self.mistake + detail)

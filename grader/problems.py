@@ -1,6 +1,6 @@
 """Problems of files: their kinds, each with a stable code, and one problem at its location."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -15,7 +15,8 @@ class Kind:
     """One kind of problem: a code that never changes, its title, what ROS 2 does and how to fix the file.
 
     The effect of a URDF's problems decides the verdict: ROS 2 rejects the file, drops content of it, or loads all of it. The
-    effect of a problem of another file is `other`.
+    effect of a problem of another file is `other`. `is_consequence`: another problem of the same file usually
+    causes it. `detaches_links`: ROS 2 loads the file without links that are apart from the tree.
     """
 
     code: str
@@ -23,6 +24,8 @@ class Kind:
     effect: Effect
     title: str
     explanation: str
+    is_consequence: bool = False
+    detaches_links: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,15 +48,24 @@ class Problem:
         return self.kind.severity
 
 
-def _maker(severity: Severity, effect: Effect) -> Callable[[str, str, str], Kind]:
-    return lambda code, title, explanation: Kind(code, severity, effect, title, explanation)
+def rejects(code: str, title: str, explanation: str, *, is_consequence: bool = False) -> Kind:
+    """Return a kind of problem with which ROS 2 loads nothing of the file."""
+    return Kind(code, "error", "rejects", title, explanation, is_consequence=is_consequence)
 
 
-# These make a kind of problem from its code, title and explanation.
-rejects = _maker("error", "rejects")  # ROS 2 loads nothing of the file
-drops = _maker("warning", "drops")  # ROS 2 loads the file without part of its content
-warns = _maker("warning", "loads")  # ROS 2 loads everything, but probably not as intended
-notes = _maker("note", "loads")
+def drops(code: str, title: str, explanation: str, *, detaches_links: bool = False) -> Kind:
+    """Return a kind of problem with which ROS 2 loads the file without part of its content."""
+    return Kind(code, "warning", "drops", title, explanation, detaches_links=detaches_links)
+
+
+def warns(code: str, title: str, explanation: str) -> Kind:
+    """Return a kind of problem that deserves a warning although ROS 2 loads everything."""
+    return Kind(code, "warning", "loads", title, explanation)
+
+
+def notes(code: str, title: str, explanation: str) -> Kind:
+    """Return a kind of problem that is worth a note."""
+    return Kind(code, "note", "loads", title, explanation)
 
 
 def kinds_in(namespace: Iterable[object]) -> tuple[Kind, ...]:

@@ -8,7 +8,7 @@ from decimal import Decimal
 from importlib.metadata import EntryPoint, EntryPoints
 from pathlib import Path
 from types import UnionType
-from typing import Any, Literal, get_args, get_origin
+from typing import Annotated, Any, Literal, get_args, get_origin
 
 import pytest
 
@@ -16,7 +16,6 @@ import grader.checks
 from grader.checks.outcome import Outcome, judged
 from grader.checks.registry import CHECKS, ENTRY_POINTS, Check, check_names, describe, find_check
 from grader.errors import RubricError
-from grader.grading.arguments import convert, type_words
 from grader.grading.rubric import load_rubric
 from grader.report.rubrics import checks_text, explanation
 from grader.robot.kinematics import Configuration
@@ -26,7 +25,7 @@ from tests.checks.hand_in_cases import HAND_IN_CASE, HAND_IN_CASES, PENDING_CASE
 from tests.checks.hand_ins import REFERENCE
 
 NAMES = [function.__name__ for function in CHECKS]
-SHARED = {"__init__", "outcome", "registry", "visuals"}
+SHARED = {"__init__", "outcome", "registry", "toml_types", "visuals"}
 # A value of each annotation that a parameter may have, as TOML gives it.
 SAMPLES: Mapping[Any, Any] = {float: 1, int: 1, str: "a", bool: True}
 
@@ -51,11 +50,11 @@ def test_the_signature_is_a_schema(check: Check) -> None:
     assert [each.kind for each in rest] == [inspect.Parameter.KEYWORD_ONLY] * len(rest)
     assert list(check.parameters) == [each.name for each in rest]
     for parameter in check.parameters.values():
-        assert is_supported(parameter.type), parameter
-        assert type_words(parameter.type)
-        assert convert(sample(parameter.type), parameter.type) is not None
+        assert is_supported(parameter.annotation), parameter
+        assert parameter.type.name
+        assert parameter.type.parse(sample(parameter.annotation)) is not None
         assert parameter.required == (parameter.default is None)
-        assert parameter.required or convert(as_toml(parameter.default), parameter.type) == parameter.default
+        assert parameter.required or parameter.type.parse(as_toml(parameter.default)) == parameter.default
 
 
 @every_check
@@ -79,7 +78,7 @@ def test_a_check_passes_and_fails_somewhere(check: Check) -> None:
     required = {each.name for each in check.parameters.values() if each.required}
     assert required <= set(arguments) <= set(check.parameters)
     for name, value in arguments.items():
-        assert convert(as_toml(value), check.parameters[name].type) == value
+        assert check.parameters[name].type.parse(as_toml(value)) == value
 
 
 @every_check
@@ -89,7 +88,7 @@ def test_a_check_can_be_explained(check: Check) -> None:
         assert check.name in text
         assert check.fact in " ".join(text.split())
         for parameter in check.parameters.values():
-            assert f"{parameter.name}: {type_words(parameter.type)}" in text
+            assert f"{parameter.name}: {parameter.type.name}" in text
 
 
 @every_check
@@ -213,6 +212,8 @@ def checks_in(path: Path) -> list[str]:
 def is_supported(annotation: Any) -> bool:
     """Whether a rubric's table can hold a value of this annotation."""
     origin, inner = get_origin(annotation), get_args(annotation)
+    if origin is Annotated:
+        return is_supported(inner[0])
     if origin is UnionType:
         return all(map(is_supported, inner))
     if origin is Literal:
@@ -229,7 +230,7 @@ def is_supported(annotation: Any) -> bool:
 def sample(annotation: Any) -> Any:
     """A value for a parameter, as TOML gives it."""
     origin, inner = get_origin(annotation), get_args(annotation)
-    if origin is UnionType:
+    if origin in (Annotated, UnionType):
         return sample(inner[0])
     if origin is Literal:
         return inner[0]

@@ -1,13 +1,15 @@
-"""Checks of a launch file: that it is there, what it starts, and whether the files that it names are where a build puts them."""
+"""Checks of a launch file: its name, the nodes that it starts, and whether a build installs the files that it names."""
 
 import posixpath
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
-from grader.checks.outcome import Outcome, judged_as, passed
+from grader.checks.outcome import Outcome, Status, failed, judged, passed, pending
 from grader.errors import MissingElement, NotDecided
 from grader.names import closest
 from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER, is_launch_named, is_of_one_machine
 from grader.package.package import Package
+from grader.source import Location
+from grader.text import enumerated
 
 if TYPE_CHECKING:
     from grader.package.launch.model import Launch, Reference, StartedNode
@@ -20,15 +22,13 @@ def launch_found(package: Package, *, name: str) -> Outcome:
     """The package has a launch file of this name; it may be written in Python, XML or YAML."""
     path = package.launch_file(name)
     if path is None:
-        raise _no_file(package, "launch")
+        raise _no_launch_file(package)
     if is_launch_named(path, name):
         return passed(f"the launch file is {path}")
-    hint = (
-        ""
-        if posixpath.splitext(path)[1] in (".py", ".xml", ".yaml", ".yml")
-        else ", which ros2 launch cannot start without an ending such as .launch.py"
-    )
-    return judged_as("failed", f"there is no launch file {name!r}; the package has {path}{hint}")
+    detail = f"; the package has {path}"
+    if not path.endswith(_ENDINGS["include"]):
+        detail += ", which ros2 launch cannot start without an ending such as .launch.py"
+    return failed(f"there is no launch file {name!r}", detail=detail)
 
 
 def launch_starts(package: Package, *, name: str, nodes: list[str]) -> Outcome:
@@ -40,71 +40,75 @@ def launch_starts(package: Package, *, name: str, nodes: list[str]) -> Outcome:
     launch = _launch(package, name)
     if launch.faults and not launch.nodes:
         raise _stopped(package, name, launch)
-    started = {_named(node) for node in launch.nodes if node.when}
-    running = sorted(started)
-    perhaps = {_named(node) for node in launch.nodes if node.when is None}
-    choices = [wanted.split(" or ") for wanted in nodes]
-    missing = [" or ".join(choice) for choice in choices if started.isdisjoint(choice)]
     if launch.faults:
-        return judged_as("failed", _faults(launch), at=launch.faults[0].location)
-    open_questions = [each for each in missing if not perhaps.isdisjoint(each.split(" or "))]
-    if missing and (len(open_questions) == len(missing) or launch.unknown):
+        return failed(_faults(launch), launch.faults[0].location)
+    started = {_name_of(node) for node in launch.nodes if node.when}
+    uncertain = {_name_of(node) for node in launch.nodes if node.when is None}
+    missing = [choice for choice in (node.split(" or ") for node in nodes) if started.isdisjoint(choice)]
+    listed = ", ".join(" or ".join(choice) for choice in missing)
+    if missing and (launch.unknown or not any(uncertain.isdisjoint(choice) for choice in missing)):
         reason = f": {launch.unknown[0].message}" if launch.unknown else ""
-        return Outcome("pending", f"whether {_listed(missing)} is started is told only by a run{reason}")
-    if not missing:
-        return Outcome("passed", f"it starts {_listed(running)}", tuple(running), tuple(nodes))
-    message = f"it does not start {_listed(missing)}; it starts {_listed(running) or 'nothing'}"
-    forgotten = next((node for node in launch.forgotten if _named(node) in _words(missing)), None)
-    off = next((node for node in launch.nodes if node.when is False and _named(node) in _words(missing)), None)
-    wanted = {each for choice in choices for each in choice} - started
-    near = next(
-        (node for node in launch.nodes if node.when and not wanted.isdisjoint((node.package, node.executable))), None
-    )
-    at = near.location if near is not None else None
-    if forgotten is not None:
-        message += f". The node {forgotten.executable} is made, but not part of the LaunchDescription"
-        at = forgotten.location
-    elif off is not None:
-        message += f". A condition keeps {off.executable} from being started, unless an argument is given"
-        at = off.location
-    return Outcome("failed", message, tuple(running), tuple(nodes), location=at)
+        return pending(f"cannot determine statically whether {listed} is started{reason}; needs manual grading")
+    running = tuple(sorted(started))
+    message = f"the launch file starts {', '.join(running) or 'nothing'}"
+    at = None
+    if missing:
+        message = f"the launch file does not start {listed}; it starts {', '.join(running) or 'nothing'}"
+        reason, at = _why_missing(launch, {node for choice in missing for node in choice})
+        message += reason
+    return judged(not missing, message, actual=running, expected=tuple(nodes), at=at)
+
+
+def _why_missing(launch: "Launch", missing: set[str]) -> "tuple[str, Location | None]":
+    """Return why a launch file does not start nodes that should be started, in a sentence, and where to look."""
+    for node in launch.forgotten:
+        if _name_of(node) in missing:
+            return (
+                f". It creates the node {node.executable}, but the LaunchDescription does not contain it",
+                node.location,
+            )
+    for node in launch.nodes:
+        if node.when is False and _name_of(node) in missing:
+            return f". A condition keeps {node.executable} from starting, unless an argument is given", node.location
+    similar = (node for node in launch.nodes if node.when and {node.package, node.executable} & missing)
+    return "", next((node.location for node in similar), None)
 
 
 def launch_finds_files(package: Package, *, name: str) -> Outcome:
     """The URDF and RViz files that the launch file names are where a build of the package puts them."""
     launch = _launch(package, name)
-    references = launch.named("urdf", "rviz", "include")
-    verdicts = [(_verdict(package, each), each) for each in references]
-    wrong = [(text, each) for (status, text), each in verdicts if status == "failed"]
+    verdicts = [(_verdict(package, file), file) for file in launch.named("urdf", "rviz", "include")]
+    wrong = [(text, file) for (status, text), file in verdicts if status == "failed"]
     if wrong:
         message = "; ".join(dict.fromkeys(text for text, _ in wrong))
-        if any(each.path is not None and is_of_one_machine(each.path) for _, each in wrong):
-            message += f": get_package_share_directory({package.name!r}) tells where it is installed"
-        return judged_as("failed", message, at=wrong[0][1].location)
-    for (status, text), each in verdicts:
+        if any(file.path is not None and is_of_one_machine(file.path) for _, file in wrong):
+            message += f"; get_package_share_directory({package.name!r}) returns the folder that it is installed in"
+        return failed(message, wrong[0][1].location)
+    for (status, text), file in verdicts:
         if status == "missing":
-            raise _missing(package, each, text)
-    if not any(each.purpose != "include" for each in references):
+            raise _missing(package, file, text)
+    if all(file.purpose == "include" for _, file in verdicts):
         if launch.faults:
             raise _stopped(package, name, launch)
         if launch.unknown:
-            return Outcome("pending", f"which files it names is told only by a run: {launch.unknown[0].message}")
+            reason = launch.unknown[0].message
+            return pending(f"cannot determine statically which files it names: {reason}; needs manual grading")
         raise MissingElement("named file", "", message="the launch file names neither a URDF nor an RViz file")
-    pending = [text for (status, text), _ in verdicts if status == "pending"]
-    if pending:
-        return Outcome("pending", f"{pending[0]}: a person has to look")
-    *most, last = dict.fromkeys(text for (_, text), _ in verdicts if text)
-    return passed(f"the build puts {' and '.join(filter(None, [_listed(most), last]))} where it is looked for")
+    for (status, text), _ in verdicts:
+        if status == "pending":
+            return pending(f"{text}; needs manual grading")
+    found = dict.fromkeys(text for (_, text), _ in verdicts if text)
+    return passed(f"a build installs {enumerated(found)}, where the launch file looks for them")
 
 
-def _no_file(package: Package, kind: str) -> MissingElement:
-    return MissingElement(f"{_WORDS[kind]} in the package", "", message=package.without(kind))
+def _no_launch_file(package: Package) -> MissingElement:
+    return MissingElement("launch file in the package", "", message=package.without("launch"))
 
 
 def _launch(package: Package, name: str) -> "Launch":
     path = package.launch_file(name)
     if path is None:
-        raise _no_file(package, "launch")
+        raise _no_launch_file(package)
     launch = package.launch(path)
     if launch.unread:
         raise NotDecided(launch.unread)
@@ -114,7 +118,7 @@ def _launch(package: Package, name: str) -> "Launch":
 
 
 def _stopped(package: Package, name: str, launch: "Launch") -> MissingElement:
-    """A fault for which nothing at all is known of a launch file."""
+    """Return the fault of a launch file that starts nothing because of it."""
     path = package.launch_file(name) or name
     return MissingElement("launch file", path, message=_faults(launch), location=launch.faults[0].location)
 
@@ -124,12 +128,12 @@ def _faults(launch: "Launch") -> str:
     return f"{messages[0]} (and {len(messages) - 1} more)" if len(messages) > 1 else messages[0]
 
 
-def _named(node: "StartedNode") -> str:
+def _name_of(node: "StartedNode") -> str:
     return node.executable if node.package == node.executable else f"{node.package}/{node.executable}"
 
 
 def _missing(package: Package, named: "Reference", text: str) -> MissingElement:
-    """What a named file is without, under the name that the checks of the package miss it by."""
+    """Return what the package is missing for a named file, by the kinds and names that the checks of packages use."""
     setup = package.setup
     what = _WORDS[named.purpose]
     if setup is None or setup.fault is not None:
@@ -141,8 +145,8 @@ def _missing(package: Package, named: "Reference", text: str) -> MissingElement:
     return MissingElement(f"installed {named.purpose}", package.folder, message=text, location=named.location)
 
 
-def _verdict(package: Package, named: "Reference") -> tuple[str, str]:
-    """What becomes of a file that a launch file names: passed, failed, pending or, if it is never installed, missing."""
+def _verdict(package: Package, named: "Reference") -> "tuple[Status | Literal['missing'], str]":
+    """Return whether a launch file finds a file that it names, and why not; "missing": a build does not install it."""
     what = _WORDS[named.purpose]
     if named.path is None or named.reason:
         return ("failed" if named.sure else "pending", named.reason)
@@ -151,57 +155,57 @@ def _verdict(package: Package, named: "Reference") -> tuple[str, str]:
         owner, _, rest = path.removeprefix(f"{SHARE}/").partition("/")
         return _below_share(package, owner, rest, named)
     if is_of_one_machine(path):
-        shown = path.replace(HOME, "~")
-        return "failed", f"it looks for the {what} at {shown}, which exists on one machine only"
+        return "failed", f"it looks for the {what} at {path.replace(HOME, '~')}, which exists on one machine only"
     if path.startswith(WORKING_FOLDER) or not path.startswith("/"):
         shown = path.removeprefix(WORKING_FOLDER + "/")
         if shown.startswith("~"):
-            return "failed", f"it looks for the {what} at {shown}, but nothing puts the home folder in place of ~"
-        return "failed", f"it looks for the {what} at {shown}, in whatever folder ros2 launch is started from"
+            return "failed", f"it looks for the {what} at {shown}, but nothing replaces ~ by the home folder"
+        return "failed", f"it looks for the {what} at {shown}, in the folder that ros2 launch is started from"
     if not path.startswith(PREFIX) and posixpath.basename(path) in map(posixpath.basename, package.tree.files):
-        return "failed", f"it looks for the {what} at {path}: a path that begins with / forgets the folders before it"
+        return (
+            "failed",
+            f"it looks for the {what} at {path}: joining a path that begins with / drops the folders before it",
+        )
     return "pending", f"the {what} {path.removeprefix(PREFIX)} is not part of the package"
 
 
 def _is_glued(package: Package, owner: str, rest: str) -> bool:
-    """Whether a path goes on right behind the package's name, as in get_package_share_directory(...) + 'my_robot.urdf'."""
+    """Return whether a path lacks a slash after the package's name: get_package_share_directory(...) + 'my_robot.urdf'."""
     tail = posixpath.basename(rest or owner.removeprefix(package.name))
     return owner.startswith(package.name) and tail in map(posixpath.basename, package.tree.files)
 
 
-def _below_share(package: Package, owner: str, rest: str, named: "Reference") -> tuple[str, str]:
+def _below_share(
+    package: Package, owner: str, rest: str, named: "Reference"
+) -> "tuple[Status | Literal['missing'], str]":
     what = _WORDS[named.purpose]
     other = package.find(owner)
-    if other is None and _is_glued(package, owner, rest):
-        return (
-            "failed",
-            f"it looks for the {what} at {posixpath.join('share', owner, rest).rstrip('/')}: a slash is missing behind {package.name!r}",
-        )
     if other is None:
+        if _is_glued(package, owner, rest):
+            path = posixpath.join("share", owner, rest).rstrip("/")
+            return "failed", f"it looks for the {what} at {path}: a slash is missing after {package.name!r}"
         if closest(owner, [package.name]):
             return "failed", f"it looks in a package {owner!r}, but this one is named {package.name!r}"
-        return (
-            ("passed", "")
-            if what == "launch file"
-            else ("pending", f"the {what} is in {owner!r}, which was not handed in")
-        )
+        if named.purpose == "include":
+            return "passed", ""
+        return "pending", f"the {what} is in {owner!r}, which is not part of the submission"
     setup = other.setup
     if other.is_cmake or (setup is not None and setup.fault is not None and not setup.fault.sure):
-        return "pending", f"whether a build installs the {what} is not followed"
+        return "pending", f"cannot determine statically whether a build installs the {what}"
     if setup is None or setup.fault is not None:
-        return "missing", f"without a setup.py that Python can read, no {what} is installed"
+        return "missing", f"a build installs no {what}: there is no setup.py that Python can read"
     installed = setup.installed()
     target = f"share/{owner}/{rest}"
     if target in installed:
         return "passed", target
     if setup.unknown:
-        return "pending", f"whether the build installs {target} cannot be told"
+        return "pending", f"cannot determine statically whether a build installs {target}"
     name = posixpath.basename(rest)
-    put = next((each for each in installed if posixpath.basename(each) == name), None)
+    put = next((path for path in installed if posixpath.basename(path) == name), None)
     if put is not None:
-        return "failed", f"it looks for the {what} at {target}, but the build puts it at {put}"
+        return "failed", f"it looks for the {what} at {target}, but a build installs it as {put}"
     if any(posixpath.basename(path) == name for path in other.tree.files):
-        return "missing", f"it looks for the {what} at {target}, but the build does not install {name}"
+        return "missing", f"it looks for the {what} at {target}, but a build does not install {name}"
     endings, own = _ENDINGS[named.purpose], posixpath.basename(named.location.path)
     alike = sorted({posixpath.basename(path) for path in other.tree.files if path.lower().endswith(endings)} - {own})
     message = f"it looks for the {what} at {target}, but the package has no file {name!r}"
@@ -209,11 +213,3 @@ def _below_share(package: Package, owner: str, rest: str, named: "Reference") ->
         return "missing", message
     similar = closest(name, alike) or (alike[0] if len(alike) == 1 and named.purpose != "include" else None)
     return "failed", f"{message}; there is {similar!r}" if similar else message
-
-
-def _words(choices: list[str]) -> set[str]:
-    return {each for choice in choices for each in choice.split(" or ")}
-
-
-def _listed(names: list[str]) -> str:
-    return ", ".join(names)

@@ -1,9 +1,11 @@
-"""Checks of what a person has to judge: the answers and pictures are found and shown, the mark is given by a person."""
+"""Checks that need manual grading: the grader finds answers and pictures, and a person marks them."""
 
-from grader.checks.outcome import Outcome
+from grader.checks.outcome import Outcome, pending
 from grader.submission.submission import Submission
+from grader.text import enumerated
 
 _DOCUMENTS = ("*.md", "*.txt", "*.docx", "*.pdf", "*.rst", "*.doc", "*.odt", "*.rtf", "*.pages", "*.ipynb")
+_MAX_LISTED = 6  # files in one message
 
 
 def answered(
@@ -11,50 +13,41 @@ def answered(
 ) -> Outcome:
     """A question is answered in writing, as a person judges.
 
-    `answer` is the model answer: the rubric keeps it for `grader review` and `--answers`, or in a file of its own. `places` says how the passage is marked, such as "task 1 step
-    15" or "question 15"; `files` are patterns for the names of documents. Always pending.
+    Always pending. `places` are labels of the passage with the answer, such as "task 1 step 15" or "question 15"; `files` are
+    patterns for the names of documents. `answer` is the model answer, which `grader review` and `--answers` show: the rubric
+    keeps it here or in a file of its own.
     """
-    del answer  # no outcome holds it: students read outcomes
+    del answer  # students read outcomes, so none holds it
     from grader.documents.answers import find_answer  # a URDF on its own has no answers
 
     if submission.no_documents:
-        message = f"{question} The documents could not be read: {submission.no_documents}; needs manual grading"
-        return Outcome("pending", message)
+        return pending(f"{question} The documents cannot be read: {submission.no_documents}; needs manual grading")
     found = find_answer(submission.documents, files, places)
-    if found.passage is not None:
-        place = found.passage.location
-        message = f"{question} The answer in {place.path}, from line {place.line}, is for a person to mark"
-        text: str | None = found.passage.text
-    else:
-        looked = f"; looked through {', '.join(found.read[:8])}" if found.read else ""
-        message = f"{question} No answer was found under {' or '.join(map(repr, places[:3]))}{looked}; a person decides"
-        place, text = None, None
-    if found.unread:
-        message += f" (not read: {'; '.join(found.unread[:4])})"
-    return Outcome("pending", message, text, location=place)
+    unread = f" (not read: {'; '.join(found.unread[:4])})" if found.unread else ""
+    if found.passage is None:
+        searched = f" in {enumerated(found.read, _MAX_LISTED)}" if found.read else ""
+        labels = enumerated([repr(label) for label in places[:3]], word="or")
+        return pending(f"{question} No answer was found under {labels}{searched}; needs manual grading{unread}")
+    at = found.passage.location
+    message = f"{question} The answer in {at.path}, from line {at.line}, needs manual grading{unread}"
+    return Outcome("pending", message, found.passage.text, location=at)
 
 
 def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
     """A picture or PDF shows what was asked for, as a person judges.
 
-    `names` says how the file is named, however it is spelt: "task 3 step 3", or plain words such as "webcam". Always pending.
+    Always pending. `names` are labels in the file's name, in any spelling: "task 3 step 3", or words such as "webcam".
     """
     from grader.documents.evidence import find_evidence
 
     found = find_evidence(submission.proofs, names)
     if found:
-        listed = ", ".join(exhibit.words for exhibit in found[:6])
-        return Outcome("pending", f"a person looks at {listed}", tuple(exhibit.path for exhibit in found))
-    others = [proof.file.path for proof in submission.proofs]
-    there = (
-        f"; there {'are' if len(others) > 1 else 'is'} {', '.join(others[:6])}"
-        if others
-        else "; there are no pictures at all"
-    )
-    return Outcome(
-        "pending", f"no picture or PDF named as {' or '.join(map(repr, names[:3]))} was found{there}; a person decides"
-    )
+        listed = enumerated([exhibit.words for exhibit in found], _MAX_LISTED)
+        return Outcome("pending", f"needs manual grading: {listed}", tuple(exhibit.path for exhibit in found))
+    paths = [proof.file.path for proof in submission.proofs]
+    others = enumerated(paths, _MAX_LISTED) or "no pictures"
+    labels = enumerated([repr(name) for name in names[:3]], word="or")
+    return pending(f"no picture or PDF is named {labels}; the submission has {others}; needs manual grading")
 
 
-# Always pending, whatever was handed in.
 MANUAL_CHECKS = (answered, evidence_shown)

@@ -1,61 +1,58 @@
-"""Checks of a package and of what its setup.py would install. Nothing is built and nothing is run."""
+"""Checks of a package and of the files that its setup.py installs. Nothing is built and nothing is run."""
 
 import posixpath
 from collections.abc import Sequence
 from fnmatch import fnmatch
 from typing import TYPE_CHECKING, Literal
 
-from grader.checks.outcome import Outcome, judged_as, listing, passed
+from grader.checks.outcome import Outcome, failed, judged, passed, pending
 from grader.errors import MissingElement, NotDecided
 from grader.names import closest
 from grader.package.package import MANIFEST, Package
 from grader.submission.submission import Submission
+from grader.text import enumerated, first_lines
 
 if TYPE_CHECKING:
-    from grader.package.data_files import InstalledFile
     from grader.package.file_functions import EmptyGlob
     from grader.package.manifest import Manifest
     from grader.package.setup_py import Setup
 
 Kind = Literal["urdf", "launch", "rviz"]
 
-_WORDS = {"urdf": "URDF", "launch": "launch file", "rviz": "RViz file"}
-_ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",)}
+_WORDS: dict[Kind, str] = {"urdf": "URDF", "launch": "launch file", "rviz": "RViz file"}
+_ENDINGS: dict[Kind, tuple[str, ...]] = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",)}
 
 
 def package_found(submission: Submission, *, name: str) -> Outcome:
-    """A ROS 2 package of this name was handed in."""
+    """The submission has a ROS 2 package of this name."""
     package = submission.needed_package()
     manifest = _readable_manifest(package)
     if manifest.name is None:
         problem = manifest.problems[0]
-        return judged_as("failed", problem.message, at=problem.location)
-    message = f"the package is named {manifest.name!r}"
-    if manifest.name == name:
-        return Outcome("passed", message, manifest.name, name)
-    return Outcome("failed", f"{message}, expected {name!r}", manifest.name, name, location=manifest.name_location)
+        return failed(problem.message, problem.location)
+    fine = manifest.name == name
+    message = f"the package is named {manifest.name!r}{'' if fine else f'; it should be named {name!r}'}"
+    return judged(fine, message, actual=manifest.name, expected=name, at=manifest.name_location)
 
 
 def package_type(package: Package, *, build_type: str) -> Outcome:
     """The package is of a build type, such as ament_python."""
     manifest = _readable_manifest(package)
     actual = manifest.build_type
-    if actual == build_type:
-        return Outcome("passed", f"the build type is {actual!r}", actual, build_type)
-    message = f"the build type is {actual!r}"
-    if actual == "catkin":
-        message += " of ROS 1, for which a package.xml without build_type stands, too"
-    elif not actual:
-        message = "<build_type> of package.xml is empty"
-    message += f"; expected {build_type!r}"
-    return Outcome("failed", message, actual, build_type, location=manifest.type_location)
+    fine = actual == build_type
+    message = f"the build type is {actual!r}" if actual else "<build_type> in package.xml is empty"
+    if not fine:
+        # REP 149: a package.xml without build_type means catkin.
+        message += " (ROS 1; also the default without <build_type>)" if actual == "catkin" else ""
+        message += f"; it should be {build_type!r}"
+    return judged(fine, message, actual=actual, expected=build_type, at=manifest.type_location)
 
 
 def build_installs(package: Package, *, kind: Kind, name: str) -> Outcome:
     """A build of the package installs its URDF, launch file or RViz file, below share/<package>.
 
-    `kind` says which; `name` is the file that is meant if there are several. What setup.py lists is told by following it; what
-    cannot be told is left to a person.
+    `name` is the file that is meant if there are several of the kind. setup.py is evaluated statically; what cannot be
+    determined needs manual grading.
     """
     files = files_of(package, kind, name)
     if not files:
@@ -67,41 +64,45 @@ def installs_files(package: Package, *, files: list[str]) -> Outcome:
     """A build of the package installs at least one file that matches these patterns, below share/<package>."""
     found = [path for path in package.tree.files if any(fnmatch(path, pattern) for pattern in files)]
     if not found:
-        raise MissingElement("file", files[0], message=f"the package holds no file that matches {listing(files)}")
+        raise MissingElement(
+            "file",
+            files[0],
+            message=f"the package has no file that matches {enumerated([repr(pattern) for pattern in files], word='or')}",
+        )
     return _installed(package, found, None)
 
 
 def setup_imports(package: Package) -> Outcome:
     """Every name that setup.py uses is defined, and what it imports is there."""
-    setup = readable_setup(package)
+    setup = _readable_setup(package)
     if isinstance(setup, Outcome):
         return setup
     if not setup.faults:
         return passed("every name that setup.py uses is defined")
     messages = list(dict.fromkeys(fault.message for fault in setup.faults))
-    more = f" (and {len(messages) - 3} more)" if len(messages) > 3 else ""
-    return judged_as("failed", f"{'; '.join(messages[:3])}{more}", at=setup.location(setup.faults[0].at))
+    return failed("; ".join(first_lines(messages, 3)), setup.location(setup.faults[0].at))
 
 
 def files_of(package: Package, kind: Kind, name: str) -> Sequence[str]:
-    """The files of a package that are meant: that of this name, else all of the kind."""
+    """Return the file of a package that has this name, else all of the kind."""
     if kind == "launch":
         chosen = package.launch_file(name)
         return [chosen] if chosen is not None else []
     endings = _ENDINGS[kind]
-    every = [path for path in package.tree.files if path.lower().endswith(endings)]
-    exact = [path for path in every if posixpath.basename(path) == name]
-    return exact or every
+    paths = [path for path in package.tree.files if path.lower().endswith(endings)]
+    return [path for path in paths if posixpath.basename(path) == name] or paths
 
 
-def readable_setup(package: Package) -> "Setup | Outcome":
-    """The package's setup.py, or the outcome where a person has to look.
+def _readable_setup(package: Package) -> "Setup | Outcome":
+    """Return the package's setup.py, or the outcome that says why it needs manual grading.
 
     Raises MissingElement where there is none, or where Python cannot read it.
     """
     setup = package.setup
     if package.is_cmake:
-        return Outcome("pending", "what CMakeLists.txt installs is not followed: a person has to look")
+        return pending(
+            "the grader does not evaluate CMakeLists.txt, which says what is installed; needs manual grading"
+        )
     if setup is None:
         message = "the package has no setup.py, so a build of an ament_python package installs nothing"
         raise MissingElement("setup.py", package.folder, message=message)
@@ -109,7 +110,7 @@ def readable_setup(package: Package) -> "Setup | Outcome":
         message = f"Python cannot read setup.py: {setup.fault.message}"
         raise MissingElement("setup.py", package.folder, message=message, location=setup.fault.location)
     if setup.fault is not None:
-        return Outcome("pending", f"setup.py could not be read ({setup.fault.message}): a person has to look")
+        return pending(f"setup.py cannot be read ({setup.fault.message}); needs manual grading")
     return setup
 
 
@@ -117,78 +118,61 @@ def _readable_manifest(package: Package) -> "Manifest":
     manifest = package.manifest
     if manifest is not None and manifest.unread:
         raise NotDecided(manifest.unread)
-    if manifest is None or not _is_readable(manifest):
-        raise _no_manifest(package)
+    from grader.package.catalogue import BAD_MANIFEST
+
+    if manifest is None:
+        where = f"the folder {package.folder!r}" if package.folder else "the submission"
+        message = f"{where} has a setup.py, but no package.xml, so it is not a ROS 2 package"
+        raise MissingElement(MANIFEST, package.folder, message=message)
+    if any(problem.kind is BAD_MANIFEST for problem in manifest.problems):
+        problem = manifest.problems[0]
+        raise MissingElement(MANIFEST, package.folder, message=problem.message, location=problem.location)
     return manifest
 
 
-def _is_readable(manifest: "Manifest") -> bool:
-    from grader.package.catalogue import BAD_MANIFEST
-
-    return all(problem.kind is not BAD_MANIFEST for problem in manifest.problems)
-
-
-def _no_manifest(package: Package) -> MissingElement:
-    where = f"the folder {package.folder!r}" if package.folder else "what was handed in"
-    problem = package.manifest.problems[0] if package.manifest is not None else None
-    message = (
-        problem.message
-        if problem is not None
-        else f"{where} has a setup.py, but no package.xml: to ROS 2 it is no package"
-    )
-    return MissingElement(MANIFEST, package.folder, message=message, location=problem.location if problem else None)
-
-
 def _installed(package: Package, files: Sequence[str], kind: Kind | None) -> Outcome:
-    setup = readable_setup(package)
+    setup = _readable_setup(package)
     if isinstance(setup, Outcome):
         return setup
     for stop in setup.stops:
         if stop.path == MANIFEST and package.manifest is None:
-            continue  # that it is missing is told, and counted, as what it is
-        owner = _owner(stop.path, package) or "urdf"  # one mistake costs one criterion: of what is neither, the first
+            continue  # other criteria report the missing package.xml
+        owner = _owner(stop.path, package) or "urdf"  # one mistake costs one criterion: of an unknown kind, the first
         if owner == kind or posixpath.dirname(stop.path) in {posixpath.dirname(path) for path in files}:
-            return judged_as("failed", f"the build stops here: {stop.message}", at=setup.location(stop.at))
+            return failed(f"the build stops here: {stop.message}", setup.location(stop.at), detail=stop.hint)
     copies = [copy for copy in setup.copies if copy.source in files]
     shares = tuple(f"share/{name}/" for name in package.names)
     inside = [copy for copy in copies if copy.target.startswith(shares)]
     twice = sorted({copy.target for copy in inside if posixpath.basename(copy.target) == posixpath.basename(files[0])})
     if kind == "launch" and len(twice) > 1:
-        message = f"a build installs {files[0]} as {' and as '.join(twice)}: ros2 launch finds both and starts neither"
-        return judged_as("failed", message, at=setup.location(inside[-1].at))
+        message = f"a build installs {files[0]} as {' and as '.join(twice)}; ros2 launch needs exactly one"
+        return failed(message, setup.location(inside[-1].at))
     if inside:
         return passed(f"a build installs {inside[0].source} as {inside[0].target}")
     if setup.unknown:
         unknown = setup.unknown[0]
-        line = f" (line {unknown.at.line} of setup.py)"
-        return Outcome("pending", f"whether {files[0]} is installed is told only by a build: {unknown.reason}{line}")
+        reason = f"{unknown.reason} (line {unknown.at.line} of setup.py)"
+        return pending(
+            f"cannot determine statically whether a build installs {files[0]}: {reason}; needs manual grading"
+        )
     if copies:
-        return _elsewhere(copies[0], shares[0], setup)
-    raise _not_installed(package, setup, files, kind)
-
-
-def _elsewhere(copy: "InstalledFile", share: str, setup: "Setup") -> Outcome:
-    message = f"a build installs {copy.source} as {copy.target}, but ROS 2 looks for a package's files below {share}"
-    return judged_as("failed", message, at=setup.location(copy.at))
-
-
-def _not_installed(package: Package, setup: "Setup", files: Sequence[str], kind: Kind | None) -> MissingElement:
-    message = f"a build does not install {files[0]}"
-    empty = _meant(setup.empty, files, kind)
-    at = None
+        message = f"a build installs {copies[0].source} as {copies[0].target}; ROS 2 looks for the package's files below {shares[0]}"
+        return failed(message, setup.location(copies[0].at))
     if not setup.is_called:
         message = "a build installs nothing: setup.py does not call setup()"
-        return MissingElement("call of setup", package.folder, message=message)
-    if empty is not None:
-        message += f": the pattern {empty.pattern!r} in setup.py finds nothing{package.instead(empty.pattern)}"
-        at = setup.location(empty.at)
-    else:
+        raise MissingElement("call of setup", package.folder, message=message)
+    what, message = f"installed {kind or files[0]}", f"a build does not install {files[0]}"
+    empty = _meant(setup.empty, files, kind)
+    if empty is None:
         message += ": no entry of data_files in setup.py names it"
-    return MissingElement(f"installed {kind or files[0]}", package.folder, message=message, location=at)
+        raise MissingElement(what, package.folder, message=message)
+    message += f": the pattern {empty.pattern!r} in setup.py finds nothing"
+    detail, at = package.instead(empty.pattern), setup.location(empty.at)
+    raise MissingElement(what, package.folder, message=message, detail=detail, location=at)
 
 
 def _meant(empty: "Sequence[EmptyGlob]", files: Sequence[str], kind: Kind | None) -> "EmptyGlob | None":
-    """The pattern without a match that was meant to find one of these files: by its folder, its ending or its kind."""
+    """Return the pattern without a match that is meant for one of these files, by its folder, ending or kind."""
     folders = {posixpath.dirname(path) for path in files}
     endings = tuple({posixpath.splitext(path)[1] for path in files} - {""})
     for glob in empty:
@@ -199,15 +183,14 @@ def _meant(empty: "Sequence[EmptyGlob]", files: Sequence[str], kind: Kind | None
 
 
 def _owner(path: str, package: Package) -> Kind | None:
-    """The kind of file that an entry is about: by its ending, or by what else stands in its folder."""
+    """Return the kind of file that an entry is about, by its ending or by the other files of its folder."""
     if ".launch." in path or path.endswith("_launch.py"):
         return "launch"
     for kind, endings in _ENDINGS.items():
         if path.lower().endswith(endings):
-            return "rviz" if kind == "rviz" else "urdf"
+            return kind
     folder = posixpath.dirname(path)
-    beside = [each for each in package.tree.files if posixpath.dirname(each) == folder] if folder else []
-    kinds = {
-        _owner(each, package) for each in beside if each.endswith((*_ENDINGS["urdf"], ".rviz")) or ".launch." in each
-    }
+    beside = [path for path in package.tree.files if posixpath.dirname(path) == folder] if folder else []
+    endings = (*_ENDINGS["urdf"], *_ENDINGS["rviz"])
+    kinds = {_owner(path, package) for path in beside if path.endswith(endings) or ".launch." in path}
     return next(iter(kinds)) if len(kinds) == 1 else None

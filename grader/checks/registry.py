@@ -1,4 +1,4 @@
-"""The checks that a rubric can name: an explicit list. Other packages add theirs by entry points."""
+"""The explicit list of checks that a rubric can name. Other packages add theirs by entry points."""
 
 import inspect
 from collections.abc import Callable, Mapping
@@ -6,21 +6,15 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal, get_args, get_type_hints
 
 from grader.checks.appearance import shows_box, shows_colour, shows_cylinder, shows_grey, shows_nothing, shows_sphere
+from grader.checks.contact import clear_of, stands_on
 from grader.checks.launch import launch_finds_files, launch_found, launch_starts
 from grader.checks.manual import answered, evidence_shown
 from grader.checks.motion import axis_along, rolls_forward, turns_about_itself
 from grader.checks.outcome import Outcome
 from grader.checks.package import build_installs, installs_files, package_found, package_type, setup_imports
-from grader.checks.placement import (
-    bottom_at_height,
-    bottoms_at_height,
-    centre_at,
-    clear_of,
-    frame_at,
-    stands_on,
-    under_the_base,
-)
+from grader.checks.placement import bottom_at_height, bottoms_at_height, centre_at, frame_at, under_the_base
 from grader.checks.rviz import rviz_display_on, rviz_fixed_frame, rviz_found, rviz_shows_robot
+from grader.checks.toml_types import TomlType, toml_type
 from grader.checks.tree import held_by, joints_named, root_of_tree, urdf_loads
 from grader.errors import InputError
 
@@ -68,20 +62,25 @@ Subject = Literal["urdf", "robot", "package", "submission"]
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """One argument that a rubric gives a check: its annotation, and its default if it has one."""
+    """One argument of a check: its annotation, and its default if it has one."""
 
     name: str
-    type: Any
+    annotation: Any
     required: bool
     default: object = None
+
+    @property
+    def type(self) -> TomlType:
+        """The type of the TOML value that a rubric gives."""
+        return toml_type(self.annotation)
 
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """A check as a rubric sees it.
+    """A check, as a rubric names it.
 
-    `subject` is what it is asked of: the URDF as it was read, the robot in it, the package, or all that was handed in.
-    `distribution` is the installed package that it comes from; empty for one of the grader's own.
+    `subject` is what it examines: the URDF as it was read, its robot, the package, or the whole submission. `distribution` is
+    the installed package that the check comes from; empty for the grader's own.
     """
 
     name: str
@@ -97,38 +96,34 @@ class Check:
 
 
 def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:
-    """The check that a function is: its signature is the schema of the rubric's `with` table.
+    """Return the check that a function is: its signature is the schema of the rubric's `with` table.
 
     Raises InputError for a signature that is no schema.
     """
-    hints = get_type_hints(function)
+    hints = get_type_hints(function, include_extras=True)
     subject, *rest = inspect.signature(function).parameters.values()
-    for each in (subject, *rest):
-        if each.kind not in (each.KEYWORD_ONLY, each.POSITIONAL_OR_KEYWORD):
-            raise InputError(f"its argument {each} cannot be given by name")
-        if each.name not in hints:
-            raise InputError(f"its argument {each.name} has no annotation")
-    parameters = {
-        each.name: Parameter(
-            each.name,
-            hints[each.name],
-            each.default is each.empty,
-            None if each.default is each.empty else each.default,
-        )
-        for each in rest
-    }
+    for parameter in (subject, *rest):
+        if parameter.kind not in (parameter.KEYWORD_ONLY, parameter.POSITIONAL_OR_KEYWORD):
+            raise InputError(f"its argument {parameter} cannot be given by name")
+        if parameter.name not in hints:
+            raise InputError(f"its argument {parameter.name} has no annotation")
+    parameters = {}
+    for parameter in rest:
+        is_required = parameter.default is parameter.empty
+        default = None if is_required else parameter.default
+        parameters[parameter.name] = Parameter(parameter.name, hints[parameter.name], is_required, default)
     known: tuple[Subject, ...] = get_args(Subject)
-    asked: Subject = next((each for each in known if each == subject.name), "robot")
-    return Check(function.__name__, function, asked, parameters, distribution)
+    examined: Subject = next((name for name in known if name == subject.name), "robot")
+    return Check(function.__name__, function, examined, parameters, distribution)
 
 
 def check_names() -> list[str]:
-    """The names of all checks, those of other packages included."""
-    return [each.__name__ for each in CHECKS] + sorted(_entry_points())
+    """Return the names of all checks, including those of other packages."""
+    return [function.__name__ for function in CHECKS] + sorted(_entry_points())
 
 
 def find_check(name: str) -> Check | None:
-    """The check of this name; other packages are asked only for names that are not our own."""
+    """Return the check of this name; a check of another package cannot replace one of the grader's own."""
     for function in CHECKS:
         if function.__name__ == name:
             return describe(function)
@@ -140,13 +135,13 @@ def find_check(name: str) -> Check | None:
         return replace(describe(entry.load(), distribution), name=name)
     except KeyboardInterrupt:
         raise
-    except BaseException as error:  # noqa: BLE001  another package's fault, whatever it is, an exit included
-        said = str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
+    except BaseException as error:  # noqa: BLE001  a fault of another package, which may even exit
+        reason = str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
         place = entry.value.replace(":", ".")
-        raise InputError(f"the check {name} of the package {distribution} ({place}) cannot be used: {said}") from None
+        raise InputError(f"the check {name} of the package {distribution} ({place}) cannot be used: {reason}") from None
 
 
 def _entry_points() -> dict[str, Any]:
-    from importlib.metadata import entry_points  # reading every installed package's metadata costs more than a grading
+    from importlib.metadata import entry_points  # reading the metadata of all packages takes longer than grading
 
     return {entry.name: entry for entry in entry_points(group=ENTRY_POINTS)}

@@ -1,4 +1,4 @@
-"""What a link shows, for the checks that measure it."""
+"""The visuals of a link, for the checks that measure them."""
 
 from typing import Literal
 
@@ -9,16 +9,17 @@ from grader.robot.model import Box, Cylinder, Geometry, Mesh, Sphere, Visual
 from grader.robot.motion import placed_by
 from grader.robot.shapes import extent, is_empty, volume
 from grader.robot.transforms import Transform, Vector
+from grader.source import LazyLocation
 
 
 def visuals(robot: Configuration, link: str) -> tuple[Visual, ...]:
-    """The visuals of a link that have a size; raises MissingElement where there is none."""
+    """Return the visuals of a link that have a size; raise MissingElement where there is none."""
     shown = robot.shown.get(link)
     if shown is None:
-        shown = tuple(each for each in robot.link(link).visuals if not is_empty(each.geometry))
+        shown = tuple(visual for visual in robot.link(link).visuals if not is_empty(visual.geometry))
         robot.shown[link] = shown
     if not shown:
-        message = f"link {link!r} shows nothing that has a size"
+        message = f"link {link!r} has no visual with a size"
         raise MissingElement("visual", link, message=message, location=place(robot.link(link).location))
     return shown
 
@@ -27,29 +28,29 @@ ShapeName = Literal["any", "box", "cylinder", "sphere"]
 _SHAPES: dict[str, type[Box] | type[Cylinder] | type[Sphere]] = {"box": Box, "cylinder": Cylinder, "sphere": Sphere}
 
 
-def body(robot: Configuration, link: str, shape: ShapeName = "any") -> Visual:
-    """The visual that counts for a link: its only one, else the largest; the first mesh where sizes are unknown.
+def main_visual(robot: Configuration, link: str, shape: ShapeName = "any") -> Visual:
+    """Return the visual that counts for a link: its only one, else the first mesh, whose size is unknown, else the largest.
 
-    Where a shape is named and the link shows it, others do not count.
+    If the link has visuals of the named shape, only these count.
     """
     shown = visuals(robot, link)
     if len(shown) == 1:
         return shown[0]
     if shape != "any":
-        shown = tuple(each for each in shown if isinstance(each.geometry, _SHAPES[shape])) or shown
+        shown = tuple(visual for visual in shown if isinstance(visual.geometry, _SHAPES[shape])) or shown
     for visual in shown:
         if isinstance(visual.geometry, Mesh):
             return visual
     return max(shown, key=lambda visual: volume(visual.geometry))
 
 
-def pose_of(robot: Configuration, link: str, visual: Visual, relative_to: str) -> Transform:
-    """T_relative_visual; raises MissingElement where it is not defined."""
+def visual_pose(robot: Configuration, link: str, visual: Visual, relative_to: str) -> Transform:
+    """Return T_relative_visual; raise MissingElement where it is not defined."""
     return placed_by(robot.pose(link, relative_to=relative_to), visual.origin)
 
 
 def span(robot: Configuration, link: str, relative_to: str, direction: Vector) -> tuple[float, float]:
-    """The lowest and highest coordinate of all that a link shows, along a unit direction of another link's frame."""
+    """Return the lowest and highest coordinate of a link's visuals along a unit direction, in metres, in a frame."""
     pose = robot.pose(link, relative_to=relative_to)
     spans = [extent(visual.geometry, placed_by(pose, visual.origin), direction) for visual in visuals(robot, link)]
     lows, highs = zip(*spans, strict=True)
@@ -57,5 +58,13 @@ def span(robot: Configuration, link: str, relative_to: str, direction: Vector) -
 
 
 def shape_name(geometry: Geometry) -> str:
-    """A shape in words: a box, a cylinder, a sphere, a mesh."""
+    """Return the name of a shape: a box, a cylinder, a sphere, a mesh."""
     return f"a {type(geometry).__name__.lower()}"
+
+
+def origin_place(robot: Configuration, link: str) -> LazyLocation | None:
+    """Return the place of the origin that puts a link into its parent's frame."""
+    joint = robot.parent_joints.get(link)
+    if joint is None:
+        return place(robot.link(link).location)
+    return place(joint.origin.location if joint.origin else None, "xyz") or place(joint.location)

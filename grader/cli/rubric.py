@@ -96,7 +96,7 @@ def check_rubric(
 
       grader rubric check my_lab.toml
     """
-    from grader.grading.reference import grade_reference
+    from grader.grading.grade import grade_reference
     from grader.report.points import points_words
     from grader.text import printable
 

@@ -31,8 +31,9 @@ def schema(
 
       grader schema rubric > rubric.schema.json
     """
+    from grader.grading.keys import rubric_schema
     from grader.report.plain import to_json
-    from grader.report.schemas import CLASS_SCHEMA, DIFF_SCHEMA, INSPECT_SCHEMA, REPORT_SCHEMA, rubric_schema
+    from grader.report.schemas import CLASS_SCHEMA, DIFF_SCHEMA, INSPECT_SCHEMA, REPORT_SCHEMA
 
     match name:
         case SchemaName.REPORT:

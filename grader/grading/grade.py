@@ -1,8 +1,8 @@
-"""Grade a submission: run the rubric's checks in order and say whose fault each miss is."""
+"""Grade a submission: run the rubric's checks in order, and attribute each failure."""
 
 from collections.abc import Sequence
 
-from grader.checks.outcome import Outcome, fault_of
+from grader.checks.outcome import Outcome, fault_of, location_of, pending
 from grader.checks.registry import Check, Subject
 from grader.errors import MissingElement, NotDecided
 from grader.grading.report import Report, Result
@@ -21,31 +21,37 @@ from grader.robot.catalogue import (
 from grader.robot.kinematics import Configuration
 from grader.robot.shapes import UnknownShape
 from grader.source import LazyLocation, Location
-from grader.submission.submission import Submission
+from grader.submission.submission import Submission, open_submission
 from grader.submission.urdf import NeedsExpansion, Read
 
-# Problems that say why a measurement came out as it did.
-_TELLING = (BAD_COLOUR, COLOUR_COUNT, DEGREES, UNDEFINED_MATERIAL)
+# Problems that explain a measurement at the same place.
+_EXPLAINING = (BAD_COLOUR, COLOUR_COUNT, DEGREES, UNDEFINED_MATERIAL)
 
 
 def grade(rubric: Rubric, submission: Submission, parts: Sequence[str] = ()) -> Report:
-    """The report on a submission, for all parts of the rubric or those that are named (raises InputError for others)."""
+    """Return the report on a submission for all parts of the rubric, or for the named ones; raise InputError for others."""
     chosen, notes = chosen_parts(rubric, submission, parts)
-    run = _Run(submission)
+    grading = _Grading(submission)
     for criterion in rubric.criteria:
         if criterion.part in chosen:
-            run.decide(criterion)
+            grading.decide(criterion)
     problems = submission.urdf.problems if isinstance(submission.urdf, Read | NeedsExpansion) else ()
-    if submission.package is not None and any(rubric.part(each).needs == "package" for each in chosen):
+    if submission.package is not None and any(rubric.part(part).needs == "package" for part in chosen):
         from grader.package.linting import remarks  # a URDF on its own needs none of what reads a package
 
         problems += remarks(submission.package)
     exhibits, others = exhibits_of(rubric, submission, chosen)
-    return Report(submission, rubric, chosen, tuple(run.results.values()), problems, exhibits, others, notes)
+    return Report(submission, rubric, chosen, tuple(grading.results.values()), problems, exhibits, others, notes)
 
 
-class _Run:
-    """The criteria decided so far, and which of them was the first to miss a thing."""
+def grade_reference(rubric: Rubric) -> Report:
+    """Return the report on a rubric's own reference solution; raise InputError where it cannot be read."""
+    path = rubric.path.parent / rubric.reference
+    return grade(rubric, open_submission(str(path), wanted=rubric.urdf, package=rubric.package))
+
+
+class _Grading:
+    """The criteria decided so far, and which of them was the first that misses a thing."""
 
     def __init__(self, submission: Submission) -> None:
         self.submission = submission
@@ -54,36 +60,37 @@ class _Run:
         self.robot = Configuration(robot) if robot is not None else None
         self.results: dict[str, Result] = {}
         self.missed: dict[tuple[str, str], str] = {}
-        self._at_hand: dict[Subject, object] = {"submission": submission}
+        self._subjects: dict[Subject, object] = {"submission": submission}
         if self.urdf is not None:
-            self._at_hand["urdf"] = self.urdf
+            self._subjects["urdf"] = self.urdf
         if self.robot is not None:
-            self._at_hand["robot"] = self.robot
+            self._subjects["robot"] = self.robot
 
     @property
     def _problems(self) -> tuple[Problem, ...]:
         return self.urdf.problems if self.urdf is not None else ()
 
     def decide(self, criterion: Criterion) -> None:
+        """Run the check of a criterion, or skip it because of another that failed."""
         cause = self._cause(criterion) if criterion.requires or self.robot is None else None
-        result = Result(criterion, _skipped(cause), cause) if cause else self._ask(criterion)
+        result = Result(criterion, _skipped(cause), cause) if cause else self._check(criterion)
         self.results[criterion.id] = result
 
     def _cause(self, criterion: Criterion) -> str | None:
-        """The criterion whose failure keeps this one from being decided."""
+        """Return the criterion because of which this one is skipped, if there is one."""
         for name in criterion.requires:
             required = self.results.get(name)
             if required is not None and required.outcome.status in ("failed", "skipped"):
                 return required.because or name
         if self.robot is None and criterion.check.subject == "robot":
-            asked = (each for each in self.results.values() if each.criterion.check.subject == "urdf")
-            return next((each.criterion.id for each in asked if each.outcome.status == "failed"), None)
+            of_urdf = (result for result in self.results.values() if result.criterion.check.subject == "urdf")
+            return next((result.criterion.id for result in of_urdf if result.outcome.status == "failed"), None)
         return None
 
-    def _ask(self, criterion: Criterion) -> Result:
+    def _check(self, criterion: Criterion) -> Result:
         try:
-            asked = criterion.check.subject
-            subject = self._at_hand.get(asked) or self._missing(asked)
+            name = criterion.check.subject
+            subject = self._subjects.get(name) or self._missing(name)
             outcome = criterion.check.function(subject, **criterion.arguments)
             fault = fault_of(outcome) if criterion.check.distribution else ""
             if fault:
@@ -94,58 +101,55 @@ class _Run:
         except MissingElement as missing:
             return self._miss(criterion, missing)
         except UnknownShape as unknown:
-            return Result(criterion, Outcome("pending", f"{unknown}; a person has to look at it"))
+            return Result(criterion, pending(f"{unknown}; needs manual grading"))
         except NotDecided as reason:
-            return Result(criterion, Outcome("pending", f"{reason}; a person has to look"))
+            return Result(criterion, pending(f"{reason}; needs manual grading"))
         except KeyboardInterrupt:
             raise
-        except BaseException as error:  # noqa: BLE001  a faulty check, even one that exits, costs the student nothing else
-            from traceback import format_exc  # only ever needed here
+        except BaseException as error:  # noqa: BLE001  a faulty check, even one that exits, affects only its own criterion
+            from traceback import format_exc  # needed only for a fault of the grader
 
-            fault = _words_of(error)
+            fault = _text_of(error)
             return Result(criterion, _errored(criterion.check, fault), traceback=format_exc())
 
     def _missing(self, name: Subject) -> object:
-        """The package; for whatever else is asked of and is not at hand, raises MissingElement or NotDecided."""
+        """Return the package; raise MissingElement or NotDecided for any other subject that the submission does not have."""
         if name == "package":
             return self.submission.needed_package()
         self.submission.needed_urdf()
-        raise MissingElement("robot", "", message="ROS 2 cannot read the file, so there is no robot to look at")
+        raise MissingElement("robot", "", message="ROS 2 cannot read the file, so there is no robot")
 
     def _miss(self, criterion: Criterion, missing: MissingElement) -> Result:
-        """The first criterion that misses a thing fails; those after it would only repeat it, and are skipped."""
-        key = (missing.kind, missing.name)
-        first = self.missed.setdefault(key, criterion.id)
+        """Return a failure for the first criterion that misses a thing; later ones would repeat it and are skipped."""
+        first = self.missed.setdefault((missing.kind, missing.name), criterion.id)
         if first != criterion.id:
             return Result(criterion, _skipped(first), first)
-        at = missing.location.resolve() if isinstance(missing.location, LazyLocation) else missing.location
-        outcome = Outcome("failed", str(missing), location=at if isinstance(at, Location) else None)
-        if missing.kind == "visual":
-            return Result(criterion, self._dropped(outcome, missing.name))
-        return Result(criterion, self._explained(outcome))
+        at = missing.location if isinstance(missing.location, Location | LazyLocation) else None
+        outcome = Outcome("failed", str(missing), location=location_of(at), mistake=missing.mistake)
+        return Result(criterion, self._explained(outcome, missing.name if missing.kind == "visual" else None))
 
-    def _explained(self, outcome: Outcome) -> Outcome:
-        """A failure with what ROS 2 has to say of the place that it points to."""
+    def _explained(self, outcome: Outcome, link: str | None = None) -> Outcome:
+        """Return a failure with the problem that explains it: at its place, or why ROS 2 drops the visuals of a link."""
+        mistake = outcome.mistake or outcome.message
         for problem in self._problems:
-            tells = problem.kind in _TELLING or (problem.kind is DEFAULT_AXIS and outcome.unit == "deg")
-            if tells and problem.location == outcome.location:
-                return outcome._replace(message=f"{outcome.message} ({problem.code}: {problem.message})")
-        return outcome
-
-    def _dropped(self, outcome: Outcome, link: str) -> Outcome:
-        """A link that shows nothing, with the reason why ROS 2 has dropped what the file gives it."""
-        for problem in self._problems:
-            if problem.kind in (BAD_VISUAL, BAD_INERTIAL) and problem.subject == link:
-                return outcome._replace(message=f"{outcome.message}: {problem.message}", location=problem.location)
+            if link is not None:
+                if problem.kind in (BAD_VISUAL, BAD_INERTIAL) and problem.subject == link:
+                    message = f"{outcome.message}: {problem.message}"
+                    return outcome._replace(message=message, location=problem.location, mistake=mistake)
+            elif problem.location == outcome.location and (
+                problem.kind in _EXPLAINING or (problem.kind is DEFAULT_AXIS and outcome.unit == "deg")
+            ):
+                message = f"{outcome.message} ({problem.code}: {problem.message})"
+                return outcome._replace(message=message, mistake=mistake)
         return outcome
 
 
 def _skipped(cause: str) -> Outcome:
-    return Outcome("skipped", f"not decided, because {cause} failed")
+    return Outcome("skipped", f"skipped because {cause} failed")
 
 
-def _words_of(error: BaseException) -> str:
-    """What an exception says, even one whose text cannot be made."""
+def _text_of(error: BaseException) -> str:
+    """Return the type and text of an exception, or only its type where making the text fails."""
     try:
         return f"{type(error).__name__}: {error}"
     except KeyboardInterrupt:
@@ -155,7 +159,7 @@ def _words_of(error: BaseException) -> str:
 
 
 def _errored(check: Check, fault: str) -> Outcome:
-    """A criterion that nobody could decide because its check is faulty; an installed package answers for its own."""
+    """Return the outcome of a faulty check; the message names the installed package that it comes from."""
     if check.distribution:
         return Outcome("errored", f"the check {check.name} of the package {check.distribution} is faulty: {fault}")
-    return Outcome("errored", f"the grader itself failed here ({fault.partition(':')[0]}); please report it")
+    return Outcome("errored", f"the grader itself failed ({fault.partition(':')[0]}); please report it")

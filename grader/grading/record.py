@@ -1,4 +1,4 @@
-"""A report as plain data that keeps all of it, and the report that such data was made from: what a gradebook stores."""
+"""Reports as JSON text, which a gradebook stores, and back."""
 
 import json
 from collections.abc import Callable, Sequence
@@ -15,11 +15,13 @@ from grader.robot.reader import Verdict
 from grader.source import Location, Source
 from grader.submission.urdf import OtherCandidate
 
-Quote = Callable[[str], Source | None]  # the text of one file of a submission; None where it cannot be read
+Quote = Callable[[str], Source | None]  # returns the text of one file of a submission; None where it cannot be read
+
+_STORED_FIELDS = 7  # of an outcome: its mistake is in a column of its own
 
 
 class StoredPackage(NamedTuple):
-    """The package that was graded: its folder in the submission, and its name."""
+    """The graded package: its folder in the submission, and its name."""
 
     folder: str
     name: str
@@ -27,7 +29,7 @@ class StoredPackage(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class StoredSubmission:
-    """What is kept of a submission. Its files are not: nothing of them is quoted, unless `quote` has their text."""
+    """What a gradebook stores of a submission. Its files are not stored: `quote` returns their text where they are there."""
 
     id: str
     path: str | None = None
@@ -42,59 +44,60 @@ class StoredSubmission:
     quote: Quote | None = field(default=None, repr=False, compare=False)
 
     def source(self, path: str) -> Source | None:
-        """The text of one of its files, where it is at hand."""
+        """Return the text of one of its files, where `quote` has it."""
         return self.quote(path) if self.quote is not None else None
 
 
 class Template:
-    """The outcomes of a report that most others resemble, such as the reference's: what is the same need not be kept again."""
+    """The outcomes of a report that most others resemble, such as the reference's; equal outcomes are stored once."""
 
     def __init__(self, record: str, rubric: Rubric) -> None:
         self.text = record
         results = from_record(record, rubric).results if record else ()
-        self.outcomes = {each.criterion.id: each.outcome for each in results}
+        self.outcomes = {result.criterion.id: result.outcome for result in results}
 
     @classmethod
     def of(cls, report: Report) -> "Template":
-        """The template that a report makes."""
+        """Return the template that a report makes."""
         return cls(to_record(report), report.rubric)
 
 
 def to_record(report: Report, template: Template | None = None) -> str:
-    """A report as JSON text. What the rubric or the template says is not in it: `from_record` needs the same ones."""
+    """Return a report as JSON text without what the rubric and the template hold: `from_record` needs the same ones."""
     same = template.outcomes if template is not None else {}
-    kept = report.submission
-    package = kept.package
+    submission, package = report.submission, report.submission.package
     data = {
         "version": report.version,
         "submission": [
-            kept.id, kept.path, kept.sha256, (package.folder, package.name) if package is not None else None,
-            kept.other_candidates, kept.ignored, kept.has_urdf, kept.verdict, kept.is_single, kept.unread,
+            submission.id, submission.path, submission.sha256,
+            (package.folder, package.name) if package is not None else None,
+            submission.other_candidates, submission.ignored, submission.has_urdf, submission.verdict, submission.is_single,
+            submission.unread,
         ],
         "parts": report.parts,
-        "results": [_result(same, each) for each in report.results],
-        "problems": [(each.code, each.severity, each.message, each.location) for each in report.problems],
-        "exhibits": [[_exhibit(file) for file in each.files] for each in report.exhibits],
-        "evidence": [each.evidence.id for each in report.exhibits],
-        "others": [_exhibit(each) for each in report.others],
+        "results": [_result(same, result) for result in report.results],
+        "problems": [(problem.code, problem.severity, problem.message, problem.location) for problem in report.problems],
+        "exhibits": [[_exhibit(file) for file in exhibits.files] for exhibits in report.exhibits],
+        "evidence": [exhibits.evidence.id for exhibits in report.exhibits],
+        "others": [_exhibit(exhibit) for exhibit in report.others],
         "notes": report.notes,
     }  # fmt: skip
     return _ENCODER.encode(data)
 
 
 def from_record(text: str, rubric: Rubric, quote: Quote | None = None, template: Template | None = None) -> Report:
-    """The report that a record was made from, with the same rubric and template."""
+    """Return the report that a record was made from, with the same rubric and template."""
     same = template.outcomes if template is not None else {}
     data = json.loads(text)
     identity, path, sha256, package, other_candidates, ignored, has_urdf, verdict, is_single, unread = data[
         "submission"
     ]
-    kept = StoredSubmission(
+    submission = StoredSubmission(
         identity,
         path,
         sha256,
         StoredPackage(*package) if package is not None else None,
-        tuple(OtherCandidate(*each) for each in other_candidates),
+        tuple(OtherCandidate(*file) for file in other_candidates),
         tuple(ignored),
         has_urdf,
         verdict,
@@ -102,18 +105,18 @@ def from_record(text: str, rubric: Rubric, quote: Quote | None = None, template:
         unread,
         quote,
     )
-    evidence = {each.id: each for each in rubric.evidence}
+    evidence = {proof.id: proof for proof in rubric.evidence}
     return Report(
-        kept,
+        submission,
         rubric,
         tuple(data["parts"]),
-        tuple(_read_result(rubric, same, each) for each in data["results"]),
-        tuple(_read_problem(*each) for each in data["problems"]),
+        tuple(_read_result(rubric, same, entry) for entry in data["results"]),
+        tuple(_read_problem(*problem) for problem in data["problems"]),
         tuple(
-            Exhibits(evidence[name], tuple(Exhibit(*each) for each in files))
+            Exhibits(evidence[name], tuple(Exhibit(*file) for file in files))
             for name, files in zip(data["evidence"], data["exhibits"], strict=True)
         ),
-        tuple(Exhibit(*each) for each in data["others"]),
+        tuple(Exhibit(*file) for file in data["others"]),
         tuple(data["notes"]),
         data["version"],
     )
@@ -121,9 +124,11 @@ def from_record(text: str, rubric: Rubric, quote: Quote | None = None, template:
 
 def _result(same: dict[str, Outcome], result: Result) -> Any:
     criterion, outcome, because, traceback, _ = result
+    stored = outcome[:_STORED_FIELDS]
     if because is None and not traceback:
-        return criterion.position if same.get(criterion.id) == outcome else (criterion.position, outcome)
-    return criterion.position, outcome, because, traceback
+        template = same.get(criterion.id)
+        return criterion.position if template and template[:_STORED_FIELDS] == stored else (criterion.position, stored)
+    return criterion.position, stored, because, traceback
 
 
 def _read_result(rubric: Rubric, same: dict[str, Outcome], entry: Any) -> Result:
@@ -132,22 +137,18 @@ def _read_result(rubric: Rubric, same: dict[str, Outcome], entry: Any) -> Result
     index, (status, message, measured, expected, tolerance, unit, place), *rest = entry
     location = Location(*place) if place is not None else None
     if rubric.criteria[index].check.function is answered:
-        expected = None  # earlier graders kept the model answer here
+        expected = None  # records of earlier development versions hold the model answer here
     outcome = Outcome(status, message, _value(measured), _value(expected), tolerance, unit, location)
     return Result(rubric.criteria[index], outcome, *rest)
 
 
 def _plain(value: Any) -> Any:
-    """What JSON does not know by itself: a place, or a mapping that cannot be changed."""
-    return _place(value) if isinstance(value, Location) else dict(value)
+    """Return what JSON cannot hold as what it can: a location as a list, a read-only mapping as a dictionary."""
+    return (value.path, value.line, value.column) if isinstance(value, Location) else dict(value)
 
 
 def _value(value: Any) -> Any:
     return tuple(value) if isinstance(value, list) else value
-
-
-def _place(where: Location) -> tuple[str, int, int]:
-    return where.path, where.line, where.column
 
 
 _ENCODER = json.JSONEncoder(separators=(",", ":"), default=_plain)

@@ -12,9 +12,9 @@ from grader.checks.manual import answered
 from grader.checks.registry import Check
 from grader.errors import InputError, RubricError
 from grader.files.reading import read_capped, sha256_of
-from grader.grading.rows import Rows
 from grader.grading.toml_lines import Path as TomlPath
 from grader.grading.toml_lines import key_lines, line_of
+from grader.grading.validation import Row, Validation
 from grader.names import did_you_mean
 from grader.text import printable_path
 
@@ -159,24 +159,23 @@ def load_rubric(name: str) -> Rubric:
 def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
     """Return the rubric in the bytes of a file, with the model answers that are in it or without; raises RubricError."""
     text, table = read_toml(data, path)
-    rows = Rows(table)
-    complain_of(rows.complaints, text, path)
+    valid = Validation(table)
+    complain_of(valid.complaints, text, path)
+    rubric = valid.rubric
+    criteria = zip(valid.criteria, valid.bound, strict=True)
     return Rubric(
-        table["id"],
-        _line(table["title"]),
-        tuple(Part(row["id"], _line(row["title"]), row.get("needs", "urdf")) for row in table["part"]),
-        tuple(
-            _criterion(position, row, *bound, answers=answers)
-            for position, (row, bound) in enumerate(zip(table["criterion"], rows.bound, strict=True))
-        ),
-        table.get("urdf", "robot.urdf"),
-        table.get("reference", ""),
+        rubric["id"],
+        _line(rubric["title"]),
+        tuple(Part(row["id"], _line(row["title"]), row.get("needs", "urdf")) for row in valid.parts),
+        tuple(_criterion(index, row, *bound, answers=answers) for index, (row, bound) in enumerate(criteria)),
+        rubric.get("urdf", "robot.urdf"),
+        rubric.get("reference", ""),
         data,
         path,
-        table.get("package", ""),
-        tuple(_evidence(row) for row in table.get("evidence", ())),
-        _late(table["late"]) if "late" in table else None,
-        table.get("answers", ""),
+        rubric.get("package", ""),
+        tuple(Evidence(row["id"], row["part"], _line(row["title"]), row["names"]) for row in valid.evidence),
+        _late(valid.late) if valid.late is not None else None,
+        rubric.get("answers", ""),
     )
 
 
@@ -203,32 +202,26 @@ def complain_of(complaints: Sequence[tuple[TomlPath, str]], text: str, path: Pat
 
 
 def _line(title: str) -> str:
-    """A title in one line, however it is broken in the file."""
+    """Return a title in one line, however it is broken in the file."""
     return " ".join(title.split())
 
 
-def _late(row: dict[str, Any]) -> Late:
-    kept = {key: Decimal(row.get(key, 0)) for key in ("grace_minutes", "percent_per_day", "floor_percent")}
+def _late(row: Row) -> Late:
+    kept = {key: row.get(key, Decimal(0)) for key in ("grace_minutes", "percent_per_day", "floor_percent")}
     return Late(row.get("due"), **kept)
 
 
-def _evidence(row: dict[str, Any]) -> Evidence:
-    return Evidence(row["id"], row["part"], _line(row["title"]), tuple(row["names"]))
-
-
-def _criterion(
-    position: int, row: dict[str, Any], check: Check, arguments: dict[str, Any], *, answers: bool
-) -> Criterion:
-    # Nothing that lists or passes on a criterion's arguments gets to see the model answer.
+def _criterion(position: int, row: Row, check: Check, arguments: Row, *, answers: bool) -> Criterion:
+    # Nothing that lists or passes on a criterion's arguments may see the model answer.
     answer = arguments.pop("answer", "") if check.function is answered else ""
     return Criterion(
         row["id"],
         _line(row["title"]),
         row["part"],
-        Decimal(row["points"]),
+        row["points"],
         check,
         arguments,
-        tuple(row.get("requires", ())),
+        row.get("requires", ()),
         row.get("feedback", ""),
         row.get("about", ""),
         position,

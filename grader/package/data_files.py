@@ -53,6 +53,7 @@ class InstallError(NamedTuple):
     path: str
     reason: str
     at: Position
+    hint: str = ""  # what the path may mean instead
 
     @property
     def message(self) -> str:
@@ -175,7 +176,7 @@ class DataFiles:
             self._give_up(None, f"{text} is an ignored file", at)
         else:
             guess = did_you_mean(text, self.tree.files) if len(self.stops) < _MAX_GUESSES else ""
-            self.stops.append(InstallError(text, f"there is no such file{guess}", at))
+            self.stops.append(InstallError(text, "there is no such file", at, guess))
 
     def _narrower(self, folder: str) -> str:
         """Return the hint at a pattern that matches the files beside a folder, but not the folder."""

@@ -42,7 +42,7 @@ def _of_setup(package: Package, setup: Setup) -> Iterator[Problem]:
     for fault in setup.faults:
         yield Problem(catalogue.SETUP_NAME, fault.message, setup.location(fault.at))
     for stop in setup.stops:
-        yield Problem(catalogue.SETUP_STOPS, stop.message, setup.location(stop.at))
+        yield Problem(catalogue.SETUP_STOPS, stop.message + stop.hint, setup.location(stop.at))
     for empty in setup.empty:
         message = f"the pattern {empty.pattern!r} in setup.py finds nothing{package.instead(empty.pattern)}"
         yield Problem(catalogue.EMPTY_GLOB, message, setup.location(empty.at))

@@ -5,7 +5,6 @@ import textwrap
 
 from grader.checks.registry import Check, check_names, find_check
 from grader.errors import InputError
-from grader.grading.arguments import type_words
 from grader.grading.rubric import Criterion, Rubric
 from grader.names import did_you_mean
 from grader.package.catalogue import PACKAGE_CATALOGUE
@@ -103,7 +102,7 @@ def _arguments(check: Check) -> str:
     lines = []
     for each in check.parameters.values():
         default = "" if each.required else f", {_toml(each.default)} unless told"
-        lines.append(f"    {each.name}: {type_words(each.type)}{default}\n")
+        lines.append(f"    {each.name}: {each.type.name}{default}\n")
     return "".join(lines)
 
 

@@ -206,12 +206,14 @@ TWO_ROOTS = rejects(
     "Links that are not connected to the robot",
     "All links must form one tree: every link but one is the child of a joint. ROS 2 rejects a file with several roots. Add "
     "the missing joint, or fix the link names in the joints.",
+    is_consequence=True,
 )
 NO_ROOT = rejects(
     "URDF081",
     "A tree without a root",
     "Every link is the child of a joint, so the links form a loop, and ROS 2 rejects the file. One link, the root, must not be "
     "the child of any joint.",
+    is_consequence=True,
 )
 CYCLE = rejects(
     "URDF082",
@@ -223,6 +225,7 @@ DETACHED_CYCLE = drops(
     "URDF083",
     "A detached loop of links",
     "These links form a loop that is not connected to the root. ROS 2 loads the file, but leaves them out of the tree.",
+    detaches_links=True,
 )
 TWO_PARENTS = warns(
     "URDF084",

@@ -78,6 +78,6 @@ def undefined_pose(joint: Joint) -> MissingElement:
     else:
         reason = "its numbers are too large"
         location, attribute = joint.location, ""
-    message = f"the pose below joint {quoted(joint.name)} is undefined: {reason}"
+    message, detail = f"the pose of a joint's child is undefined: {reason}", f" (joint {quoted(joint.name)})"
     at = location._replace(attribute=attribute or None, inside=inside or None) if location is not None else None
-    return MissingElement("pose below joint", joint.name, message=message, location=at)
+    return MissingElement("pose below joint", joint.name, message=message, detail=detail, location=at)

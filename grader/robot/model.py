@@ -195,4 +195,4 @@ class Robot:
 def _missing(kind: str, name: str, there: Iterable[Link | Joint]) -> MissingElement:
     known = tuple(each.name for each in there)
     guess = did_you_mean(name, known) or f"; the file has: {', '.join(map(quoted, known[:20])) or 'none'}"
-    return MissingElement(kind, name, known, message=f"there is no {kind} {quoted(name)}{guess}")
+    return MissingElement(kind, name, known, message=f"there is no {kind} {quoted(name)}", detail=guess)

@@ -7,16 +7,9 @@ from typing import Any
 import pytest
 
 from grader.checks.appearance import shows_box, shows_colour, shows_cylinder, shows_grey, shows_nothing, shows_sphere
+from grader.checks.contact import clear_of, stands_on
 from grader.checks.motion import axis_along, rolls_forward, turns_about_itself
-from grader.checks.placement import (
-    bottom_at_height,
-    bottoms_at_height,
-    centre_at,
-    clear_of,
-    frame_at,
-    stands_on,
-    under_the_base,
-)
+from grader.checks.placement import bottom_at_height, bottoms_at_height, centre_at, frame_at, under_the_base
 from grader.checks.tree import held_by, joints_named, root_of_tree, urdf_loads
 from tests.checks.asking import AnyCheck
 from tests.checks.robots import Numbers, Scene, box, cylinder, joint, link, paint, scene, sphere, turned, visual
@@ -95,7 +88,7 @@ CASES = (
         passing=scene(BASE),
         says="'base' shows a box 0.6 0.4 0.2 m",
         failing=scene(link("base", visual(box(0.6, 0.2, 0.4)))),
-        complains="'base' shows a box 0.6 0.2 0.4 m, expected 0.6 0.4 0.2 m (x, y, z)",
+        complains="'base' shows a box 0.6 0.2 0.4 m; it should be 0.6 0.4 0.2 m (x, y, z)",
         at="size=",
     ),
     Case(
@@ -104,7 +97,7 @@ CASES = (
         passing=scene(LIDAR),
         says="'lidar' shows a cylinder of radius 0.1 m and length 0.05 m",
         failing=scene(link("lidar", visual(cylinder(0.2, 0.05)))),
-        complains="'lidar' shows a cylinder of radius 0.2 m and length 0.05 m, expected radius 0.1 m and length 0.05 m",
+        complains="'lidar' shows a cylinder of radius 0.2 m and length 0.05 m; it should have radius 0.1 m and length 0.05 m",
         at="radius=",
     ),
     Case(
@@ -113,7 +106,7 @@ CASES = (
         passing=scene(CASTER),
         says="the radius of the sphere that 'caster' shows is 0.05 m",
         failing=scene(link("caster", visual(sphere(0.1)))),
-        complains="the radius of the sphere that 'caster' shows is 0.1 m, expected 0.05 m: 50 mm too large",
+        complains="the radius of the sphere that 'caster' shows is 0.1 m; it should be 0.05 m (50 mm too large)",
         at="radius=",
     ),
     Case(
@@ -122,7 +115,7 @@ CASES = (
         passing=scene(BASE),
         says="'base' is shown in rgba 0 0.6 0 1",
         failing=scene(link("base", visual(box(0.6, 0.4, 0.2), material=paint("0 1 0 1")))),
-        complains="'base' is shown in rgba 0 1 0 1, expected 0 0.6 0 1",
+        complains="'base' is shown in rgba 0 1 0 1; it should be 0 0.6 0 1",
         at="rgba=",
     ),
     Case(
@@ -131,7 +124,7 @@ CASES = (
         passing=scene(link("lidar", visual(cylinder(), material=paint("0.8 0.8 0.8 1")))),
         says="'lidar' is shown in rgb 0.8 0.8 0.8",
         failing=scene(link("lidar", visual(cylinder(), material=paint("0.7 0.7 0.7 1")))),
-        complains="'lidar' is shown in rgb 0.7 0.7 0.7, darker than 0.75",
+        complains="'lidar' is shown in rgb 0.7 0.7 0.7; it should be at least 0.75",
         at="rgba=",
     ),
     Case(
@@ -140,16 +133,16 @@ CASES = (
         passing=scene(FOOT),
         says="'foot' shows nothing",
         failing=scene(link("foot", visual(box(0.1, 0.1, 0.1)))),
-        complains="'foot' shows a box, expected a link without a visual",
+        complains="'foot' shows a box; it should have no visual",
         at="<visual>",
     ),
     Case(
         held_by,
         {"link": "lidar", "parent": "base", "joint_type": "fixed"},
         passing=mounted(),
-        says="a fixed joint, 'base_lidar_joint', holds 'lidar' to 'base'",
+        says="the fixed joint 'base_lidar_joint' connects 'lidar' to 'base'",
         failing=scene(BASE, LIDAR, joint("base_lidar_joint", "continuous", "base", "lidar")),
-        complains="joint 'base_lidar_joint', which holds 'lidar', is continuous, expected fixed",
+        complains="the joint that moves 'lidar' is continuous; it should be fixed (joint 'base_lidar_joint')",
         at='type="continuous"',
     ),
     Case(
@@ -158,7 +151,7 @@ CASES = (
         passing=scene(BASE, LIDAR, WHEEL, MOUNT, joint("wheel_joint", "continuous", "base", "wheel")),
         says="the joints are named 'base_lidar_joint' and 'wheel_joint'",
         failing=scene(BASE, LIDAR, WHEEL, MOUNT, joint("weel_joint", "continuous", "base", "wheel")),
-        complains="'wheel' is held by 'weel_joint', not 'wheel_joint'",
+        complains="the joint of 'wheel' should be named 'wheel_joint', not 'weel_joint'",
         at='name="weel_joint"',
     ),
     Case(
@@ -167,7 +160,7 @@ CASES = (
         passing=scene(FOOT, BASE, joint("base_joint", "fixed", "foot", "base")),
         says="'foot' is the root, and 'base' is fixed to it",
         failing=scene(FOOT, BASE, joint("base_joint", "fixed", "base", "foot")),
-        complains="'foot' is not the root: joint 'base_joint' makes it a child of 'base'",
+        complains="'foot' is not the root: it is a child of 'base' (joint 'base_joint')",
         at="<joint",
     ),
     Case(
@@ -176,8 +169,8 @@ CASES = (
         passing=mounted(),
         says="the frame 'lidar' is at 0.15 0 0.225 m in 'base'",
         failing=mounted((0.15, 0.01, 0.2)),
-        complains="the frame 'lidar' is at 0.15 0.01 0.2 m in 'base', expected 0.15 0 0.225 m:"
-        " y is 10 mm too large, z is 25 mm too small",
+        complains="the frame 'lidar' is at 0.15 0.01 0.2 m in 'base'; it should be at 0.15 0 0.225 m"
+        " (y 10 mm too large, z 25 mm too small)",
         at='xyz="0.15 0.01 0.2"',
     ),
     Case(
@@ -186,26 +179,26 @@ CASES = (
         passing=rolling(),
         says="the centre of what 'wheel' shows is at -0.15 0.225 0 m in 'base'",
         failing=rolling(xyz=(-0.15, 0.2, 0.0)),
-        complains="the centre of what 'wheel' shows is at -0.15 0.2 0 m in 'base', expected -0.15 0.225 0 m:"
-        " y is 25 mm too small",
+        complains="the centre of what 'wheel' shows is at -0.15 0.2 0 m in 'base'; it should be at -0.15 0.225 0 m"
+        " (y 25 mm too small)",
         at='xyz="-0.15 0.2 0.0"',
     ),
     Case(
         bottom_at_height,
         {"link": "base", "relative_to": "base", "height": 0.0, "tolerance": 0.002},
         passing=scene(BASE),
-        says="the bottom of 'base' in the frame 'base' is 0 m",
+        says="the bottom of 'base' in the frame 'base' is at z = 0 m",
         failing=scene(link("base", visual(box(0.6, 0.4, 0.2)))),
-        complains="the bottom of 'base' in the frame 'base' is -0.1 m, expected 0 m: 100 mm too low",
+        complains="the bottom of 'base' in the frame 'base' is at z = -0.1 m; it should be 0 m (100 mm too low)",
         at="<visual>",
     ),
     Case(
         bottoms_at_height,
         {"links": ["wheel", "caster"], "relative_to": "foot", "height": 0.0, "tolerance": 0.002},
         passing=standing(),
-        says="the bottoms of 'wheel', 'caster' are at z = 0 0 m in 'foot'",
+        says="the bottoms of 'wheel' and 'caster' are at z = 0 0 m in 'foot'",
         failing=standing(wheel=0.05),
-        complains="the bottoms of 'wheel', 'caster' are at z = 0.05 0 m in 'foot', expected 0 m: 'wheel' is 50 mm too high",
+        complains="the bottoms of 'wheel' and 'caster' are at z = 0.05 0 m in 'foot'; they should be at 0 m ('wheel' 50 mm too high)",
         at='xyz="-0.15 0.225 0.05"',  # of the wheel's joint
     ),
     Case(
@@ -214,8 +207,8 @@ CASES = (
         passing=mounted(),
         says="'lidar' stands on the top of 'base', at z = 0.2 m in 'base'",
         failing=mounted((0.15, 0.0, 0.2)),
-        complains="the bottom of 'lidar' is at z = 0.175 m in 'base' and the top of 'base' at 0.2 m:"
-        " 'lidar' is sunk into it by 25 mm",
+        complains="the bottom of 'lidar' is at z = 0.175 m in 'base'; it should be at the top of 'base',"
+        " 0.2 m (25 mm too low)",
         at=None,  # lidar or base: either may be in the wrong place
     ),
     Case(
@@ -233,7 +226,7 @@ CASES = (
         passing=standing(),
         says="the frame 'foot' is under 'base', level with the bottoms of the wheels",
         failing=standing(height=0.05),
-        complains="the frame 'foot' is not level with the bottoms of the wheels under 'base':"
+        complains="the frame 'foot' should be under 'base', level with the bottoms of the wheels:"
         " the lowest point of 'wheel' is 50 mm below it",
         at='xyz="0 0 0.05"',
     ),
@@ -241,9 +234,9 @@ CASES = (
         rolls_forward,
         {"link": "wheel", "base": "base", "tolerance": 1.0},
         passing=rolling(),
-        says="a small positive turn of joint 'wheel_joint' drives 'base' forward",
+        says="a small positive turn of 'wheel' drives 'base' forward (joint 'wheel_joint')",
         failing=rolling(rpy=turned(roll=90)),
-        complains="a small positive turn of joint 'wheel_joint' drives 'base' backward, expected forward",
+        complains="a small positive turn of 'wheel' drives 'base' backward; it should drive it forward (joint 'wheel_joint')",
         at="rpy=",
     ),
     Case(
@@ -258,7 +251,7 @@ CASES = (
         passing=rolling(),
         says="the z axis of the frame 'wheel' points along 0 1 0 in 'base'",
         failing=rolling(rpy=turned(roll=90)),
-        complains="the z axis of the frame 'wheel' points along 0 -1 0 in 'base', expected 0 1 0: 180 degrees off",
+        complains="the z axis of the frame 'wheel' points along 0 -1 0 in 'base'; it should point along 0 1 0 (180 degrees off)",
         at="rpy=",
     ),
     Case(
@@ -267,7 +260,7 @@ CASES = (
         passing=rolling(),
         says="'wheel' turns about its own axis",
         failing=rolling(axis="0 1 0"),
-        complains="'wheel' wobbles: the axis of joint 'wheel_joint' is 90 degrees off the cylinder's axis",
+        complains="'wheel' wobbles: its joint axis is 90 degrees off the cylinder's axis; it should be along it (joint 'wheel_joint')",
         at='xyz="0 1 0"',
     ),
 )

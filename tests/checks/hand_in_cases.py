@@ -56,7 +56,7 @@ HAND_IN_CASES = (
         {"name": "my_robot"},
         says="the package is named 'my_robot'",
         failing=REFERENCE.replacing(MANIFEST, ">my_robot<", ">robot<"),
-        complains="the package is named 'robot', expected 'my_robot'",
+        complains="the package is named 'robot'; it should be named 'my_robot'",
         at=(MANIFEST, "<name>"),
     ),
     HandInCase(
@@ -64,7 +64,7 @@ HAND_IN_CASES = (
         {"build_type": "ament_python"},
         says="the build type is 'ament_python'",
         failing=REFERENCE.replacing(MANIFEST, "ament_python", "ament_cmake"),
-        complains="the build type is 'ament_cmake'; expected 'ament_python'",
+        complains="the build type is 'ament_cmake'; it should be 'ament_python'",
         at=(MANIFEST, "<build_type>"),
     ),
     HandInCase(
@@ -80,8 +80,8 @@ HAND_IN_CASES = (
         {"files": ["launch/*.launch.py"]},
         says="a build installs launch/my_robot_rviz.launch.py as share/my_robot/launch/my_robot_rviz.launch.py",
         failing=REFERENCE.replacing(SETUP, "os.path.join('share', package_name, 'launch')", "'lib/launch'"),
-        complains="a build installs launch/my_robot_rviz.launch.py as lib/launch/my_robot_rviz.launch.py, "
-        "but ROS 2 looks for a package's files below share/my_robot/",
+        complains="a build installs launch/my_robot_rviz.launch.py as lib/launch/my_robot_rviz.launch.py; "
+        "ROS 2 looks for the package's files below share/my_robot/",
         at=(SETUP, "glob(os.path"),
     ),
     HandInCase(
@@ -102,17 +102,17 @@ HAND_IN_CASES = (
     HandInCase(
         launch_starts,
         {"name": _NAME, "nodes": ["robot_state_publisher", "rviz2 or rviz"]},
-        says="it starts joint_state_publisher_gui, robot_state_publisher, rviz2",
+        says="the launch file starts joint_state_publisher_gui, robot_state_publisher, rviz2",
         failing=REFERENCE.replacing(LAUNCH, "package='rviz2'", "package='rviz'"),
-        complains="it does not start rviz2 or rviz; it starts joint_state_publisher_gui, robot_state_publisher, rviz/rviz2",
+        complains="the launch file does not start rviz2 or rviz; it starts joint_state_publisher_gui, robot_state_publisher, rviz/rviz2",
         at=(LAUNCH, "Node(\n            package='rviz'"),
     ),
     HandInCase(
         launch_finds_files,
         {"name": _NAME},
-        says="the build puts share/my_robot/my_robot.urdf and share/my_robot/my_robot.rviz where it is looked for",
+        says="a build installs share/my_robot/my_robot.urdf and share/my_robot/my_robot.rviz, where the launch file looks for them",
         failing=REFERENCE.replacing(LAUNCH, "os.path.join(share, 'my_robot.urdf')", "'urdf/my_robot.urdf'"),
-        complains="it looks for the URDF at urdf/my_robot.urdf, in whatever folder ros2 launch is started from",
+        complains="it looks for the URDF at urdf/my_robot.urdf, in the folder that ros2 launch is started from",
         at=(LAUNCH, "open("),
     ),
     HandInCase(
@@ -127,7 +127,7 @@ HAND_IN_CASES = (
         {**_RVIZ, "frame": "base_footprint"},
         says="the Fixed Frame is 'base_footprint'",
         failing=REFERENCE.replacing(RVIZ, "Fixed Frame: base_footprint", "Fixed Frame: map"),
-        complains="the Fixed Frame is 'map', expected 'base_footprint'; the robot has no link 'map'",
+        complains="the Fixed Frame is 'map'; it should be 'base_footprint'; the robot has no link 'map'",
         at=(RVIZ, "map\n"),
     ),
     HandInCase(
@@ -157,18 +157,18 @@ PENDING_CASES = (
             "places": ["task 1 step 15"],
             "files": ("*.md", "*.txt"),
         },
-        found="What happens? The answer in answers.md, from line 3, is for a person to mark",
+        found="What happens? The answer in answers.md, from line 3, needs manual grading",
         at=(ANSWERS, "## Task 1"),
         without=REFERENCE.without(ANSWERS),
-        not_found="What happens? No answer was found under 'task 1 step 15'; a person decides",
+        not_found="What happens? No answer was found under 'task 1 step 15'; needs manual grading",
     ),
     PendingCase(
         evidence_shown,
         {"names": ["task 1 step 8"]},
-        found="a person looks at Task1_Step8.png (640 x 480 pixels, 118 bytes)",
+        found="needs manual grading: Task1_Step8.png (640 x 480 pixels, 118 bytes)",
         at=None,
         without=HandIn({path: content for path, content in REFERENCE.files.items() if not path.endswith(".png")}),
-        not_found="no picture or PDF named as 'task 1 step 8' was found; there are no pictures at all; a person decides",
+        not_found="no picture or PDF is named 'task 1 step 8'; the submission has no pictures; needs manual grading",
     ),
 )
 

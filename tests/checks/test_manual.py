@@ -39,7 +39,7 @@ def passage(files: dict[str, str | bytes], places: Sequence[str] = PLACES) -> tu
     outcome = answer_in(ALONE.with_files(files), places)
     if outcome.location is not None:
         at = outcome.location
-        assert outcome.message == f"What happens? The answer in {at.path}, from line {at.line}, is for a person to mark"
+        assert outcome.message == f"What happens? The answer in {at.path}, from line {at.line}, needs manual grading"
     return outcome.measured, outcome.location
 
 
@@ -56,7 +56,7 @@ def pictures(hand_in: HandIn, names: Sequence[str] = STEP_8) -> tuple[str, objec
 def test_the_passage_is_shown() -> None:
     """The heading and what stands below it are shown, up to the next heading, with the first line's place."""
     outcome = answer_in(REFERENCE)
-    assert outcome.message == "What happens? The answer in answers.md, from line 3, is for a person to mark"
+    assert outcome.message == "What happens? The answer in answers.md, from line 3, needs manual grading"
     assert outcome.measured == (
         "## Task 1, step 15\n\nThe robot vanishes: two links have no parent, and a robot has one root."
     )
@@ -154,9 +154,9 @@ def test_a_long_answer_is_cut() -> None:
 
 def test_no_answer_at_all() -> None:
     """Where nothing was handed in, a person decides, who is told where it was looked for."""
-    assert answer_in(ALONE).message == f"{NOT_FOUND}; a person decides"
+    assert answer_in(ALONE).message == f"{NOT_FOUND}; needs manual grading"
     other = answer_in(ALONE.with_files({"notes.txt": "It vanishes.\n", "answers.md": "\n"}))
-    assert other.message == f"{NOT_FOUND}; looked through answers.md, notes.txt; a person decides"
+    assert other.message == f"{NOT_FOUND} in answers.md and notes.txt; needs manual grading"
     assert (other.measured, other.location) == (None, None)
 
 
@@ -185,7 +185,7 @@ def test_other_texts_are_not_looked_through() -> None:
         "my_robot/CMakeLists.txt": "Task 1 step 15: no",
         "requirements.txt": "Task 1 step 15: no",
     }
-    assert answer_in(ALONE.with_files({**texts})).message == f"{NOT_FOUND}; a person decides"
+    assert answer_in(ALONE.with_files({**texts})).message == f"{NOT_FOUND}; needs manual grading"
 
 
 def test_documents_by_other_names() -> None:
@@ -221,7 +221,7 @@ def test_a_word_file_is_read() -> None:
 def test_a_damaged_document_is_named(name: str) -> None:
     """A document that cannot be read is named for the person who marks; it hides no other."""
     message = answer_in(ALONE.with_files({name: b"no document"})).message
-    assert message.startswith(f"{NOT_FOUND}; a person decides (not read: {name} ")
+    assert message.startswith(f"{NOT_FOUND}; needs manual grading (not read: {name} ")
     assert message.endswith(": open it yourself)")
     beside = answer_in(ALONE.with_files({name: b"no document", "b.txt": "Task 1 step 15: It vanishes."}))
     assert beside.measured == "Task 1 step 15: It vanishes."
@@ -295,21 +295,21 @@ def test_no_more_than_a_few_documents_are_converted(tmp_path: Path, monkeypatch:
 @pytest.mark.parametrize("name", ["answers.doc", "answers.odt", "answers.rtf", "answers.pages"])
 def test_a_document_of_another_kind_is_named(name: str) -> None:
     """A kind that is not read is named, so that a person opens it."""
-    message = f"{NOT_FOUND}; a person decides (not read: {name} is of a kind that is not read: open it yourself)"
+    message = f"{NOT_FOUND}; needs manual grading (not read: {name} is of a kind that is not read: open it yourself)"
     assert answer_in(ALONE.with_files({name: b"text"})).message == message
 
 
 def test_a_text_that_is_too_large_is_named() -> None:
     """A text beyond all measure is not read."""
     message = answer_in(ALONE.with_files({"answers.txt": "Step 15: x\n" * 200_000})).message
-    assert message == f"{NOT_FOUND}; a person decides (not read: answers.txt is larger than 1048576 bytes)"
+    assert message == f"{NOT_FOUND}; needs manual grading (not read: answers.txt is larger than 1048576 bytes)"
 
 
 def test_the_lines_of_a_document_are_capped_with_a_note() -> None:
     """What stands after the last line that is read is not found, and the report says so."""
     end = "\n" * MAX_LINES + "Step 15: late\n"
     cut = f"answers.md after line {MAX_LINES}, the limit for a document"
-    message = f"{NOT_FOUND}; looked through answers.md; a person decides (not read: {cut})"
+    message = f"{NOT_FOUND} in answers.md; needs manual grading (not read: {cut})"
     assert answer_in(ALONE.with_files({"answers.md": end})).message == message
     last = "\n" * (MAX_LINES - 1) + "Step 15: in time\n"
     found = answer_in(ALONE.with_files({"answers.md": last}))
@@ -326,7 +326,7 @@ def test_documents_that_grading_was_lost_with_are_left_to_a_person() -> None:
     """The model answer stays beside the question, and nothing is converted."""
     submission = replace(REFERENCE.submission, no_documents="it took long")
     outcome = answered(submission, question=QUESTION, answer=ANSWER, places=PLACES)
-    message = "What happens? The documents could not be read: it took long; needs manual grading"
+    message = "What happens? The documents cannot be read: it took long; needs manual grading"
     assert (outcome.status, outcome.message, outcome.expected) == ("pending", message, None)
 
 
@@ -353,7 +353,7 @@ def test_documents_that_grading_was_lost_with_are_left_to_a_person() -> None:
 def test_pictures_are_found_however_they_are_named(path: str) -> None:
     """Task and step are found in the name or in the folders, in every spelling; size and dimensions are told."""
     size = len(png())
-    expected = (f"a person looks at {path} (640 x 480 pixels, {size} bytes)", (path,))
+    expected = (f"needs manual grading: {path} (640 x 480 pixels, {size} bytes)", (path,))
     assert pictures(ALONE.with_files({path: png()})) == expected
 
 
@@ -362,13 +362,13 @@ def test_pictures_are_found_however_they_are_named(path: str) -> None:
 )
 def test_pictures_of_other_steps_are_not_meant(path: str) -> None:
     """Step 18 is not step 8, and that of another task is not meant; what there is is listed."""
-    message = f"no picture or PDF named as 'task 1 step 8' was found; there is {path}; a person decides"
+    message = f"no picture or PDF is named 'task 1 step 8'; the submission has {path}; needs manual grading"
     assert pictures(ALONE.with_files({path: png()})) == (message, None)
 
 
 def test_no_pictures_at_all() -> None:
     """That there is nothing to look at is said, and a person decides."""
-    message = "no picture or PDF named as 'task 1 step 8' was found; there are no pictures at all; a person decides"
+    message = "no picture or PDF is named 'task 1 step 8'; the submission has no pictures; needs manual grading"
     assert pictures(ALONE) == (message, None)
     assert pictures(ALONE.with_files({"Task1_Step8.txt": "a text is no picture"})) == (message, None)
 
@@ -384,7 +384,7 @@ def test_pictures_by_plain_words(path: str) -> None:
 def test_several_names_are_listed() -> None:
     """At most three names are told, and at most six files in words, but all of them in the report's data."""
     message, _ = pictures(ALONE, WEBCAM)
-    assert "named as 'task 3 step 3' or 'task 3' or 'webcam' was found" in message
+    assert "is named 'task 3 step 3', 'task 3' or 'webcam'" in message
     paths = [f"Task1_Step8_{number}.png" for number in range(9)]
     message, found = pictures(ALONE.with_files({path: png() for path in paths}))
     assert message.count(" pixels") == 6
@@ -410,7 +410,7 @@ def test_several_names_are_listed() -> None:
 )
 def test_what_is_told_of_a_file(path: str, data: bytes, words: str) -> None:
     """A picture is told with its dimensions, where they can be read; a damaged one and other files with their size."""
-    assert pictures(ALONE.with_files({path: data})) == (f"a person looks at {path} ({words})", (path,))
+    assert pictures(ALONE.with_files({path: data})) == (f"needs manual grading: {path} ({words})", (path,))
 
 
 def test_the_reference_shows_what_is_asked_for() -> None:

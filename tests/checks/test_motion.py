@@ -21,7 +21,8 @@ ALONG: Arguments = {
 }
 ITSELF: Arguments = {"link": "wheel", "base": "base", "tolerance": 0.002, "angle": 1.0}
 
-ROLLS = "a small positive turn of joint 'wheel_joint' drives 'base' forward"
+ROLLS = "a small positive turn of 'wheel' drives 'base' forward"
+JOINT = " (joint 'wheel_joint')"
 
 
 def with_wheel(*visuals: str, kind: str = "continuous", rpy: str = FORWARD, axis: str = "0 0 1") -> Scene:
@@ -77,7 +78,10 @@ def test_a_wheel_the_other_way_round_drives_backward(rpy: str, axis: str, at: st
     """A mirrored frame or a negated axis turns the wheel the other way: that is where to look."""
     found = with_wheel(visual(sphere(0.1)), rpy=rpy, axis=axis)
     message = fails(rolls_forward, found, at=at, **FORWARDS)
-    assert message == "a small positive turn of joint 'wheel_joint' drives 'base' backward, expected forward"
+    assert (
+        message
+        == "a small positive turn of 'wheel' drives 'base' backward; it should drive it forward (joint 'wheel_joint')"
+    )
     assert ask(rolls_forward, found, **FORWARDS).measured == pytest.approx((-1.0, 0.0, 0.0))
     assert ask(rolls_forward, found, **FORWARDS).expected == (1.0, 0.0, 0.0)
 
@@ -87,7 +91,7 @@ def test_a_wheel_along_x_drives_sideways() -> None:
     for pitch, y in ((90, "-1"), (-90, "1")):
         message = fails(rolls_forward, rolling(rpy=turned(pitch=pitch)), at="rpy=", **FORWARDS)
         assert message == (
-            f"a small positive turn of joint 'wheel_joint' drives 'base' sideways, along 0 {y} 0, expected forward"
+            f"a small positive turn of 'wheel' drives 'base' sideways, along 0 {y} 0; it should drive it forward (joint 'wheel_joint')"
         )
 
 
@@ -95,7 +99,7 @@ def test_a_wheel_that_lies_flat_does_not_roll() -> None:
     """A wheel that turns about the vertical stays where it is: its lowest point is its middle."""
     flat = rolling(rpy="")
     message = fails(rolls_forward, flat, at='xyz="0 0 1"', **FORWARDS)
-    assert message == "turning joint 'wheel_joint' does not roll 'wheel': its lowest point stays where it is"
+    assert message == "'wheel' does not roll when its joint turns: its lowest point does not move (joint 'wheel_joint')"
     assert ask(rolls_forward, flat, **FORWARDS).measured is None
 
 
@@ -124,24 +128,25 @@ def test_straight_ahead_has_a_tolerance(off: float, fine: bool) -> None:
 @pytest.mark.parametrize(
     ("yaw", "words"),
     [
-        (10.0, f"{ROLLS}, 10 degrees off straight ahead"),
-        (-44.0, f"{ROLLS}, 44 degrees off straight ahead"),
-        (46.0, "sideways, along 0.6947 0.7193 0, expected forward"),
-        (134.0, "sideways, along -0.6947 0.7193 0, expected forward"),
-        (136.0, "backward, expected forward"),
+        (10.0, f"{ROLLS}, 10 degrees off straight ahead; it should drive it forward"),
+        (-44.0, f"{ROLLS}, 44 degrees off straight ahead; it should drive it forward"),
+        (46.0, "sideways, along 0.6947 0.7193 0; it should drive it forward"),
+        (134.0, "sideways, along -0.6947 0.7193 0; it should drive it forward"),
+        (136.0, "backward; it should drive it forward"),
     ],
 )
 def test_a_heading_is_told_in_words(yaw: float, words: str) -> None:
     """Up to 45 degrees is forward with a slant, from 135 backward, and sideways between, with the direction."""
-    assert fails(rolls_forward, rolling(rpy=turned(roll=-90, yaw=yaw)), **FORWARDS).endswith(words)
+    assert fails(rolls_forward, rolling(rpy=turned(roll=-90, yaw=yaw)), **FORWARDS).endswith(words + JOINT)
 
 
 def test_a_small_slant_is_told_though_it_passes() -> None:
     """A slant that a reader can see in the file is told; rounded angles are not."""
     assert (
-        passes(rolls_forward, rolling(rpy="-1.57 0 0.01"), **FORWARDS) == f"{ROLLS}, 0.573 degrees off straight ahead"
+        passes(rolls_forward, rolling(rpy="-1.57 0 0.01"), **FORWARDS)
+        == f"{ROLLS}, 0.573 degrees off straight ahead{JOINT}"
     )
-    assert passes(rolls_forward, rolling(rpy="-1.57 0 0"), **FORWARDS) == ROLLS
+    assert passes(rolls_forward, rolling(rpy="-1.57 0 0"), **FORWARDS) == ROLLS + JOINT
 
 
 def test_forward_and_up_are_the_rubrics() -> None:
@@ -177,7 +182,7 @@ def test_the_joint_next_to_the_wheel_is_turned() -> None:
         joint("steering", "revolute", "base", "fork", xyz="-0.15 0.225 0", axis="0 0 1"),
         joint("wheel_joint", "continuous", "fork", "wheel", rpy=FORWARD, axis="0 0 1"),
     )
-    assert passes(rolls_forward, steered, **FORWARDS) == ROLLS
+    assert passes(rolls_forward, steered, **FORWARDS) == ROLLS + JOINT
     passes(turns_about_itself, steered, **ITSELF)
 
 
@@ -190,7 +195,7 @@ def test_the_moving_joint_may_stand_above_a_mount() -> None:
         joint("wheel_joint", "continuous", "base", "axle", xyz="-0.15 0.225 0", rpy=FORWARD, axis="0 0 1"),
         joint("mount", "fixed", "axle", "wheel", xyz="0 0 0.01"),
     )
-    assert passes(rolls_forward, mounted, **FORWARDS) == ROLLS
+    assert passes(rolls_forward, mounted, **FORWARDS) == ROLLS + JOINT
     passes(turns_about_itself, mounted, **ITSELF)
 
 
@@ -208,7 +213,10 @@ def test_a_wheel_on_a_joint_that_does_not_move_misses_one(kind: str) -> None:
     for check, arguments in ((rolls_forward, FORWARDS), (turns_about_itself, ITSELF)):
         error = missing(check, rolling(kind=kind), **arguments)
         assert (error.kind, error.name) == ("moving joint", "wheel")
-        assert fails(check, rolling(kind=kind), at="<joint", **arguments) == "no joint between 'base' and 'wheel' turns"
+        assert (
+            fails(check, rolling(kind=kind), at="<joint", **arguments)
+            == "no joint between 'base' and 'wheel' turns; one should be continuous or revolute"
+        )
 
 
 def test_a_link_does_not_move_against_itself() -> None:
@@ -242,9 +250,10 @@ def test_a_revolute_joint_turns_too() -> None:
 def test_nothing_rolls_on_a_joint_without_a_pose(found: Scene, reason: str, at: str) -> None:
     """Where the joint's pose is undefined that is what is missing, and why."""
     error = missing(rolls_forward, found, **FORWARDS)
-    assert (error.kind, error.name) == ("pose below joint", "wheel_joint")
+    assert (error.kind, error.name) == ("pose behind joint", "wheel_joint")
     assert (
-        fails(rolls_forward, found, at=at, **FORWARDS) == f"the pose below joint 'wheel_joint' is undefined: {reason}"
+        fails(rolls_forward, found, at=at, **FORWARDS)
+        == f"the pose of a joint's child is undefined: {reason} (joint 'wheel_joint')"
     )
 
 
@@ -282,7 +291,7 @@ def test_an_axis_has_a_tolerance(angle: str) -> None:
         assert outcome.expected == (0.0, 1.0, 0.0)
     message = fails(axis_along, rolling(rpy=turned(roll=-80)), at="rpy=", **ALONG)
     assert message == (
-        "the z axis of the frame 'wheel' points along 0 0.9848 0.1736 in 'base', expected 0 1 0: 10 degrees off"
+        "the z axis of the frame 'wheel' points along 0 0.9848 0.1736 in 'base'; it should point along 0 1 0 (10 degrees off)"
     )
 
 
@@ -313,7 +322,7 @@ def test_the_joints_axis_does_not_turn_the_frame() -> None:
 def test_a_frame_that_is_not_turned_points_to_what_is_there() -> None:
     """Without an rpy the origin is pointed to, without an origin the link."""
     message = fails(axis_along, rolling(rpy=""), at='<origin xyz="-0.15 0.225 0.0"', **ALONG)
-    assert message.endswith("points along 0 0 1 in 'base', expected 0 1 0: 90 degrees off")
+    assert message.endswith("points along 0 0 1 in 'base'; it should point along 0 1 0 (90 degrees off)")
     bare = scene(BASE, WHEEL, joint("wheel_joint", "continuous", "base", "wheel"))
     fails(axis_along, bare, at='<link name="wheel"', **ALONG)
 
@@ -368,7 +377,7 @@ def test_a_wobble_has_a_tolerance(off: float, fine: bool) -> None:
         assert outcome.expected == 0.0
         assert (outcome.tolerance, outcome.unit) == (1.0, "deg")
         assert outcome.message == (
-            f"'wheel' wobbles: the axis of joint 'wheel_joint' is {abs(off):g} degrees off the cylinder's axis"
+            f"'wheel' wobbles: its joint axis is {abs(off):g} degrees off the cylinder's axis; it should be along it (joint 'wheel_joint')"
         )
         assert outcome.location == found.place('xyz="0 0 1"')
 
@@ -387,7 +396,7 @@ def test_an_axle_beside_the_middle_has_a_tolerance(axis: str, off: float, fine: 
     assert outcome.measured == pytest.approx(abs(off))
     if not fine:
         assert outcome.message == (
-            "'wheel' turns off its centre: joint 'wheel_joint' turns it about a line 2.1 mm beside it"
+            "'wheel' turns off centre: its joint axis is 2.1 mm beside the cylinder's axis; it should be on it (joint 'wheel_joint')"
         )
         assert outcome.location == found.place(f'xyz="{xyz}"')
 
@@ -411,7 +420,9 @@ def test_a_hub_does_not_turn_the_wheel_about_itself() -> None:
     """Of several cylinders the largest is the wheel."""
     hub, wheel = visual(cylinder(0.01, 0.1)), visual(cylinder(), xyz="0.05 0 0")
     for order in ((hub, wheel), (wheel, hub)):
-        assert "50 mm beside it" in fails(turns_about_itself, with_wheel(*order), at='xyz="0.05', **ITSELF)
+        assert "50 mm beside the cylinder's axis" in fails(
+            turns_about_itself, with_wheel(*order), at='xyz="0.05', **ITSELF
+        )
 
 
 @settings(deadline=None, max_examples=80)

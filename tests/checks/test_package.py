@@ -72,7 +72,7 @@ def test_the_package_of_the_lab_is_found() -> None:
 def test_another_fileis_told() -> None:
     """A package that names itself otherwise fails at its name."""
     other = manifest("<name>my_robot</name>", "<name>my_robt</name>")
-    message = "the package is named 'my_robt', expected 'my_robot'"
+    message = "the package is named 'my_robt'; it should be named 'my_robot'"
     assert finds(package_found, other, name="my_robot") == ("failed", message, other.place(MANIFEST, "<name>"))
 
 
@@ -103,7 +103,7 @@ def test_no_package_is_missed(hand_in: HandIn) -> None:
 
 def test_a_package_without_package_xml_is_missed() -> None:
     """A setup.py alone makes no package, and both checks of package.xml miss the same."""
-    message = "the folder 'my_robot' has a setup.py, but no package.xml: to ROS 2 it is no package"
+    message = "the folder 'my_robot' has a setup.py, but no package.xml, so it is not a ROS 2 package"
     expected = ("package.xml", "my_robot", message, None)
     assert lacks(package_found, REFERENCE.without(MANIFEST), name="my_robot") == expected
     assert lacks(package_type, REFERENCE.without(MANIFEST), build_type="ament_python") == expected
@@ -156,19 +156,19 @@ def test_a_package_without_name() -> None:
 @pytest.mark.parametrize(
     ("old", "new", "message", "at"),
     [
-        ("ament_python", "ament_cmake", "the build type is 'ament_cmake'; expected 'ament_python'", "<build_type>"),
-        ("ament_python", "ament_pyton", "the build type is 'ament_pyton'; expected 'ament_python'", "<build_type>"),
-        ("ament_python", "", "<build_type> of package.xml is empty; expected 'ament_python'", "<build_type>"),
+        ("ament_python", "ament_cmake", "the build type is 'ament_cmake'; it should be 'ament_python'", "<build_type>"),
+        ("ament_python", "ament_pyton", "the build type is 'ament_pyton'; it should be 'ament_python'", "<build_type>"),
+        ("ament_python", "", "<build_type> in package.xml is empty; it should be 'ament_python'", "<build_type>"),
         (
             "<build_type>ament_python</build_type>",
             "",
-            "the build type is 'catkin' of ROS 1, for which a package.xml without build_type stands, too; expected 'ament_python'",
+            "the build type is 'catkin' (ROS 1; also the default without <build_type>); it should be 'ament_python'",
             "<package format",
         ),
         (
             "ament_python",
             "catkin",
-            "the build type is 'catkin' of ROS 1, for which a package.xml without build_type stands, too; expected 'ament_python'",
+            "the build type is 'catkin' (ROS 1; also the default without <build_type>); it should be 'ament_python'",
             "<build_type>",
         ),
     ],
@@ -370,7 +370,7 @@ def test_a_file_that_goes_elsewhere_fails(folder: str, target: str) -> None:
     """ROS 2 looks below share/<package> only."""
     hand_in = setup(URDF_ENTRY, f"({folder}, glob('urdf/*')),")
     message = (
-        f"a build installs urdf/my_robot.urdf as {target}, but ROS 2 looks for a package's files below share/my_robot/"
+        f"a build installs urdf/my_robot.urdf as {target}; ROS 2 looks for the package's files below share/my_robot/"
     )
     expected = ("failed", message, hand_in.place(SETUP, "glob('urdf/*')"))
     assert finds(build_installs, hand_in, kind="urdf", name="my_robot.urdf") == expected
@@ -515,7 +515,7 @@ def test_what_cmake_installs_is_for_a_person(kind: str) -> None:
     cmake = (
         manifest("ament_python", "ament_cmake").without(SETUP).with_files({"my_robot/CMakeLists.txt": "install()\n"})
     )
-    message = "what CMakeLists.txt installs is not followed: a person has to look"
+    message = "the grader does not evaluate CMakeLists.txt, which says what is installed; needs manual grading"
     assert finds(build_installs, cmake, kind=kind, name=KINDS[kind]) == ("pending", message, None)
     assert finds(setup_imports, cmake) == ("pending", message, None)
     assert finds(installs_files, cmake, files=["urdf/*"]) == ("pending", message, None)
@@ -534,14 +534,14 @@ def test_what_cannot_be_followed_is_for_a_person(kind: str) -> None:
         assert status == "passed"
         return
     assert (status, place) == ("pending", None)
-    assert message.startswith("whether urdf/my_robot.urdf is installed is told only by a build: ")
-    assert message.endswith(" of setup.py)")
+    assert message.startswith("cannot determine statically whether a build installs urdf/my_robot.urdf: ")
+    assert message.endswith(" of setup.py); needs manual grading")
 
 
 def test_a_setup_py_that_is_too_large_is_for_a_person() -> None:
     """What was not read is neither right nor wrong."""
     large = REFERENCE.with_files({SETUP: str(REFERENCE.files[SETUP]) + "#" * 200_000})
-    message = "setup.py could not be read (my_robot/setup.py is larger than 131072 bytes): a person has to look"
+    message = "setup.py cannot be read (my_robot/setup.py is larger than 131072 bytes); needs manual grading"
     for kind, file in KINDS.items():
         assert finds(build_installs, large, kind=kind, name=file) == ("pending", message, None)
     assert finds(setup_imports, large) == ("pending", message, None)
@@ -553,7 +553,7 @@ def test_files_by_patterns() -> None:
     assert lacks(installs_files, REFERENCE, files=["config/*.yaml", "*.yml"]) == (
         "file",
         "config/*.yaml",
-        "the package holds no file that matches 'config/*.yaml' and '*.yml'",
+        "the package has no file that matches 'config/*.yaml' or '*.yml'",
         None,
     )
     assert lacks(installs_files, with_config, files=["config/*.yaml"]) == (
@@ -614,7 +614,7 @@ def test_several_names_are_listed() -> None:
     assert status == "failed"
     assert message.count("'os'") == message.count("'glob'") == 1
     many = REFERENCE.with_files({SETUP: "a()\nb()\nc()\nd()\ne()\n"})
-    assert finds(setup_imports, many)[1].endswith(" (and 2 more)")
+    assert finds(setup_imports, many)[1].endswith("; ... and 2 more")
 
 
 def test_the_reference_defines_its_names() -> None:

@@ -1,4 +1,4 @@
-"""Where things are: frames, centres, bottoms, gaps and overlaps, just inside and just outside their tolerances."""
+"""Positions: frames, centres and bottoms, just inside and just outside their tolerances."""
 
 from itertools import product
 from math import cos, pi, sin
@@ -7,15 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from grader.checks.placement import (
-    bottom_at_height,
-    bottoms_at_height,
-    centre_at,
-    clear_of,
-    frame_at,
-    stands_on,
-    under_the_base,
-)
+from grader.checks.contact import clear_of, stands_on
+from grader.checks.placement import bottom_at_height, bottoms_at_height, centre_at, frame_at, under_the_base
 from grader.robot.kinematics import Configuration
 from tests.checks.asking import Arguments, ask, fails, graded, missing, passes
 from tests.checks.cases import BASE, CASTER, FOOT, FORWARD, LIDAR, WHEEL, Case, cases_of, mounted, rolling, standing
@@ -72,8 +65,11 @@ def test_nothing_is_known_behind_a_joint_without_a_pose(found: Scene, reason: st
     """Where a joint's pose is undefined every check of what is behind it misses the same thing, and says why."""
     for check, arguments in ((frame_at, {**FRAME, "link": "wheel"}), (centre_at, CENTRE), (clear_of, CLEAR)):
         error = missing(check, found, **arguments)
-        assert (error.kind, error.name) == ("pose below joint", "wheel_joint")
-        assert fails(check, found, at=at, **arguments) == f"the pose below joint 'wheel_joint' is undefined: {reason}"
+        assert (error.kind, error.name) == ("pose behind joint", "wheel_joint")
+        assert (
+            fails(check, found, at=at, **arguments)
+            == f"the pose of a joint's child is undefined: {reason} (joint 'wheel_joint')"
+        )
 
 
 def test_a_joint_without_a_pose_hides_nothing_before_it() -> None:
@@ -107,14 +103,16 @@ def test_a_frame_has_a_tolerance_along_each_axis(axis: int, offset: tuple[float,
     assert outcome.expected == (0.15, 0.0, 0.225)
     if not fine:
         side = "large" if off > 0 else "small"
-        assert outcome.message.endswith(f" m in 'base', expected 0.15 0 0.225 m: {'xyz'[axis]} is 2.1 mm too {side}")
+        assert outcome.message.endswith(
+            f" m in 'base'; it should be at 0.15 0 0.225 m ({'xyz'[axis]} 2.1 mm too {side})"
+        )
 
 
 def test_a_frame_without_an_origin_points_to_its_joint() -> None:
     """Where no origin is written, the joint is where it is missing."""
     found = scene(BASE, LIDAR, joint("j", "fixed", "base", "lidar"))
     message = fails(frame_at, found, at="<joint", **FRAME)
-    assert message.endswith("expected 0.15 0 0.225 m: x is 150 mm too small, z is 225 mm too small")
+    assert message.endswith("it should be at 0.15 0 0.225 m (x 150 mm too small, z 225 mm too small)")
 
 
 def test_an_origin_without_xyz_points_to_its_tag() -> None:
@@ -193,7 +191,7 @@ def test_a_centre_has_a_tolerance_along_each_axis(axis: int, offset: tuple[float
         outcome = ask(centre_at, found, **CENTRE)
         assert (outcome.status == "passed") == fine
         assert outcome.measured == pytest.approx(tuple(xyz))
-        assert fine or f"{'xyz'[axis]} is 2.1 mm too {'large' if off > 0 else 'small'}" in outcome.message
+        assert fine or f"{'xyz'[axis]} 2.1 mm too {'large' if off > 0 else 'small'}" in outcome.message
 
 
 @pytest.mark.parametrize(
@@ -242,7 +240,7 @@ def test_the_centre_of_the_named_shape_counts() -> None:
         passes(centre_at, found, **CENTRE, shape="cylinder")
         for shape in ("any", "box", "sphere"):
             message = fails(centre_at, found, at='xyz="0 0 1"', **CENTRE, shape=shape)
-            assert message.endswith(": z is 1000 mm too large")
+            assert message.endswith(" (z 1000 mm too large)")
     with_mesh = link("wheel", visual(mesh()), wheel)
     found = scene(BASE, with_mesh, joint("j", "continuous", "base", "wheel", xyz="-0.15 0.225 0"))
     passes(centre_at, found, **CENTRE, shape="cylinder")
@@ -253,7 +251,7 @@ def test_a_rigid_link_has_no_moving_joint_above_it() -> None:
     """With `rigid` a link must also be fixed; the place alone is not enough."""
     loose = rolling()
     message = fails(centre_at, loose, at='type="continuous"', **CENTRE, rigid=True)
-    assert message == "joint 'wheel_joint' between 'base' and 'wheel' is continuous, expected fixed"
+    assert message == "a joint between 'base' and 'wheel' is continuous; it should be fixed (joint 'wheel_joint')"
     passes(centre_at, loose, **CENTRE, rigid=False)
     passes(centre_at, rolling(kind="fixed"), **CENTRE, rigid=True)
 
@@ -264,7 +262,10 @@ def test_a_rigid_link_does_not_hang_on_what_moves() -> None:
     found = Scene(rolling().text.replace("</robot>", f"{CASTER}\n{on_wheel}\n</robot>"))
     arguments: Arguments = {**CENTRE, "link": "caster", "rigid": True}
     message = fails(centre_at, found, at='link="wheel"/>\n<child link="caster"', **arguments)
-    assert message == "joint 'caster_joint' holds 'caster' to 'wheel', which moves: joint 'wheel_joint' is continuous"
+    assert (
+        message
+        == "'caster' is a child of 'wheel', which moves: a joint above it is continuous; it should be fixed (joint 'wheel_joint')"
+    )
     passes(centre_at, found, **{**arguments, "rigid": False})
 
 
@@ -297,7 +298,8 @@ def test_a_bottom_has_a_tolerance(offset: tuple[float, bool]) -> None:
     if not fine:
         side = "high" if off > 0 else "low"
         assert (
-            outcome.message == f"the bottom of 'base' in the frame 'base' is {off} m, expected 0 m: 2.1 mm too {side}"
+            outcome.message
+            == f"the bottom of 'base' in the frame 'base' is at z = {off} m; it should be 0 m (2.1 mm too {side})"
         )
         assert outcome.location == found.place('xyz="')
 
@@ -328,7 +330,7 @@ def test_the_lowest_of_several_visuals_counts() -> None:
     foot = visual(sphere(0.01), xyz="0 0 -0.04")
     found = scene(link("base", visual(box(0.6, 0.4, 0.2), xyz="0 0 0.1"), foot))
     message = fails(bottom_at_height, found, at='xyz="0 0 0.1"', **BOTTOM)
-    assert message == "the bottom of 'base' in the frame 'base' is -0.05 m, expected 0 m: 50 mm too low"
+    assert message == "the bottom of 'base' in the frame 'base' is at z = -0.05 m; it should be 0 m (50 mm too low)"
 
 
 def test_only_the_bottom_of_the_named_shape_counts() -> None:
@@ -339,7 +341,7 @@ def test_only_the_bottom_of_the_named_shape_counts() -> None:
         found = scene(link("base", *order))
         passes(bottom_at_height, found, **BOTTOM, shape="box")
         for shape in ("any", "sphere"):
-            assert "is -1 m, expected 0 m" in fails(
+            assert "is at z = -1 m; it should be 0 m" in fails(
                 bottom_at_height, found, at="<visual>\n<geometry>\n<sphere", **BOTTOM, shape=shape
             )
 
@@ -369,7 +371,7 @@ def test_every_bottom_has_the_tolerance(offset: tuple[float, bool]) -> None:
     assert outcome.measured == pytest.approx((off, 0.0))
     if not fine:
         assert outcome.message.endswith(
-            f" m in 'foot', expected 0 m: 'wheel' is 2.1 mm too {'high' if off > 0 else 'low'}"
+            f" m in 'foot'; they should be at 0 m ('wheel' 2.1 mm too {'high' if off > 0 else 'low'})"
         )
         assert outcome.location == found.place('xyz="-0.15 0.225')
 
@@ -378,8 +380,8 @@ def test_all_bottoms_that_are_off_are_told() -> None:
     """Every link that hangs or sinks is named; where all do alike, what lifts them all is pointed to."""
     message = fails(bottoms_at_height, standing(height=0.15), at='xyz="0 0 0.15"', **BOTTOMS)
     assert message == (
-        "the bottoms of 'wheel', 'caster' are at z = 0.05 0.05 m in 'foot', expected 0 m:"
-        " 'wheel' is 50 mm too high, 'caster' is 50 mm too high"
+        "the bottoms of 'wheel' and 'caster' are at z = 0.05 0.05 m in 'foot'; they should be at 0 m"
+        " ('wheel' 50 mm too high, 'caster' 50 mm too high)"
     )
 
 
@@ -387,7 +389,7 @@ def test_of_bottoms_that_are_off_differently_the_first_is_pointed_to() -> None:
     """Where each is off by another distance no single origin is to blame; the first wrong link's is the place."""
     found = standing(height=0.15, wheel=0.05)
     message = fails(bottoms_at_height, found, at='xyz="-0.15 0.225', **BOTTOMS)
-    assert message.endswith(": 'wheel' is 100 mm too high, 'caster' is 50 mm too high")
+    assert message.endswith(" ('wheel' 100 mm too high, 'caster' 50 mm too high)")
     only_the_caster = standing(height=0.15, wheel=-0.05)
     fails(bottoms_at_height, only_the_caster, at='xyz="0.2 0.0 -0.05"', **BOTTOMS)
 
@@ -397,7 +399,9 @@ def test_a_missing_link_does_not_hide_one_that_is_off() -> None:
     both: Arguments = {**BOTTOMS, "links": ["nowhere", "wheel"]}
     assert missing(bottoms_at_height, standing(), **both).name == "nowhere"
     message = fails(bottoms_at_height, standing(wheel=0.05), **both)
-    assert message == "the bottoms of 'wheel' are at z = 0.05 m in 'foot', expected 0 m: 'wheel' is 50 mm too high"
+    assert (
+        message == "the bottoms of 'wheel' are at z = 0.05 m in 'foot'; they should be at 0 m ('wheel' 50 mm too high)"
+    )
 
 
 def test_a_mesh_does_not_hide_a_bottom_that_is_off() -> None:
@@ -406,184 +410,6 @@ def test_a_mesh_does_not_hide_a_bottom_that_is_off() -> None:
     assert graded(bottoms_at_height, Scene(open_), **BOTTOMS).status == "pending"
     closed = standing(wheel=0.05).text.replace(sphere(0.05), mesh())
     assert graded(bottoms_at_height, Scene(closed), **BOTTOMS).status == "failed"
-
-
-# --- stands_on --------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("offset", OFFSETS)
-def test_a_gap_and_an_overlap_have_a_tolerance(offset: tuple[float, bool]) -> None:
-    """What stands on a top may hang above it or sink into it by the tolerance, its end included."""
-    off, fine = offset
-    found = mounted((0.15, 0.0, 0.225 + off))
-    outcome = ask(stands_on, found, **ON)
-    assert (outcome.status == "passed") == fine
-    assert outcome.measured == pytest.approx(0.2 + off)
-    assert outcome.expected == pytest.approx(0.2)
-    if not fine:
-        fault = "floats above it" if off > 0 else "is sunk into it"
-        assert outcome.message == (
-            f"the bottom of 'lidar' is at z = {round(0.2 + off, 4)} m in 'base' and the top of 'base' at 0.2 m:"
-            f" 'lidar' {fault} by 2.1 mm"
-        )
-        assert outcome.location is None  # lidar or base: either may be in the wrong place
-
-
-@pytest.mark.parametrize(
-    ("x", "y", "beyond"),
-    [
-        (0.2, 0.1, None),
-        (0.2019, 0.0, None),
-        (0.202, 0.0, None),
-        (0.2021, 0.0, "2.1"),
-        (-0.2021, 0.0, "2.1"),
-        (0.0, 0.102, None),
-        (0.0, 0.1021, "2.1"),
-        (0.0, -0.1021, "2.1"),
-        (0.3, 0.0, "100"),
-        (1.0, 1.0, "900"),
-    ],
-)
-def test_what_stands_on_a_top_stays_within_its_edges(x: float, y: float, beyond: str | None) -> None:
-    """What reaches beyond the outline by more than the tolerance does not stand on the top."""
-    if beyond is None:
-        passes(stands_on, mounted((x, y, 0.225)), **ON)
-    else:
-        message = fails(stands_on, mounted((x, y, 0.225)), at=f'xyz="{x!r} {y!r}', **ON)
-        assert message == f"'lidar' reaches {beyond} mm beyond the edge of the top of 'base'"
-
-
-def test_the_edges_turn_with_the_base() -> None:
-    """The outline of a box is that of the box as it lies, not of the frame."""
-    for yaw, fine in ((0, True), (90, False)):
-        base = link("base", visual(box(0.6, 0.4, 0.2), xyz="0 0 0.1", rpy=turned(yaw=yaw)))
-        found = scene(base, LIDAR, joint("j", "fixed", "base", "lidar", xyz="0.2 0 0.225"))
-        assert (ask(stands_on, found, **ON).status == "passed") == fine
-    slanted = link("base", visual(box(1.0, 0.3, 0.2), xyz="0 0 0.1", rpy=turned(yaw=45)))
-    along = 0.3 / 2**0.5
-    for y, fine in ((along, True), (-along, False)):
-        found = scene(slanted, LIDAR, joint("j", "fixed", "base", "lidar", xyz=(along, y, 0.225)))
-        assert (ask(stands_on, found, **ON).status == "passed") == fine
-
-
-def test_things_stand_on_cylinders_and_spheres_too() -> None:
-    """Any shape has a top and an outline."""
-    drum = link("base", visual(cylinder(0.3, 0.2), xyz="0 0 0.1"))
-    for x, fine in ((0.19, True), (0.21, False)):
-        found = scene(drum, LIDAR, joint("j", "fixed", "base", "lidar", xyz=(x, 0.0, 0.225)))
-        assert (ask(stands_on, found, **ON).status == "passed") == fine
-    ball = link("base", visual(sphere(0.2)))
-    passes(stands_on, scene(ball, LIDAR, joint("j", "fixed", "base", "lidar", xyz="0 0 0.225")), **ON)
-
-
-def test_a_turned_lidar_is_measured_as_it_lies() -> None:
-    """A lidar on its rim reaches farther down than one that lies flat."""
-    message = fails(stands_on, mounted(rpy=turned(roll=90)), **ON)
-    assert message.endswith("'lidar' is sunk into it by 75 mm")
-    passes(stands_on, mounted((0.15, 0.0, 0.3), turned(roll=90)), **ON)
-
-
-def test_all_visuals_of_what_stands_count() -> None:
-    """A mast on the lidar is no matter, a plug below it is."""
-    mast = visual(cylinder(0.01, 0.01), xyz="0 0 0.5")
-    passes(stands_on, mounted(lidar=link("lidar", visual(cylinder()), mast)), **ON)
-    plug = visual(cylinder(0.01, 0.05), xyz="0 0 -0.01")
-    assert "sunk into it by 10 mm" in fails(stands_on, mounted(lidar=link("lidar", visual(cylinder()), plug)), **ON)
-
-
-def test_a_lidar_without_an_origin_points_to_its_joint() -> None:
-    """Where nothing is written that moves the lidar, the joint is where it is missing; of a gap nobody knows the place."""
-    joined = joint("j", "fixed", "base", "lidar")
-    pillar = link("base", visual(box(0.1, 0.1, 0.2), xyz="0 0 -0.125"))
-    message = fails(stands_on, scene(pillar, LIDAR, joined), at="<joint", **ON)
-    assert message == "'lidar' reaches 50 mm beyond the edge of the top of 'base'"
-    assert graded(stands_on, scene(BASE, LIDAR, joined), **ON).location is None
-
-
-def test_it_is_the_top_of_the_named_shape_that_counts() -> None:
-    """A larger shape of another kind on the base is no support where the rubric names one."""
-    body, dome = visual(box(0.6, 0.4, 0.2), xyz="0 0 0.1"), visual(sphere(1.0))
-    for order in ((body, dome), (dome, body)):
-        found = scene(link("base", *order), LIDAR, joint("j", "fixed", "base", "lidar", xyz="0.15 0 0.225"))
-        passes(stands_on, found, **ON, shape="box")
-        for shape in ("any", "sphere", "cylinder"):
-            assert "the top of 'base' at 1 m" in fails(stands_on, found, **ON, shape=shape)
-
-
-# --- clear_of ---------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("y", "depth"),
-    [(0.225, None), (0.25, None), (1.0, None), (0.2231, None), (0.223, None), (0.2229, "2.1"), (0.2, "25")],
-)
-def test_an_overlap_has_a_tolerance(y: float, depth: str | None) -> None:
-    """Touching is fine, and so is an overlap of the tolerance, its end included; a deeper one is told."""
-    found = rolling(xyz=(-0.15, y, 0.0))
-    if depth is None:
-        assert passes(clear_of, found, **CLEAR) == "'wheel' does not cut into 'base'"
-        assert ask(clear_of, found, **CLEAR).measured == 0.0
-    else:
-        assert fails(clear_of, found, **CLEAR) == f"'wheel' cuts {depth} mm deep into 'base'"
-        assert ask(clear_of, found, **CLEAR).measured == pytest.approx(float(depth) / 1000)
-
-
-def test_a_deep_overlap_is_the_shortest_way_out() -> None:
-    """A wheel in the middle of the base has to go out by the nearest side, here the bottom."""
-    message = fails(clear_of, rolling(xyz="0 0 0"), **CLEAR)
-    assert message == "'wheel' cuts 100 mm deep into 'base'"
-
-
-def test_an_overlap_is_measured_whichever_link_is_asked() -> None:
-    """Each cuts as deep into the other."""
-    found = rolling(xyz=(-0.15, 0.2, 0.0))
-    assert fails(clear_of, found, **CLEAR) == "'wheel' cuts 25 mm deep into 'base'"
-    assert fails(clear_of, found, link="base", of="wheel", tolerance=0.002) == "'base' cuts 25 mm deep into 'wheel'"
-
-
-def test_the_visual_that_was_moved_inward_is_pointed_to() -> None:
-    """Where the visual has an origin, its xyz is the place; else the visual is."""
-    inward = link("wheel", visual(cylinder(), xyz="0 0 -0.025"))
-    joined = joint("j", "continuous", "base", "wheel", xyz="-0.15 0.2 0", rpy=FORWARD)
-    assert "50 mm deep" in fails(clear_of, scene(BASE, inward, joined), at='xyz="0 0 -0.025"', **CLEAR)
-
-
-@settings(deadline=None, max_examples=40)
-@given(x=st.floats(-0.5, 0.5, width=16), z=st.floats(-0.5, 0.5, width=16), yaw=st.floats(-4.0, 4.0, width=16))
-def test_two_spheres_cut_as_deep_as_their_radii_overlap(x: float, z: float, yaw: float) -> None:
-    """For spheres the depth is known: the radii less the distance of the centres."""
-    one, other = link("base", visual(sphere(0.3))), link("wheel", visual(sphere(0.2)))
-    found = scene(one, other, joint("j", "fixed", "base", "wheel", xyz=(x, 0.0, z), rpy=(0.0, 0.0, yaw)))
-    depth = 0.5 - (x * x + z * z) ** 0.5
-    outcome = ask(clear_of, found, **CLEAR)
-    if depth < 0.0019:
-        assert outcome.status == "passed"
-    elif depth > 0.0021:
-        assert outcome.status == "failed"
-        assert outcome.measured == pytest.approx(depth, abs=2e-4)
-
-
-def test_no_visual_of_a_link_cuts_into_the_other() -> None:
-    """All that a link shows counts: an axle that reaches into the base cuts, though the wheel itself does not."""
-    axle = visual(cylinder(0.01, 0.3))
-    joined = joint("j", "continuous", "base", "wheel", xyz="-0.15 0.225 0.1", rpy=FORWARD)
-    fails(clear_of, scene(BASE, link("wheel", visual(cylinder()), axle), joined), **CLEAR)
-
-
-def test_too_many_shapes_are_left_to_a_person() -> None:
-    """Up to 2,000 pairs are compared; beyond that a person has to look, even where some cut."""
-    for ours, theirs, depth in ((40, 50, 0.0), (40, 50, 0.1), (1, 2001, 0.1), (2001, 1, 0.0)):
-        one, other = link("base", *[visual(sphere(0.5))] * theirs), link("wheel", *[visual(sphere(0.5))] * ours)
-        found = scene(one, other, joint("j", "fixed", "base", "wheel", xyz=(1.0 - depth, 0.0, 0.0)))
-        outcome = graded(clear_of, found, **CLEAR)
-        if ours * theirs > 2000:
-            assert outcome.status == "pending"
-            assert (
-                outcome.message
-                == "'wheel' and 'base' show too many shapes to compare each with each; a person has to look"
-            )
-        else:
-            assert outcome.status == ("failed" if depth else "passed")
 
 
 # --- under_the_base ---------------------------------------------------------------------------------------------------
@@ -611,7 +437,7 @@ def test_a_footprint_has_a_tolerance_in_the_plane(axis: str, offset: tuple[float
     assert (outcome.status == "passed") == fine
     if not fine:
         shown = f"{off:g} 0" if axis == "x" else f"0 {off:g}"
-        assert f": 'base' is at x, y = {shown} m in it, expected 0 0" in outcome.message
+        assert f": 'base' is at x, y = {shown} m in it and should be at 0 0" in outcome.message
 
 
 @pytest.mark.parametrize("angle", ["roll", "pitch", "yaw"])
@@ -623,7 +449,7 @@ def test_a_footprint_has_a_tolerance_in_its_angle(angle: str) -> None:
         outcome = ask(under_the_base, found, **loose)
         assert (outcome.status == "passed") == fine, degrees
         if abs(degrees) == 180.0:
-            assert "'base' is turned by 180 degrees in it, expected 0" in outcome.message
+            assert "'base' is turned by 180 degrees in it and should not be turned" in outcome.message
 
 
 def test_all_faults_of_a_footprint_are_told() -> None:
@@ -631,8 +457,8 @@ def test_all_faults_of_a_footprint_are_told() -> None:
     found = standing(height=0.2, xy="0.3 0", rpy=turned(yaw=90))
     message = fails(under_the_base, found, at='xyz="0.3 0 0.2"', **UNDER)
     assert message == (
-        "the frame 'foot' is not level with the bottoms of the wheels under 'base': 'base' is at x, y = 0.3 0 m in it,"
-        " expected 0 0; 'base' is turned by 90 degrees in it, expected 0; the lowest point of 'wheel' is 100 mm above it"
+        "the frame 'foot' should be under 'base', level with the bottoms of the wheels: 'base' is at x, y = 0.3 0 m in it"
+        " and should be at 0 0; 'base' is turned by 90 degrees in it and should not be turned; the lowest point of 'wheel' is 100 mm above it"
     )
 
 

@@ -89,7 +89,7 @@ def test_another_file_that_nothing_opens_fails(hand_in: HandIn) -> None:
 )
 def test_whether_the_launch_file_opens_it_cannot_be_told(hand_in: HandIn) -> None:
     """A launch file that cannot be followed does not cost the RViz file its name."""
-    message = "whether rviz/view.rviz is the file that the launch file opens is told only by a run"
+    message = "cannot determine statically whether the launch file opens rviz/view.rviz; needs manual grading"
     assert finds(rviz_found, hand_in, name=NAME, launch=BY_LAUNCH) == ("pending", message, None)
 
 
@@ -172,7 +172,7 @@ def test_the_fixed_frame_passes(spelling: str) -> None:
 def test_another_fixed_frame_fails(frame: str, hint: str) -> None:
     """Another frame fails at its value; one that the robot does not have is told as such."""
     hand_in = rviz("Fixed Frame: base_footprint", f"Fixed Frame: {frame}")
-    message = f"the Fixed Frame is {frame!r}, expected 'base_footprint'{hint}"
+    message = f"the Fixed Frame is {frame!r}; it should be 'base_footprint'{hint}"
     assert frame_of(hand_in) == ("failed", message, hand_in.place(RVIZ, f"{frame}\n    Frame Rate"))
 
 
@@ -180,7 +180,7 @@ def test_another_fixed_frame_fails(frame: str, hint: str) -> None:
 def test_no_fixed_frame_fails(line: str) -> None:
     """A frame that is absent or empty is not set."""
     status, message, place = frame_of(rviz("    Fixed Frame: base_footprint\n", line))
-    assert (status, message) == ("failed", "the RViz file sets no Fixed Frame, expected 'base_footprint'")
+    assert (status, message) == ("failed", "the RViz file sets no Fixed Frame; it should be 'base_footprint'")
     assert place is not None
     assert (place.path, place.line) == (RVIZ, 40 if line else 7)
 
@@ -197,7 +197,7 @@ def test_the_frame_needs_no_urdf(hand_in: HandIn) -> None:
     """Without a robot the frame is judged by its name."""
     assert frame_of(hand_in) == ("passed", "the Fixed Frame is 'base_footprint'", None)
     other = rviz("Fixed Frame: base_footprint", "Fixed Frame: map", hand_in)
-    assert frame_of(other)[:2] == ("failed", "the Fixed Frame is 'map', expected 'base_footprint'")
+    assert frame_of(other)[:2] == ("failed", "the Fixed Frame is 'map'; it should be 'base_footprint'")
 
 
 # --- The robot --------------------------------------------------------------------------------------------------------
@@ -239,7 +239,7 @@ def test_a_robot_model_that_is_on_passes(hand_in: HandIn) -> None:
             rviz("      Enabled: true\n      Name: RobotModel\n      Value: true\n", "      Name: RobotModel\n"),
             "the RobotModel display is off",
         ),
-        (grouped(enabled="false"), "the RobotModel display is off, for it is in a group that is off"),
+        (grouped(enabled="false"), "the RobotModel display is off: its group is off"),
         (
             rviz("rviz_default_plugins/RobotModel", "rviz/RobotModel"),
             "rviz/RobotModel is a class of ROS 1; in ROS 2 it is rviz_default_plugins/RobotModel",
@@ -250,19 +250,19 @@ def test_a_robot_model_that_is_on_passes(hand_in: HandIn) -> None:
         ),
         (
             rviz("Value: /robot_description", "Value: /robot"),
-            "the RobotModel display reads the topic '/robot', expected '/robot_description'",
+            "the RobotModel display reads the topic '/robot'; it should read '/robot_description'",
         ),
         (
             rviz("Value: /robot_description", 'Value: ""'),
-            "the RobotModel display has no Description Topic; expected '/robot_description'",
+            "the RobotModel display has no Description Topic; it should be '/robot_description'",
         ),
         (
             rviz("        Value: /robot_description\n", ""),
-            "the RobotModel display has no Description Topic; expected '/robot_description'",
+            "the RobotModel display has no Description Topic; it should be '/robot_description'",
         ),
         (
             rviz("Visual Enabled: true", "Visual Enabled: false"),
-            "the RobotModel display is on, but Visual Enabled is off in it, so nothing is drawn",
+            "the RobotModel display is on, but its Visual Enabled is off, so RViz draws nothing",
         ),
     ],
     ids=["off", "not-on", "group", "ros1", "bare", "topic", "empty", "no-topic", "visual"],
@@ -278,7 +278,7 @@ def test_a_robot_model_that_shows_nothing_fails(hand_in: HandIn, message: str) -
 def test_no_robot_model_fails() -> None:
     """The displays that there are are listed, each once."""
     message = "there is no RobotModel display; the displays are: "
-    assert robot_in(rviz(MODEL, TF)) == ("failed", f"{message}Grid, TF", None)
+    assert robot_in(rviz(MODEL, TF)) == ("failed", f"{message}Grid and TF", None)
     none = rviz(TEXT[TEXT.index("    - Alpha: 0.5") : TEXT.index("  Enabled: true\n  Global")], "    []\n")
     assert robot_in(none) == ("failed", f"{message}none", None)
 
@@ -288,11 +288,11 @@ def test_no_robot_model_fails() -> None:
     [
         (
             rviz("Description Source: Topic", "Description Source: File"),
-            "the RobotModel display reads a file of one machine instead of a topic: a person has to look",
+            "the RobotModel display reads a local file instead of a topic; needs manual grading",
         ),
         (
             rviz("rviz_default_plugins/RobotModel", "my_plugins/RobotModel"),
-            "my_plugins/RobotModel is a class that RViz does not come with: a person has to look",
+            "my_plugins/RobotModel is not a class of RViz itself; needs manual grading",
         ),
     ],
     ids=["file", "plugin"],
@@ -339,7 +339,7 @@ def test_a_display_that_is_not_on_fails(old: str, new: str, message: str) -> Non
 
 def test_a_display_that_is_not_there_fails() -> None:
     """The displays that there are are listed."""
-    message = "there is no LaserScan display; the displays are: Grid, RobotModel, TF"
+    message = "there is no LaserScan display; the displays are: Grid, RobotModel and TF"
     assert finds(rviz_display_on, REFERENCE, name=NAME, kind="LaserScan") == ("failed", message, None)
 
 

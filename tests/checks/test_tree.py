@@ -52,11 +52,11 @@ def test_the_type_of_the_joint_decides(kind: str, wanted: str) -> None:
     outcome = graded(held_by, held(kind), link="wheel", parent="base", joint_type=wanted)
     assert outcome.status == ("passed" if kind == wanted else "failed")
     if kind == wanted:
-        assert outcome.message == f"a {kind} joint, 'j', holds 'wheel' to 'base'"
+        assert outcome.message == f"the {kind} joint 'j' connects 'wheel' to 'base'"
     elif kind == "fixed":
-        assert own_words(outcome) == f"'wheel' cannot move: joint 'j' is fixed, expected {wanted}"
+        assert own_words(outcome) == f"'wheel' cannot move: its joint is fixed; it should be {wanted} (joint 'j')"
     else:
-        assert own_words(outcome) == f"joint 'j', which holds 'wheel', is {kind}, expected {wanted}"
+        assert own_words(outcome) == f"the joint that moves 'wheel' is {kind}; it should be {wanted} (joint 'j')"
 
 
 def test_a_wrong_type_is_pointed_to() -> None:
@@ -81,7 +81,10 @@ def test_an_unknown_type_is_quoted(kind: str, guess: str | None) -> None:
     for arguments in (HELD, FIXED):
         message = fails(held_by, held(kind), at=f'type="{kind}"', **arguments)
         hint = f"; did you mean {guess!r}?" if guess else ""
-        assert message == f"joint 'j', which holds 'wheel', has the type {kind!r}, which does not exist{hint}"
+        assert (
+            message
+            == f"a joint between 'base' and 'wheel' has the type {kind!r}, which does not exist{hint} (joint 'j')"
+        )
 
 
 def test_a_joint_without_a_type_has_none() -> None:
@@ -89,13 +92,18 @@ def test_a_joint_without_a_type_has_none() -> None:
     without = Scene(held("fixed").text.replace(' type="fixed"', ""))
     for found, at in ((held(""), 'type=""'), (without, "<joint")):
         for arguments in (HELD, FIXED):
-            assert fails(held_by, found, at=at, **arguments) == "joint 'j', which holds 'wheel', has no type"
+            assert (
+                fails(held_by, found, at=at, **arguments)
+                == "a joint between 'base' and 'wheel' has no type (joint 'j')"
+            )
 
 
 def test_a_grade_run_does_not_say_twice_what_a_check_has_said() -> None:
     """What the reader says of the same place follows only where it is the reason for what was measured."""
     outcome = graded(held_by, held("wheel"), **FIXED)
-    assert outcome.message == "joint 'j', which holds 'wheel', has the type 'wheel', which does not exist"
+    assert (
+        outcome.message == "a joint between 'base' and 'wheel' has the type 'wheel', which does not exist (joint 'j')"
+    )
 
 
 def test_an_unknown_type_moves_nothing() -> None:
@@ -108,18 +116,20 @@ def test_an_unknown_type_moves_nothing() -> None:
 def test_fixed_joints_may_stand_between(kinds: tuple[str, ...]) -> None:
     """A mount between base and wheel changes nothing: the moving joint is the one that is named."""
     name = "abc"[kinds.index("continuous")]
-    assert passes(held_by, in_line(*kinds), **HELD) == f"a continuous joint, {name!r}, holds 'wheel' to 'base'"
+    assert passes(held_by, in_line(*kinds), **HELD) == f"the continuous joint {name!r} connects 'wheel' to 'base'"
 
 
 def test_several_fixed_joints_are_as_good_as_one() -> None:
     """A chain of fixed joints holds a link; the joint next to it is named."""
-    assert passes(held_by, in_line("fixed", "fixed", "fixed"), **FIXED) == "a fixed joint, 'c', holds 'wheel' to 'base'"
+    assert (
+        passes(held_by, in_line("fixed", "fixed", "fixed"), **FIXED) == "the fixed joint 'c' connects 'wheel' to 'base'"
+    )
 
 
 def test_a_wrong_joint_in_a_chain_is_named() -> None:
     """In a chain it is the moving joint that is wrong, wherever it stands."""
     message = fails(held_by, in_line("revolute", "fixed"), at='type="revolute"', **HELD)
-    assert message == "joint 'a', which holds 'wheel', is revolute, expected continuous"
+    assert message == "the joint that moves 'wheel' is revolute; it should be continuous (joint 'a')"
 
 
 @pytest.mark.parametrize("kinds", [("continuous", "continuous"), ("revolute", "fixed", "continuous")])
@@ -127,7 +137,7 @@ def test_several_moving_joints_are_one_too_many(kinds: tuple[str, ...]) -> None:
     """A wheel that can also be steered is not held by one continuous joint."""
     last = "abc"[len(kinds) - 1]
     message = fails(held_by, in_line(*kinds), **HELD)
-    assert message == f"several joints move 'wheel': 'a' and {last!r}; expected one continuous joint"
+    assert message == f"several joints move 'wheel'; there should be one continuous joint (joints 'a' and {last!r})"
     assert ask(held_by, in_line(*kinds), **FIXED).status == "failed"
 
 
@@ -142,7 +152,10 @@ def test_swapped_parent_and_child_are_told() -> None:
     """A joint that has base and wheel the other way round is named as that."""
     swapped = scene(BASE, WHEEL, joint("j", "continuous", "wheel", "base"))
     message = fails(held_by, swapped, at="<joint", **HELD)
-    assert message == "'wheel' is above 'base': joint 'j' has them as parent and child the other way round"
+    assert (
+        message
+        == "the parent and child of a joint are swapped: 'wheel' is above 'base'; it should be below (joint 'j')"
+    )
 
 
 def test_in_a_swapped_chain_the_joint_below_the_link_is_named() -> None:
@@ -150,14 +163,14 @@ def test_in_a_swapped_chain_the_joint_below_the_link_is_named() -> None:
     swapped = scene(
         BASE, WHEEL, link("mount"), joint("a", "fixed", "wheel", "mount"), joint("b", "fixed", "mount", "base")
     )
-    assert "joint 'a' has them" in fails(held_by, swapped, at='<joint name="a"', **FIXED)
+    assert "should be below (joint 'a')" in fails(held_by, swapped, at='<joint name="a"', **FIXED)
 
 
 def test_another_parent_is_named() -> None:
     """A link that is held to something else fails, what holds it is told, and the parent in its joint pointed to."""
     beside = scene(BASE, LIDAR, WHEEL, joint("a", "fixed", "lidar", "base"), joint("b", "continuous", "lidar", "wheel"))
     message = fails(held_by, beside, at='link="lidar"/>\n<child link="wheel"', **HELD)
-    assert message == "joint 'b' holds 'wheel' to 'lidar', expected 'base' as the parent"
+    assert message == "the parent of 'wheel' is 'lidar'; it should be 'base' (joint 'b')"
 
 
 def test_a_link_under_another_one_still_hangs_on_the_base() -> None:
@@ -177,7 +190,7 @@ def test_of_two_joints_to_one_link_the_last_in_name_order_counts() -> None:
     one, two = joint("a", "fixed", "base", "wheel"), joint("b", "continuous", "base", "wheel")
     for order in ((one, two), (two, one)):
         assert "'b'" in passes(held_by, scene(BASE, WHEEL, *order), **HELD)
-        assert "joint 'b', which holds" in fails(held_by, scene(BASE, WHEEL, *order), **FIXED)
+        assert "(joint 'b')" in fails(held_by, scene(BASE, WHEEL, *order), **FIXED)
 
 
 def test_what_a_joint_looks_like_otherwise_does_not_matter() -> None:
@@ -222,13 +235,16 @@ def named(lidar: str, wheel: str) -> Scene:
 def test_every_wrong_name_is_told() -> None:
     """All wrong names are told at once, and the first is pointed to."""
     message = fails(joints_named, named("a", "b"), at='name="a"', **NAMED)
-    assert message == "'lidar' is held by 'a', not 'lidar_joint'; 'wheel' is held by 'b', not 'wheel_joint'"
+    assert (
+        message
+        == "the joint of 'lidar' should be named 'lidar_joint', not 'a'; the joint of 'wheel' should be named 'wheel_joint', not 'b'"
+    )
 
 
 def test_only_the_wrong_names_are_told() -> None:
     """A right name beside a wrong one is passed over."""
     message = fails(joints_named, named("lidar_joint", "Wheel_joint"), at='name="Wheel_joint"', **NAMED)
-    assert message == "'wheel' is held by 'Wheel_joint', not 'wheel_joint'"
+    assert message == "the joint of 'wheel' should be named 'wheel_joint', not 'Wheel_joint'"
 
 
 def test_swapped_names_are_wrong() -> None:
@@ -236,7 +252,7 @@ def test_swapped_names_are_wrong() -> None:
     message = fails(joints_named, named("wheel_joint", "lidar_joint"), **NAMED)
     assert (
         message
-        == "'lidar' is held by 'wheel_joint', not 'lidar_joint'; 'wheel' is held by 'lidar_joint', not 'wheel_joint'"
+        == "the joint of 'lidar' should be named 'lidar_joint', not 'wheel_joint'; the joint of 'wheel' should be named 'wheel_joint', not 'lidar_joint'"
     )
 
 
@@ -244,7 +260,10 @@ def test_a_missing_link_is_held_by_no_joint_of_the_name() -> None:
     """A link that is not there fails the names without hiding a wrong one."""
     half = scene(BASE, WHEEL, joint("b", "continuous", "base", "wheel"))
     message = fails(joints_named, half, at='name="b"', **NAMED)
-    assert message == "no joint 'lidar_joint' holds 'lidar'; 'wheel' is held by 'b', not 'wheel_joint'"
+    assert (
+        message
+        == "no joint 'lidar_joint' connects 'lidar'; the joint of 'wheel' should be named 'wheel_joint', not 'b'"
+    )
 
 
 def test_a_link_without_a_joint_is_held_by_no_name() -> None:
@@ -252,7 +271,7 @@ def test_a_link_without_a_joint_is_held_by_no_name() -> None:
     loose = scene(BASE, LIDAR, WHEEL)
     assert (
         fails(joints_named, loose, **NAMED)
-        == "no joint 'lidar_joint' holds 'lidar'; no joint 'wheel_joint' holds 'wheel'"
+        == "no joint 'lidar_joint' connects 'lidar'; no joint 'wheel_joint' connects 'wheel'"
     )
     assert ask(joints_named, loose, **NAMED).location is None
 
@@ -287,7 +306,7 @@ def test_the_joint_above_the_parent_does_not_count() -> None:
     )
     for parent in ("base", "base_link"):
         message = fails(joints_named, found, at='name="b"', **{**LIDAR_NAMED, "parent": parent})
-        assert message == "'lidar' is held by 'b', not 'lidar_joint'"
+        assert message == "the joint of 'lidar' should be named 'lidar_joint', not 'b'"
 
 
 def test_a_joint_below_a_link_that_is_held_does_not_count() -> None:
@@ -295,7 +314,10 @@ def test_a_joint_below_a_link_that_is_held_does_not_count() -> None:
     found = scene(
         BASE, LIDAR, WHEEL, joint("a", "fixed", "base", "lidar"), joint("lidar_joint", "fixed", "lidar", "wheel")
     )
-    assert fails(joints_named, found, at='name="a"', **LIDAR_NAMED) == "'lidar' is held by 'a', not 'lidar_joint'"
+    assert (
+        fails(joints_named, found, at='name="a"', **LIDAR_NAMED)
+        == "the joint of 'lidar' should be named 'lidar_joint', not 'a'"
+    )
 
 
 def test_a_joint_to_a_link_that_is_missing_has_its_name() -> None:
@@ -326,21 +348,21 @@ def test_a_chain_of_fixed_joints_may_lead_from_the_root() -> None:
 def test_a_loose_joint_does_not_hold_the_base(kind: str) -> None:
     """A joint that moves, or whose type does not exist, is not fixed."""
     message = fails(root_of_tree, scene(FOOT, BASE, joint("j", kind, "foot", "base")), at=f'type="{kind}"', **ROOT)
-    assert message == f"joint 'j' between 'foot' and 'base' is {kind}, expected fixed"
+    assert message == f"a joint between 'foot' and 'base' is {kind}; it should be fixed (joint 'j')"
 
 
 def test_the_first_loose_joint_is_told() -> None:
     """Of several joints the one that is not fixed is named."""
     chain = (joint("a", "fixed", "foot", "mount"), joint("b", "revolute", "mount", "base"))
     message = fails(root_of_tree, scene(FOOT, link("mount"), BASE, *chain), at='type="revolute"', **ROOT)
-    assert message == "joint 'b' between 'foot' and 'base' is revolute, expected fixed"
+    assert message == "a joint between 'foot' and 'base' is revolute; it should be fixed (joint 'b')"
 
 
 def test_a_root_with_something_above_it_is_no_root() -> None:
     """A link that hangs on another one fails, and what it hangs on is told."""
     above = scene(link("world"), FOOT, BASE, joint("w", "fixed", "world", "foot"), joint("j", "fixed", "foot", "base"))
     message = fails(root_of_tree, above, at='<joint name="w"', **ROOT)
-    assert message == "'foot' is not the root: joint 'w' makes it a child of 'world'"
+    assert message == "'foot' is not the root: it is a child of 'world' (joint 'w')"
 
 
 def test_a_root_beside_the_base_does_not_hold_it() -> None:
@@ -379,16 +401,16 @@ def test_further_problems_are_counted() -> None:
     """The first reason is told in full, and how many more there are."""
     one = joint("a", "Fixed", "base", "lidar")
     two = scene(BASE, LIDAR, WHEEL, one, joint("b", "Fixed", "base", "wheel"))
-    assert fails(urdf_loads, two).endswith(" (and 1 more problem that keeps it from loading)")
+    assert fails(urdf_loads, two).endswith(" (and 1 more such problem)")
     three = scene(
         BASE, LIDAR, WHEEL, link("x"), one, joint("b", "Fixed", "base", "wheel"), joint("c", "Fixed", "base", "x")
     )
-    assert fails(urdf_loads, three).endswith(" (and 2 more problems that keep it from loading)")
+    assert fails(urdf_loads, three).endswith(" (and 2 more such problems)")
 
 
 def test_a_single_problem_is_not_counted() -> None:
     """Nothing is said of further problems where there are none."""
-    assert "more problem" not in fails(urdf_loads, scene(BASE, LIDAR, joint("a", "Fixed", "base", "lidar")))
+    assert "more such problem" not in fails(urdf_loads, scene(BASE, LIDAR, joint("a", "Fixed", "base", "lidar")))
 
 
 def test_notes_are_not_counted_as_further_problems() -> None:
@@ -397,7 +419,7 @@ def test_notes_are_not_counted_as_further_problems() -> None:
     message = fails(
         urdf_loads, scene(BASE, LIDAR, WHEEL, zero, joint("b", "Fixed", "base", "wheel")), at='type="Fixed"'
     )
-    assert "more problem" not in message
+    assert "more such problem" not in message
 
 
 @pytest.mark.parametrize(

@@ -103,7 +103,7 @@ def test_a_failed_requirement_skips() -> None:
     report = run(ask("one", fails_), ask("two", requires=["one"]))
     assert statuses(report) == ["failed", "skipped"]
     assert causes(report) == [None, "one"]
-    assert report.results[1].outcome.message == "not decided, because one failed"
+    assert report.results[1].outcome.message == "skipped because one failed"
 
 
 def test_a_skip_names_the_root_cause() -> None:
@@ -116,7 +116,7 @@ def test_a_skip_names_the_root_cause() -> None:
     )
     assert statuses(report) == ["failed", "skipped", "skipped", "skipped"]
     assert causes(report) == [None, "one", "one", "one"]
-    assert report.results[3].outcome.message == "not decided, because one failed"
+    assert report.results[3].outcome.message == "skipped because one failed"
 
 
 def test_the_first_requirement_that_is_not_met_is_named() -> None:
@@ -163,7 +163,7 @@ def test_the_first_criterion_that_misses_a_thing_fails() -> None:
     assert statuses(report) == ["failed", "passed", "skipped", "skipped"]
     assert causes(report) == [None, None, "one", "one"]
     assert "there is no thing 'x'" in report.results[0].outcome.message
-    assert report.results[2].outcome.message == "not decided, because one failed"
+    assert report.results[2].outcome.message == "skipped because one failed"
 
 
 def test_each_thing_that_is_missing_fails_once() -> None:

@@ -244,7 +244,7 @@ def test_a_defect_is_told_once(hand_in: HandIn, lost: Sequence[str], pending: Se
     for result in report.results:
         if result.outcome.status == "skipped":
             assert result.because in failed
-            assert result.outcome.message == f"not decided, because {result.because} failed"
+            assert result.outcome.message == f"skipped because {result.because} failed"
 
 
 def test_two_defects_are_both_told() -> None:

@@ -23,8 +23,8 @@ from grader.classroom.run.worker import ClassContext, Task
 from grader.classroom.students import ClassSubmission, Student
 from grader.errors import InputError
 from grader.files.reading import URDF_LIMIT
+from grader.grading.grade import grade_reference
 from grader.grading.record import to_record
-from grader.grading.reference import grade_reference
 from grader.grading.rubric import Rubric
 
 

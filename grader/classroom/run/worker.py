@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 from grader.checks.outcome import Outcome, Status
-from grader.classroom.gradebook.failures import kind_of_miss
 from grader.classroom.gradebook.result import NOT_GRADED, STATUS_LETTERS, UNITS_PER_POINT, GradingResult, Verdict
 from grader.classroom.intake.opening import fingerprint, open_submission
 from grader.classroom.run.pool import NO_MEMORY
@@ -33,6 +32,8 @@ PRELOAD = (
     "grader.submission.find",
     "grader.package.linting",
 )
+
+MAX_MISTAKE = 200  # characters of a mistake that statistics count
 
 
 class ClassContext(NamedTuple):
@@ -156,7 +157,7 @@ def _of(
     for criterion, outcome, *_ in report.results:
         signs[criterion.position] = STATUS_LETTERS[outcome.status]
         if outcome.status == "failed":
-            misses.append((criterion.position, kind_of_miss(outcome)))
+            misses.append((criterion.position, (outcome.mistake or outcome.message)[:MAX_MISTAKE]))
     score, out_of, pending = (int(each * UNITS_PER_POINT) for each in (report.score, report.max_score, report.pending))
     record = zlib.compress(to_record(report, template).encode(), 1)
     return GradingResult(

@@ -1,0 +1,90 @@
+"""Checks of contact between two links: one stands on the other, or does not cut into it."""
+
+from itertools import product
+
+from grader.checks.outcome import (
+    SLACK,
+    Outcome,
+    difference,
+    judged,
+    pending,
+    place,
+    point,
+    size,
+    within,
+)
+from grader.checks.toml_types import NonNegative
+from grader.checks.visuals import ShapeName, main_visual, origin_place, visual_pose, visuals
+from grader.robot.kinematics import Configuration
+from grader.robot.model import Box, Geometry, Mesh
+from grader.robot.separation import penetration
+from grader.robot.shapes import UnknownShape, extent
+from grader.robot.transforms import Transform, Vector
+
+_AHEAD: Vector = (1.0, 0.0, 0.0)
+_LEFT: Vector = (0.0, 1.0, 0.0)
+_UP: Vector = (0.0, 0.0, 1.0)
+_MAX_PAIRS = 2_000
+
+
+def stands_on(robot: Configuration, *, link: str, on: str, tolerance: NonNegative, shape: ShapeName = "any") -> Outcome:
+    """What a link shows stands on the top of what another shows: no gap, no overlap, within its outline.
+
+    Of several visuals of the one below the largest counts, among those of the named shape if there are any.
+    """
+    support = main_visual(robot, on, shape)
+    T_on_support = visual_pose(robot, on, support, on)
+    placed = [(visual.geometry, visual_pose(robot, link, visual, on)) for visual in visuals(robot, link)]
+    bottom = min(extent(geometry, pose, _UP)[0] for geometry, pose in placed)
+    _, top = extent(support.geometry, T_on_support, _UP)
+    beyond = _overhang(placed, support.geometry, T_on_support)
+    message = f"{link!r} stands on the top of {on!r}, at z = {point((top,))} m in {on!r}"
+    touches = within(bottom, top, tolerance)
+    fine = touches and beyond <= tolerance + SLACK
+    if not touches:
+        message = (
+            f"the bottom of {link!r} is at z = {point((bottom,))} m in {on!r}; it should be at the top of {on!r},"
+            f" {point((top,))} m ({difference(bottom - top, 'm', 'too high', 'too low')})"
+        )
+    elif not fine:
+        message = f"{link!r} reaches {size(beyond, 'm')} beyond the edge of the top of {on!r}"
+    at = origin_place(robot, link) if touches else None  # either of the two may be wrong
+    return judged(fine, message, actual=bottom, expected=top, tolerance=tolerance, unit="m", at=at)
+
+
+def clear_of(robot: Configuration, *, link: str, of: str, tolerance: NonNegative) -> Outcome:
+    """Nothing that a link shows cuts into what another shows, deeper than the tolerance in metres; touching is fine."""
+    own = [(visual, visual_pose(robot, link, visual, of)) for visual in visuals(robot, link)]
+    others = [(visual.geometry, visual_pose(robot, of, visual, of)) for visual in visuals(robot, of)]
+    if len(own) * len(others) > _MAX_PAIRS:
+        return pending(f"{link!r} and {of!r} show too many shapes to compare; needs manual grading")
+    deepest, culprit = 0.0, own[0][0]
+    unknown: Geometry | None = None
+    for (visual, pose), (geometry, other) in product(own, others):
+        if isinstance(visual.geometry, Mesh) or isinstance(geometry, Mesh):
+            unknown = visual.geometry if isinstance(visual.geometry, Mesh) else geometry
+            continue
+        depth = penetration(visual.geometry, pose, geometry, other, allowed=tolerance)
+        if depth > deepest:
+            deepest, culprit = depth, visual
+    fine = deepest <= tolerance
+    if fine and isinstance(unknown, Mesh):
+        raise UnknownShape(unknown)
+    message = f"{link!r} does not cut into {of!r}" if fine else f"{link!r} cuts {size(deepest, 'm')} deep into {of!r}"
+    at = place(culprit.origin.location, "xyz") or place(culprit.location)
+    return judged(fine, message, actual=round(deepest, 4), expected=0.0, tolerance=tolerance, unit="m", at=at)
+
+
+def _overhang(placed: list[tuple[Geometry, Transform]], support: Geometry, T_on_support: Transform) -> float:
+    """Return how far shapes reach beyond the outline of the one below, seen from above, in metres."""
+    directions = [_AHEAD, _LEFT]
+    if isinstance(support, Box):  # its own edges: it may be turned about the vertical
+        axes = [T_on_support.rotate(axis) for axis in (_AHEAD, _LEFT, _UP)]
+        directions = sorted(axes, key=lambda axis: abs(axis[2]))[:2]
+    beyond = 0.0
+    for direction in directions:
+        low, high = extent(support, T_on_support, direction)
+        for geometry, pose in placed:
+            lowest, highest = extent(geometry, pose, direction)
+            beyond = max(beyond, low - lowest, highest - high)
+    return beyond

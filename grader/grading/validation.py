@@ -1,0 +1,166 @@
+"""Validate a rubric's TOML: every mistake is collected, with the path of the key that it is in."""
+
+from collections.abc import Collection, Iterable, Mapping
+from decimal import Decimal
+from functools import cache
+from typing import Any
+
+from grader.checks.registry import Check, check_names, find_check
+from grader.checks.toml_types import WrongValue
+from grader.errors import InputError
+from grader.grading.keys import CRITERION, EVIDENCE, LATE, PART, RUBRIC, Table
+from grader.grading.toml_lines import Path
+from grader.names import did_you_mean
+from grader.text import enumerated
+
+_MAX_GUESSES = 50  # searches for a similar name in one rubric: each takes its time
+_MAX_LISTED = 20  # names in one message
+_MAX_SHOWN = 40  # characters of a value
+_MAX_BITS = 1000  # of a whole number that is written out
+
+Row = dict[str, Any]
+
+
+class Validation:
+    """One pass over a parsed rubric. Where `complaints` is empty, the rows hold what a rubric needs, converted.
+
+    `bound` holds the check of each criterion with its arguments, in the order of the rows.
+    """
+
+    def __init__(self, table: Row) -> None:
+        self.complaints: list[tuple[Path, str]] = []
+        self.bound: list[tuple[Check, Row]] = []
+        self._guesses = _MAX_GUESSES
+        self._find_check, self._check_names = cache(find_check), cache(check_names)
+        self.rubric = self._row((), table, RUBRIC)
+        self.parts = self._rows("part", PART)
+        self.criteria = self._rows("criterion", CRITERION)
+        self.evidence = self._rows("evidence", EVIDENCE)
+        self.late = self._row(("late",), self.rubric["late"], LATE) if "late" in self.rubric else None
+        part_ids, positions = self._positions("part"), self._positions("criterion")
+        for index, row in enumerate(self.criteria):
+            self._belongs(("criterion", index), row, part_ids)
+            self._requires(index, row, positions)
+            self._arguments(index, row)
+        for index, row in enumerate(self.evidence):
+            self._belongs(("evidence", index), row, part_ids)
+        self._totals()
+
+    def _rows(self, key: str, table: Table) -> list[Row]:
+        return [self._row((key, index), row, table) for index, row in enumerate(self.rubric.get(key, ()))]
+
+    def _row(self, where: Path, row: Row, table: Table) -> Row:
+        """Return the valid values of a table, converted; complain of the others and of missing ones."""
+        parsed: Row = {}
+        for key, value in row.items():
+            if key not in table.keys:
+                hint = self._guess(key, table.keys) or f"; it has: {', '.join(table.keys)}"
+                self._complain((*where, key), f"a {table.name} has no key {key!r}{hint}")
+                continue
+            try:
+                parsed[key] = table.keys[key].parse(value)
+            except WrongValue as error:
+                self._complain((*where, key), f"{key} must be {error}, not {_shown(value)}")
+        for key in table.keys:
+            if key not in row and key not in table.optional:
+                self._complain(where, f"this {table.name} has no {key}")
+        return parsed
+
+    def _positions(self, key: str) -> dict[str, int]:
+        """Return the position of the first row with each id, and complain of later ones with the same id."""
+        positions: dict[str, int] = {}
+        for index, row in enumerate(self.rubric.get(key, ())):
+            name = row.get("id")
+            if isinstance(name, str) and positions.setdefault(name, index) != index:
+                self._complain((key, index, "id"), f"there is a {key} {name!r} already")
+        return positions
+
+    def _belongs(self, where: Path, row: Row, parts: Collection[str]) -> None:
+        part = row.get("part")
+        if part is not None and part not in parts:
+            hint = self._guess(part, parts) or f"; there are: {enumerated(parts, _MAX_LISTED) or 'none'}"
+            self._complain((*where, "part"), f"there is no part {part!r}{hint}")
+
+    def _requires(self, index: int, row: Row, positions: Mapping[str, int]) -> None:
+        given = self.rubric["criterion"][index].get("requires")  # also of a list with other mistakes in it
+        for name in given if isinstance(given, list) else ():
+            if not isinstance(name, str) or positions.get(name, index) < index:
+                continue
+            if name == row.get("id"):
+                message = "requires itself"
+            elif name in positions:
+                message = f"requires {name!r}, which is below: a criterion can only require those above it"
+            else:
+                message = f"requires {name!r}, which does not exist{self._guess(name, positions)}"
+            self._complain(("criterion", index, "requires"), message)
+
+    def _arguments(self, index: int, row: Row) -> None:
+        where: Path = ("criterion", index)
+        name, given = row.get("check"), row.get("with", {})
+        check = self._check((*where, "check"), name) if name is not None else None
+        if check is None:
+            return
+        arguments: Row = {}
+        for key, value in given.items():
+            parameter = check.parameters.get(key)
+            if parameter is None:
+                known = [parameter for parameter in check.parameters if parameter not in given]
+                hint = self._guess(key, known) or f"; it takes: {', '.join(check.parameters) or 'nothing'}"
+                self._complain((*where, "with", key), f"the check {check.name} takes no {key!r}{hint}")
+                continue
+            try:
+                arguments[key] = parameter.type.parse(value)
+            except WrongValue as error:
+                self._complain((*where, "with", key), f"{key} of {check.name} must be {error}, not {_shown(value)}")
+        for key, parameter in check.parameters.items():
+            if parameter.required and key not in given:
+                self._complain((*where, "with"), f"the check {check.name} needs {key}: {parameter.type.name}")
+        self.bound.append((check, arguments))
+
+    def _check(self, where: Path, name: str) -> Check | None:
+        try:
+            check = self._find_check(name)
+        except InputError as error:  # in another package
+            self._complain(where, str(error))
+            return None
+        if check is None:
+            hint = self._guess(name, self._check_names()) or "; `grader rubric checks` lists them"
+            self._complain(where, f"there is no check {name!r}{hint}")
+        return check
+
+    def _totals(self) -> None:
+        """Compare declared totals with the sums, where all points are valid."""
+        if any("points" not in row for row in self.criteria):
+            return
+        declared: list[tuple[Path, Row, str, list[Row]]] = [((), self.rubric, "the rubric", self.criteria)]
+        for index, part in enumerate(self.parts):
+            rows = [row for row in self.criteria if row.get("part") == part.get("id", "")]
+            declared.append((("part", index), part, f"part {part.get('id')!r}", rows))
+        for where, owner, name, rows in declared:
+            actual = sum((row["points"] for row in rows), Decimal(0))
+            if owner.get("points", actual) != actual:
+                message = f"{name} declares {owner['points']} points, but its criteria add up to {actual}"
+                self._complain((*where, "points"), message)
+
+    def _guess(self, name: str, known: Iterable[str]) -> str:
+        self._guesses -= 1
+        return did_you_mean(name, known) if self._guesses >= 0 else ""
+
+    def _complain(self, where: Path, message: str) -> None:
+        self.complaints.append((where, message))
+
+
+def _shown(value: Any) -> str:
+    match value:
+        case list():
+            text = ", ".join(map(_shown, value[:6]))
+            return f"[{text}{', ...' if len(value) > 6 else ''}]"
+        case bool():
+            return str(value).lower()
+        case int() if value.bit_length() > _MAX_BITS:  # Python refuses to write numbers of thousands of digits
+            text = "a number with too many digits"
+        case str():
+            text = repr(value)
+        case _:
+            text = str(value)
+    return text if len(text) <= _MAX_SHOWN else text[: _MAX_SHOWN - 3] + "..."

@@ -1,0 +1,52 @@
+"""Mistakes: the same text for all students who made the same mistake, so that statistics can count them."""
+
+import pytest
+
+from grader.grading.grade import grade
+from grader.submission.submission import read_submission
+from tests.samples import LAB6, ROOT
+
+SAMPLES = ("lidar-buried", "right-wheel-mirrored", "wheel-joint-fixed", "wheels-rolling-sideways", "lidar-turning")
+JOINTS = ("base_lidar_joint", "base_left_wheel_joint", "base_right_wheel_joint", "base_caster_wheel_joint")
+LINES = "\n" * 12
+
+
+def mistakes(text: str) -> dict[str, str]:
+    """Return the mistake of each failed criterion of a URDF."""
+    report = grade(LAB6, read_submission(text.encode(), identity="student", path="my_robot.urdf"))
+    outcomes = {result.criterion.id: result.outcome for result in report.results}
+    return {
+        name: outcome.mistake or outcome.message for name, outcome in outcomes.items() if outcome.status == "failed"
+    }
+
+
+@pytest.mark.parametrize("name", SAMPLES)
+def test_names_and_lines_do_not_split_a_group(name: str) -> None:
+    """The same mistake in a file with other names of joints, and with more lines before it, is the same group."""
+    text = (ROOT / "submissions" / name / "my_robot.urdf").read_text()
+    other = text.replace("<link", "\n\n\n<link")
+    for number, joint in enumerate(JOINTS):
+        other = other.replace(joint, f"it's #{number}" if number % 2 else f"j{number}")
+    mine, theirs = mistakes(text), mistakes(other)
+    assert mine
+    assert mine == {name: mistake for name, mistake in theirs.items() if name != "joint-names"}
+
+
+REFERENCE = (LAB6.path.parent / LAB6.reference / LAB6.urdf).read_text()
+
+
+@pytest.mark.parametrize(
+    ("criterion", "old", "new", "mistake"),
+    [
+        ("lidar-shape", 'name="lidar"', 'name="lidr"', "there is no link 'lidar'"),
+        ("lidar-fixed", 'name="base_lidar_joint" type="fixed"', 'name="j" type="continuous"',
+         "the joint that moves 'lidar' is continuous; it should be fixed"),
+        ("urdf-loads", "</robot>", f'{LINES}<link name="lidar"/></robot>', "URDF031: Two links with one name"),
+        ("base-green", "0 0.6 0 1", "0 0.6 0", "'base_link' is shown in rgba 0 0 0 1; it should be 0 0.6 0 1"),
+        ("joint-names", "base_lidar_joint", "j", "the joint of 'lidar' should be named 'base_lidar_joint'"),
+    ],
+)  # fmt: skip
+def test_what_differs_between_students_is_left_out(criterion: str, old: str, new: str, mistake: str) -> None:
+    """A mistake holds no joint names, line numbers, explanations of the reader or suggestions."""
+    assert old in REFERENCE
+    assert mistakes(REFERENCE.replace(old, new))[criterion] == mistake
