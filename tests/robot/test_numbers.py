@@ -204,7 +204,7 @@ def test_a_space_behind_a_number_is_called_a_space() -> None:
 @pytest.mark.parametrize("count", [0, 1, 2, 4, 7])
 def test_a_wrong_count_is_named(count: int) -> None:
     """The message says how many numbers there are and how many are needed."""
-    with pytest.raises(NumberError, match=f"^it has {count} numbers? where 3 are needed"):
+    with pytest.raises(NumberError, match=f"^it has {count} numbers?, expected 3"):
         vector(" ".join(["1"] * count))
 
 
