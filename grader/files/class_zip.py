@@ -3,15 +3,14 @@
 import tempfile
 import weakref
 from bisect import bisect_left
-from contextlib import AbstractContextManager
-from functools import partial
+from dataclasses import replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from grader.errors import FileError, InputError
 from grader.files import limits
 from grader.files.archive import read_archive, tree_of
-from grader.files.members import ARCHIVE_ERRORS, NOT_REGULAR, Member, error_text, safe_path
+from grader.files.members import ARCHIVE_ERRORS, NOT_REGULAR, ArchiveMember, error_text, safe_path
 from grader.files.opening import ARCHIVES, NOT_AN_ARCHIVE, archive_kind
 from grader.files.tree import File, Tree
 from grader.files.zip_members import zip_members
@@ -30,7 +29,7 @@ class ClassZip:
 
     def __init__(self, path: Path) -> None:
         self._shown = printable_path(path)
-        self._members: dict[str, Member] = {}
+        self._members: dict[str, ArchiveMember] = {}
         try:
             file = path.open("rb")
             weakref.finalize(self, file.close)
@@ -46,13 +45,12 @@ class ClassZip:
         """Return the files below a folder."""
         start = f"{path}/"
         first, end = bisect_left(self._names, start), bisect_left(self._names, f"{path}0")  # 0 comes after /
-        below = [self._named(self._members[name], name.removeprefix(start)) for name in self._names[first:end]]
+        below = {name.removeprefix(start): self._members[name] for name in self._names[first:end]}
         return self._tree(below, path.rpartition("/")[2])
 
     def files(self, named: dict[str, str], name: str) -> Tree:
         """Return some files as one tree, each under its given name."""
-        chosen = [self._named(self._member(path), given) for path, given in named.items()]
-        return self._tree(chosen, name)
+        return self._tree({given: self._member(path) for path, given in named.items()}, name)
 
     def is_folder(self, path: str) -> bool:
         """Return whether a path is that of a folder, or missing."""
@@ -91,27 +89,22 @@ class ClassZip:
             return file
         raise InputError(str(tree.ignored[0]) if tree.ignored else f"{path} cannot be read")
 
-    def _member(self, path: str) -> Member:
+    def _member(self, path: str) -> ArchiveMember:
         member = self._members.get(path)
         if member is None:
             raise FileError(path, f"is not in {self._shown}")
         return member
 
-    def _named(self, member: Member, path: str) -> Member:
-        """Return a member under its name in a tree, which keeps the zip open."""
-        return member._replace(path=path, open=partial(self._open, member))
-
-    def _open(self, member: Member) -> AbstractContextManager[IO[bytes]]:
-        return member.open()
-
-    def _tree(self, members: list[Member], name: str) -> Tree:
+    def _tree(self, members: dict[str, ArchiveMember], name: str) -> Tree:
+        """Return a tree of these members under their new paths, which keeps the zip open."""
         try:
-            return tree_of(members, name)
+            tree = tree_of([member._replace(path=path) for path, member in members.items()], name)
         except ARCHIVE_ERRORS as error:
             raise FileError(name, f"cannot be read: {error_text(error)}") from None
+        return replace(tree, kept=(self,))
 
 
-def _copied(member: Member, to: IO[bytes], digest: "hashlib._Hash") -> str | None:
+def _copied(member: ArchiveMember, to: IO[bytes], digest: "hashlib._Hash") -> str | None:
     """Copy an archive and update the digest; return its kind, or None for a file that is not an archive."""
     with member.open() as content:
         chunk = content.read(_CHUNK)

@@ -21,7 +21,7 @@ _ROUNDING = 1e-9  # the sine of an angle that counts as zero
 _STEPS = np.arange(-8, 9) / 8.0
 
 
-def least_overlap_at_rims(a: Box | Cylinder, b: Box | Cylinder, T_a_b: Transform) -> Vector:
+def least_edge_overlap(a: Box | Cylinder, b: Box | Cylinder, T_a_b: Transform) -> Vector:
     """Return the unit normal of least overlap among those that two straight edges, an edge and a rim, or two rims span.
 
     If the rims were polygons, these and the normals of flat faces would be all that the separating axis test needs; a rim

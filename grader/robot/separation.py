@@ -134,9 +134,9 @@ def _least_overlap(a: Shape, b: Shape, T_a_b: Transform) -> Vector:
     best = min(_likely_directions(a, b, T_a_b), key=overlap)
     leaning = overlap(best) > _ROUNDING and _rims_matter(a, b, T_a_b)
     if leaning and not isinstance(a, Sphere) and not isinstance(b, Sphere):
-        from grader.robot.edge_overlap import least_overlap_at_rims  # late: it loads numpy
+        from grader.robot.edge_overlap import least_edge_overlap  # late: it loads numpy
 
-        best = min(best, least_overlap_at_rims(a, b, T_a_b), key=overlap)
+        best = min(best, least_edge_overlap(a, b, T_a_b), key=overlap)
     x, y, z = best
     return best if dot(best, T_a_b.translation) >= 0.0 else (-x, -y, -z)
 
