@@ -52,7 +52,7 @@ def manifest(name: str) -> bytes:
 
 
 def why(found: UrdfChoice) -> dict[str, str]:
-    """What was passed over, and why."""
+    """The other candidates, and why they are not graded."""
     return {each.path: each.reason for each in found.others}
 
 
@@ -291,7 +291,7 @@ def test_a_team_is_not_mixed_up() -> None:
     assert found.package.folder == "Lab6/Brown/my_robot"
 
 
-def test_a_package_that_holds_what_is_asked_for_comes_first() -> None:
+def test_a_package_with_the_files_of_the_lab_comes_first() -> None:
     """Of packages of one name the one with the URDF at its path is graded, then the one with more of the usual files."""
     tree = tree_of(
         *("Lab5/my_robot/package.xml", "Lab5/my_robot/setup.py", "Lab5/my_robot/urdf/box.urdf"),
