@@ -1,12 +1,12 @@
-"""The exceptions that a user can meet. Each prints as one clear line."""
+"""The exceptions that a user can see. Each prints as one line."""
 
 
 class GraderError(Exception):
-    """Anything that stops a command before it has graded: exit code 2."""
+    """An error that stops a command before it has graded: exit code 2."""
 
 
 class InputError(GraderError):
-    """What was named cannot be read: missing, a folder without a URDF, too large, not a file."""
+    """A path that cannot be read: missing, a folder without a URDF, too large, not a file."""
 
 
 class FileError(InputError):
@@ -30,14 +30,14 @@ class RubricError(GraderError):
 
 
 class NotDecided(LookupError):
-    """What a question asks cannot be told by the grader: a person has to look. The message says why."""
+    """Something that cannot be determined statically, and needs manual grading. The message says why."""
 
 
 class MissingElement(LookupError):
-    """Something that a question needs is not there: a link, a shape, a chain of joints, a defined pose.
+    """Something that a check needs does not exist: a link, a shape, a chain of joints, a defined pose.
 
-    `kind` and `name` are alike for questions that fail for the same reason; `known` names what there is instead;
-    `location` is the spot in the file to look at, or None. The text is the message and the detail, which is what differs
+    `kind` and `name` are equal for checks that fail for the same reason; `known` lists the names that exist; `location` is a
+    Location or LazyLocation in the file, or None. The text is the message and the detail, which is what differs
     between students who made the same mistake; `mistake` is the message alone.
     """
 

@@ -1,1 +1,1 @@
-"""Read untrusted files: folders, archives and limits. Nothing else opens a student's file."""
+"""Read untrusted files: folders, archives and limits. No other package opens a student's file."""

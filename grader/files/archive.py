@@ -14,7 +14,7 @@ from grader.errors import FileError, InputError
 from grader.files import limits
 from grader.files.ignore_rules import ignored_part, is_generated
 from grader.files.links import Links
-from grader.files.members import ARCHIVE_ERRORS, MAX_NAME_LENGTH, Member, error_text, safe_path
+from grader.files.members import ARCHIVE_ERRORS, MAX_NAME_LENGTH, ArchiveMember, error_text, safe_path
 from grader.files.reading import advice_for, capped
 from grader.files.tar_members import COMPRESSED_KINDS, compressed_members, tar_members
 from grader.files.tree import File, IgnoredFile, Tree, folders_above, make_tree, parents
@@ -63,9 +63,9 @@ def _close(files: list[IO[bytes]]) -> None:
         file.close()
 
 
-def tree_of(members: Iterable[Member], name: str, limit: int = limits.MAX_UNPACKED_SIZE) -> Tree:
+def tree_of(members: Iterable[ArchiveMember], name: str, limit: int = limits.MAX_UNPACKED_SIZE) -> Tree:
     """Return the file tree that the members of an archive make; raises InputError for too many, and for too much in them."""
-    found: dict[str, Member] = {}
+    found: dict[str, ArchiveMember] = {}
     ignored: list[IgnoredFile] = []
     generated: set[str] = set()
     unseen: set[str] = set()
@@ -99,9 +99,9 @@ def tree_of(members: Iterable[Member], name: str, limit: int = limits.MAX_UNPACK
     return make_tree(name, files, folders | links.folders, sorted(ignored), sorted(generated), unseen)
 
 
-def _bounded(members: Iterable[Member], name: str, limit: int) -> list[Member]:
+def _bounded(members: Iterable[ArchiveMember], name: str, limit: int) -> list[ArchiveMember]:
     """Return the members; raises InputError for too many, or too much in those that are not ignored for their size."""
-    listed: list[Member] = []
+    listed: list[ArchiveMember] = []
     total = 0
     for member in members:
         listed.append(member)
@@ -113,7 +113,7 @@ def _bounded(members: Iterable[Member], name: str, limit: int) -> list[Member]:
     return listed
 
 
-def _read(member: Member, path: str, limit: int, *, first: bool = False) -> bytes:
+def _read(member: ArchiveMember, path: str, limit: int, *, first: bool = False) -> bytes:
     try:
         with member.open() as file:
             data = file.read(limit if first else limit + 1)

@@ -1,17 +1,16 @@
-"""A zip with the hand-ins of a whole class, as an LMS gives it: each is read from where it is."""
+"""A zip with the submissions of a whole class, as an LMS exports it: each is read in place."""
 
 import tempfile
 import weakref
 from bisect import bisect_left
-from contextlib import AbstractContextManager
-from functools import partial
+from dataclasses import replace
 from pathlib import Path
 from typing import IO, TYPE_CHECKING
 
 from grader.errors import FileError, InputError
 from grader.files import limits
 from grader.files.archive import read_archive, tree_of
-from grader.files.members import ARCHIVE_ERRORS, NOT_REGULAR, Member, error_text, safe_path
+from grader.files.members import ARCHIVE_ERRORS, NOT_REGULAR, ArchiveMember, error_text, safe_path
 from grader.files.opening import ARCHIVES, NOT_AN_ARCHIVE, archive_kind
 from grader.files.tree import File, Tree
 from grader.files.zip_members import zip_members
@@ -26,11 +25,11 @@ _CHUNK = 1024 * 1024
 
 
 class ClassZip:
-    """An open zip of many hand-ins. Its paths are those of its members, with forward slashes. Raises InputError."""
+    """An open zip of many submissions; paths are those of its members, with forward slashes. Raises InputError."""
 
     def __init__(self, path: Path) -> None:
         self._shown = printable_path(path)
-        self._members: dict[str, Member] = {}
+        self._members: dict[str, ArchiveMember] = {}
         try:
             file = path.open("rb")
             weakref.finalize(self, file.close)
@@ -43,31 +42,27 @@ class ClassZip:
         self._names = sorted(self._members)
 
     def folder(self, path: str) -> Tree:
-        """The files below a folder."""
+        """Return the files below a folder."""
         start = f"{path}/"
         first, end = bisect_left(self._names, start), bisect_left(self._names, f"{path}0")  # 0 comes after /
-        below = [self._named(self._members[name], name.removeprefix(start)) for name in self._names[first:end]]
+        below = {name.removeprefix(start): self._members[name] for name in self._names[first:end]}
         return self._tree(below, path.rpartition("/")[2])
 
     def files(self, named: dict[str, str], name: str) -> Tree:
-        """Some files as one tree, each under the name that it is given there."""
-        chosen = [self._named(self._member(path), given) for path, given in named.items()]
-        return self._tree(chosen, name)
+        """Return some files as one tree, each under its given name."""
+        return self._tree({given: self._member(path) for path, given in named.items()}, name)
 
     def is_folder(self, path: str) -> bool:
-        """Whether a path is that of a folder, or of nothing."""
+        """Return whether a path is that of a folder, or missing."""
         member = self._members.get(path)
         return member is None or member.kind == "folder"
 
     def read(self, path: str, limit: int) -> bytes:
-        """The bytes of one file, of at most `limit` bytes; raises InputError."""
+        """Return the bytes of one file of at most `limit` bytes."""
         return self._file_of(path).read(limit)
 
     def archive(self, path: str, digest: "hashlib._Hash") -> Tree | None:
-        """The files of an archive in it, whose bytes go into the digest; None for a file that is none.
-
-        Raises InputError where it cannot be read.
-        """
+        """Return the files of an archive in it, whose bytes update the digest; None for a file that is not an archive."""
         member, name = self._member(path), path.rpartition("/")[2]
         if member.kind != "file":
             raise FileError(name, member.reason or NOT_REGULAR)
@@ -94,28 +89,23 @@ class ClassZip:
             return file
         raise InputError(str(tree.ignored[0]) if tree.ignored else f"{path} cannot be read")
 
-    def _member(self, path: str) -> Member:
+    def _member(self, path: str) -> ArchiveMember:
         member = self._members.get(path)
         if member is None:
             raise FileError(path, f"is not in {self._shown}")
         return member
 
-    def _named(self, member: Member, path: str) -> Member:
-        """A member as it is called in a tree, which keeps the zip open."""
-        return member._replace(path=path, open=partial(self._open, member))
-
-    def _open(self, member: Member) -> AbstractContextManager[IO[bytes]]:
-        return member.open()
-
-    def _tree(self, members: list[Member], name: str) -> Tree:
+    def _tree(self, members: dict[str, ArchiveMember], name: str) -> Tree:
+        """Return a tree of these members under their new paths, which keeps the zip open."""
         try:
-            return tree_of(members, name)
+            tree = tree_of([member._replace(path=path) for path, member in members.items()], name)
         except ARCHIVE_ERRORS as error:
             raise FileError(name, f"cannot be read: {error_text(error)}") from None
+        return replace(tree, kept=(self,))
 
 
-def _copied(member: Member, to: IO[bytes], digest: "hashlib._Hash") -> str | None:
-    """Copy an archive, into a digest as well, and return its kind; None for a file that is none."""
+def _copied(member: ArchiveMember, to: IO[bytes], digest: "hashlib._Hash") -> str | None:
+    """Copy an archive and update the digest; return its kind, or None for a file that is not an archive."""
     with member.open() as content:
         chunk = content.read(_CHUNK)
         kind = archive_kind(chunk[:512])

@@ -1,4 +1,4 @@
-"""A folder as a tree of files: nothing outside of it is read, whatever its links point to."""
+"""A folder as a file tree: nothing outside of it is read, whatever its symlinks point to."""
 
 import os
 import stat
@@ -19,12 +19,12 @@ _IS_SYMLINK = "is a symlink, and was not followed"
 
 
 def read_folder(folder: Path, top: str = "") -> Tree:
-    """The files of a folder. Raises InputError where it cannot be read or holds far too many.
+    """Return the files of a folder. Raises InputError if it cannot be read or contains too many.
 
-    Below `top`, a folder around it, no symlink is followed to get to it; by default it is trusted itself.
+    Below `top`, a folder around it, no symlink on its path is followed; by default the folder itself is trusted.
 
-    Left out, and named: links that lead out of it or nowhere, folders that cannot be opened, and what is neither file nor
-    folder. Left out in silence: folders of builds and tools, virtual environments, hidden files.
+    Ignored and named: symlinks that lead out of it or nowhere, folders that cannot be opened, and anything that is neither file
+    nor folder. Silently ignored: folders of builds and tools, virtual environments, hidden files.
     """
     walk = _Walk(folder, top)
     walk.enter("", linked=False)
@@ -33,7 +33,7 @@ def read_folder(folder: Path, top: str = "") -> Tree:
 
 
 class _Walk:
-    """Goes through a folder. A folder that links lead to is entered once by its own path, and once by a link."""
+    """Walks through a folder. One that symlinks lead to is entered once by its own path, and once by a symlink."""
 
     def __init__(self, folder: Path, top: str) -> None:
         self._folder = folder
@@ -50,7 +50,7 @@ class _Walk:
         self.unseen: list[str] = []
 
     def enter(self, start: str, *, linked: bool) -> None:
-        """Take in what is below a folder."""
+        """Add everything below a folder."""
         waiting = [start]
         links: list[str] = []
         while waiting:
@@ -61,7 +61,7 @@ class _Walk:
                 if self._count > limits.MAX_FILES:
                     raise limits.too_many(printable_path(self._folder))
                 path = f"{where}/{entry.name}" if where else entry.name
-                if not self._is_ignored(entry, path) and self._take(entry, path, real_folder):
+                if not self._is_ignored(entry, path) and self._add(entry, path, real_folder):
                     (links if entry.is_symlink() else waiting).append(path)
         for path in links:
             real = os.path.realpath(self._folder / path)
@@ -79,13 +79,13 @@ class _Walk:
             self.generated += _generated(self._folder, path)
         return True
 
-    def _take(self, entry: "os.DirEntry[str]", path: str, real_folder: str) -> bool:
-        """Take in a file, or say what is left out; True for a folder that is to be entered."""
+    def _add(self, entry: "os.DirEntry[str]", path: str, real_folder: str) -> bool:
+        """Add a file, or name an ignored one; return True for a folder to enter."""
         shown = printable_path(path)
         try:
             real = os.path.realpath(entry.path) if entry.is_symlink() else ""
             is_folder, is_file = entry.is_dir(), entry.is_file()
-        except OSError:  # such as a link to itself
+        except OSError:  # such as a symlink to itself
             real, is_folder, is_file = "", False, False
         if real and real != self._top and not real.startswith(self._top.rstrip(os.sep) + os.sep):
             self._ignore(shown, "is a link that leads out of the submission, and was not followed")
@@ -120,7 +120,7 @@ class _Walk:
 
 
 def is_looked_at(folder: Path, path: str) -> bool:
-    """Whether `read_folder` takes in what stands at a path, relative to the folder, or would if something stood there."""
+    """Return whether `read_folder` reads the path, relative to the folder, if it exists."""
     steps = path.split("/")
     if not IGNORED_FOLDERS.isdisjoint(steps) or ignored_part(printable_path(path)):
         return False
@@ -128,7 +128,7 @@ def is_looked_at(folder: Path, path: str) -> bool:
 
 
 def file_at(path: Path, name: str, top: str) -> File:
-    """A file on its own, as it is called in a submission; raises InputError where it is a symlink or cannot be found.
+    """Return a single file under its name in a submission; raises InputError if it is a symlink or missing.
 
     Below the folder `top` no symlink is followed.
     """
@@ -142,10 +142,10 @@ def file_at(path: Path, name: str, top: str) -> File:
 
 
 def _generated(folder: Path, path: str) -> list[str]:
-    """URDFs below a folder that a build has made: named in the report, never read."""
+    """Return the URDFs below a build folder: they are named in the report, never read."""
     found: list[str] = []
     seen = 0
-    with suppress(RecursionError):  # which os.walk raises where folders are nested a thousand deep
+    with suppress(RecursionError):  # os.walk raises it for folders nested a thousand deep
         for where, folders, names in os.walk(folder / path):
             folders.sort()
             seen += len(names) + len(folders)
@@ -160,7 +160,7 @@ def _generated(folder: Path, path: str) -> list[str]:
 
 
 def _read(path: str, shown: str, top: str, limit: int, *, first: bool = False) -> bytes:
-    """The bytes of a file; messages name it as the submission does, so that they are the same on every machine."""
+    """Return the bytes of a file; messages use its name in the submission, so they are the same on every machine."""
     start = read_start(path, limit if first else limit + 1, shown, top)
     return start if first else capped(start, limit, shown, advice_for(shown))
 

@@ -4,7 +4,7 @@ from bisect import bisect_left
 from collections.abc import Mapping
 
 from grader.files import limits
-from grader.files.members import MAX_NAME_LENGTH, Member
+from grader.files.members import MAX_NAME_LENGTH, ArchiveMember
 from grader.text import printable_path
 
 _MAX_DEPTH = 200  # folders
@@ -15,7 +15,7 @@ _MAX_STEPS = 500_000  # for all links of an archive
 class Links:
     """The files and folders that links of an archive lead to; the files of a folder are below the link, too."""
 
-    def __init__(self, members: Mapping[str, Member], folders: set[str], name: str) -> None:
+    def __init__(self, members: Mapping[str, ArchiveMember], folders: set[str], name: str) -> None:
         self._members = members
         self._real_folders = folders
         self._name = name

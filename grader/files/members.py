@@ -33,7 +33,7 @@ ARCHIVE_ERRORS = (
 Opener = Callable[[], AbstractContextManager[IO[bytes]]]
 
 
-class Member(NamedTuple):
+class ArchiveMember(NamedTuple):
     """One entry of an archive. `reason` says why one of kind other is not read; `open` gives what is in a file.
 
     `target` is where a link points to: from its own folder, or, if it is a hard link, from the top.

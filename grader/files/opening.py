@@ -1,4 +1,4 @@
-"""What a path leads to as a tree of files: a folder, an archive, or an archive in one of these."""
+"""The file tree at a path: of a folder, an archive, or of these with the archives in them."""
 
 import os
 import tempfile
@@ -36,15 +36,15 @@ def archive_kind(start: bytes) -> str | None:
 
 
 def open_tree(path: Path) -> Tree | None:
-    """The files at a path, those in its archives included; None where it is a single file that is no archive."""
+    """Return the files at a path, including those in its archives; None for a single file that is not an archive."""
     tree = outer_tree(path)
     return with_inner(tree) if tree is not None else None
 
 
 def outer_tree(path: Path, top: str = "") -> Tree | None:
-    """The files at a path, archives among them unopened; None where it is a single file that is no archive. Raises InputError.
+    """Return the files at a path, without opening archives in it; None for a single file that is not an archive.
 
-    Below the folder `top` no symlink is followed.
+    Below the folder `top` no symlink is followed. Raises InputError.
     """
     try:
         is_folder = path.is_dir()
@@ -54,7 +54,7 @@ def outer_tree(path: Path, top: str = "") -> Tree | None:
         reason = error.strerror if isinstance(error, OSError) else str(error)
         raise InputError(f"cannot read {printable_path(path)}: {reason}") from None
     if is_folder:
-        from grader.files.folder import read_folder  # what a single URDF does not need is loaded late
+        from grader.files.folder import read_folder  # late: a single URDF does not need it
 
         return read_folder(path, top)
     if path.name.lower().endswith((".urdf", ".xacro", ".xml")):
@@ -71,7 +71,7 @@ def outer_tree(path: Path, top: str = "") -> Tree | None:
 
 
 def tree_name(path: Path) -> str:
-    """What a submission is called: the name of its folder, or of its file without the endings."""
+    """Return the name of a submission: that of its folder, or of its file without the endings."""
     with suppress(OSError):
         if path.is_dir():
             return printable_path(path.resolve().name or "submission")
@@ -130,7 +130,7 @@ def _inner(archive: File, allowance: Allowance, depth: int) -> Tree:
 
 
 def without_endings(path: str) -> str:
-    """The name of an archive without its endings: lab6.tar.gz is lab6."""
+    """Return the name of an archive without its endings: lab6 for lab6.tar.gz."""
     name = PurePosixPath(path).name
     for ending in (".tar.gz", ".tar.bz2", ".tar.xz"):
         if name.lower().endswith(ending):

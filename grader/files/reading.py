@@ -1,4 +1,4 @@
-"""Reading a student's files: regular files only, never more than a limit, never outside the submission."""
+"""Read a student's files: regular files only, never more than a limit, never outside the submission."""
 
 import errno
 import os
@@ -11,27 +11,27 @@ from grader.errors import InputError
 from grader.text import printable_path
 
 URDF_LIMIT = 1024 * 1024  # bytes
-# A FIFO would block at open and a device could be endless: both are recognised without reading.
+# O_NONBLOCK: opening a FIFO would block. What is not a regular file is refused before it is read.
 _FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
 _FOLDER = os.O_RDONLY | getattr(os, "O_DIRECTORY", 0) | getattr(os, "O_CLOEXEC", 0)
 _OPENS_IN_FOLDERS = os.open in os.supports_dir_fd and hasattr(os, "O_NOFOLLOW")
-_MAX_BESIDE = 1000  # names in a folder that are compared with one that is not there
+_MAX_SIBLINGS = 1000  # names in a folder that are compared with a missing one
 _ADVICE = " for a URDF (--max-size raises it)"
 
 
 def read_capped(path: Path | str, limit: int = URDF_LIMIT, *, advice: str = _ADVICE) -> bytes:
-    """The bytes of a regular file of at most `limit` bytes; raises InputError, in one plain sentence, for anything else.
+    """Return the bytes of a regular file of at most `limit` bytes; raises InputError, with one sentence, for anything else.
 
-    `advice` says what to do about a file that is too large.
+    `advice` is what the message about a file that is too large ends with.
     """
     data = read_start(path, limit + 1)
     return data if len(data) <= limit else capped(data, limit, printable_path(path), advice)
 
 
 def read_start(path: Path | str, count: int, shown: str = "", top: str = "") -> bytes:
-    """The first bytes of a regular file; raises InputError, in one plain sentence, for anything else.
+    """Return the first bytes of a regular file; raises InputError, with one sentence, for anything else.
 
-    `shown` is what messages call it (default: the path). Below the folder `top` no symlink is followed.
+    `shown` is its name in messages (default: the path). Below the folder `top` no symlink is followed.
     """
     handle = open_regular(path, shown, top)
     try:
@@ -43,7 +43,7 @@ def read_start(path: Path | str, count: int, shown: str = "", top: str = "") -> 
 
 
 def open_regular(path: Path | str, shown: str = "", top: str = "") -> int:
-    """A descriptor of a regular file; raises InputError, as `read_start` does."""
+    """Return a descriptor of a regular file; raises InputError as `read_start` does."""
     shown = shown or printable_path(path)
     try:
         handle = _open_below(top, os.fspath(path)) if top else os.open(path, _FLAGS)
@@ -58,7 +58,7 @@ def open_regular(path: Path | str, shown: str = "", top: str = "") -> int:
 
 
 def _open_below(top: str, path: str) -> int:
-    """Open `path`, which begins with `top`, folder by folder: a symlink that is put in its way at any moment is an OSError."""
+    """Open `path`, which begins with `top`, folder by folder: a symlink on it, created at any moment, is an OSError."""
     if not _OPENS_IN_FOLDERS:
         return _open_and_verify(top, path)
     start = top.rstrip("/") + "/"
@@ -72,14 +72,14 @@ def _open_below(top: str, path: str) -> int:
             os.close(at)
             at = inner
         return os.open(name, _FLAGS | os.O_NOFOLLOW, dir_fd=at)
-    except NotADirectoryError:  # Linux' word for a symlink in place of a folder
+    except NotADirectoryError:  # what Linux raises for a symlink in place of a folder
         raise OSError(errno.ELOOP, os.strerror(errno.ELOOP)) from None
     finally:
         os.close(at)
 
 
 def _open_and_verify(top: str, path: str) -> int:
-    """Open a file where the system cannot open it folder by folder (Windows), and verify that no symlink led to it."""
+    """Open a file if the system cannot open it folder by folder (Windows), and verify that no symlink led to it."""
     handle = os.open(path, _FLAGS)
     real, plain, inside = map(os.path.normcase, (os.path.realpath(path), os.path.normpath(path), os.path.realpath(top)))
     is_inside = real.startswith(inside.rstrip(os.sep) + os.sep)
@@ -90,7 +90,7 @@ def _open_and_verify(top: str, path: str) -> int:
 
 
 def _read(handle: int, count: int) -> bytes:
-    """At most so many bytes of an open file. A small one is there at once, and needs no buffer of its own."""
+    """Return at most `count` bytes of an open file. A small file needs no buffer."""
     start = os.read(handle, count)
     if len(start) < count and (more := os.read(handle, count - len(start))):
         with os.fdopen(handle, "rb", closefd=False) as file:
@@ -99,7 +99,7 @@ def _read(handle: int, count: int) -> bytes:
 
 
 def read_standard_input(limit: int = URDF_LIMIT) -> bytes:
-    """All of standard input, at most `limit` bytes; raises InputError."""
+    """Return all of standard input, at most `limit` bytes; raises InputError."""
     if sys.stdin is None:
         raise InputError("standard input is closed")
     try:
@@ -109,26 +109,26 @@ def read_standard_input(limit: int = URDF_LIMIT) -> bytes:
 
 
 def sha256_of(data: bytes) -> str:
-    """The hash of some bytes, in hexadecimal digits."""
-    from hashlib import sha256  # late: loading it takes longer than reading a URDF, and only some reports show it
+    """Return the hash of some bytes, in hexadecimal digits."""
+    from hashlib import sha256  # late: loading it takes longer than reading a URDF, and only some reports need it
 
     return sha256(data).hexdigest()
 
 
 def not_there(path: Path) -> InputError:
-    """What to say of a path that does not exist, with the name that may be meant where it begins to be wrong."""
-    from grader.names import closest  # late: mostly the path is right
+    """Return the error for a path that does not exist, with the existing name that is closest to its first wrong part."""
+    from grader.names import closest  # late: most paths are correct
 
     wrong = path
     while wrong.name and not os.path.lexists(wrong.parent):
         wrong = wrong.parent
     try:
-        beside = [printable_path(each.name) for each in islice(wrong.parent.iterdir(), _MAX_BESIDE)]
+        siblings = [printable_path(sibling.name) for sibling in islice(wrong.parent.iterdir(), _MAX_SIBLINGS)]
     except (OSError, ValueError):
-        beside = []
-    guess = closest(printable_path(wrong.name), beside)
+        siblings = []
+    guess = closest(printable_path(wrong.name), siblings)
     if guess is None:
-        here = "" if path.is_absolute() else " (. stands for the folder that you are in)"
+        here = "" if path.is_absolute() else " (relative to the current folder)"
         return InputError(f"{printable_path(path)} does not exist{here}")
     right = wrong.parent / guess
     whole = right / path.relative_to(wrong)
@@ -137,12 +137,12 @@ def not_there(path: Path) -> InputError:
 
 
 def advice_for(path: str) -> str:
-    """What to say behind the limit of a file that is too large: that of a URDF can be raised."""
+    """Return the advice about a file that is too large: the limit of a URDF can be raised."""
     return _ADVICE if path.lower().endswith((".urdf", ".xacro")) else ""
 
 
 def capped(data: bytes, limit: int, shown: str, advice: str = _ADVICE) -> bytes:
-    """The bytes that were read of a file, one more than the limit at most; raises InputError where it is too large."""
+    """Return the bytes that were read of a file; raises InputError if they are more than the limit."""
     if len(data) > limit:
         raise InputError(f"{shown} is larger than {limit} bytes, the limit{advice}")
     return data

@@ -11,7 +11,7 @@ from functools import partial
 from typing import IO, Any
 
 from grader.files import limits
-from grader.files.members import NOT_REGULAR, Member, Opener
+from grader.files.members import NOT_REGULAR, ArchiveMember, Opener
 
 _CHUNK = 1024 * 1024  # bytes
 _BACKWARD = "it leads back to its own beginning"
@@ -20,7 +20,7 @@ _DECOMPRESSORS: dict[str, Any] = {"gz": gzip.open, "bz2": bz2.open, "xz": lzma.o
 COMPRESSED_KINDS = frozenset(_DECOMPRESSORS)
 
 
-def tar_members(file: IO[bytes]) -> Iterator[Member]:
+def tar_members(file: IO[bytes]) -> Iterator[ArchiveMember]:
     """Yield the members of a plain tar, which stays open for them."""
     for archive, info in _headers(file):
         yield _member(info, partial(_open, archive, info))
@@ -28,7 +28,7 @@ def tar_members(file: IO[bytes]) -> Iterator[Member]:
 
 def compressed_members(
     file: IO[bytes], kind: str, stored: IO[bytes], name: str, limit: int, allowance: limits.Allowance
-) -> Iterator[Member]:
+) -> Iterator[ArchiveMember]:
     """Yield the members of a compressed tar, decompressed once: files that are not too large are appended to `stored`."""
     total = 0
     with _DECOMPRESSORS[kind](file) as source:
@@ -59,14 +59,14 @@ def _headers(file: Any) -> Iterator[tuple[tarfile.TarFile, tarfile.TarInfo]]:
         yield archive, info
 
 
-def _member(info: tarfile.TarInfo, opened: Opener) -> Member:
+def _member(info: tarfile.TarInfo, opened: Opener) -> ArchiveMember:
     if info.isdir():
-        return Member(info.name, "folder", 0, opened)
+        return ArchiveMember(info.name, "folder", 0, opened)
     if info.issym() or info.islnk():
-        return Member(info.name, "link", 0, opened, info.linkname, is_hard=info.islnk())
+        return ArchiveMember(info.name, "link", 0, opened, info.linkname, is_hard=info.islnk())
     if info.isfile():
-        return Member(info.name, "file", info.size, opened)
-    return Member(info.name, "other", 0, opened, reason=NOT_REGULAR)
+        return ArchiveMember(info.name, "file", info.size, opened)
+    return ArchiveMember(info.name, "other", 0, opened, reason=NOT_REGULAR)
 
 
 def _open(archive: tarfile.TarFile, info: tarfile.TarInfo) -> IO[bytes]:

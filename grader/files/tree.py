@@ -52,8 +52,8 @@ class File:
 class Tree:
     """The files of a submission by path, in alphabetical order, and its folders, empty ones included.
 
-    `generated` names URDFs that a build has copied. `unseen` are folders that exist, but were not looked into. `kept` are trees
-    whose archives have to stay open.
+    `generated` names URDFs that a build has copied. `unseen` are folders that exist, but were not looked into. `kept` are the
+    archives that have to stay open.
     """
 
     name: str
@@ -62,7 +62,7 @@ class Tree:
     ignored: tuple[IgnoredFile, ...] = ()
     generated: tuple[str, ...] = ()
     unseen: frozenset[str] = frozenset()
-    kept: "tuple[Tree, ...]" = field(default=(), repr=False, compare=False)
+    kept: tuple[object, ...] = field(default=(), repr=False, compare=False)
 
     @property
     def unopened(self) -> tuple[IgnoredFile, ...]:
@@ -93,7 +93,7 @@ def make_tree(
     ignored: Iterable[IgnoredFile] = (),
     generated: Iterable[str] = (),
     unseen: Iterable[str] = (),
-    kept: "tuple[Tree, ...]" = (),
+    kept: tuple[object, ...] = (),
 ) -> Tree:
     """Return a tree of these files; folders that only the paths of files name are added. Raises InputError for too many.
 

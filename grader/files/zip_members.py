@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from functools import partial
 from typing import IO, Any
 
-from grader.files.members import ARCHIVE_ERRORS, MAX_NAME_LENGTH, NOT_REGULAR, Member
+from grader.files.members import ARCHIVE_ERRORS, MAX_NAME_LENGTH, NOT_REGULAR, ArchiveMember
 
 _MAX_DIRECTORY_SIZE = 16 * 1024 * 1024  # bytes of a zip's table of contents
 _ENCRYPTED = 0x1  # flag bits of a member
@@ -14,7 +14,7 @@ _UTF8 = 0x800
 _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)  # the others unpack without a bound, or are not known at all
 
 
-def zip_members(file: IO[bytes]) -> Iterator[Member]:
+def zip_members(file: IO[bytes]) -> Iterator[ArchiveMember]:
     """Yield the members of a zip, which stays open for them."""
     bounded: Any = _BoundedReader(file)
     archive = zipfile.ZipFile(bounded)
@@ -23,21 +23,21 @@ def zip_members(file: IO[bytes]) -> Iterator[Member]:
         yield _member(archive, info)
 
 
-def _member(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> Member:
+def _member(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> ArchiveMember:
     name, mode = _name(info), info.external_attr >> 16
     opened = partial(archive.open, info)
     if name.endswith(("/", "\\")):
-        return Member(name, "folder", 0, opened)
+        return ArchiveMember(name, "folder", 0, opened)
     if info.flag_bits & _ENCRYPTED:
-        return Member(name, "other", info.file_size, opened, reason="is encrypted, and was not read")
+        return ArchiveMember(name, "other", info.file_size, opened, reason="is encrypted, and was not read")
     if info.compress_type not in _METHODS:
         reason = "is compressed with a method other than deflate, and was not read"
-        return Member(name, "other", info.file_size, opened, reason=reason)
+        return ArchiveMember(name, "other", info.file_size, opened, reason=reason)
     if stat.S_ISLNK(mode):
-        return Member(name, "link", 0, opened, target=_target(archive, info))
+        return ArchiveMember(name, "link", 0, opened, target=_target(archive, info))
     if stat.S_IFMT(mode) not in (0, stat.S_IFREG, stat.S_IFDIR):
-        return Member(name, "other", info.file_size, opened, reason=NOT_REGULAR)
-    return Member(name, "file", info.file_size, opened)
+        return ArchiveMember(name, "other", info.file_size, opened, reason=NOT_REGULAR)
+    return ArchiveMember(name, "file", info.file_size, opened)
 
 
 def _target(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> str:

@@ -1,6 +1,6 @@
-"""The least overlap of shapes whose rims lean against each other.
+"""The edge overlap of shapes with rims that lean against each other.
 
-Loading numpy takes longer than a grading run, and hardly any robot needs this: import this module late.
+Import this module late: loading numpy takes longer than grading, and hardly any robot needs it.
 """
 
 from itertools import combinations
@@ -15,17 +15,17 @@ from grader.robot.transforms import Transform, Vector
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 
-SAGITTA = 4e-5  # metres from a rim to the polygon that stands for it; two of these are less than 0.1 mm
-_BEND = 4e-6  # the same relative to the radius, so that a rim of more than 10 m has no more corners than one of 10 m
-_ROUNDING = 1e-9  # the sine of an angle that is none
+SAGITTA = 4e-5  # metres from a rim to the polygon that replaces it; two of these are less than 0.1 mm
+_MIN_RELATIVE_SAGITTA = 4e-6  # of the radius, so that a rim of more than 10 m has no more corners than one of 10 m
+_ROUNDING = 1e-9  # the sine of an angle that counts as zero
 _STEPS = np.arange(-8, 9) / 8.0
 
 
-def least_overlap_at_rims(a: Box | Cylinder, b: Box | Cylinder, T_a_b: Transform) -> Vector:
-    """The unit normal of least overlap among those that two straight edges, an edge and a rim, or two rims span.
+def least_edge_overlap(a: Box | Cylinder, b: Box | Cylinder, T_a_b: Transform) -> Vector:
+    """Return the unit normal of least overlap among those that two straight edges, an edge and a rim, or two rims span.
 
-    Were the rims polygons, these and the normals of flat faces would be all that the separating axis test needs; a rim
-    stands out from its polygon by no more than `SAGITTA`. Two more rounds look closer about the best normal.
+    If the rims were polygons, these and the normals of flat faces would be all that the separating axis test needs; a rim
+    differs from its polygon by no more than `SAGITTA`. Two more rounds refine the best normal.
     """
     rotation = np.array(T_a_b.rotation).reshape(3, 3)
     straight = np.array([*straight_edges(a), *map(T_a_b.rotate, straight_edges(b))]).T
@@ -36,7 +36,7 @@ def least_overlap_at_rims(a: Box | Cylinder, b: Box | Cylinder, T_a_b: Transform
         lines = [plane @ np.array((np.cos(turns), np.sin(turns))) for plane, turns in rims]
         normals = np.concatenate([_spanned(p, q) for p, q in combinations([straight, *lines], 2)], axis=1)
         lengths = np.sqrt((normals * normals).sum(axis=0))
-        lengths[lengths <= _ROUNDING] = np.inf  # parallel lines span nothing: no normal comes of them
+        lengths[lengths <= _ROUNDING] = np.inf  # parallel lines span no normal
         normals /= lengths
         overlaps = _half_widths(a, normals) + _half_widths(b, rotation.T @ normals) - abs(T_a_b.translation @ normals)
         overlaps[lengths == np.inf] = np.inf
@@ -47,15 +47,15 @@ def least_overlap_at_rims(a: Box | Cylinder, b: Box | Cylinder, T_a_b: Transform
 
 
 def _spanned(p: Array, q: Array) -> Array:
-    """The cross products of all directions of shape (3, n) with all of (3, m), as (3, n m). np.cross takes far longer."""
+    """Return the cross products of directions of shape (3, n) with those of (3, m), as (3, n m). np.cross is far slower."""
     (a, b, c), (x, y, z) = p[:, :, None], q[:, None, :]
     return np.array((b * z - c * y, c * x - a * z, a * y - b * x)).reshape(3, -1)
 
 
 def _all_around(radius: float) -> Array:
-    """The directions of a polygon's edges as angles over half a turn; across the polygon they come again."""
-    sagitta = max(SAGITTA, _BEND * abs(radius))
-    count = max(2, ceil(pi / 2.0 * sqrt(abs(radius) / sagitta / 2.0)))  # for 1 - cos(t) is no more than t**2 / 2
+    """Return the directions of a polygon's edges as angles over half a turn; the other half repeats them."""
+    sagitta = max(SAGITTA, _MIN_RELATIVE_SAGITTA * abs(radius))
+    count = max(2, ceil(pi / 2.0 * sqrt(abs(radius) / sagitta / 2.0)))  # because 1 - cos(t) is at most t**2 / 2
     return np.linspace(0.0, pi, count, endpoint=False)
 
 
@@ -65,7 +65,7 @@ def _closer(turns: Array, middle: float) -> Array:
 
 
 def _half_widths(shape: Box | Cylinder, directions: Array) -> Array:
-    """`half_width` for directions of shape (3, n)."""
+    """Return `half_width` for directions of shape (3, n)."""
     x, y, z = directions
     if isinstance(shape, Box):
         a, b, c = shape.size

@@ -1,4 +1,4 @@
-"""The gap between two convex shapes that stand apart."""
+"""The GJK distance: the direction of the gap between two separate convex shapes."""
 
 from collections.abc import Sequence
 from itertools import chain, combinations
@@ -8,21 +8,21 @@ from grader.robot.model import Sphere
 from grader.robot.shapes import Shape, support
 from grader.robot.transforms import Transform, Vector, cross, dot, minus
 
-_TOUCHING = 1e-7  # metres; a smaller gap is none
-_GAP_ERROR = 1e-10  # metres between the two bounds on a gap; its direction errs by the root of that, which is much more
-_GAP_STEPS = 200  # pairs of robot parts take fewer than 40; the cap is for what rounding may do
+_TOUCHING = 1e-7  # metres; shapes with a smaller gap touch
+_GAP_ERROR = 1e-10  # metres between the two bounds on a gap; the error of its direction is the square root, much more
+_MAX_STEPS = 200  # pairs of robot parts take fewer than 40; rounding errors may take more
 
 
 def separating_direction(a: Shape, b: Shape, T_a_b: Transform) -> Vector | None:
-    """The unit direction from a to b of the gap between their cores, or None where these touch or cut into each other.
+    """Return the unit direction from a to b of the gap between their cores, or None if these touch or intersect.
 
-    It points to what is nearest the origin among all differences between points of b and of a (Gilbert, Johnson and
+    It points to the difference nearest the origin among those between points of b and of a (Gilbert, Johnson and
     Keerthi, IEEE Journal of Robotics and Automation 4(2), 1988). Each step bounds the gap from both sides.
     """
     corners: Sequence[Vector] = ()
     nearest, shortest = T_a_b.translation, inf
     gap, best = 0.0, None
-    for _ in range(_GAP_STEPS):
+    for _ in range(_MAX_STEPS):
         length = hypot(*nearest)
         if length <= _TOUCHING:
             return None
@@ -34,13 +34,13 @@ def separating_direction(a: Shape, b: Shape, T_a_b: Transform) -> Vector | None:
             break
         corners, nearest = _nearest_to_origin((corner, *corners))
         if len(corners) == 4 or hypot(*nearest) >= shortest:
-            break  # the origin is between four corners, or they are too close together for rounding to tell more
+            break  # the origin is between four corners, or they are closer together than the rounding error
         shortest = hypot(*nearest)
     return best
 
 
 def _near_end(a: Shape, b: Shape, T_a_b: Transform, direction: Vector) -> Vector:
-    """The difference between points of the cores of b and of a that lies least far along a direction.
+    """Return the difference between points of the cores of b and of a that is least along a direction.
 
     The core of a sphere is its centre: its radius shortens every gap alike.
     """
@@ -55,7 +55,7 @@ def _near_end(a: Shape, b: Shape, T_a_b: Transform, direction: Vector) -> Vector
 
 
 def _nearest_to_origin(corners: Sequence[Vector]) -> tuple[Sequence[Vector], Vector]:
-    """What is nearest the origin between up to four corners, and the corners it rests on: the first is one of them."""
+    """Return the corners that span the point nearest the origin, the first among them, and that point."""
     first, *rest = corners
     best: tuple[Sequence[Vector], Vector] = ((first,), first)
     shortest = hypot(*first)
@@ -67,7 +67,7 @@ def _nearest_to_origin(corners: Sequence[Vector]) -> tuple[Sequence[Vector], Vec
 
 
 def _foot(first: Vector, others: Sequence[Vector]) -> Vector | None:
-    """The point nearest the origin on the line or plane, or in the space, through corners, if it lies between them."""
+    """Return the point nearest the origin on the line or plane, or in the space, through corners, if it is between them."""
     edges = [minus(other, first) for other in others]
     home = (-first[0], -first[1], -first[2])
     match edges:

@@ -1,16 +1,11 @@
 """Links as urdfdom reads them (`link.cpp`): what is lost with a bad element, and which material a visual gets."""
 
-from collections.abc import Callable
-from typing import TypeVar
-
 from grader.robot import catalogue
 from grader.robot.diagnostics import Problems, first_children
 from grader.robot.element_reader import ElementReader
 from grader.robot.materials import Materials
 from grader.robot.model import Box, Collision, Cylinder, Geometry, Inertial, Link, Mesh, Sphere, Visual
 from grader.xml.parsing import Element
-
-Part = TypeVar("Part")
 
 _SHAPES = ("box", "cylinder", "sphere", "mesh")
 _INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
@@ -27,23 +22,27 @@ def read_link(element: Element, problems: Problems, materials: Materials) -> Lin
     if name is None:
         problems.add(catalogue.LINK_WITHOUT_NAME, "this link has no name; ROS 2 keeps it as an empty link ''", element)
         return Link("", location=location)
-    first_inertial = element.find("inertial")
-    inertial = _read_inertial(first_inertial, problems, name) if first_inertial is not None else None
-    dropping = first_inertial is not None and inertial is None
-
-    def kept(tag: str, read: Callable[[Element], Part | None]) -> tuple[Part, ...]:
-        nonlocal dropping
-        parts: list[Part] = []
-        for child in element.iterchildren(tag):
-            part = read(child)
-            dropping = dropping or part is None
-            if part is not None and not dropping:
-                parts.append(part)
-        return tuple(parts)
-
-    visuals = kept("visual", lambda child: _read_visual(child, problems, name, None if dropping else materials))
-    collisions = kept("collision", lambda child: _read_collision(child, problems, name))
-    return Link(name, visuals, collisions, inertial, location)
+    parts: dict[str, list[Element]] = {"inertial": [], "visual": [], "collision": []}
+    for child in element:
+        if child.tag in parts:
+            parts[child.tag].append(child)
+    inertial, dropping = None, False
+    if parts["inertial"]:
+        inertial = _read_inertial(parts["inertial"][0], problems, name)
+        dropping = inertial is None
+    visuals: list[Visual] = []
+    for child in parts["visual"]:
+        visual = _read_visual(child, problems, name, None if dropping else materials)
+        dropping = dropping or visual is None
+        if visual is not None and not dropping:
+            visuals.append(visual)
+    collisions: list[Collision] = []
+    for child in parts["collision"]:
+        collision = _read_collision(child, problems, name)
+        dropping = dropping or collision is None
+        if collision is not None and not dropping:
+            collisions.append(collision)
+    return Link(name, tuple(visuals), tuple(collisions), inertial, location)
 
 
 def _read_inertial(element: Element, problems: Problems, link: str) -> Inertial | None:

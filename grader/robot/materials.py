@@ -1,4 +1,4 @@
-"""Which colour a visual ends up with (`model.cpp`: assignMaterial, `link.cpp`: parseMaterial)."""
+"""The colour that each visual gets (`model.cpp`: assignMaterial, `link.cpp`: parseMaterial)."""
 
 from grader.robot import catalogue
 from grader.robot.diagnostics import Problems, first_children, shown
@@ -11,74 +11,72 @@ _BLACK = (0.0, 0.0, 0.0, 1.0)
 
 
 class Materials:
-    """The materials that ROS 2 knows so far. Those under <robot> come first, then those in links, in file order."""
+    """The materials that are defined so far: first those under <robot>, then those in links, in file order."""
 
     def __init__(self, problems: Problems) -> None:
         self._problems = problems
-        self._defined: dict[str, Element] | None = None  # all definitions of the file, once one is looked for in vain
+        self._defined: dict[str, Element] | None = None  # all definitions of the file, once one is missing
         self.known: dict[str, Material] = {}
 
     def define(self, element: Element) -> None:
-        """Read a material directly under <robot>; without a readable colour it is black."""
+        """Read a material directly under <robot>; without a valid colour it is black."""
         problems = self._problems
         name = element.get("name")
         if name is None:
             problems.add(catalogue.UNNAMED_MATERIAL, "this material has no name; no link can use it", element)
         material, _ = self._read(element, name or "", "ROS 2 shows black")
         if name is not None and material is None:
-            message = f"material {quoted(name)} has no readable colour; ROS 2 makes it black"
+            message = f"material {quoted(name)} has no valid colour; ROS 2 makes it black"
             if element.find("color[@rgba]") is None:
                 problems.add(catalogue.COLOURLESS_MATERIAL, message, element)
             problems.check_printed(name, element, "name")
         if (name or "") in self.known:
-            message = f"material {quoted(name or '')} is defined twice under <robot>; ROS 2 loads nothing"
+            message = f"material {quoted(name or '')} is defined twice under <robot>; ROS 2 rejects the file"
             problems.add(catalogue.DUPLICATE_MATERIAL, message, element, "name")
             return
         self.known[name or ""] = material or Material(name or "", location=problems.location(element))
 
     def assign(self, element: Element, link: str) -> tuple[Material | None, str]:
-        """The material that a visual gets, and its name: a registered one wins, else the one in place is registered."""
+        """Return the material that a visual gets, and its name: a defined one wins, otherwise the one in place is defined."""
         name = element.get("name") or ""
         if not len(element) and name in self.known and name:
             return self.known[name], name
-        fallback = (
-            "the definition above counts" if name in self.known else f"material {quoted(name)} stays undefined here"
-        )
-        own, complained = self._read(element, name, f"ROS 2 logs an error: {fallback}")
+        fallback = "the definition above applies" if name in self.known else f"material {quoted(name)} stays undefined"
+        own, reported = self._read(element, name, f"ROS 2 logs an error: {fallback}")
         found = self.known.get(name) if name else own
         if found is None and own is None:
-            if name and not complained:
+            if name and not reported:
                 self._undefined(name, element, link)
         elif found is None and own is not None:
             found = self.known[name] = own
         elif own is not None and found is not None and (own.rgba, own.texture) != (found.rgba, found.texture):
-            message = f"material {quoted(name)} is already defined otherwise; ROS 2 ignores this definition"
+            message = f"material {quoted(name)} is already defined differently; ROS 2 ignores this definition"
             self._problems.add(catalogue.REDEFINED_MATERIAL, message, element, "name")
         return found, name
 
     def _read(self, element: Element, name: str, consequence: str) -> tuple[Material | None, bool]:
-        """The material defined in an element, if it is; and whether a complaint about its colour was noted."""
+        """Return the material that an element defines, if it does, and whether its colour is reported as a problem."""
         inside = first_children(element)
         texture, colour = inside.get("texture"), inside.get("color")
         filename = texture.get("filename") if texture is not None else None
         text = colour.get("rgba") if colour is not None else None
-        channels, complained = None, False
+        channels, reported = None, False
         if text is not None and colour is not None:
             try:
                 channels = rgba(text)
                 if channels is None:
-                    message = f"rgba={shown(text)} needs four numbers; ROS 2 silently shows black"
+                    message = f"rgba={shown(text)} has not exactly four numbers; ROS 2 silently shows black"
                     self._problems.add(catalogue.COLOUR_COUNT, message, colour, "rgba")
                     channels = _BLACK
             except NumberError as error:
-                complained = True
-                message = f"rgba={shown(text)} cannot be read: {error}; {consequence}"
+                reported = True
+                message = f"cannot read rgba={shown(text)}: {error}; {consequence}"
                 self._problems.add(catalogue.BAD_COLOUR, message, colour, "rgba")
                 self._problems.check_printed(f"{name} {text}", colour, "rgba")
         if channels is None and filename is None:
-            return None, complained
+            return None, reported
         location = self._problems.location(element if colour is None else colour)
-        return Material(name, channels or _BLACK, filename or "", location), complained
+        return Material(name, channels or _BLACK, filename or "", location), reported
 
     def _undefined(self, name: str, element: Element, link: str) -> None:
         problems = self._problems
@@ -90,6 +88,6 @@ class Materials:
             line = problems.line(later)
             hint = f" before its definition in line {line}; define it directly under <robot>"
         else:
-            hint = f", which is defined nowhere{problems.did_you_mean(name, self._defined)}"
+            hint = f", which is not defined{problems.did_you_mean(name, self._defined)}"
         message = f"link {quoted(link)} uses material {quoted(name)}{hint}; ROS 2 shows it without the colour"
         problems.add(catalogue.UNDEFINED_MATERIAL, message, element, "name")

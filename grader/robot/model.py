@@ -1,7 +1,7 @@
-"""A robot as plain values: what is left of a URDF once ROS 2 has read it.
+"""A robot as plain values: the content of a URDF as ROS 2 keeps it.
 
-Lengths are metres, angles radians about fixed axes x, y, z (REP 103). `None` stands for a value that the file gives but
-that cannot be read; a value that the file leaves out has ROS 2's default.
+Lengths are metres, angles radians about fixed axes x, y, z (REP 103). `None` is a value that the file gives but that
+cannot be read; a value that the file does not give has ROS 2's default.
 """
 
 from collections.abc import Iterable
@@ -17,7 +17,7 @@ Vector = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """Where a child frame stands in its parent: `xyz` in metres, then `rpy` in radians about fixed axes."""
+    """The pose of a child frame in its parent: `xyz` in metres, `rpy` in radians about fixed axes."""
 
     xyz: Vector = (0.0, 0.0, 0.0)
     rpy: Vector = (0.0, 0.0, 0.0)
@@ -26,7 +26,7 @@ class Origin:
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """A box about its centre; `size` holds the full edge lengths along x, y, z."""
+    """A box about its centre; `size` is the full edge lengths along x, y, z in metres."""
 
     size: Vector
     location: LazyLocation | None = field(default=None, compare=False, repr=False)
@@ -34,7 +34,7 @@ class Box:
 
 @dataclass(frozen=True, slots=True)
 class Cylinder:
-    """A cylinder about its centre, its axis along z."""
+    """A cylinder about its centre, its axis along z; lengths in metres."""
 
     radius: float
     length: float
@@ -43,7 +43,7 @@ class Cylinder:
 
 @dataclass(frozen=True, slots=True)
 class Sphere:
-    """A sphere about its centre."""
+    """A sphere about its centre; its radius in metres."""
 
     radius: float
     location: LazyLocation | None = field(default=None, compare=False, repr=False)
@@ -51,7 +51,7 @@ class Sphere:
 
 @dataclass(frozen=True, slots=True)
 class Mesh:
-    """A mesh file. Its name is kept as text and never opened, so its extent is unknown."""
+    """A mesh file. It is never opened, so its extent is unknown."""
 
     filename: str
     scale: Vector = (1.0, 1.0, 1.0)
@@ -73,7 +73,7 @@ class Material:
 
 @dataclass(frozen=True, slots=True)
 class Visual:
-    """One shape that a link shows. `material` is the resolved one; None where ROS 2 knows of no colour."""
+    """One shape that a link shows. `material` is resolved; None if ROS 2 has no colour for it."""
 
     geometry: Geometry
     origin: Origin = Origin()
@@ -113,7 +113,7 @@ class Link:
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """A joint's range (rad or m), largest effort (N m or N) and largest speed (rad/s or m/s)."""
+    """A joint's range (rad or m), maximum effort (N m or N) and maximum velocity (rad/s or m/s)."""
 
     lower: float
     upper: float
@@ -132,10 +132,10 @@ class Mimic:
 
 @dataclass(frozen=True, slots=True)
 class Joint:
-    """What holds `child` to `parent`; the joint's frame is the child link's frame.
+    """A joint between two links; its frame is the child link's frame.
 
-    `type` is the file's text, so a misspelt one can be quoted. `origin` and `axis` are None where they are given but
-    cannot be read. `parent` and `child` are empty where the file does not say.
+    `type` is the file's text, so a misspelt one can be quoted. `origin` and `axis` are None if they are given but cannot be
+    read. `parent` and `child` are empty if the file does not name them.
     """
 
     name: str
@@ -152,9 +152,9 @@ class Joint:
 
 @dataclass(frozen=True, slots=True)
 class Robot:
-    """Links and joints in file order. Of two with one name the first is looked up.
+    """Links and joints in file order; of two with the same name the first is looked up.
 
-    Where ROS 2 has `rejected` the file, this is what could be read of it: a best reading, not what ROS 2 would do.
+    If ROS 2 has `rejected` the file, this is what could be read of it, not what ROS 2 would do.
     """
 
     name: str
@@ -170,29 +170,29 @@ class Robot:
         object.__setattr__(self, "_joints", {joint.name: joint for joint in reversed(self.joints)})
 
     def link(self, name: str) -> Link:
-        """The link of this name; raises MissingElement, which lists the names that there are."""
+        """Return the link of this name; raises MissingElement, which lists the existing names."""
         try:
             return self._links[name]
         except KeyError:
             raise _missing("link", name, self.links) from None
 
     def joint(self, name: str) -> Joint:
-        """The joint of this name; raises MissingElement, which lists the names that there are."""
+        """Return the joint of this name; raises MissingElement, which lists the existing names."""
         try:
             return self._joints[name]
         except KeyError:
             raise _missing("joint", name, self.joints) from None
 
     def has_joint(self, name: str) -> bool:
-        """Whether a joint of this name was read."""
+        """Return whether a joint of this name was read."""
         return name in self._joints
 
     def has_link(self, name: str) -> bool:
-        """Whether a link of this name was read."""
+        """Return whether a link of this name was read."""
         return name in self._links
 
 
-def _missing(kind: str, name: str, there: Iterable[Link | Joint]) -> MissingElement:
-    known = tuple(each.name for each in there)
+def _missing(kind: str, name: str, existing: Iterable[Link | Joint]) -> MissingElement:
+    known = tuple(element.name for element in existing)
     guess = did_you_mean(name, known) or f"; the file has: {', '.join(map(quoted, known[:20])) or 'none'}"
     return MissingElement(kind, name, known, message=f"there is no {kind} {quoted(name)}", detail=guess)

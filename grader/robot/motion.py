@@ -1,4 +1,4 @@
-"""How one joint moves its child: what it adds behind its origin at a position."""
+"""The motion of one joint: the transform from its origin to its child at a position."""
 
 from collections.abc import Sequence
 from math import atan2, isfinite
@@ -6,11 +6,11 @@ from math import atan2, isfinite
 from grader.robot.joints import MOVING_TYPES
 from grader.robot.model import Joint, Origin
 from grader.robot.transforms import IDENTITY, Transform, Vector, cross, dot, rotation_about, rotation_from_rpy, unit
-from grader.text import quoted
+from grader.text import counted, quoted
 
 Position = float | Sequence[float]
 
-# How many numbers the position of a joint has; the types that are not named here do not move.
+# The number of coordinates of a joint's position; the other types do not move.
 DEGREES_OF_FREEDOM = {"continuous": 1, "revolute": 1, "prismatic": 1, "planar": 3, "floating": 6}
 
 
@@ -18,14 +18,14 @@ _NO_TURN = (0.0, 0.0, 0.0)
 
 
 def placed_by(T_frame_parent: Transform, origin: Origin) -> Transform:
-    """T_frame_child: the frame that an origin puts into its parent."""
+    """Return T_frame_child: the frame that an origin places in its parent."""
     if origin.rpy == _NO_TURN:
         return T_frame_parent.shifted(origin.xyz)
     return T_frame_parent @ Transform(rotation_from_rpy(origin.rpy), origin.xyz)
 
 
 def after_joint(T_root_parent: Transform, joint: Joint, position: Position) -> Transform | None:
-    """T_root_child behind a joint, or None where it is undefined."""
+    """Return T_root_child, or None if it is undefined."""
     motion = motion_of(joint, position)
     if joint.origin is None or motion is None:
         return None
@@ -34,22 +34,22 @@ def after_joint(T_root_parent: Transform, joint: Joint, position: Position) -> T
 
 
 def motion_of(joint: Joint, position: Position) -> Transform | None:
-    """What a joint adds behind its origin; None where it is undefined, as it is for any position about a zero axis (KDL)."""
+    """Return T_origin_child; None if it is undefined, as it is for every position about a zero axis (KDL)."""
     if joint.type not in MOVING_TYPES:
         return IDENTITY
     if isinstance(position, int | float) and not isfinite(position):
-        return None  # a mimic joint can run away
+        return None  # a chain of mimic joints can overflow
     if joint.type == "floating":
         return _floating(position)
     direction = unit(joint.axis) if joint.axis is not None else None
     if direction is None:
-        # KDL divides by the axis' length before it looks at the position. An unreadable axis matters to motion only.
+        # KDL divides by the axis' length before it uses the position. An unreadable axis matters only if the joint moves.
         return IDENTITY if joint.axis is None and not position else None
     if joint.type == "planar":
         return _planar(direction, position)
     if not position:
         return IDENTITY
-    assert isinstance(position, int | float)  # _check_position has seen to it
+    assert isinstance(position, int | float)  # check_position has made sure
     if joint.type == "prismatic":
         x, y, z = direction
         return Transform(translation=(x * position, y * position, z * position))
@@ -64,7 +64,7 @@ def _floating(position: Position) -> Transform:
 
 
 def _planar(normal: Vector, position: Position) -> Transform:
-    """Slide in the plane across `normal`, then turn about it; x and y are the frame's where the normal is its z axis."""
+    """Return a motion in the plane across `normal`, then about it; x and y are the frame's if the normal is its z axis."""
     if isinstance(position, int | float):
         return IDENTITY
     x, y, angle = position
@@ -85,11 +85,11 @@ def check_position(joint: Joint, position: Position) -> None:
     wanted = DEGREES_OF_FREEDOM.get(joint.type, 0)
     given = 1 if isinstance(position, int | float) else len(position)
     if wanted == 0:
-        raise ValueError(f"joint {quoted(joint.name)} is {joint.type or 'without type'}: it has no position")
+        raise ValueError(f"joint {quoted(joint.name)} is {joint.type or 'without type'}: it cannot move")
     values = (position,) if isinstance(position, int | float) else position
     if not all(map(isfinite, values)):
         raise ValueError(f"joint {quoted(joint.name)} cannot be at {position}")
     if given != wanted or (wanted > 1 and isinstance(position, int | float)):
         raise ValueError(
-            f"joint {quoted(joint.name)} is {joint.type}: its position has {wanted} number(s), not {given}"
+            f"joint {quoted(joint.name)} is {joint.type}: its position takes {counted(wanted, 'number')}, not {given}"
         )

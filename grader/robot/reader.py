@@ -42,14 +42,13 @@ def read_urdf(data: bytes, path: str = "robot.urdf") -> Reading:
     The verdict is ROS 2 Jazzy's (urdfdom on TinyXML2): `clean`; `degraded`, if content is dropped or links are left out
     of the tree; `rejected`. Every problem is reported, sorted by location. Never raises for any input.
     """
-    root, source, listed, start = read_document(data, path)
+    root, source, listed, first_tag = read_document(data, path)
     if root is None or root.tag != "robot":
         if not any(problem.kind.effect == "rejects" for problem in listed):
             message = "the file has no <robot> at its top level; ROS 2 rejects it"
             if root is not None:
-                start = source.tag(0)
                 message = f"the root of the file is <{root.tag.rpartition('}')[2]}>, expected <robot>; ROS 2 rejects it"
-            listed.append(Problem(catalogue.NO_ROBOT, message, start))
+            listed.append(Problem(catalogue.NO_ROBOT, message, source.at(first_tag) if root is None else source.tag(0)))
         return _judge(None, listed, {problem.kind.effect for problem in listed}, source)
     problems = Problems(source, root)
     robot = _read_robot(root, problems)

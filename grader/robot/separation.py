@@ -1,9 +1,9 @@
-"""How far two shapes stand apart, or how deep one sits in the other.
+"""The distance between two shapes, or the depth to which they overlap.
 
 Boxes, cylinders and spheres are convex and symmetric about their centres. Along a unit direction u two of them overlap
-by `half_width(a, u) + half_width(b, u) - |u . c|`, c being the vector between their centres. Where no overlap is
-negative the shapes cut into each other, and the smallest one is how far b must move to come free: the separating axis
-test (Ericson, Real-Time Collision Detection, 2004, section 5.2.1). Everything is worked out in a's frame.
+by `half_width(a, u) + half_width(b, u) - |u . c|`, c being the vector between their centres. If no overlap is negative
+the shapes intersect, and the smallest one is the distance that b must move to separate them: the separating axis
+test (Ericson, Real-Time Collision Detection, 2004, section 5.2.1). Everything is computed in a's frame.
 """
 
 from collections.abc import Iterator
@@ -16,14 +16,14 @@ from grader.robot.model import Box, Cylinder, Sphere
 from grader.robot.shapes import Shape, half_width, straight_edges
 from grader.robot.transforms import Transform, Vector, cross, dot, minus, unit
 
-_ROUNDING = 1e-9  # metres; what sums of coordinates may lose, so that shapes set side by side count as touching
-_LEAN = 1e-5  # metres; cylinders that lean by less than this along their length are as good as parallel
-_LARGEST = 1e6  # metres; longer lengths are scaled down, for products of four of them could overflow
+_ROUNDING = 1e-9  # metres that sums of coordinates may lose, so that shapes set side by side count as touching
+_LEAN = 1e-5  # metres; cylinders that lean by less along their length count as parallel
+_MAX_LENGTH = 1e6  # metres; longer lengths are scaled down, for products of four of them could overflow
 
 
 @dataclass(frozen=True, slots=True)
 class Separation:
-    """The gap between two shapes in metres, negative for a depth, and the unit direction from a to b it is measured in.
+    """The distance between two shapes in metres, negative for a depth, and the unit direction from a to b of it.
 
     Moving b along the direction by the negative of the distance makes the shapes just touch.
     """
@@ -33,12 +33,12 @@ class Separation:
 
 
 def separation(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> Separation:
-    """The gap or the penetration depth of two shapes in metres, and its direction in the world.
+    """Return the distance or the penetration depth of two shapes in metres, and its direction in the world.
 
     Off by less than 0.1 mm, or 1e-4 of the largest length where that is more than 10 m. Raises UnknownShape for a mesh.
     """
     size = max(_radius(a), _radius(b), *map(abs, T_w_a.translation + T_w_b.translation))
-    scale = 1.0 if size <= _LARGEST else min(size, 1e308)
+    scale = 1.0 if size <= _MAX_LENGTH else min(size, 1e308)
     a, b = _shrunk(a, scale), _shrunk(b, scale)
     T_a_b = _moved_in(T_w_a, scale).inverse() @ _moved_in(T_w_b, scale)
     direction = separating_direction(a, b, T_a_b) or _least_overlap(a, b, T_a_b)
@@ -46,10 +46,10 @@ def separation(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> Separa
 
 
 def penetration(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, allowed: float = 0.0) -> float:
-    """How deep two shapes sit in each other, metres, where that is more than `allowed`; 0.0 everywhere else.
+    """Return the penetration depth of two shapes in metres if it is more than `allowed`; otherwise 0.0.
 
-    Shapes that touch are apart. For parts that stand side by side a look along a few directions is enough, and those
-    are most. Raises UnknownShape for a mesh.
+    Shapes that touch are separate. A few directions are enough for parts that are side by side, and most are. Raises
+    UnknownShape for a mesh.
     """
     limit = allowed + _ROUNDING
     if _radius(a) + _radius(b) - hypot(*minus(T_w_b.translation, T_w_a.translation)) <= limit:
@@ -62,7 +62,7 @@ def penetration(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, allowed:
 
 
 def _radius(shape: Shape) -> float:
-    """The radius of the smallest ball about a shape's centre that holds it."""
+    """Return the radius of the smallest ball about a shape's centre that contains it."""
     if isinstance(shape, Box):
         x, y, z = shape.size
         return hypot(x / 2.0, y / 2.0, z / 2.0)
@@ -88,15 +88,15 @@ def _moved_in(pose: Transform, scale: float) -> Transform:
 
 
 def _overlap(a: Shape, b: Shape, T_a_b: Transform, direction: Vector) -> float:
-    """The length that two shapes share along a unit direction; a negative one is a gap."""
+    """Return the length that two shapes share along a unit direction; a negative one is a gap."""
     centres = abs(dot(direction, T_a_b.translation))
     return half_width(a, direction) + half_width(b, T_a_b.unrotate(direction)) - centres
 
 
 def _likely_directions(a: Shape, b: Shape, T_a_b: Transform) -> Iterator[Vector]:
-    """Unit directions in which shapes that do not cut into each other are mostly seen to be apart.
+    """Yield unit directions, one of which shows for most separate shapes that they are separate.
 
-    Where no rim matters the least overlap of shapes that do cut into each other is along one of these.
+    If no rim matters, the least overlap of intersecting shapes is along one of these.
     """
     c = T_a_b.translation
     edges_a = straight_edges(a)
@@ -118,7 +118,7 @@ def _likely_directions(a: Shape, b: Shape, T_a_b: Transform) -> Iterator[Vector]
 
 
 def _beyond(shape: Shape, point: Vector) -> Vector:
-    """The way to a point from what is nearest to it of a box, or from the centre of a round shape."""
+    """Return the vector to a point from the nearest point of a box, or from the centre of a round shape."""
     if not isinstance(shape, Box):
         return point
     x, y, z = (copysign(max(abs(p) - abs(size) / 2.0, 0.0), p) for p, size in zip(point, shape.size, strict=True))
@@ -126,7 +126,7 @@ def _beyond(shape: Shape, point: Vector) -> Vector:
 
 
 def _least_overlap(a: Shape, b: Shape, T_a_b: Transform) -> Vector:
-    """The unit direction from a to b along which two shapes that touch or cut into each other overlap least."""
+    """Return the unit direction from a to b along which two touching or intersecting shapes overlap least."""
 
     def overlap(direction: Vector) -> float:
         return _overlap(a, b, T_a_b, direction)
@@ -134,17 +134,17 @@ def _least_overlap(a: Shape, b: Shape, T_a_b: Transform) -> Vector:
     best = min(_likely_directions(a, b, T_a_b), key=overlap)
     leaning = overlap(best) > _ROUNDING and _rims_matter(a, b, T_a_b)
     if leaning and not isinstance(a, Sphere) and not isinstance(b, Sphere):
-        from grader.robot.edge_overlap import least_overlap_at_rims  # late: it loads numpy
+        from grader.robot.edge_overlap import least_edge_overlap  # late: it loads numpy
 
-        best = min(best, least_overlap_at_rims(a, b, T_a_b), key=overlap)
+        best = min(best, least_edge_overlap(a, b, T_a_b), key=overlap)
     x, y, z = best
     return best if dot(best, T_a_b.translation) >= 0.0 else (-x, -y, -z)
 
 
 def _rims_matter(a: Shape, b: Shape, T_a_b: Transform) -> bool:
-    """Whether there is a cylinder that leans against all edges of the other shape by more than `_LEAN`.
+    """Return whether a cylinder leans against all edges of the other shape by more than `_LEAN`.
 
-    A cylinder parallel to an edge, as most are, makes the overlap a flat problem, which has no rims.
+    The overlap with a cylinder parallel to an edge, as most are, is a problem in the plane, without rims.
     """
     if isinstance(a, Box) and isinstance(b, Box):
         return False

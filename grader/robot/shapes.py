@@ -1,6 +1,6 @@
-"""How far the shapes of a robot reach: support points, extents, volumes.
+"""The size of a robot's shapes: support points, extents, volumes.
 
-Lengths are metres. A negative size means its absolute value: urdfdom reads one without complaint, and a shape that is
+Lengths are metres. A negative size counts as its absolute value: urdfdom accepts it, and a shape that is
 symmetric about its centre does not change when it is mirrored.
 """
 
@@ -12,11 +12,11 @@ from grader.text import quoted
 
 Shape = Box | Cylinder | Sphere
 
-_TIE = 1e-9  # how far, relative to its length, a direction may lean from a face's normal and still mean all of the face
+_TIE = 1e-9  # relative to its length; a direction that leans less from a face's normal means the whole face
 
 
 class UnknownShape(ValueError):
-    """A question about the size of a shape whose size is not known; `geometry` is that shape."""
+    """The size of a shape is needed, but not known; `geometry` is that shape."""
 
     def __init__(self, geometry: Mesh) -> None:
         super().__init__(f"the size of mesh {quoted(geometry.filename)} is unknown: mesh files are not opened")
@@ -24,7 +24,7 @@ class UnknownShape(ValueError):
 
 
 def half_width(geometry: Geometry, direction: Vector) -> float:
-    """How far a shape reaches from its centre along a unit direction of its own frame, metres; UnknownShape for a mesh.
+    """Return the extent of a shape from its centre along a unit direction of its frame, metres; UnknownShape for a mesh.
 
     This is the shape's support function (Ericson, Real-Time Collision Detection, 2004, section 4.3). The cylinder's
     `hypot` has no cancellation near its axis, which `sqrt(1 - z * z)` would have.
@@ -41,7 +41,7 @@ def half_width(geometry: Geometry, direction: Vector) -> float:
 
 
 def support(geometry: Geometry, direction: Vector) -> Vector:
-    """The farthest point of a shape along a direction of its own frame; the middle of all of them where many tie.
+    """Return the farthest point of a shape along a direction of its frame; the middle of them if several tie.
 
     Metres, in the shape's frame; the direction need not be unit, and a zero one gives the centre. Raises UnknownShape
     for a mesh.
@@ -64,7 +64,7 @@ def support(geometry: Geometry, direction: Vector) -> Vector:
 
 
 def extent(geometry: Geometry, T_frame_shape: Transform, direction: Vector) -> tuple[float, float]:
-    """The smallest and the largest coordinate of a shape along a unit direction of the frame, metres.
+    """Return the smallest and the largest coordinate of a shape along a unit direction of the frame, metres.
 
     Raises UnknownShape for a mesh.
     """
@@ -74,7 +74,7 @@ def extent(geometry: Geometry, T_frame_shape: Transform, direction: Vector) -> t
 
 
 def farthest(geometry: Geometry, T_frame_shape: Transform, direction: Vector) -> Vector:
-    """The farthest point of a shape along a direction of the frame; the middle of all of them where many tie.
+    """Return the farthest point of a shape along a direction of the frame; the middle of them if several tie.
 
     Metres, in the frame. Raises UnknownShape for a mesh.
     """
@@ -82,7 +82,7 @@ def farthest(geometry: Geometry, T_frame_shape: Transform, direction: Vector) ->
 
 
 def volume(geometry: Geometry) -> float:
-    """The volume of a shape in cubic metres; UnknownShape for a mesh."""
+    """Return the volume of a shape in cubic metres; UnknownShape for a mesh."""
     if isinstance(geometry, Box):
         a, b, c = geometry.size
         return abs(a * b * c)
@@ -94,7 +94,7 @@ def volume(geometry: Geometry) -> float:
 
 
 def is_empty(geometry: Geometry) -> bool:
-    """Whether there is nothing to see of a shape, because it has neither a volume nor an area.
+    """Return whether a shape is invisible, because it has neither a volume nor an area.
 
     That is a box with two or three zero edges (with one it is a plate, which RViz shows), a cylinder or sphere of zero
     radius (a cylinder of zero length is a disc), and a mesh scaled by zero along all three axes.
@@ -107,7 +107,7 @@ def is_empty(geometry: Geometry) -> bool:
 
 
 def straight_edges(geometry: Geometry) -> list[Vector]:
-    """The directions of the straight lines on a shape, which are the normals of its flat faces too."""
+    """Return the directions of the straight edges of a shape, which are the normals of its flat faces too."""
     if isinstance(geometry, Box):
         return [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
     return [(0.0, 0.0, 1.0)] if isinstance(geometry, Cylinder) else []

@@ -1,11 +1,11 @@
-"""Names that ROS 2 does not know and skips in silence, where they look like misspelt ones; and elements given twice."""
+"""Unknown names that look like misspelt ones, which ROS 2 silently ignores, and repeated elements."""
 
 from grader.robot import catalogue
 from grader.robot.diagnostics import Problems
 from grader.text import quoted
 from grader.xml.parsing import Element
 
-# What urdfdom reads: the attributes of each element, and the elements that may stand in it.
+# What urdfdom reads: the attributes of each element, and the elements that may be in it.
 _ATTRIBUTES: dict[str, tuple[str, ...]] = {
     "robot": ("name", "version"),
     "link": ("name",),
@@ -43,7 +43,7 @@ _CHILDREN: dict[str, tuple[str, ...]] = {
     "material": ("color", "texture"),
     "joint": ("origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "safety_controller", "calibration"),
 }
-# Correct in their place, though urdfdom does not read them: no hint may call them a misspelling.
+# Correct names that urdfdom does not read: they are not misspellings.
 _EXTENSIONS = frozenset(
     {
         "gazebo",
@@ -67,7 +67,7 @@ _KNOWN_ATTRIBUTES = {tag: frozenset(names) for tag, names in _ATTRIBUTES.items()
 
 
 def check_spelling(root: Element, problems: Problems) -> None:
-    """Note misspelt names and repeated elements in what urdfdom reads; extensions of other tools are left alone."""
+    """Report misspelt names and repeated elements in what urdfdom reads; extensions of other tools are skipped."""
     if not _KNOWN_ATTRIBUTES["robot"].issuperset(root.keys()):
         _check_attributes(root, problems)
     waiting = [root]
@@ -96,11 +96,11 @@ def _check_attributes(element: Element, problems: Problems) -> None:
         if name in known or name.startswith("{"):
             continue
         meant = _SWAPPED.get((element.tag, name)) or problems.closest(
-            name, [each for each in known if each not in given]
+            name, [other for other in known if other not in given]
         )
         if meant:
             message = (
-                f"<{element.tag}> has no attribute {quoted(name)}, and ROS 2 ignores it; did you mean {quoted(meant)}?"
+                f"ROS 2 ignores the unknown attribute {quoted(name)} of <{element.tag}>; did you mean {quoted(meant)}?"
             )
             problems.add(catalogue.MISSPELT, message, element, name)
 
@@ -122,9 +122,9 @@ def _check_repeated(element: Element, tags: list[str], problems: Problems) -> No
         if element.tag == "geometry":
             if seen:
                 problems.add(
-                    catalogue.REPEATED_ELEMENT, "a <geometry> has one shape: ROS 2 reads the first only", child
+                    catalogue.REPEATED_ELEMENT, "a <geometry> has one shape: ROS 2 reads only the first", child
                 )
         elif tag in seen and (tag in _SINGLE or (element.tag == "visual" and tag == "material")):
-            message = f"<{tag}> stands twice in this <{element.tag}>: ROS 2 reads the first only"
+            message = f"<{tag}> is repeated in this <{element.tag}>: ROS 2 reads only the first"
             problems.add(catalogue.REPEATED_ELEMENT, message, child)
         seen.add(tag)

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     import numpy as np
 
 Vector = tuple[float, float, float]
-Rotation = tuple[float, float, float, float, float, float, float, float, float]  # rows of a 3 x 3 matrix, one by one
+Rotation = tuple[float, float, float, float, float, float, float, float, float]  # a 3 x 3 matrix, row by row
 
 _AXES = frozenset({(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)})
 IDENTITY_ROTATION: Rotation = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
@@ -26,7 +26,7 @@ class Transform:
     translation: Vector = (0.0, 0.0, 0.0)
 
     def __matmul__(self, other: "Transform") -> "Transform":
-        """T_a_c = T_a_b @ T_b_c."""
+        """Return T_a_c = T_a_b @ T_b_c."""
         a, b, c, d, e, f, g, h, i = self.rotation
         j, k, l, m, n, o, p, q, r = other.rotation  # noqa: E741  rows, letter by letter
         x, y, z = other.translation
@@ -47,30 +47,30 @@ class Transform:
         )
 
     def apply(self, point: Vector) -> Vector:
-        """A point in b, seen in a."""
+        """Return a point given in b in frame a."""
         a, b, c, d, e, f, g, h, i = self.rotation
         x, y, z = point
         u, v, w = self.translation
         return (a * x + b * y + c * z + u, d * x + e * y + f * z + v, g * x + h * y + i * z + w)
 
     def rotate(self, direction: Vector) -> Vector:
-        """A direction in b, seen in a: no translation."""
+        """Return a direction given in b in frame a: no translation."""
         a, b, c, d, e, f, g, h, i = self.rotation
         x, y, z = direction
         return (a * x + b * y + c * z, d * x + e * y + f * z, g * x + h * y + i * z)
 
     def unrotate(self, direction: Vector) -> Vector:
-        """A direction in a, seen in b."""
+        """Return a direction given in a in frame b."""
         a, b, c, d, e, f, g, h, i = self.rotation
         x, y, z = direction
         return (a * x + d * y + g * z, b * x + e * y + h * z, c * x + f * y + i * z)
 
     def shifted(self, offset: Vector) -> "Transform":
-        """T_a_c for a frame c that stands at `offset` in b and is turned as b is."""
+        """Return T_a_c for a frame c at `offset` in b, with the orientation of b."""
         return Transform(self.rotation, self.apply(offset))
 
     def inverse(self) -> "Transform":
-        """T_b_a."""
+        """Return T_b_a."""
         a, b, c, d, e, f, g, h, i = self.rotation
         x, y, z = self.unrotate(self.translation)
         return Transform((a, d, g, b, e, h, c, f, i), (-x, -y, -z))
@@ -84,7 +84,7 @@ class Transform:
 
     @property
     def rpy(self) -> Vector:
-        """Roll, pitch and yaw in radians about fixed axes; where pitch is a quarter turn, roll is given as 0."""
+        """Roll, pitch and yaw in radians about fixed axes; roll is 0 if pitch is a quarter turn."""
         a, b, _, d, e, _, g, h, i = self.rotation
         flat = hypot(a, d)
         if flat < 1e-9:
@@ -92,8 +92,8 @@ class Transform:
         return (atan2(h, i), atan2(-g, flat), atan2(d, a))
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> "np.ndarray[Any, Any]":
-        """The 4 x 4 homogeneous matrix for numpy, shape (4, 4)."""
-        import numpy as np  # only callers that already have numpy come here
+        """Return the 4 x 4 homogeneous matrix for numpy, shape (4, 4)."""
+        import numpy as np  # late: only callers that already use numpy come here
 
         return np.array(self.matrix, dtype=dtype)
 
@@ -102,7 +102,7 @@ IDENTITY = Transform()
 
 
 def rotation_from_rpy(rpy: Vector) -> Rotation:
-    """Roll about x, then pitch about y, then yaw about z, all fixed: Rz(yaw) Ry(pitch) Rx(roll) (REP 103)."""
+    """Return Rz(yaw) Ry(pitch) Rx(roll): roll about x, then pitch about y, then yaw about z, all fixed (REP 103)."""
     if rpy == (0.0, 0.0, 0.0):
         return IDENTITY_ROTATION
     roll, pitch, yaw = rpy
@@ -121,7 +121,7 @@ def rotation_from_rpy(rpy: Vector) -> Rotation:
 
 
 def rotation_about(axis: Vector, angle: float) -> Rotation:
-    """The turn by `angle` radians about a unit axis, right-handed (Rodrigues)."""
+    """Return the rotation by `angle` radians about a unit axis, right-handed (Rodrigues)."""
     x, y, z = axis
     s, c = sin(angle), cos(angle)
     t = 1.0 - c
@@ -139,8 +139,8 @@ def rotation_about(axis: Vector, angle: float) -> Rotation:
 
 
 def unit(vector: Vector) -> Vector | None:
-    """The direction of a vector, or None where it has none. Safe from overflow and underflow."""
-    if vector in _AXES:  # most of those that are asked for
+    """Return the unit vector of a direction, or None for length zero. Safe from overflow and underflow."""
+    if vector in _AXES:  # the most frequent case
         return vector
     largest = max(abs(vector[0]), abs(vector[1]), abs(vector[2]))
     if not 0.0 < largest < inf:
@@ -151,15 +151,15 @@ def unit(vector: Vector) -> Vector | None:
 
 
 def dot(a: Vector, b: Vector) -> float:
-    """The scalar product."""
+    """Return the scalar product."""
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def cross(a: Vector, b: Vector) -> Vector:
-    """The vector product, right-handed."""
+    """Return the vector product, right-handed."""
     return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
 
 
 def minus(a: Vector, b: Vector) -> Vector:
-    """The vector from b to a."""
+    """Return the vector from b to a."""
     return (a[0] - b[0], a[1] - b[1], a[2] - b[2])

@@ -24,7 +24,7 @@ def check_tree(robot: Robot, links: dict[str, Element], problems: Problems) -> N
     roots = [link.name for link in robot.links if link.name not in parents]
     edges: Edges = {}
     for joint in robot.joints:
-        if joint.parent and joint.child and robot.has_link(joint.parent) and robot.has_link(joint.child):
+        if joint.parent and joint.child and joint.parent in links and joint.child in links:
             edges.setdefault(joint.parent, []).append(joint)
     reachable = _reachable(roots, edges)
     if len(roots) == 1 and len(parents) == len(robot.joints) and len(reachable) == len(links):

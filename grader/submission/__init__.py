@@ -1,1 +1,1 @@
-"""What was handed in."""
+"""Submissions, and which of their files are graded."""

@@ -1,4 +1,4 @@
-"""A submission: what was handed in, which URDF and which package of it are graded, and what was passed over."""
+"""A submission: its files, and which URDF and which package of it are graded."""
 
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -20,11 +20,12 @@ if TYPE_CHECKING:
     from grader.documents.evidence import Proof
 
 STANDARD_INPUT = "-"
-# Files that a hand-in is made of; nobody means to have them graded as a URDF.
+# Other files of a lab, which are never meant as a URDF.
 _NO_URDFS = frozenset(
     {".py", ".md", ".rviz", ".yaml", ".yml", ".toml", ".cfg", ".json", ".png", ".jpg", ".jpeg", ".gif", ".pdf", ".docx"}
 )
 _NO_FILES = make_tree("", (), ())
+_WANTED = "give a .urdf file, or the folder or archive that was submitted"
 
 
 @dataclass(frozen=True)
@@ -93,14 +94,14 @@ class Submission:
         return self.packages[0] if self.packages else None
 
     def needed_package(self) -> Package:
-        """The package that is graded; raises MissingElement where there is none, NotDecided where that cannot be told."""
+        """Return the package that is graded; raises MissingElement without one, NotDecided if one may be in an unopened archive."""
         if self.package is not None:
             return self.package
         self._refuse_unopened("package")
         raise MissingElement("package", "", message=NO_PACKAGE)
 
     def needed_urdf(self) -> Reading:
-        """The URDF that is graded; raises MissingElement where there is none, NotDecided where that cannot be told."""
+        """Return the URDF that is graded; raises MissingElement without one, NotDecided if it cannot be read statically."""
         match self.urdf:
             case Read(reading=reading):
                 return reading
@@ -109,7 +110,7 @@ class Submission:
             case Absent():
                 self._refuse_unopened("URDF")
         count = len(self.tree.files)
-        files = f"none of the {count} files holds a <robot>" if count > 1 else "the only file holds no <robot>"
+        files = f"none of the {count} files contains a <robot>" if count > 1 else "the only file contains no <robot>"
         message = f"no URDF was submitted: {files}" if count else "no URDF was submitted"
         raise MissingElement("URDF", "", message=message)
 
@@ -119,7 +120,7 @@ class Submission:
             raise NotDecided(f"no {wanted} was found, but {archives} could not be opened")
 
     def source(self, path: str) -> Source | None:
-        """The text of one of its files, for quoting; None where it cannot be read."""
+        """Return the text of one of its files, for quoting; None if it cannot be read."""
         if isinstance(self.urdf, Read | NeedsExpansion) and path == self.urdf.path:
             return self.urdf.source
         file = self.tree.files.get(path)
@@ -130,31 +131,29 @@ class Submission:
 
 
 def read_submission(data: bytes, *, identity: str, path: str) -> Submission:
-    """The submission that the bytes of one URDF make."""
+    """Return the submission that consists of the bytes of one URDF."""
     return Submission(identity, read_as_ros(data, path, None))
 
 
 def open_submission(path: str, *, wanted: str, package: str = "", limit: int = URDF_LIMIT) -> Submission:
-    """Read what was handed in at a path: a URDF, a folder, an archive, or standard input for `-`.
+    """Read the submission at a path: a URDF, a folder, an archive, or standard input for `-`.
 
-    `wanted` is where the rubric expects the URDF in its package, `package` the name that it expects this one to have.
-    Raises InputError, with one plain sentence, for what cannot be read.
+    `wanted` is the URDF's path in its package and `package` the package's name, as the rubric gives them. `limit` is the
+    largest size of a URDF in bytes. Raises InputError, with one sentence, if the path cannot be read.
     """
     if path == STANDARD_INPUT:
         return read_submission(read_standard_input(limit), identity="stdin", path="-")
     if not path:
-        raise InputError("the path is empty: name a .urdf, or the folder or archive that was handed in")
+        raise InputError(f"the path is empty: {_WANTED}")
     place = Path(path)
     tree = open_tree(place)
-    if tree is None and place.suffix.lower() in _NO_URDFS:
-        raise InputError(
-            f"{printable_path(place)} is no URDF: name a .urdf, or the folder or archive that was handed in"
-        )
-    if tree is None:
-        identity = printable_path(place.stem)
-        return read_submission(read_capped(place, limit), identity=identity, path=printable_path(place.name))
     shown = printable_path(place)
-    return submission_of(tree, tree_name(place), wanted=wanted, package=package, limit=limit, shown=shown)
+    if tree is not None:
+        return submission_of(tree, tree_name(place), wanted=wanted, package=package, limit=limit, shown=shown)
+    if place.suffix.lower() in _NO_URDFS:
+        raise InputError(f"{shown} is not a URDF: {_WANTED}")
+    identity = printable_path(place.stem)
+    return read_submission(read_capped(place, limit), identity=identity, path=printable_path(place.name))
 
 
 def submission_of(
@@ -167,23 +166,23 @@ def submission_of(
     shown: str = "",
     no_documents: str = "",
 ) -> Submission:
-    """The submission that a tree of files makes; raises InputError, which calls it `shown`, where there are none."""
+    """Return the submission that a file tree makes; raises InputError, which calls it `shown`, if there are no files."""
     if not tree.files and not tree.generated:
-        raise InputError(f"{shown or identity} is empty{_because(tree)}")
-    from grader.submission.find import find_urdf, read_packages, why_not
+        reason = f": {tree.ignored[0]}" if tree.ignored else " (hidden files and build folders are ignored)"
+        raise InputError(f"{shown or identity} is empty{reason}")
+    from grader.submission.package_search import read_packages, why_not  # late: a URDF on its own needs no search
+    from grader.submission.urdf_search import find_urdf
 
     packages = read_packages(tree, package, wanted)
-    found = find_urdf(tree, wanted, packages[0].folder if packages else None)
-    others = [OtherCandidate(each.path("package.xml"), why_not(packages[0], each, wanted)) for each in packages[1:]]
+    graded = packages[0] if packages else None
+    path, others = find_urdf(tree, wanted, graded.folder if graded else None)
+    others += tuple(
+        OtherCandidate(other.path("package.xml"), why_not(packages[0], other, wanted)) for other in packages[1:]
+    )
     urdf: Urdf = Absent()
-    if found.path is not None:
+    if path is not None:
         try:
-            urdf = read_as_ros(tree.files[found.path].read(limit), found.path, packages[0] if packages else None)
-        except InputError as error:  # the rest of the submission is graded all the same
-            urdf = Unreadable(found.path, str(error))
-    other_candidates = (*found.other_candidates, *others)
-    return Submission(identity, urdf, other_candidates, tree, packages, is_single=False, no_documents=no_documents)
-
-
-def _because(tree: Tree) -> str:
-    return f": {tree.ignored[0]}" if tree.ignored else " (hidden files and folders of builds are not looked at)"
+            urdf = read_as_ros(tree.files[path].read(limit), path, graded)
+        except InputError as error:  # the rest of the submission is graded
+            urdf = Unreadable(path, str(error))
+    return Submission(identity, urdf, others, tree, packages, is_single=False, no_documents=no_documents)

@@ -87,6 +87,6 @@ def read_as_ros(data: bytes, path: str, package: Package | None) -> Read | Needs
 
     expanded = expand(reading.source.text)
     if expanded is None:
-        reason = f"{name} is xacro that is not worked out here (ros2 run xacro xacro {name} does)"
+        reason = f"{name} is xacro, which cannot be expanded here: run `ros2 run xacro xacro {name}`"
         return NeedsExpansion(path, data, reading, reason)
     return Read(path, data, read_urdf(expanded.encode("utf-8", "surrogateescape"), path), is_expanded=True)

@@ -41,7 +41,7 @@ class TestPaths:
         refuse(command, str(tmp_path), words="is empty")
         (tmp_path / ".git").mkdir()
         (tmp_path / ".git" / "config").touch()
-        refuse(command, str(tmp_path), words="hidden files and folders of builds are not looked at")
+        refuse(command, str(tmp_path), words="hidden files and build folders are ignored")
 
     def test_damaged_archive(self, command: str, tmp_path: Path) -> None:
         """An archive that is cut off, one that is empty, and kinds that are not read."""

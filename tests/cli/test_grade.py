@@ -44,9 +44,9 @@ def test_the_urdf_that_the_rubric_expects_comes_first(tmp_path: Path) -> None:
     submission = json.loads(done.stdout)["submission"]
     assert submission["path"] == "ws/src/my_robot/urdf/my_robot.urdf"
     assert submission["passed_over"] == [
-        {"path": "a/my_robot.urdf", "because": "it has the right name, but does not stand at urdf/my_robot.urdf"},
-        {"path": "box.urdf", "because": "it has another name than urdf/my_robot.urdf"},
-        {"path": "install/urdf/my_robot.urdf", "because": "a build made it: only the source is graded"},
+        {"path": "a/my_robot.urdf", "because": "it has the expected name, but is not at urdf/my_robot.urdf"},
+        {"path": "box.urdf", "because": "its name differs from that of urdf/my_robot.urdf"},
+        {"path": "install/urdf/my_robot.urdf", "because": "a build generated it: only source files are graded"},
     ]
     assert done.stderr == b""
 

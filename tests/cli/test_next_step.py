@@ -48,7 +48,7 @@ def refused(line: str, place: Path) -> str:
         ("grade my_robt.urdf", "my_robt.urdf does not exist; did you mean 'my_robot.urdf'?"),
         ("inspect clas/anna/my_robot.urdf", "did you mean 'class/anna/my_robot.urdf'?"),
         ("grade clas/ben", "clas/ben does not exist; did you mean 'class'?"),
-        ("grade nowhere", "nowhere does not exist (. stands for the folder that you are in)"),
+        ("grade nowhere", "nowhere does not exist (relative to the current folder)"),
         ("grade my_robot.urdf --rubric lab", "did you mean 'lab6'? (grader rubric list shows those that there are)"),
         ("explain lidar-frame --rubric zzz", "a file is named as ./zzz or ends in .toml (grader rubric list shows"),
         ("grade my_robot.urdf --part task", "did you mean 'task3'? (grader rubric show lab6 says more)"),

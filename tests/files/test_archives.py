@@ -1,4 +1,4 @@
-"""Archives and folders come to the same tree of files; what is hostile in them is refused or left out, and named."""
+"""Archives and folders give the same file tree; anything hostile in them is refused, or ignored and named."""
 
 import bz2
 import errno
@@ -191,7 +191,7 @@ def test_windows_separators() -> None:
     ],
 )
 def test_names_in_zips(name: bytes, flags: int, expected: str) -> None:
-    """A name is decoded as well as can be told, and is printable in any case."""
+    """A name is decoded as well as possible, and is always printable."""
     tree = tree_of(make_named_zip({name: ROBOT}, flags))
     assert list(tree.files) == [expected]
     assert text(tree, expected) == ROBOT
@@ -221,7 +221,7 @@ def test_duplicate_members() -> None:
     "name", ["/etc/a.urdf", "../a.urdf", "a/../../b.urdf", "a/..", "C:/a.urdf", "c:a.urdf", "..\\a.urdf", "\\\\host\\a"]
 )
 def test_names_that_lead_out(ending: str, name: str) -> None:
-    """A member whose name leads out is left out and named; the others stay."""
+    """A member whose name leads out is ignored and named; the others are kept."""
     tree = tree_of(MAKERS[ending]({name: b"evil", "b.urdf": ROBOT}))
     assert list(tree.files) == ["b.urdf"]
     assert tuple(map(str, tree.ignored)) == (f"{name} has a name that leads out of the archive, and was not read",)
@@ -272,7 +272,7 @@ def test_links_inside(ending: str) -> None:
     ],
 )
 def test_links_that_lead_out(ending: str, links: list[Link]) -> None:
-    """A link out of the archive, or to nothing in it, is left out and named; nothing else is lost."""
+    """A link out of the archive, or to nothing in it, is ignored and named; nothing else is lost."""
     tree = tree_of(MAKERS[ending](FILES, links))
     assert list(tree.files) == ["my_robot/package.xml", URDF]
     assert tuple(map(str, tree.ignored)) == (
@@ -297,7 +297,7 @@ def test_circles_of_links(ending: str) -> None:
 
 
 def test_hard_links() -> None:
-    """A hard link in a tar names its file from the top; one that leads out is left out."""
+    """A hard link in a tar names its file from the top; one that leads out is ignored."""
     links = [
         Link("my_robot/copy.urdf", URDF, is_hard=True),
         Link("bad", "../etc/passwd", is_hard=True),
@@ -322,7 +322,7 @@ def test_links_take_no_time() -> None:
 
 @pytest.mark.parametrize("kind", [tarfile.CHRTYPE, tarfile.BLKTYPE, tarfile.FIFOTYPE])
 def test_devices_in_tars(kind: bytes) -> None:
-    """Devices and FIFOs are left out and named."""
+    """Devices and FIFOs are ignored and named."""
 
     def change(info: tarfile.TarInfo) -> None:
         info.type = kind if info.name == "device" else info.type
@@ -346,7 +346,7 @@ def test_devices_in_zips() -> None:
 
 
 def test_encrypted_members() -> None:
-    """What needs a password is left out and named, also where it is a link."""
+    """What needs a password is ignored and named, even if it is a link."""
     data = set_flags(make_zip({"a.urdf": ROBOT}, [Link("l", "a.urdf")]), 0x1)
     tree = tree_of(data)
     assert tree.files == {}
@@ -358,7 +358,7 @@ def test_encrypted_members() -> None:
 
 @pytest.mark.parametrize("method", [zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA, 9, 93, 98, 12345])
 def test_compressions_that_are_not_read(method: int) -> None:
-    """Members of a zip that are not deflated are left out and named: some of them unpack without a bound."""
+    """Members of a zip that are not deflated are ignored and named: some of them unpack without a bound."""
     known = method in (zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA)
     data = make_zip({"a.urdf": ROBOT}, compression=method if known else zipfile.ZIP_STORED)
     if not known:
@@ -372,7 +372,7 @@ def test_compressions_that_are_not_read(method: int) -> None:
     ("start", "kind"), [(b"7z\xbc\xaf\x27\x1c", "7z"), (b"Rar!\x1a\7\0", "rar"), (b"Rar!\x1a\7\1\0", "rar")]
 )
 def test_other_archives(start: bytes, kind: str, tmp_path: Path) -> None:
-    """7z and rar are refused in one line that says what to hand in."""
+    """7z and rar are refused in one line that says what to submit."""
     path = tmp_path / f"lab6.{kind}"
     path.write_bytes(start + bytes(100))
     with pytest.raises(
@@ -459,7 +459,7 @@ def test_any_bytes_as_an_archive(kind: str, data: bytes) -> None:
 
 
 def test_a_member_without_a_name() -> None:
-    """A member with an empty name is passed over."""
+    """A member with an empty name is ignored."""
     data = bytearray(make_zip({"a.urdf": ROBOT, "b.urdf": ROBOT}))
     central = data.index(b"PK\1\2")
     data[central + 28 : central + 34] = struct.pack("<3H", 0, 0, 6)  # its name has become its comment
@@ -556,7 +556,7 @@ def test_a_large_file_that_is_not_compressed() -> None:
 
 @pytest.mark.parametrize("ending", EVERY)
 def test_too_many_members(ending: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """More members than anyone hands in are refused, also where most would be passed over."""
+    """More members than the limit are refused, even if most would be ignored."""
     monkeypatch.setattr(limits, "MAX_FILES", 200)
     names: dict[str, bytes | None] = {f".git/{n}": b"" for n in range(200)}
     assert tree_of(MAKERS[ending](names)).files == {}
@@ -596,7 +596,7 @@ def test_sizes_in_tars(size: bytes) -> None:
 
 
 def test_long_names_in_tars() -> None:
-    """A name of a hundred thousand characters is left out; names of names end."""
+    """A name of a hundred thousand characters is ignored; names of names end."""
     tree = tree_of(make_tar({"a" * 100_000: b"", "b.urdf": ROBOT}))
     assert list(tree.files) == ["b.urdf"]
     assert tuple(map(str, tree.ignored)) == (f"{'a' * 40}... has a name that is too long, and was not read",)
@@ -656,14 +656,14 @@ def test_nested_archives(levels: int, tmp_path: Path) -> None:
 
 
 def test_archives_nested_too_deep(tmp_path: Path) -> None:
-    """Beyond three levels an archive is left out and named."""
+    """Beyond three levels an archive is ignored and named."""
     tree = opened(tmp_path / "lab6.zip", nested(4, make_zip()))
     assert not any(path.endswith(".urdf") for path in tree.files)
     assert str(tree.ignored[0]).endswith("is an archive inside of an archive, nested too deep to be opened")
 
 
 def test_an_archive_beside_a_package(tmp_path: Path) -> None:
-    """Where a package and a URDF stand beside them, archives stay closed."""
+    """Archives stay closed if a package and a URDF are beside them."""
     (tmp_path / "lab6.zip").write_bytes(make_zip())
     (tmp_path / "notes.txt").write_bytes(b"")
     alone = open_tree(tmp_path)
@@ -751,7 +751,7 @@ def test_a_folder(home: Path) -> None:
 
 
 def test_links_in_folders(home: Path) -> None:
-    """Links inside are followed and the real paths stay; links out, to nothing and to themselves are left out and named."""
+    """Links inside are followed and the real paths stay; links out, to nothing and to themselves are ignored and named."""
     for name, target in (
         ("a_link.urdf", URDF), ("a_folder", "my_robot"), ("my_robot/urdf/up", ".."), ("my_robot/top", ".."),
         ("bad_1", "../secret.urdf"), ("bad_2", "/etc"), ("bad_3", "nothing"), ("bad_4", "bad_4"), ("bad_5", "../lab6/../secret.urdf"),
@@ -778,7 +778,7 @@ def test_circles_of_links_in_folders(tmp_path: Path) -> None:
 
 
 def test_what_is_no_file(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """FIFOs and sockets are left out and named, and never opened."""
+    """FIFOs and sockets are ignored and named, and never opened."""
     os.mkfifo(home / "fifo")
     (home / "link").symlink_to("fifo")
     monkeypatch.chdir(home)
@@ -792,7 +792,7 @@ def test_what_is_no_file(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_litter_in_folders(home: Path) -> None:
-    """Builds, tools, virtual environments and hidden files are passed over; URDFs that a build has made are named."""
+    """Builds, tools, virtual environments and hidden files are ignored; URDFs that a build has copied are named."""
     for path in (".git/config", "build/my_robot/b.urdf", "install/my_robot/share/my_robot/urdf/my_robot.urdf", "install/x.txt",
                  "log/latest/c.urdf", "my_robot/.hidden.urdf", "my_robot/__pycache__/a.pyc", "mine/pyvenv.cfg", "mine/lib/d.urdf",
                  "venv/pyvenv.cfg", "venv/e.urdf", "node_modules/f/f.urdf", ".DS_Store", "Thumbs.db", "my_robot/build/deep/g.urdf"):  # fmt: skip
@@ -871,7 +871,7 @@ def remove_deep(folder: Path, name: str) -> None:
 
 
 def test_too_many_files_in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A folder with more files than anyone hands in is refused, wherever they are."""
+    """A folder with more files than the limit is refused, wherever they are."""
     monkeypatch.setattr(limits, "MAX_FILES", 20)
     for n in range(4):
         (tmp_path / f"d{n}").mkdir()

@@ -1,4 +1,4 @@
-"""One small file for each kind of problem. A ¦ stands before the tag or attribute that the problem is about."""
+"""One small file for each kind of problem. A ¦ is before the tag or attribute that the problem is about."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -10,7 +10,7 @@ _TWO = links("a", "b")
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """A file with a problem of this code where the ¦ stands; `also` are the other codes that come with it."""
+    """A file with a problem of this code where the ¦ is; `also` are the other codes that come with it."""
 
     code: str
     name: str
@@ -35,18 +35,18 @@ def lines(*rows: str) -> str:
 
 
 def in_link(*rows: str) -> str:
-    """A robot with one link that holds these rows."""
+    """A robot with one link that contains these rows."""
     return lines('  <link name="a">', *(f"    {row}" for row in rows), "  </link>")
 
 
 def in_joint(*rows: str, kind: str = "continuous") -> str:
-    """A robot with one joint that holds these rows."""
+    """A robot with one joint that contains these rows."""
     head = f'  {_TWO}\n  <joint name="j" type="{kind}">\n    <parent link="a"/><child link="b"/>'
     return lines(head, *(f"    {row}" for row in rows), "  </joint>")
 
 
 def in_visual(*rows: str) -> str:
-    """A robot with one visual that holds these rows and a shape."""
+    """A robot with one visual that contains these rows and a shape."""
     return in_link("<visual>", *rows, '<geometry><sphere radius="1"/></geometry>', "</visual>")
 
 
@@ -80,7 +80,7 @@ SAMPLES: tuple[Sample, ...] = (
     Sample("URDF004", "declaration", '¦<?xml version="1.0"\n<robot name="r"/>'),
     Sample("URDF005", "declaration-inside", lines("  ¦<?xml version='1.0'?>")),
     Sample("URDF005", "comment-before", "<!-- c -->\n¦<?xml version='1.0'?>\n" + lines(_TWO)),
-    Sample("URDF006", "text-behind", lines(_TWO) + "\n¦text"),
+    Sample("URDF006", "text-after-root", lines(_TWO) + "\n¦text"),
     Sample("URDF007", "499-levels", lines(*["<a>"] * 497, "¦<a>", *["</a>"] * 498)),
     Sample("URDF008", "utf-16", "¦\udcff\udcfe<\0r\0o\0b\0o\0t\0/\0>\0"),
     Sample("URDF009", "bare-ampersand", lines('  <link ¦name="a & b"/>')),

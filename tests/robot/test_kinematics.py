@@ -53,7 +53,7 @@ def transform(origin: Origin) -> Transform:
 
 
 def motion(each: Joint, position: float) -> Transform:
-    """What a joint of one axis, or none, adds behind its origin."""
+    """What a joint of one axis, or none, adds to its origin."""
     x, y, z = unit(each.axis or Z) or Z
     match each.type:
         case "continuous":
@@ -72,7 +72,7 @@ def near(one: Transform, other: Transform, within: float = 1e-9) -> bool:
 
 
 @given(kind=st.sampled_from(("continuous", "revolute")), axis=axes, scale=scales, angle=angles, origin=origins)
-def test_a_turning_joint_turns_behind_its_origin(
+def test_a_turning_joint_turns_about_its_origin(
     kind: str, axis: Vector, scale: float, angle: float, origin: Origin
 ) -> None:
     """The child turns about the axis, given in its own frame, whatever the axis' length."""
@@ -133,7 +133,7 @@ def test_a_planar_joint_has_a_right_handed_plane(normal: Vector) -> None:
 
 @given(xyz=vectors, rpy=st.tuples(angles, angles, angles), origin=origins, axis=vectors)
 def test_a_floating_joint_takes_a_whole_pose(xyz: Vector, rpy: Vector, origin: Origin, axis: Vector) -> None:
-    """x, y, z, roll, pitch, yaw behind the origin; its axis does not matter."""
+    """x, y, z, roll, pitch, yaw relative to the origin; its axis does not matter."""
     moving = robot(joint("ab", "floating", origin=origin, axis=axis))
     assert near(Configuration(moving, {"ab": (*xyz, *rpy)}).pose("b"), transform(origin) @ transform(Origin(xyz, rpy)))
 
@@ -226,7 +226,7 @@ def test_a_mimic_that_is_moved_itself_does_not_follow() -> None:
 
 @pytest.mark.parametrize("length", [1, 2, 3, 500])
 def test_mimics_in_a_circle_stand_still(length: int) -> None:
-    """Joints that follow each other are moved by nobody; a joint that follows them stands where they do."""
+    """Joints that mimic each other stay at 0, and so does a joint that mimics them."""
     circle = [
         Joint(f"j{index}", "prismatic", "a", f"b{index}", mimic=Mimic(f"j{(index + 1) % length}", 2.0, 1.0))
         for index in range(length)
@@ -419,7 +419,7 @@ def test_two_frame_groups_name_a_joint_between_them() -> None:
 
 @pytest.mark.parametrize("kind", ["continuous", "revolute", "prismatic", "planar"])
 @pytest.mark.parametrize("position", [None, 0.0, 0.5])
-def test_a_zero_axis_hides_what_is_behind_it(kind: str, position: float | None) -> None:
+def test_a_zero_axis_hides_what_is_below_it(kind: str, position: float | None) -> None:
     """At any position, 0 included, as KDL divides by the axis' length; links elsewhere have their poses."""
     broken = robot(
         joint("ab", kind, origin=at(1, 0, 0), axis=(0.0, 0.0, 0.0)), joint("bc"), joint("ad", origin=at(0, 1, 0))
@@ -442,7 +442,7 @@ def test_a_zero_axis_does_not_matter_where_none_is_used(kind: str) -> None:
 
 
 @pytest.mark.parametrize("names", [("j1", "j2"), ("j2", "j1"), ("J2", "j1"), ("a", "é")])
-def test_of_two_parents_the_last_joint_by_name_holds(names: tuple[str, str]) -> None:
+def test_of_two_parent_joints_the_last_by_name_counts(names: tuple[str, str]) -> None:
     """Whatever the order in the file, the joint whose name sorts last decides, as in urdfdom's map of joints."""
     joints = [Joint(name, "fixed", "a", "b", at(index, 0, 0)) for index, name in enumerate(names)]
     for order in (joints, joints[::-1]):
@@ -471,8 +471,8 @@ def test_links_on_a_loop_have_no_pose(ring: str) -> None:
     assert configuration.roots == ("u",)
 
 
-def test_a_joint_to_nowhere_holds_nothing() -> None:
-    """A joint whose parent or child is not there, or not said, is passed over."""
+def test_a_joint_to_nowhere_is_no_parent_joint() -> None:
+    """A joint whose parent or child does not exist, or is not given, is ignored."""
     robot_with_gaps = Robot(
         "r",
         (Link("a"), Link("b"), Link("")),
@@ -487,7 +487,7 @@ def test_a_joint_to_nowhere_holds_nothing() -> None:
 
 
 def chain_of(count: int) -> bytes:
-    """A URDF of so many links, one behind the other, each 1 mm along x of the last and turned a little."""
+    """A URDF of so many links, one below the other, each 1 mm along x of the last and turned a little."""
     links = "".join(f'<link name="l{index}"/>\n' for index in range(count))
     joints = "".join(
         f'<joint name="j{index}" type="continuous"><parent link="l{index}"/><child link="l{index + 1}"/>'
@@ -549,8 +549,8 @@ def test_links_on_a_long_loop_are_refused_in_linear_time() -> None:
         ask_all(count, joints)
 
 
-def test_links_behind_a_defect_are_refused_in_linear_time() -> None:
-    """Asking for each of 6,000 links behind a zero axis does not walk up to it 6,000 times."""
+def test_links_below_a_defect_are_refused_in_linear_time() -> None:
+    """Asking for each of 6,000 links below a zero axis does not walk up to it 6,000 times."""
     count = 6000
     joints = [Joint(f"j{index}", "fixed", f"l{index}", f"l{index + 1}") for index in range(1, count - 1)]
     joints.append(Joint("j0", "continuous", "l0", "l1", axis=(0.0, 0.0, 0.0)))

@@ -1,4 +1,4 @@
-"""Numbers are read by urdfdom's rule, which stands here a second time, letter by letter."""
+"""Numbers are read by urdfdom's rule, which is implemented here a second time, character by character."""
 
 from fractions import Fraction
 from math import isclose
@@ -15,7 +15,7 @@ _DIGITS = "0123456789"
 
 
 def expected_number(text: str) -> float | None:
-    r"""A number by the rule: `[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?` in ASCII, white space before, none behind."""
+    r"""A number by the rule: `[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?` in ASCII, white space before, none after."""
     rest = text.lstrip(_SPACE)
     sign = -1 if rest[:1] == "-" else 1
     rest = rest[1:] if rest[:1] in ("+", "-") else rest
@@ -52,7 +52,7 @@ def expected_number(text: str) -> float | None:
 
 
 def expected_numbers(text: str) -> list[float] | None:
-    """A list by the rule: split at U+0020 only, empty pieces left out, every piece a number."""
+    """A list by the rule: split at U+0020 only, empty pieces ignored, every piece a number."""
     values = [expected_number(piece) for piece in text.split(" ") if piece]
     known = [value for value in values if value is not None]
     return known if len(known) == len(values) else None
@@ -193,8 +193,8 @@ def test_reasons(text: str, reason: str) -> None:
         number(text)
 
 
-def test_a_space_behind_a_number_is_called_a_space() -> None:
-    """`radius="1 "` holds no tab and no line break, and the message does not speak of one."""
+def test_a_space_after_a_number_is_called_a_space() -> None:
+    """`radius="1 "` contains no tab and no line break, and the message mentions none."""
     with pytest.raises(NumberError) as caught:
         number("1 ")
     assert "tab" not in str(caught.value)
@@ -204,7 +204,7 @@ def test_a_space_behind_a_number_is_called_a_space() -> None:
 @pytest.mark.parametrize("count", [0, 1, 2, 4, 7])
 def test_a_wrong_count_is_named(count: int) -> None:
     """The message says how many numbers there are and how many are needed."""
-    with pytest.raises(NumberError, match=f"^it has {count} numbers? where 3 are needed"):
+    with pytest.raises(NumberError, match=f"^it has {count} numbers?, expected 3"):
         vector(" ".join(["1"] * count))
 
 

@@ -102,7 +102,7 @@ def test_a_problem_stays_where_it_is_in_another_file(sample: Sample) -> None:
 
 
 def test_every_kind_of_problem_has_a_sample() -> None:
-    """The catalogue holds no kind that no file brings about."""
+    """The catalogue has no kind that no file causes."""
     assert {sample.code for sample in SAMPLES} == {kind.code for kind in CATALOGUE}
 
 
@@ -305,7 +305,7 @@ _FRAMES = {
     "entities-in-a-value": robot(_LINK, 'name="{&amp;}"'),
     "comments-in-a-value": robot(_LINK, 'name="{<!--}$"'),
     "returns-in-a-value": robot(_LINK, 'name="{\r}"'),
-    "comments-behind-the-end": robot(_LINK) + "</x>{<!--}$",
+    "comments-after-the-end": robot(_LINK) + "</x>{<!--}$",
     "comments-with-a-dollar": robot(_LINK + "{<!--$-->}"),
     "dollars": robot(_LINK + "{$}"),
     "attributes": robot(_LINK, 'name="r"{ a%=""}'),

@@ -60,7 +60,7 @@ DIRECTIONS = spread(400)
 
 
 def gap_along(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, direction: Vector) -> float:
-    """How far b begins behind the end of a along a direction; negative where they overlap."""
+    """How far b begins after the end of a along a direction; negative where they overlap."""
     return extent(b, T_w_b, direction)[0] - extent(a, T_w_a, direction)[1]
 
 
@@ -232,7 +232,7 @@ def test_a_wheel_by_a_chassis(pose: Transform, allowed: float, expected: float) 
 
 
 def test_wheels_and_chassis_do_without_numpy() -> None:
-    """Parts that stand apart, touch, or cut into each other squarely are judged without loading numpy."""
+    """Parts that are separate, touch, or intersect squarely are judged without loading numpy."""
     program = """
 import sys
 from grader.robot.model import Box, Cylinder

@@ -53,7 +53,7 @@ def surface(shape: Shape) -> list[Vector]:
 
 
 def inside(shape: Shape, point: Vector) -> bool:
-    """Whether a shape holds a point, give or take rounding."""
+    """Whether a shape contains a point, up to rounding."""
     x, y, z = point
     if isinstance(shape, Box):
         return all(abs(at) <= abs(size) / 2 + 1e-12 for at, size in zip(point, shape.size, strict=True))

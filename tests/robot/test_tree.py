@@ -1,4 +1,4 @@
-"""Which joint holds a link where several could: as ROS 2 has it, and the fairest reading of a file that it rejects."""
+"""The parent joint of a link that has several candidates: as in ROS 2, and the most plausible one in a rejected file."""
 
 from itertools import permutations
 
@@ -16,13 +16,13 @@ def joint(name: str, parent: str, child: str) -> Joint:
 
 
 def robot(*joints: Joint, rejected: bool = True) -> Robot:
-    """A robot of these joints and the links that they name; unless told, ROS 2 rejects it."""
+    """A robot of these joints and the links that they name; by default ROS 2 rejects it."""
     names = dict.fromkeys(end for each in joints for end in (each.parent, each.child))
     return Robot("r", tuple(map(Link, names)), joints, rejected=rejected)
 
 
-def held(*joints: Joint, rejected: bool = True) -> dict[str, str]:
-    """The name of the joint that holds each link."""
+def parents(*joints: Joint, rejected: bool = True) -> dict[str, str]:
+    """The name of each link's parent joint."""
     return {link: each.name for link, each in parent_joints(robot(*joints, rejected=rejected)).items()}
 
 
@@ -32,66 +32,66 @@ LIDAR = joint("base_lidar_joint", "base", "lidar")
 
 @pytest.mark.parametrize("rejected", [False, True])
 def test_a_tree_is_read_as_it_is(rejected: bool) -> None:
-    """Where each link has one joint at most there is nothing to choose, in whatever order the joints stand."""
+    """Where each link has one joint at most there is nothing to choose, whatever the order of the joints."""
     for order in permutations((FOOT, WHEEL, LIDAR)):
         expected = {"base": "base_joint", "wheel": "base_wheel_joint", "lidar": "base_lidar_joint"}
-        assert held(*order, rejected=rejected) == expected
+        assert parents(*order, rejected=rejected) == expected
 
 
-def test_a_joint_the_wrong_way_round_does_not_take_the_base() -> None:
-    """A joint that is named after its parent is the one that is swapped: its link is held by nobody, the rest stays."""
+def test_a_swapped_joint_does_not_take_the_base() -> None:
+    """A joint that is named after its parent is the one that is swapped: its link has no parent joint, the rest stays."""
     swapped = joint("wheel_joint", "wheel", "base")
     for order in permutations((FOOT, swapped, LIDAR)):
-        assert held(*order) == {"base": "base_joint", "lidar": "base_lidar_joint"}
-    assert held(FOOT, swapped, rejected=False) == {"base": "wheel_joint"}  # ROS 2: the last in name order
+        assert parents(*order) == {"base": "base_joint", "lidar": "base_lidar_joint"}
+    assert parents(FOOT, swapped, rejected=False) == {"base": "wheel_joint"}  # ROS 2: the last in name order
 
 
-def test_a_name_that_speaks_of_both_ends_says_nothing() -> None:
-    """With both links in its name a joint may be right, so the first in the file counts."""
+def test_a_name_with_both_links_decides_nothing() -> None:
+    """With both links in its name a joint may be correct, so the first in the file counts."""
     one, other = joint("foot_base_joint", "foot", "base"), joint("a_base_joint", "world", "base")
-    assert held(one, other) == {"base": "foot_base_joint"}
-    assert held(other, one) == {"base": "a_base_joint"}
+    assert parents(one, other) == {"base": "foot_base_joint"}
+    assert parents(other, one) == {"base": "a_base_joint"}
 
 
 def test_a_child_that_was_copied_leaves_the_first_joint() -> None:
-    """Of a joint that was copied with its child the first holds the link; the copy holds nothing."""
+    """Of a joint that was copied with its child the first is the parent joint; the copy is none."""
     left, copied = joint("left_wheel_joint", "base", "left_wheel"), joint("right_wheel_joint", "base", "left_wheel")
-    assert held(FOOT, left, copied) == {"base": "base_joint", "left_wheel": "left_wheel_joint"}
-    assert held(FOOT, left, copied, rejected=False)["left_wheel"] == "right_wheel_joint"
+    assert parents(FOOT, left, copied) == {"base": "base_joint", "left_wheel": "left_wheel_joint"}
+    assert parents(FOOT, left, copied, rejected=False)["left_wheel"] == "right_wheel_joint"
 
 
-def test_a_copy_before_the_original_is_told_by_the_parent_in_its_name() -> None:
-    """A name of the parent and another child speaks of the parent alone, so it comes last wherever it stands."""
+def test_a_copy_before_the_original_is_recognised_by_the_parent_in_its_name() -> None:
+    """A name of the parent and another child contains only the parent, so it comes last wherever it is."""
     right = joint("base_right_wheel_joint", "base", "right_wheel")
     copied = joint("base_left_wheel_joint", "base", "right_wheel")
     for order in ((copied, right), (right, copied)):
-        assert held(*order) == {"right_wheel": "base_right_wheel_joint"}
+        assert parents(*order) == {"right_wheel": "base_right_wheel_joint"}
 
 
-def test_the_joint_that_closes_a_loop_is_left_out() -> None:
+def test_the_joint_that_closes_a_loop_is_ignored() -> None:
     """A loop is opened where it is closed, by the last of its joints in the file; what hangs on it stays."""
     ring = [joint("p", "a", "b"), joint("q", "b", "c"), joint("r", "c", "a")]
     branch = joint("s", "c", "d")
     for order in permutations(ring):
         expected = {each.child: each.name for each in order[:2]}
-        assert held(*order, branch) == {**expected, "d": "s"}
+        assert parents(*order, branch) == {**expected, "d": "s"}
         assert len(Configuration(robot(*order, branch)).roots) == 1
 
 
 def test_the_joint_that_is_named_after_its_parent_closes_the_loop() -> None:
-    """In a loop too, the joint that may be the wrong way round is left out wherever it stands."""
+    """In a loop too, the joint that may be swapped is ignored wherever it is."""
     back = joint("wheel_mount", "wheel", "foot")
     for order in permutations((FOOT, WHEEL, back)):
-        assert held(*order) == {"base": "base_joint", "wheel": "base_wheel_joint"}
+        assert parents(*order) == {"base": "base_joint", "wheel": "base_wheel_joint"}
 
 
-def test_a_joint_from_a_link_to_itself_holds_nothing() -> None:
-    """A loop of one joint is left out like any other."""
-    assert held(joint("self", "base", "base"), FOOT) == {"base": "base_joint"}
+def test_a_joint_from_a_link_to_itself_is_no_parent_joint() -> None:
+    """A loop of one joint is ignored like any other."""
+    assert parents(joint("self", "base", "base"), FOOT) == {"base": "base_joint"}
 
 
 def test_joints_without_ends_that_exist_hold_nothing() -> None:
-    """A parent or child that is missing or left out makes no way."""
+    """A parent or child that is missing or not given connects nothing."""
     links = (Link("base"), Link("wheel"))
     for broken in (joint("j", "nowhere", "wheel"), joint("j", "base", "nowhere"), joint("j", "", "wheel")):
         assert parent_joints(Robot("r", links, (broken,), rejected=True)) == {}
@@ -102,11 +102,11 @@ def test_a_long_chain_in_any_order_is_read_at_once() -> None:
     chain = [joint(f"j{index}", f"l{index}", f"l{index + 1}") for index in range(10_000)]
     back = joint("back", "l10000", "l0")
     for order in (chain, chain[::-1]):
-        assert len(held(*order, back)) == 10_000
-        assert "l0" not in held(*order, back)
+        assert len(parents(*order, back)) == 10_000
+        assert "l0" not in parents(*order, back)
 
 
-def test_a_file_is_read_fairly_only_where_it_is_rejected() -> None:
+def test_plausibility_counts_only_in_a_rejected_file() -> None:
     """The reader says which reading counts: two parents alone are loaded by ROS 2, a loop is not."""
     parts = '<link name="{}"/>'.format
     written = '<joint name="{}" type="fixed"><parent link="{}"/><child link="{}"/></joint>'.format

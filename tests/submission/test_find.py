@@ -9,20 +9,21 @@ from hypothesis import strategies as st
 from grader.errors import InputError
 from grader.files.tree import File, Tree, make_tree
 from grader.package.package import Package
-from grader.submission.find import Found, find_packages, find_urdf, read_packages
+from grader.submission.package_search import find_packages, read_packages
 from grader.submission.submission import submission_of
 from grader.submission.urdf import OtherCandidate
+from grader.submission.urdf_search import UrdfChoice, find_urdf
 from tests.patience import processor_time
 
 WANTED = "urdf/my_robot.urdf"
 ROBOT = b'<?xml version="1.0"?>\n<robot name="my_robot"/>\n'
-OUTSIDE = "it stands outside of the package that is graded"
-DEEPER = "it is equally good, but stands deeper in the folders"
-LATER = "it is equally good, but comes later in the alphabet"
-NOT_THERE = "it has the right name, but does not stand at urdf/my_robot.urdf"
-BEGINS = "its name only begins as that of urdf/my_robot.urdf does"
-OTHER_NAME = "it has another name than urdf/my_robot.urdf"
-NOT_NAMED = "it is not named as a URDF"
+OUTSIDE = "it is outside the package that is graded"
+DEEPER = "it matches equally well, but is deeper in the folders"
+LATER = "it matches equally well, but comes later in alphabetical order"
+NOT_THERE = "it has the expected name, but is not at urdf/my_robot.urdf"
+BEGINS = "its name only starts like that of urdf/my_robot.urdf"
+OTHER_NAME = "its name differs from that of urdf/my_robot.urdf"
+NOT_NAMED = "it is not named like a URDF"
 EMPTY = "it is empty"
 
 
@@ -50,9 +51,9 @@ def manifest(name: str) -> bytes:
     return f'<package format="3"><name>{name}</name></package>'.encode()
 
 
-def why(found: Found) -> dict[str, str]:
-    """What was passed over, and why."""
-    return {each.path: each.reason for each in found.other_candidates}
+def why(found: UrdfChoice) -> dict[str, str]:
+    """The other candidates, and why they are not graded."""
+    return {each.path: each.reason for each in found.others}
 
 
 def test_every_tier() -> None:
@@ -105,7 +106,7 @@ def test_pairs(better: str, worse: str, reason: str) -> None:
     """Of two files the better one is graded, whatever their order, and the other is named with the reason."""
     for paths in ((better, worse), (worse, better)):
         found = find_urdf(tree_of(*paths), WANTED)
-        assert found == Found(better, (OtherCandidate(worse, reason),))
+        assert found == UrdfChoice(better, (OtherCandidate(worse, reason),))
 
 
 def test_what_is_no_robot() -> None:
@@ -114,7 +115,7 @@ def test_what_is_no_robot() -> None:
         "package.xml", "CMakeLists.txt", "notes.md", "robot.png", "late.xml", "other.xml", "empty.xml",
         late=b" " * 5000 + ROBOT, other=b"<robots/>", empty=b"",
     )  # fmt: skip
-    assert find_urdf(tree, WANTED) == Found(None, ())
+    assert find_urdf(tree, WANTED) == UrdfChoice(None, ())
     assert find_urdf(tree_of("a.xml", a=b"< robot>"), WANTED).path == "a.xml"
 
 
@@ -145,7 +146,7 @@ def test_other_endings() -> None:
 def test_the_package_is_preferred() -> None:
     """Among equals that of the package is graded, however deep; a better one outside of it is graded all the same."""
     tree = tree_of("urdf/my_robot.urdf", "ws/src/my_robot/urdf/my_robot.urdf")
-    assert find_urdf(tree, WANTED, "ws/src/my_robot") == Found(
+    assert find_urdf(tree, WANTED, "ws/src/my_robot") == UrdfChoice(
         "ws/src/my_robot/urdf/my_robot.urdf", (OtherCandidate("urdf/my_robot.urdf", OUTSIDE),)
     )
     assert find_urdf(tree, WANTED, "").path == "urdf/my_robot.urdf"
@@ -161,8 +162,8 @@ def test_products_of_a_build() -> None:
     generated = [f"install/{n}.urdf" for n in range(30)]
     found = find_urdf(make_tree("", [_file("a.urdf", ROBOT)], (), generated=generated), WANTED)
     assert found.path == "a.urdf"
-    assert set(why(found).values()) == {"a build made it: only the source is graded"}
-    assert len(found.other_candidates) == 20
+    assert set(why(found).values()) == {"a build generated it: only source files are graded"}
+    assert len(found.others) == 20
     assert find_urdf(make_tree("", (), (), generated=generated[:1]), WANTED).path is None
 
 
@@ -172,7 +173,7 @@ def test_many_texts() -> None:
     with processor_time(1):
         found = find_urdf(tree, WANTED)
     assert found.path == "z/robot.urdf"
-    assert len(found.other_candidates) == 400
+    assert len(found.others) == 400
 
 
 @given(
@@ -290,7 +291,7 @@ def test_a_team_is_not_mixed_up() -> None:
     assert found.package.folder == "Lab6/Brown/my_robot"
 
 
-def test_a_package_that_holds_what_is_asked_for_comes_first() -> None:
+def test_a_package_with_the_files_of_the_lab_comes_first() -> None:
     """Of packages of one name the one with the URDF at its path is graded, then the one with more of the usual files."""
     tree = tree_of(
         *("Lab5/my_robot/package.xml", "Lab5/my_robot/setup.py", "Lab5/my_robot/urdf/box.urdf"),

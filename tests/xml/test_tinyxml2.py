@@ -119,7 +119,7 @@ def tree(root: etree._Element) -> list[tuple[str, dict[str, str]]]:
 
 
 def assert_same_if_plain(text: str) -> None:
-    """If the text counts as plain and lxml reads it, the translation holds the same tags and attributes."""
+    """If the text counts as plain and lxml reads it, the translation has the same tags and attributes."""
     raw = text.encode()
     if is_plain(raw):
         try:
@@ -156,7 +156,7 @@ def test_values_with_line_breaks_are_not_plain(values: list[str], quote: str, ga
 @settings(max_examples=1500, deadline=None)
 @given(raw=data)
 def test_plain_soup_means_the_same_to_lxml(raw: bytes) -> None:
-    """Also where the text is not meant to be read by anybody; names that XML and TinyXML2 spell apart are left out."""
+    """Even if the text makes no sense; names that XML and TinyXML2 read differently are excluded."""
     assume(is_plain(raw))
     try:
         root = etree.fromstring(raw, _PARSER)
@@ -218,7 +218,7 @@ def test_what_the_two_read_apart_is_not_plain(text: str) -> None:
     "frame", ["{}", "<robot {}", "<robot a='{}'/>", "<robot>{}</robot>", "<robot/>{}", "<robot/></x>{}"]
 )
 def test_a_long_file_of_one_piece(piece: str, frame: str) -> None:
-    """Time is linear wherever the piece stands: a quarter of a megabyte takes less than a second."""
+    """Time is linear wherever the piece is: a quarter of a megabyte takes less than a second."""
     text = frame.format(piece * (2**18 // len(piece)))
     with processor_time(1.0):
         is_plain(text.encode())

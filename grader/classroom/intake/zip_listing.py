@@ -5,7 +5,7 @@ from pathlib import Path
 
 from grader.classroom.intake.listing import Children, is_silent
 from grader.errors import InputError
-from grader.files.members import ARCHIVE_ERRORS, Member, error_text, safe_path
+from grader.files.members import ARCHIVE_ERRORS, ArchiveMember, error_text, safe_path
 from grader.files.zip_members import zip_members
 from grader.text import printable_path
 
@@ -28,7 +28,7 @@ class ZipListing:
         except ARCHIVE_ERRORS as error:
             raise InputError(f"{printable_path(path)} cannot be read as a zip: {error_text(error)}") from None
 
-    def _enter(self, member: Member) -> None:
+    def _enter(self, member: ArchiveMember) -> None:
         place = safe_path(member.path)
         if place is None:
             shown = printable_path(member.path[:100])

@@ -29,7 +29,8 @@ from grader.submission.urdf import Absent, Unreadable
 PRELOAD = (
     "grader.classroom.run.worker",
     "grader.robot.edge_overlap",
-    "grader.submission.find",
+    "grader.submission.package_search",
+    "grader.submission.urdf_search",
     "grader.package.linting",
 )
 

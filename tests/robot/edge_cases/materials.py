@@ -2,7 +2,7 @@
 
 from tests.robot.edge_cases.case import clean, degraded, joint, links, one_link, rejected, robot, visual
 
-_DEFINED = "a visual may name a material of the robot, wherever that stands"
+_DEFINED = "a visual may name a material of the robot, wherever that is defined"
 _IN_PLACE = "a material defined in a link is known to the links after it"
 _UNDEFINED = "a material without colour or texture must be defined before"
 _NEEDS_COLOUR = "a material of the robot needs a colour or a texture"

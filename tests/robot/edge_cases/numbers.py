@@ -81,7 +81,7 @@ _REFUSED = {
     "plus-alone": "+",
     "two-signs": "--1",
     "plus-minus": "+-1",
-    "sign-behind": "1-",
+    "sign-after": "1-",
     "bracket": "[1",
     "letter": "x",
     "degrees": "90deg",
@@ -101,11 +101,11 @@ _REFUSED = {
     "arabic-digit": "\u0661",
     "superscript": "1\u00b2",
     "half": "\u00bd",
-    "no-break-space-behind": "1\u00a0",
+    "no-break-space-after": "1\u00a0",
     "no-break-space-in-front": "\u00a01",
-    "zero-width-space-behind": "1\u200b",
+    "zero-width-space-after": "1\u200b",
     "mark-in-front": "\ufeff1",
-    "control-behind": "1\x01",
+    "control-after": "1\x01",
 }
 
 # Whole vectors.
