@@ -265,8 +265,8 @@ def test_all_documents_share_one_budget(tmp_path: Path, monkeypatch: pytest.Monk
 def test_the_converter_bounds_its_own_processor_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Where the grader is not there to stop it, the system does."""
     code = f"import sys; sys.argv[2] = '1'; sys.path.insert(0, {str(ROOT)!r})\n"
-    code += "from grader.submission import document_text\n"
-    code += "document_text._pdf = lambda data: str(sum(0 for _ in iter(int, 1)))\nsys.exit(document_text.main())"
+    code += "from grader.documents import converter\n"
+    code += "converter._pdf = lambda data: str(sum(0 for _ in iter(int, 1)))\nsys.exit(converter.main())"
     converter(code.encode(), tmp_path / "busy.py", monkeypatch)
     monkeypatch.setattr("grader.documents.documents.MAX_SECONDS", 60.0)
     message = answer_in(ALONE.with_files({"a.pdf": b""})).message
