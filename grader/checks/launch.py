@@ -98,7 +98,7 @@ def launch_finds_files(package: Package, *, name: str) -> Outcome:
 
 
 def _no_file(package: Package, kind: str) -> MissingElement:
-    return MissingElement(f"{_WORDS[kind]} in the package", "", message=package.without(kind))
+    return MissingElement(f"{_WORDS[kind]} in the package", "", message=package.missing_message(kind))
 
 
 def _launch(package: Package, name: str) -> "Launch":

@@ -59,7 +59,7 @@ def build_installs(package: Package, *, kind: Kind, name: str) -> Outcome:
     """
     files = files_of(package, kind, name)
     if not files:
-        raise MissingElement(f"{_WORDS[kind]} in the package", "", message=package.without(kind))
+        raise MissingElement(f"{_WORDS[kind]} in the package", "", message=package.missing_message(kind))
     return _installed(package, files, kind)
 
 
@@ -180,7 +180,7 @@ def _not_installed(package: Package, setup: "Setup", files: Sequence[str], kind:
         message = "a build installs nothing: setup.py does not call setup()"
         return MissingElement("call of setup", package.folder, message=message)
     if empty is not None:
-        message += f": the pattern {empty.pattern!r} in setup.py finds nothing{package.instead(empty.pattern)}"
+        message += f": the pattern {empty.pattern!r} in setup.py matches no file{package.pattern_hint(empty.pattern)}"
         at = setup.location(empty.at)
     else:
         message += ": no entry of data_files in setup.py names it"

@@ -40,9 +40,9 @@ def grade(rubric: Rubric, submission: Submission, parts: Sequence[str] = ()) -> 
     if submission.xacro == "left":
         problems = tuple(problem for problem in problems if problem.kind is RAW_XACRO)
     if submission.package is not None and any(rubric.part(each).needs == "package" for each in chosen):
-        from grader.package.linting import remarks  # a URDF on its own needs none of what reads a package
+        from grader.package.problems import package_problems  # a URDF on its own needs none of what reads a package
 
-        problems += remarks(submission.package)
+        problems += package_problems(submission.package)
     exhibits, others = exhibits_of(rubric, submission, chosen)
     return Report(submission, rubric, chosen, tuple(run.results.values()), problems, exhibits, others, notes)
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from grader.errors import InputError
 from grader.files.tree import Tree, is_ignored
 from grader.names import did_you_mean
-from grader.package.globbing import BeyondError, Listing
+from grader.package.globbing import PackageListing, SearchError
 from grader.static_python.control_flow import EvaluationStopped
 from grader.static_python.values import (
     PACKAGE_FOLDER,
@@ -62,7 +62,7 @@ class InstallError(NamedTuple):
 class DataFiles:
     """Installs the files of data_files as setuptools' install_data does, without touching any."""
 
-    def __init__(self, tree: Tree, listing: Listing, root: str, positions: Mapping[str, Position]) -> None:
+    def __init__(self, tree: Tree, listing: PackageListing, root: str, positions: Mapping[str, Position]) -> None:
         """`root` is the absolute path that stands for the package's folder; `positions` has the origin of each path."""
         self.tree = tree
         self.listing = listing
@@ -155,7 +155,7 @@ class DataFiles:
             return
         try:
             path = self.listing.real(text)
-        except BeyondError:
+        except SearchError:
             self._give_up(None, f"{text} is outside of the package", at)
             return
         if names_package_folder(text):

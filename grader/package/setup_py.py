@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from grader.files.tree import Tree
 from grader.package.data_files import DataFiles, InstalledFile, InstallError
 from grader.package.file_functions import WRITING, EmptyGlob, FoundPaths, file_functions
-from grader.package.globbing import ORDERS, Listing
+from grader.package.globbing import ORDERS, PackageListing
 from grader.source import Location, Source
 from grader.static_python.control_flow import EvaluationStopped, PythonError
 from grader.static_python.functions import standard_functions
@@ -83,7 +83,7 @@ def _outcome(setup: Setup) -> tuple[set[InstalledFile], set[InstallError], set[P
 
 def _evaluate(code: Code, tree: Tree, order: str) -> tuple[Setup, bool]:
     """Evaluate a file with folders listed in some order; return the result and whether it may depend on that order."""
-    listing = Listing(tree, order)
+    listing = PackageListing(tree, order)
     functions = {**standard_functions(_ROOT), **file_functions(listing, _ROOT)}
     interpreter = Interpreter(functions, {"__file__": f"{_ROOT}/setup.py"})
     interpreter.run(code)

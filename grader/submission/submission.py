@@ -16,7 +16,7 @@ from grader.source import Source
 from grader.text import printable_path
 
 if TYPE_CHECKING:
-    from grader.documents.documents import Documents
+    from grader.documents.collection import DocumentCollection
     from grader.documents.evidence import Proof
 
 Xacro = Literal["none", "expanded", "left"]
@@ -52,11 +52,11 @@ class Submission:
     no_documents: str = ""
 
     @cached_property
-    def documents(self) -> "Documents":
+    def documents(self) -> "DocumentCollection":
         """The documents in it, each of which is read once."""
-        from grader.documents.documents import Documents  # a URDF on its own has none
+        from grader.documents.collection import DocumentCollection  # a URDF on its own has none
 
-        return Documents(self.tree)
+        return DocumentCollection(self.tree)
 
     @cached_property
     def proofs(self) -> "tuple[Proof, ...]":
@@ -143,7 +143,7 @@ def _read(data: bytes, path: str, package: Package | None) -> tuple[Reading, Xac
     if not any(problem.kind is RAW_XACRO for problem in reading.problems):
         return reading, "none"
     name = path.rpartition("/")[2]
-    readers = package.readers(name) if package is not None else set()
+    readers = package.robot_readers(name) if package is not None else set()
     if (readers and readers != {"xacro"}) or (not readers and (".xacro" not in name or name.endswith(".urdf"))):
         return reading, "none"
     from grader.xacro.properties import expand

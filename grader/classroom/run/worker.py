@@ -30,7 +30,7 @@ PRELOAD = (
     "grader.classroom.run.worker",
     "grader.robot.edge_overlap",
     "grader.submission.find",
-    "grader.package.linting",
+    "grader.package.problems",
 )
 
 
