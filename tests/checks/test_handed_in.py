@@ -295,7 +295,7 @@ def test_no_more_than_a_few_documents_are_converted(tmp_path: Path, monkeypatch:
 @pytest.mark.parametrize("name", ["answers.doc", "answers.odt", "answers.rtf", "answers.pages"])
 def test_a_document_of_another_kind_is_named(name: str) -> None:
     """A kind that is not read is named, so that a person opens it."""
-    message = f"{NOT_FOUND}; a person decides (not read: {name} is of a kind that is not read: open it yourself)"
+    message = f"{NOT_FOUND}; a person decides (not read: {name} has a format that is not supported: open it yourself)"
     assert answer_in(ALONE.with_files({name: b"text"})).message == message
 
 

@@ -93,7 +93,7 @@ def _converters(process: "subprocess.Popen[str]") -> list[int]:
 def test_a_converter_without_a_death_signal_watches_its_parent(tmp_path: Path) -> None:
     """Where the kernel does not end it, a thread does: that of a system without PR_SET_PDEATHSIG."""
     child = (
-        f"import sys, time; sys.path.insert(0, {str(ROOT)!r}); from grader.submission import document_text as it\n"
+        f"import sys, time; sys.path.insert(0, {str(ROOT)!r}); from grader.documents import converter as it\n"
         "it._has_death_signal = lambda: False\n"
         "it.end_with_parent(int(sys.argv[1]), 600); print('ready', flush=True); time.sleep(600)"
     )
