@@ -11,9 +11,10 @@ from grader.package.globbing import ORDERS, PackageListing
 from grader.source import Location, Source
 from grader.static_python.control_flow import EvaluationStopped, PythonError
 from grader.static_python.functions import standard_functions
+from grader.static_python.inspection import PACKAGE_FOLDER
 from grader.static_python.interpreter import Interpreter
 from grader.static_python.parse import Code, SyntaxFault
-from grader.static_python.values import PACKAGE_FOLDER, START, Position, Unknown, position_of
+from grader.static_python.values import START, Position, Unknown, position_of
 
 _ROOT = f"/{PACKAGE_FOLDER}"
 _SETUPS = ("setuptools.setup", "distutils.core.setup", "?.setup")

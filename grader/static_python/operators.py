@@ -8,21 +8,8 @@ from typing import Any
 
 from grader.static_python.control_flow import EvaluationStopped
 from grader.static_python.evaluation import Evaluation
-from grader.static_python.values import (
-    MAX_ITEMS,
-    MAX_TEXT,
-    UNKNOWN_KEYS,
-    Call,
-    Position,
-    QualifiedName,
-    Unknown,
-    Value,
-    WalkFolders,
-    as_text,
-    items_of,
-    names_package_folder,
-    size,
-)
+from grader.static_python.inspection import MAX_ITEMS, MAX_TEXT, as_text, items_of, names_package_folder, size
+from grader.static_python.values import UNKNOWN_KEYS, Call, Position, QualifiedName, Unknown, Value
 
 TYPE_NAMES: dict[type, str] = {
     str: "a string", list: "a list", tuple: "a tuple", dict: "a dict", type(None): "None", PurePosixPath: "a path",
@@ -43,6 +30,10 @@ _COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], bool]] = {
     ast.In: lambda left, right: left in right, ast.NotIn: lambda left, right: left not in right,
     ast.Lt: operator.lt, ast.LtE: operator.le, ast.Gt: operator.gt, ast.GtE: operator.ge,
 }  # fmt: skip
+
+
+class WalkFolders(list[Value]):
+    """A list of folders from os.walk: a change of it changes where the walk continues."""
 
 
 def operate(evaluation: Evaluation, op: ast.operator, left: Value, right: Value, at: Position) -> Value:

@@ -9,8 +9,9 @@ from grader.package.launch.booleans import BOOLEAN_SUBSTITUTIONS, boolean_substi
 from grader.package.launch.commands import PART_UNKNOWN, file_read
 from grader.package.launch.context import Contents, Context, Resolved
 from grader.package.launch.places import HOME, PREFIX, SHARE
+from grader.static_python.inspection import as_text
 from grader.static_python.text_expressions import evaluate_text
-from grader.static_python.values import START, Call, Position, Unknown, Value, as_text
+from grader.static_python.values import START, Call, Position, Unknown, Value
 
 COMMAND_LINE = "launch.frontend.command line"  # a line that is split into words, as in XML and YAML
 _MAX_DEPTH = 40
