@@ -1,4 +1,4 @@
-"""What data_files of a setup.py installs, as setuptools' install_data does it: file by file, up to the first error."""
+"""The files that data_files of a setup.py installs, in the order of setuptools' install_data."""
 
 import posixpath
 import re
@@ -47,7 +47,7 @@ class InstallError(NamedTuple):
 
     @property
     def message(self) -> str:
-        """What stops the build, as part of a sentence."""
+        """The error that stops the build, as part of a sentence."""
         return f"data_files lists {self.path!r}, but {self.reason}" if self.path else self.reason
 
 
@@ -65,7 +65,7 @@ class DataFiles:
         self.unknown: list[Unknown] = []
 
     def read(self, call: Call) -> None:
-        """Add what a call of setup() installs."""
+        """Add the files that a call of setup() installs."""
         for name in _OTHER_WAYS:
             if call.kwargs.get(name):
                 what = "unpacked arguments" if name == UNKNOWN_KEYS else name

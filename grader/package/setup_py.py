@@ -1,4 +1,4 @@
-"""What a build would install by a package's setup.py: the file is evaluated, never run."""
+"""The files that a build installs by a package's setup.py, which is evaluated, never run."""
 
 import ast
 from collections.abc import Iterable
@@ -28,7 +28,7 @@ _CHANGES = (
 
 @dataclass(frozen=True, slots=True)
 class Setup:
-    """What is known of a setup.py. `fault` is set where Python cannot read it: nothing else is known then.
+    """The result of a setup.py. `fault` is set where Python cannot read it: nothing else is known then.
 
     `unknown` has what cannot be determined: a file that is not among `copies` may be installed all the same.
     """
