@@ -34,7 +34,6 @@ LIBRARIES = {
     "lxml": {"xml", "report"},  # a report may be XML
     "yaml": {"package"},
     "ast": {"static_python", "package", "xacro"},
-    "imagesize": {"documents"},
     "docx": {"documents"},
     "pypdf": {"documents"},
     "numpy": {"robot"},

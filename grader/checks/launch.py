@@ -102,7 +102,7 @@ def launch_finds_files(package: Package, *, name: str) -> Outcome:
 
 
 def _no_launch_file(package: Package) -> MissingElement:
-    return MissingElement("launch file in the package", "", message=package.without("launch"))
+    return MissingElement("launch file in the package", "", message=package.missing_message("launch"))
 
 
 def _launch(package: Package, name: str) -> "Launch":

@@ -56,7 +56,7 @@ def build_installs(package: Package, *, kind: Kind, name: str) -> Outcome:
     """
     files = files_of(package, kind, name)
     if not files:
-        raise MissingElement(f"{_WORDS[kind]} in the package", "", message=package.without(kind))
+        raise MissingElement(f"{_WORDS[kind]} in the package", "", message=package.missing_message(kind))
     return _installed(package, files, kind)
 
 
@@ -166,8 +166,8 @@ def _installed(package: Package, files: Sequence[str], kind: Kind | None) -> Out
     if empty is None:
         message += ": no entry of data_files in setup.py names it"
         raise MissingElement(what, package.folder, message=message)
-    message += f": the pattern {empty.pattern!r} in setup.py finds nothing"
-    detail, at = package.instead(empty.pattern), setup.location(empty.at)
+    message += f": the pattern {empty.pattern!r} in setup.py matches no file"
+    detail, at = package.pattern_hint(empty.pattern), setup.location(empty.at)
     raise MissingElement(what, package.folder, message=message, detail=detail, location=at)
 
 

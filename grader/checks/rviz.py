@@ -121,7 +121,7 @@ def _launch(package: Package, launch: str) -> "Launch | None":
 
 
 def _no_rviz_file(package: Package) -> MissingElement:
-    return MissingElement("RViz file in the package", "", message=package.without("rviz"))
+    return MissingElement("RViz file in the package", "", message=package.missing_message("rviz"))
 
 
 def _read(package: Package, name: str, launch: str) -> "RvizFile":

@@ -1,39 +1,39 @@
-"""Written answers: the passage of a document that speaks of a question. What it is worth, a person decides."""
+"""Written answers: the passage of a document about a question. A person grades it."""
 
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from grader.documents.documents import Document, Documents
+from grader.documents.collection import Document, DocumentCollection
 from grader.documents.evidence import stem
-from grader.documents.labels import Label, is_meant, read_label
+from grader.documents.labels import Label, matches, read_label
 from grader.source import Location
 
-_MOST_LINES, _MOST_TEXT = 60, 4000
-_MOST_WORDS_OF_HEADING = 6  # a passage of no more words is a heading with nothing below it
+_MAX_LINES, _MAX_TEXT = 60, 4000
+_MAX_HEADING_WORDS = 6  # a passage of so few words is a heading without a text
 
 
 class Passage(NamedTuple):
-    """A piece of a document that answers a question; `location` is where it begins."""
+    """The part of a document about a question; `location` is its beginning."""
 
     text: str
     location: Location
 
 
-class Search(NamedTuple):
-    """What looking for an answer has found: the passage, the documents that were read, and what of them could not be."""
+class AnswerSearch(NamedTuple):
+    """The result of a search for an answer: the passage, the documents that were read, and those that were not, with reasons."""
 
     passage: Passage | None
     read: tuple[str, ...]
     unread: tuple[str, ...]
 
 
-def find_answer(documents: Documents, files: Sequence[str], places: Sequence[str]) -> Search:
-    """Look for the passage about one of `places`, such as `task 1 step 15`, in the documents whose names match `files`.
+def find_answer(documents: DocumentCollection, files: Sequence[str], places: Sequence[str]) -> AnswerSearch:
+    """Search for the passage about one of `places`, such as `task 1 step 15`, in the documents whose names match `files`.
 
-    The first place that is found anywhere counts, before the others; and a passage before a heading with nothing below it.
+    An earlier place wins over a later one, and for the same place a passage over a heading without a text.
     """
     read, unread = documents.named(files)
-    return Search(
+    return AnswerSearch(
         _best(read, [read_label(place) for place in places]),
         tuple(document.file.path for document in read),
         tuple(unread),
@@ -42,29 +42,27 @@ def find_answer(documents: Documents, files: Sequence[str], places: Sequence[str
 
 def _best(documents: list[Document], wanted: list[Label]) -> Passage | None:
     best: Passage | None = None
-    worth = (len(wanted), False)  # the rank of its place, and whether it is a heading only
+    rank = (len(wanted), False)  # the index of its place, and whether it is a heading only
     for document in documents:
         own = read_label(stem(document.file.name))
-        for rank, label in enumerate(wanted):
-            for start, end in _spans(document, own, label):
-                if (rank, False) >= worth:
-                    break
-                passage = _cut(document, start, end)
-                if passage is None:
-                    continue
-                found = (rank, len(passage.text.split()) <= _MOST_WORDS_OF_HEADING)
-                if found < worth:
-                    best, worth = passage, found
+        for index, label in enumerate(wanted):
+            if (index, False) >= rank:
+                break
+            passages = [_cut(document, start, end) for start, end in _spans(document, own, label)]
+            for passage in filter(None, passages):
+                found = (index, len(passage.text.split()) <= _MAX_HEADING_WORDS)
+                if found < rank:
+                    best, rank = passage, found
     return best
 
 
 def _spans(document: Document, own: Label, wanted: Label) -> Iterator[tuple[int, int]]:
-    """The lines from a heading about what is wanted up to the next heading; a file that is named for it is one as a whole."""
-    if is_meant(wanted, own):
+    """Yield the lines from each matching heading to the next one; of a file that is named for the place, all lines."""
+    if matches(wanted, own):
         yield 0, len(document.lines)
         return
     for heading in document.headings:
-        if is_meant(wanted, heading.label, heading.task):
+        if matches(wanted, heading.label, heading.task):
             yield heading.start, heading.end
 
 
@@ -72,11 +70,11 @@ def _cut(document: Document, start: int, end: int) -> Passage | None:
     lines = document.lines
     while start < end and not lines[start].strip():
         start += 1
-    kept = [line.rstrip() for line in lines[start : min(end, start + _MOST_LINES)]]
+    kept = [line.rstrip() for line in lines[start : min(end, start + _MAX_LINES)]]
     while kept and not kept[-1]:
         kept.pop()
     text = "\n".join(kept)
     if not text.strip():
         return None
-    is_cut = len(text) > _MOST_TEXT or end > start + _MOST_LINES
-    return Passage(text[:_MOST_TEXT] + (" [...]" if is_cut else ""), Location(document.file.path, start + 1, 1))
+    is_cut = len(text) > _MAX_TEXT or end > start + _MAX_LINES
+    return Passage(text[:_MAX_TEXT] + (" [...]" if is_cut else ""), Location(document.file.path, start + 1, 1))

@@ -1,7 +1,7 @@
-"""The text of a Word or PDF file from standard input, on standard output: run as a process of its own, the converter.
+"""Converts a Word or PDF file from standard input to text on standard output, as a process of its own.
 
-Both formats can be made to take for ever or all of the memory, so the grader that reads a student's file only waits so long.
-The converter bounds itself as well, and ends with the process that has started it, however that ends.
+A crafted file of either format can use unlimited time or memory, so the grader stops the process after a time. The converter
+limits itself as well, and ends with the process that started it, however that ends.
 """
 
 import io
@@ -14,16 +14,16 @@ from collections.abc import Callable
 from contextlib import suppress
 
 MISSING = 3  # exit code where the package that reads the format is not installed
-TEXT_LIMIT = 1024 * 1024
-_MEMORY_LIMIT = 1024 * 1024 * 1024
-_MOST_PAGES = 100
-_ZIP_LIMIT = 64 * 1024 * 1024
+MAX_TEXT = 1024 * 1024
+_MAX_MEMORY = 1024 * 1024 * 1024
+_MAX_PAGES = 100
+_MAX_UNPACKED = 64 * 1024 * 1024
 _PR_SET_PDEATHSIG = 1
-_WATCHED = 0.2  # seconds between two looks at whether the parent still lives
+_POLL_INTERVAL = 0.2  # seconds between two checks whether the parent is alive
 
 
 def main() -> int:
-    """Read one document. Arguments: `docx` or `pdf`, the seconds of processor time, the process id of the parent."""
+    """Convert one document. Arguments: `docx` or `pdf`, seconds of processor time, process id of the parent."""
     kind, seconds, parent = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
     end_with_parent(parent, seconds)
     _limit(seconds)
@@ -33,25 +33,25 @@ def main() -> int:
         text = readers[kind](data)
     except ImportError:
         return MISSING
-    except Exception:  # noqa: BLE001  whatever a damaged file brings about
+    except Exception:  # noqa: BLE001  a damaged file can raise anything
         return 1
-    sys.stdout.buffer.write(text[:TEXT_LIMIT].encode("utf-8", "replace"))
+    sys.stdout.buffer.write(text[:MAX_TEXT].encode("utf-8", "replace"))
     return 0
 
 
 def is_out_of_time(code: int) -> bool:
-    """Return whether an exit code says that the converter has used up its processor time."""
+    """Return whether an exit code says that the converter has reached its limit of processor time."""
     return code < 0 and code == -getattr(signal, "SIGXCPU", 0)
 
 
 def end_with_parent(parent: int, seconds: int) -> None:
     """End this process when its parent has ended: by the kernel on Linux, by a thread elsewhere.
 
-    The thread sees nothing of the parent on Windows, where it only ends the process after so many seconds.
+    On Windows the thread cannot see the parent: there it ends the process after so many seconds.
     """
     if not _has_death_signal():
         threading.Thread(target=_watch, args=(parent, seconds), daemon=True).start()
-    if os.name != "nt" and os.getppid() != parent:  # it ended before the kernel was told
+    if os.name != "nt" and os.getppid() != parent:  # it ended before the kernel call
         os._exit(1)
 
 
@@ -67,18 +67,18 @@ def _has_death_signal() -> bool:
 def _watch(parent: int, seconds: int) -> None:
     end = time.monotonic() + seconds
     while (os.name == "nt" or os.getppid() == parent) and time.monotonic() < end:
-        time.sleep(_WATCHED)
+        time.sleep(_POLL_INTERVAL)
     os._exit(1)
 
 
 def _limit(seconds: int) -> None:
-    """Bound processor time and memory, where the system can."""
+    """Limit processor time and memory, where the system can."""
     with suppress(ImportError):
         import resource
 
         limits = {
             resource.RLIMIT_CPU: (seconds, seconds + 1),
-            resource.RLIMIT_AS: (_MEMORY_LIMIT, _MEMORY_LIMIT),
+            resource.RLIMIT_AS: (_MAX_MEMORY, _MAX_MEMORY),
             resource.RLIMIT_CORE: (0, 0),
         }
         for limit, values in limits.items():
@@ -92,11 +92,11 @@ def _docx(data: bytes) -> str:
     import docx
 
     with zipfile.ZipFile(io.BytesIO(data)) as archive:
-        if sum(info.file_size for info in archive.infolist()) > _ZIP_LIMIT:
-            raise ValueError("it unpacks to far more than a text")
+        if sum(info.file_size for info in archive.infolist()) > _MAX_UNPACKED:
+            raise ValueError("it unpacks to more than a text document")
     document = docx.Document(io.BytesIO(data))
     lines: list[str] = []
-    for block in document.iter_inner_content():  # paragraphs and tables as they stand
+    for block in document.iter_inner_content():  # paragraphs and tables in their order
         if hasattr(block, "rows"):
             lines += ["\t".join(cell.text for cell in row.cells) for row in block.rows]
         else:
@@ -108,7 +108,7 @@ def _pdf(data: bytes) -> str:
     import pypdf
 
     reader = pypdf.PdfReader(io.BytesIO(data))
-    return "\n".join(page.extract_text() for page in reader.pages[:_MOST_PAGES])
+    return "\n".join(page.extract_text() for page in reader.pages[:_MAX_PAGES])
 
 
 if __name__ == "__main__":

@@ -1,26 +1,24 @@
-"""Pictures and other proofs that were handed in: found by their names, described, never judged."""
+"""Pictures and other evidence in a submission: found by name and described, never graded."""
 
-import io
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from grader.documents.labels import Label, is_meant, read_label
+from grader.documents.image_size import image_size
+from grader.documents.labels import Label, matches, read_label
 from grader.errors import InputError
 from grader.files.tree import File, Tree
 
 _PICTURES = frozenset({".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".heic", ".svg"})
 _OTHERS = frozenset({".pdf", ".mp4", ".mov", ".webm", ".mkv", ".avi"})
-# Formats whose size is in their first bytes; nothing else is given to the library.
-_SIGNATURES = (b"\x89PNG\r\n", b"\xff\xd8\xff", b"GIF8", b"BM", b"II*\0", b"MM\0*", b"RIFF")
-_START = 256 * 1024
+_MAX_HEADER = 256 * 1024  # bytes in which the size of a picture is found
 _EVIDENCE = _PICTURES | _OTHERS
 _MAX_OPENED = 50  # files at once whose dimensions are read
 
 
 @dataclass(frozen=True, slots=True)
 class Exhibit:
-    """One file of evidence: its size in bytes, and of a picture width and height in pixels, where they can be told."""
+    """One file of evidence: its size in bytes, and width and height of a picture in pixels, if they are known."""
 
     path: str
     size: int
@@ -29,32 +27,32 @@ class Exhibit:
 
     @property
     def words(self) -> str:
-        """The file as a person would describe it."""
+        """The file with its dimensions and size, for a message."""
         dimensions = f"{self.width} x {self.height} pixels, " if self.width else ""
         size = f"{self.size / 1e6:.1f} MB" if self.size >= 1e6 else f"{self.size / 1e3:.0f} kB"
         return f"{self.path} ({dimensions}{size if self.size >= 1000 else f'{self.size} bytes'})"
 
 
 class Proof(NamedTuple):
-    """A picture, film or PDF, and the task and step that its path names."""
+    """A picture, video or PDF, and the task and step that its path names."""
 
     file: File
     label: Label
 
 
 def read_proofs(tree: Tree) -> tuple[Proof, ...]:
-    """Return every picture, film and PDF of a submission, with its label."""
+    """Return every picture, video and PDF of a submission, with its label."""
     return tuple(Proof(file, read_label(stem(file.path))) for file in tree.files.values() if file.suffix in _EVIDENCE)
 
 
 def find_evidence(proofs: Sequence[Proof], names: Sequence[str]) -> tuple[Exhibit, ...]:
-    """The files of evidence whose path speaks of one of these names: `task 1 step 8`, or plain words such as `webcam`."""
+    """Return the evidence whose path contains one of these names: `task 1 step 8`, or plain words such as `webcam`."""
     wanted = [read_label(name) for name in names]
-    return describe([proof for proof in proofs if any(is_meant(each, proof.label) for each in wanted)])
+    return describe([proof for proof in proofs if any(matches(label, proof.label) for label in wanted)])
 
 
 def describe(proofs: Sequence[Proof]) -> tuple[Exhibit, ...]:
-    """Files of evidence with what their first bytes tell; of many, the dimensions of the first only."""
+    """Describe files of evidence; of many files, only the first with their dimensions."""
     opened = [_described(proof.file) for proof in proofs[:_MAX_OPENED]]
     return (*opened, *(Exhibit(proof.file.path, proof.file.size) for proof in proofs[_MAX_OPENED:]))
 
@@ -65,19 +63,13 @@ def _described(file: File) -> Exhibit:
 
 
 def stem(path: str) -> str:
-    """A path without its ending."""
+    """Return a path without its suffix."""
     folder, slash, name = path.rpartition("/")
     return folder + slash + (name.rpartition(".")[0] or name)
 
 
 def _dimensions(file: File) -> tuple[int, int] | None:
-    import imagesize  # only a submission with pictures pays for it
-
     try:
-        start = file.read(_START, first=True)
-        if not start.startswith(_SIGNATURES):
-            return None
-        width, height = imagesize.get(io.BytesIO(start))
-    except (InputError, Exception):  # noqa: BLE001  a damaged picture must not stop anything
+        return image_size(file.read(_MAX_HEADER, first=True))
+    except InputError:
         return None
-    return (int(width), int(height)) if width > 0 and height > 0 else None

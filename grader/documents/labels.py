@@ -1,4 +1,4 @@
-"""Which task and step a name or heading speaks of, however it is spelt: Task1_Step8, task 1 step 8, T1S8, lab6_task1_q8."""
+"""The task and step that a name or heading names, in any spelling: Task1_Step8, task 1 step 8, T1S8, lab6_task1_q8."""
 
 import re
 from dataclasses import dataclass
@@ -8,13 +8,13 @@ _TASKS = frozenset({"task", "tasks", "t", "tsk", "tast", "aufgabe", "teil"})
 _STEPS = frozenset(
     {"step", "steps", "s", "st", "stp", "question", "questions", "q", "que", "no", "nr", "schritt", "frage"}
 )
-_NAMING = _TASKS | _STEPS
-_LONGEST = 300
+_KEYWORDS = _TASKS | _STEPS
+_MAX_LENGTH = 300
 
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """A task and the steps of it that are named, and every word; None and nothing where there are none."""
+    """The task and steps that a text names, and all of its words; None and empty where it names none."""
 
     task: int | None
     steps: frozenset[int]
@@ -22,12 +22,12 @@ class Label:
 
 
 def read_label(text: str) -> Label:
-    """The label in a name or line. Where several tasks are named, as in a path, the last one counts."""
-    words = tuple(_WORDS.findall(text[-_LONGEST:].lower()))
+    """Return the label of a name or line. If it names several tasks, as a path may, the last one counts."""
+    words = tuple(_WORDS.findall(text[-_MAX_LENGTH:].lower()))
     task: int | None = None
     steps: set[int] = set()
     for index, word in enumerate(words):
-        if word not in _NAMING or not (numbers := _numbers(words, index + 1)):
+        if word not in _KEYWORDS or not (numbers := _numbers(words, index + 1)):
             continue
         if word in _TASKS:
             task, steps = numbers[0], set(numbers[1:])
@@ -36,8 +36,8 @@ def read_label(text: str) -> Label:
     return Label(task, frozenset(steps), words)
 
 
-def is_meant(wanted: Label, found: Label, task: int | None = None) -> bool:
-    """Whether a label speaks of what is wanted; `task` is the one that is known from around it."""
+def matches(wanted: Label, found: Label, task: int | None = None) -> bool:
+    """Return whether a label matches the wanted one; `task` is the task of the headings around it."""
     if wanted.steps or wanted.task is not None:
         own = found.task if found.task is not None else task
         if wanted.task is not None and wanted.task != own:
@@ -47,7 +47,7 @@ def is_meant(wanted: Label, found: Label, task: int | None = None) -> bool:
 
 
 def _numbers(words: tuple[str, ...], start: int) -> list[int]:
-    """The numbers that follow a word at once."""
+    """Return the numbers directly after a word."""
     numbers: list[int] = []
     for word in words[start:]:
         if not word.isdecimal() or len(word) > 4:
@@ -57,7 +57,7 @@ def _numbers(words: tuple[str, ...], start: int) -> list[int]:
 
 
 def _in_order(wanted: tuple[str, ...], found: tuple[str, ...]) -> bool:
-    """Whether words stand next to each other in others, each at least as a beginning: cam in camera."""
+    """Return whether the wanted words occur next to each other, each at least as a prefix: cam in camera."""
     span = len(wanted)
     return any(
         all(word.startswith(part) for part, word in zip(wanted, found[start : start + span], strict=True))

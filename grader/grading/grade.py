@@ -37,9 +37,9 @@ def grade(rubric: Rubric, submission: Submission, parts: Sequence[str] = ()) -> 
             grading.decide(criterion)
     problems = submission.urdf.problems if isinstance(submission.urdf, Read | NeedsExpansion) else ()
     if submission.package is not None and any(rubric.part(part).needs == "package" for part in chosen):
-        from grader.package.linting import remarks  # a URDF on its own needs none of what reads a package
+        from grader.package.problems import package_problems  # a URDF on its own needs none of what reads a package
 
-        problems += remarks(submission.package)
+        problems += package_problems(submission.package)
     exhibits, others = exhibits_of(rubric, submission, chosen)
     return Report(submission, rubric, chosen, tuple(grading.results.values()), problems, exhibits, others, notes)
 

@@ -1,4 +1,4 @@
-"""What data_files of a setup.py installs, as setuptools' install_data does it: file by file, up to the first error."""
+"""The files that data_files of a setup.py installs, in the order of setuptools' install_data."""
 
 import posixpath
 import re
@@ -10,18 +10,10 @@ from grader.errors import InputError
 from grader.files.ignore_rules import ignored_part
 from grader.files.tree import Tree
 from grader.names import did_you_mean
-from grader.package.globbing import BeyondError, Listing
+from grader.package.globbing import PackageListing, SearchError
 from grader.static_python.control_flow import EvaluationStopped
-from grader.static_python.values import (
-    PACKAGE_FOLDER,
-    UNKNOWN_KEYS,
-    Call,
-    Position,
-    Unknown,
-    Value,
-    names_package_folder,
-    unknown_in,
-)
+from grader.static_python.inspection import PACKAGE_FOLDER, names_package_folder
+from grader.static_python.values import UNKNOWN_KEYS, Call, Position, Unknown, Value, unknown_in
 
 # Other arguments that install files and are not evaluated.
 _OTHER_WAYS = ("package_data", "include_package_data", "cmdclass", UNKNOWN_KEYS)
@@ -57,14 +49,14 @@ class InstallError(NamedTuple):
 
     @property
     def message(self) -> str:
-        """What stops the build, as part of a sentence."""
+        """The error that stops the build, as part of a sentence."""
         return f"data_files lists {self.path!r}, but {self.reason}" if self.path else self.reason
 
 
 class DataFiles:
     """Installs the files of data_files as setuptools' install_data does, without touching any."""
 
-    def __init__(self, tree: Tree, listing: Listing, root: str, positions: Mapping[str, Position]) -> None:
+    def __init__(self, tree: Tree, listing: PackageListing, root: str, positions: Mapping[str, Position]) -> None:
         """`root` is the absolute path that stands for the package's folder; `positions` has the origin of each path."""
         self.tree = tree
         self.listing = listing
@@ -75,7 +67,7 @@ class DataFiles:
         self.unknown: list[Unknown] = []
 
     def read(self, call: Call) -> None:
-        """Add what a call of setup() installs."""
+        """Add the files that a call of setup() installs."""
         for name in _OTHER_WAYS:
             if call.kwargs.get(name):
                 what = "unpacked arguments" if name == UNKNOWN_KEYS else name
@@ -157,7 +149,7 @@ class DataFiles:
             return
         try:
             path = self.listing.real(text)
-        except BeyondError:
+        except SearchError:
             self._give_up(None, f"{text} is outside of the package", at)
             return
         if names_package_folder(text):

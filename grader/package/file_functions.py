@@ -8,11 +8,12 @@ from pathlib import PurePosixPath
 from typing import NamedTuple
 
 from grader.files.ignore_rules import ignored_part
-from grader.package.globbing import BeyondError, Listing
+from grader.package.globbing import PackageListing, SearchError
 from grader.static_python.control_flow import EvaluationStopped
 from grader.static_python.evaluation import Evaluation, FunctionTable
-from grader.static_python.functions import path_text
-from grader.static_python.values import Call, Position, Unknown, Value, WalkFolders, unknown_in
+from grader.static_python.inspection import path_text
+from grader.static_python.operators import WalkFolders
+from grader.static_python.values import Call, Position, Unknown, Value, unknown_in
 
 WRITING = "builtins.open(w)"  # the name of a call that opens a file to write into it
 _OUTSIDE = "it reads files outside of the package"
@@ -34,7 +35,7 @@ class FoundPaths(NamedTuple):
     at: Position
 
 
-def file_functions(listing: Listing, root: str) -> FunctionTable:
+def file_functions(listing: PackageListing, root: str) -> FunctionTable:
     """Return the functions by full name; `root` is the absolute path that stands for the package's folder."""
     folder = _PackageFolder(listing, root)
     functions: dict[str, Callable[[Evaluation, Call], Value]] = {
@@ -61,13 +62,13 @@ def file_functions(listing: Listing, root: str) -> FunctionTable:
 
 
 def _evaluated(
-    function: Callable[[Evaluation, Call], Value], listing: Listing, evaluation: Evaluation, call: Call
+    function: Callable[[Evaluation, Call], Value], listing: PackageListing, evaluation: Evaluation, call: Call
 ) -> Value:
     """Evaluate a search, count its steps and record whether its result depends on the order of the files in a folder."""
     before = listing.names_read
     try:
         found = function(evaluation, call)
-    except BeyondError as error:
+    except SearchError as error:
         return Unknown(str(error), call.at)
     finally:
         evaluation.step((listing.names_read - before) // 10)
@@ -80,12 +81,12 @@ def _evaluated(
 class _PackageFolder:
     """The package's folder, as the functions see it."""
 
-    def __init__(self, listing: Listing, root: str) -> None:
+    def __init__(self, listing: PackageListing, root: str) -> None:
         self.listing = listing
         self.root = root
 
     def inside(self, value: Value) -> str:
-        """Return a path or pattern relative to the package's folder. Raises BeyondError."""
+        """Return a path or pattern relative to the package's folder. Raises SearchError."""
         text = path_text(value)
         if text == self.root:
             return "."
@@ -93,15 +94,15 @@ class _PackageFolder:
             text = text.removeprefix(self.root).lstrip("/") or "."
         if text is None or text.startswith("/"):
             unknown = unknown_in(value)
-            raise BeyondError(_OUTSIDE if unknown is None else unknown.reason)
+            raise SearchError(_OUTSIDE if unknown is None else unknown.reason)
         return text
 
     def real(self, value: Value) -> str | None:
-        """Return the file or folder at a path; None where there is nothing. Raises BeyondError."""
+        """Return the file or folder at a path; None where there is nothing. Raises SearchError."""
         path = self.inside(value)
         real = self.listing.real(path)
         if real is None and ignored_part(posixpath.normpath(path)):
-            raise BeyondError(f"{path} is an ignored file")
+            raise SearchError(f"{path} is an ignored file")
         return real
 
     def glob(self, evaluation: Evaluation, call: Call) -> Value:
@@ -173,7 +174,7 @@ class _PackageFolder:
     def chdir(self, _: Evaluation, call: Call) -> Value:
         try:
             stays = len(call.args) == 1 and self.real(call.args[0]) == ""
-        except BeyondError:
+        except SearchError:
             stays = False
         if not stays:
             raise EvaluationStopped("a change of the working folder is not supported")
@@ -187,7 +188,7 @@ class _PackageFolder:
             return opened
         try:
             real = self.real(path)
-        except BeyondError:
+        except SearchError:
             evaluation.may_fail()
             return opened
         if real is None:

@@ -1,4 +1,4 @@
-"""What Python's glob, pathlib and os.listdir find in a package, answered from the list of its files."""
+"""The results of Python's glob, pathlib and os.listdir in a package, from the list of its files."""
 
 import posixpath
 import re
@@ -9,24 +9,24 @@ from functools import lru_cache
 
 from grader.files.tree import Tree
 
-# A folder's names come in any order: what depends on it differs between these.
+# The file system lists a folder in any order: a result that depends on the order differs between these.
 ORDERS = ("sorted", "reversed", "rotated")
 _MAGIC = re.compile(r"[*?\[]")
-_OUTSIDE = "it looks for files outside of the package"
-_COMPILED = "__pycache__"  # what is in it was never written by anyone
+_OUTSIDE = "it searches for files outside of the package"
+_COMPILED = "__pycache__"  # its files are made by Python
 _MAX_FOUND = 20_000
 _MAX_PATTERN = 1_024
 _MAX_PARTS = 50
 
 
-class BeyondError(Exception):
-    """What is looked for cannot be told from the list of a package's files."""
+class SearchError(Exception):
+    """A search that the list of a package's files does not answer."""
 
 
-class Listing:
-    """The folders of a tree with what is in them, named in one of the possible orders.
+class PackageListing:
+    """The folders of a file tree, listed in one of the possible orders.
 
-    Paths are relative to the tree's root. `names_read` counts the names that were gone through so far.
+    Paths are relative to the tree's root. `names_read` counts the names that searches have read.
     """
 
     def __init__(self, tree: Tree, order: str = ORDERS[0]) -> None:
@@ -43,24 +43,24 @@ class Listing:
             self._children = {folder: [*names[1:], names[0]] for folder, names in self._children.items()}
 
     def names(self, folder: str) -> list[str]:
-        """The names of what is in a folder. Raises BeyondError for one that was not looked into."""
+        """Return the names in a folder. Raises SearchError for an ignored folder."""
         if folder in self._unseen:
-            raise BeyondError("it looks into a folder that is not looked at here")
+            raise SearchError("it searches an ignored folder")
         found = self._children.get(folder, [])
         self.names_read += 1 + len(found)
         return found
 
     def real(self, path: str) -> str | None:
-        """The file or folder that a path leads to, without dots; None where there is nothing. Raises BeyondError."""
+        """Return the file or folder at a path, without dots; None where there is nothing. Raises SearchError."""
         if path.startswith("/"):
-            raise BeyondError(_OUTSIDE)
+            raise SearchError(_OUTSIDE)
         here = ""
         for index, part in enumerate(path.split("/")):
             if here not in self.folders or not path:
                 return None
             if part == "..":
                 if not here:
-                    raise BeyondError(_OUTSIDE)
+                    raise SearchError(_OUTSIDE)
                 here = here.rpartition("/")[0]
             elif part not in ("", "."):
                 here = f"{here}/{part}" if here else part
@@ -71,24 +71,24 @@ class Listing:
     def glob(
         self, pattern: str, *, recursive: bool = False, hidden: bool = False, start: str = "", above: str = ""
     ) -> list[str]:
-        """The paths that glob.glob finds, spelt as it spells them. Raises BeyondError.
+        """Return the paths that glob.glob finds, as it writes them. Raises SearchError.
 
-        `recursive` lets ** stand for any number of folders, `hidden` takes names that begin with a dot, too; `start` is the
-        folder that is looked in; `above` is what stands before the tree's root in a full path, and so before each path.
+        `recursive` lets ** match any number of folders, `hidden` lets wildcards match names that begin with a dot; `start` is
+        the folder that is searched; `above` is the absolute path of the tree's root, which precedes each path.
         """
         if pattern.startswith("/"):
-            raise BeyondError(_OUTSIDE)
+            raise SearchError(_OUTSIDE)
         if len(pattern) > _MAX_PATTERN or pattern.count("/") > _MAX_PARTS:
-            raise BeyondError("the pattern is too long to follow")
-        found = _Search(self, start, recursive=recursive, hidden=hidden).find(pattern, folders_only=False)
+            raise SearchError("the pattern is too long")
+        found = _GlobSearch(self, start, recursive=recursive, hidden=hidden).find(pattern, folders_only=False)
         return [above + path for path in dict.fromkeys(found) if above or path]
 
     def path_glob(self, folder: str, pattern: str) -> list[str]:
-        """The paths below a folder that pathlib's glob finds there, as Python 3.12 does. Raises BeyondError."""
+        """Return the paths below a folder that pathlib's glob finds in Python 3.12. Raises SearchError."""
         parts = [part for part in pattern.split("/") if part not in ("", ".")]
         odd = any("**" in part and part != "**" for part in parts) or ".." in parts or pattern.startswith("/")
         if odd or not parts or pattern.endswith(("/", "/.")) or len(parts) > _MAX_PARTS or len(pattern) > _MAX_PATTERN:
-            raise BeyondError("a pattern of this kind is not followed")
+            raise SearchError("a pattern of this kind is not supported")
         start = self.real(folder)
         found = [""] if start in self.folders else []
         for index, part in enumerate(parts):
@@ -99,37 +99,37 @@ class Listing:
         return found
 
     def below(self, folder: str) -> list[str]:
-        """The folders below a folder, relative to it."""
+        """Return the folders below a folder, relative to it."""
         found: list[str] = []
-        waiting = [folder]
+        pending = [folder]
         start = len(folder) + 1 if folder else 0
-        while waiting:
-            here = waiting.pop()
+        while pending:
+            here = pending.pop()
             inner = [path for name in self.names(here) if (path := _join(here, name)) in self.folders]
-            waiting += inner
+            pending += inner
             found += [path[start:] for path in inner]
         return found
 
     def _path_step(self, real: str, path: str, part: str, *, last: bool) -> list[str]:
-        """What one part of a pattern of pathlib's finds in a folder."""
+        """Return what one part of a pathlib pattern matches in a folder."""
         if part == "**":
-            return [path, *(_join(path, each) for each in self.below(real))]
-        fits = _matcher(part) if _MAGIC.search(part) else part.__eq__
-        names = [name for name in self.names(real) if fits(name)]
+            return [path, *(_join(path, folder) for folder in self.below(real))]
+        matches = _matcher(part) if _MAGIC.search(part) else part.__eq__
+        names = [name for name in self.names(real) if matches(name)]
         return [_join(path, name) for name in names if last or _join(real, name) in self.folders]
 
 
-class _Search:
-    """One call of glob.glob, step by step as Python's own goes; paths are spelt from the start of the search."""
+class _GlobSearch:
+    """One call of glob.glob, with the algorithm of Python's own; paths are relative to the start of the search."""
 
-    def __init__(self, listing: Listing, start: str, *, recursive: bool, hidden: bool) -> None:
+    def __init__(self, listing: PackageListing, start: str, *, recursive: bool, hidden: bool) -> None:
         self.listing = listing
         self.start = start
         self.recursive = recursive
         self.hidden = hidden
 
     def find(self, pattern: str, *, folders_only: bool) -> list[str]:
-        """What a pattern, or the folders in front of its last part, finds."""
+        """Return the paths that match a pattern; only folders for the part before the last one."""
         folder, last = posixpath.split(pattern)
         if not _MAGIC.search(pattern):
             return [pattern] if self._real(pattern if last else folder, is_folder=not last) is not None else []
@@ -137,8 +137,8 @@ class _Search:
         if folder and folder != pattern and _MAGIC.search(folder):
             folders = self.find(folder, folders_only=True)
         found: list[str] = []
-        for each in dict.fromkeys(folders):
-            found += [posixpath.join(each, name) for name in self._in_folder(each, last, folders_only=folders_only)]
+        for path in dict.fromkeys(folders):
+            found += [posixpath.join(path, name) for name in self._in_folder(path, last, folders_only=folders_only)]
             _bounded(found)
         return found
 
@@ -151,21 +151,21 @@ class _Search:
                 yield part
         elif part == "**" and self.recursive:
             yield ""
-            yield from self._everything(real, folders_only=folders_only)
+            yield from self._descendants(real, folders_only=folders_only)
         else:
-            fits = _matcher(part)
-            yield from (name for name in self._seen(real, folders_only, part.startswith(".")) if fits(name))
+            matches = _matcher(part)
+            yield from (name for name in self._visible(real, folders_only, part.startswith(".")) if matches(name))
 
-    def _everything(self, folder: str, *, folders_only: bool) -> Iterator[str]:
-        waiting = [("", folder)]
-        while waiting:
-            path, real = waiting.pop()
-            for name in self._seen(real, folders_only, dotted=False):
+    def _descendants(self, folder: str, *, folders_only: bool) -> Iterator[str]:
+        pending = [("", folder)]
+        while pending:
+            path, real = pending.pop()
+            for name in self._visible(real, folders_only, dotted=False):
                 yield _join(path, name)
                 if _join(real, name) in self.listing.folders:
-                    waiting.append((_join(path, name), _join(real, name)))
+                    pending.append((_join(path, name), _join(real, name)))
 
-    def _seen(self, folder: str, folders_only: bool, dotted: bool) -> list[str]:
+    def _visible(self, folder: str, folders_only: bool, dotted: bool) -> list[str]:
         names = [name for name in self.listing.names(folder) if dotted or self.hidden or name[0] != "."]
         return [name for name in names if _join(folder, name) in self.listing.folders] if folders_only else names
 
@@ -183,12 +183,12 @@ def _join(folder: str, name: str) -> str:
 
 def _bounded(found: list[str]) -> list[str]:
     if len(found) > _MAX_FOUND:
-        raise BeyondError("it finds too many files to follow")
+        raise SearchError("it finds too many files")
     return found
 
 
 @lru_cache(maxsize=256)
 def _matcher(part: str) -> Callable[[str], object]:
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of a set in brackets that looks as if it held another one
+        warnings.simplefilter("ignore")  # of nested sets in brackets
         return re.compile(translate(part)).match

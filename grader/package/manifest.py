@@ -1,5 +1,6 @@
-"""package.xml: what a package says of itself (REP 127, 140 and 149)."""
+"""package.xml: name, build type and problems of a package (REP 127, 140 and 149)."""
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from grader.package import catalogue
@@ -7,13 +8,13 @@ from grader.problems import Problem
 from grader.source import Location, Source
 from grader.xml.parsing import Element, XMLSyntaxError, parse_xml
 
-_NEEDED = ("name", "version", "description", "maintainer", "license")
+_REQUIRED = ("name", "version", "description", "maintainer", "license")
 _FORMATS = ("2", "3")
 
 
 @dataclass(frozen=True, slots=True)
 class Manifest:
-    """What a package.xml says. `name` is None where it cannot be read; `build_type` is what colcon takes where none is given."""
+    """The content of a package.xml. `name` is None where it cannot be read; `build_type` is colcon's default if none is given."""
 
     source: Source
     name: str | None
@@ -21,63 +22,65 @@ class Manifest:
     problems: tuple[Problem, ...]
     name_location: Location
     type_location: Location
-    unread: str = ""  # why the file could not be read at all: too large, damaged
+    unread: str = ""  # why the file was not read at all: too large, damaged
 
 
 def read_manifest(data: bytes, path: str) -> Manifest:
-    """Read a package.xml; never raises: what is wrong with it is among its problems."""
+    """Read a package.xml. Never raises: errors are among the problems."""
     source = Source(path, data.decode("utf-8", "replace"))
     start = Location(path, 1, 1)
     try:
         root = parse_xml(data)
     except (XMLSyntaxError, ValueError) as error:
         line, column = getattr(error, "position", (1, 1))
-        words = " ".join(str(getattr(error, "msg", error)).split(", line ")[0].split())
-        problem = Problem(catalogue.BAD_MANIFEST, f"package.xml is not readable as XML: {words}",
-                          Location(path, max(line, 1), max(column, 1)))  # fmt: skip
-        return Manifest(source, None, "", (problem,), start, start)
-    if root.tag != "package":
-        problem = Problem(catalogue.BAD_MANIFEST, f"the root of package.xml is <{root.tag}>, not <package>", start)
-        return Manifest(source, None, "", (problem,), start, start)
-    return _manifest(root, source)
+        reason = " ".join(str(getattr(error, "msg", error)).split(", line ")[0].split())
+        message, location = (
+            f"package.xml is not readable as XML: {reason}",
+            Location(path, max(line, 1), max(column, 1)),
+        )
+    else:
+        if root.tag == "package":
+            return _manifest(root, source)
+        message, location = f"the root of package.xml is <{root.tag}>, not <package>", start
+    return Manifest(source, None, "", (Problem(catalogue.BAD_MANIFEST, message, location),), start, start)
 
 
 def _manifest(root: Element, source: Source) -> Manifest:
-    places = {element: index for index, element in enumerate(root.iter("*"))}
-    problems: list[Problem] = []
+    indices = {element: index for index, element in enumerate(root.iter("*"))}
 
-    def where(element: Element) -> Location:
+    def locate(element: Element) -> Location:
         try:
-            return source.tag(places[element])
-        except IndexError:  # the text is in some encoding in which its tags are not seen
+            return source.tag(indices[element])
+        except IndexError:  # the text is in an encoding in which its tags are not found
             return Location(source.path, 1, 1)
 
-    for tag in _NEEDED:
-        found = root.findall(tag)
-        if not found or not any((each.text or "").strip() for each in found):
-            message = f"package.xml has no <{tag}>" if not found else f"<{tag}> of package.xml is empty"
-            problems.append(Problem(catalogue.INCOMPLETE_MANIFEST, message, where(found[0]) if found else where(root)))
-        for element in found:
-            if tag == "maintainer" and not (element.get("email") or "").strip():
-                message = "<maintainer> of package.xml has no email"
-                problems.append(Problem(catalogue.INCOMPLETE_MANIFEST, message, where(element)))
-            text = f"{element.text or ''} {element.get('email', '')}".lower()
-            if tag in ("license", "maintainer", "description") and ("todo" in text):
-                problems.append(
-                    Problem(catalogue.STILL_TO_DO, f"<{tag}> of package.xml is still to do", where(element))
-                )
-    version = root.get("format", "1")
-    if version not in _FORMATS:
-        message = f"package.xml is of format {version[:20]}; ROS 2 packages are written in format 3"
-        problems.append(Problem(catalogue.OLD_FORMAT, message, where(root)))
     name = root.find("name")
-    kinds = [each for each in root.findall("export/build_type") if not each.get("condition")]
-    kind = kinds[0] if kinds else None
+    kind = next((element for element in root.findall("export/build_type") if not element.get("condition")), None)
     return Manifest(
         source,
         (name.text or "").strip() or None if name is not None else None,
         (kind.text or "").strip() if kind is not None else "catkin",
-        tuple(problems),
-        where(name) if name is not None else where(root),
-        where(kind) if kind is not None else where(root),
+        tuple(_problems(root, locate)),
+        locate(name if name is not None else root),
+        locate(kind if kind is not None else root),
     )
+
+
+def _problems(root: Element, locate: Callable[[Element], Location]) -> Iterator[Problem]:
+    for tag in _REQUIRED:
+        found = root.findall(tag)
+        if not any((element.text or "").strip() for element in found):
+            message = f"<{tag}> of package.xml is empty" if found else f"package.xml has no <{tag}>"
+            yield Problem(catalogue.INCOMPLETE_MANIFEST, message, locate(found[0] if found else root))
+        for element in found:
+            email = element.get("email") or ""
+            if tag == "maintainer" and not email.strip():
+                message = "<maintainer> of package.xml has no email"
+                yield Problem(catalogue.INCOMPLETE_MANIFEST, message, locate(element))
+            is_text = tag in ("license", "maintainer", "description")
+            if is_text and "todo" in f"{element.text or ''} {email}".lower():
+                yield Problem(catalogue.STILL_TO_DO, f"<{tag}> of package.xml is still TODO", locate(element))
+    version = root.get("format", "1")
+    if version not in _FORMATS:
+        message = f"package.xml has format {version[:20]}; ROS 2 packages use format 3"
+        yield Problem(catalogue.OLD_FORMAT, message, locate(root))

@@ -1,4 +1,4 @@
-"""RViz configuration files: the fixed frame and the displays that are on, as RViz of ROS 2 reads them."""
+"""RViz configuration files: the fixed frame and the enabled displays, as RViz of ROS 2 reads them."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -8,13 +8,14 @@ from grader.package.yaml_nodes import Node, YamlFault, read_yaml
 from grader.problems import Problem
 from grader.source import Location, Source
 
-_MOST_DISPLAYS = 500
+_MAX_DISPLAYS = 500
 _PLUGINS = "rviz_default_plugins"
+_NOT_RVIZ = "there is no 'Visualization Manager': this is not an RViz file"
 
 
 @dataclass(frozen=True, slots=True)
 class Display:
-    """One display; `kind` is its class without the package: RobotModel. `node` holds its settings."""
+    """One display; `kind` is its class without the package: RobotModel. `node` has its settings."""
 
     package: str
     kind: str
@@ -23,24 +24,23 @@ class Display:
     node: Node
 
     def is_on(self, setting: str) -> bool:
-        """Whether one of its own settings is on; what is not there is."""
+        """Return whether one of its own settings is on; a missing one is."""
         return switched_on(self.node.get(setting), default=True)
 
     @property
     def is_enabled(self) -> bool:
-        """Whether it is on by itself, whatever group it is in; Enabled counts more than Value."""
+        """Whether it is enabled itself, whatever its group is; Enabled overrides Value."""
         return _is_enabled(self.node)
 
     @property
     def location(self) -> Location:
-        """Where it is said which class the display has."""
-        named = self.node.get("Class")
-        return named.location if named is not None else self.node.location
+        """The location of its class."""
+        return (self.node.get("Class") or self.node).location
 
 
 @dataclass(frozen=True, slots=True)
 class RvizFile:
-    """What an RViz file sets up. `fault` is set where it cannot be read: nothing else is known then."""
+    """The content of an RViz file. `fault` is set where it cannot be read: nothing else is known then."""
 
     path: str
     source: Source
@@ -48,11 +48,11 @@ class RvizFile:
     fixed_frame: str | None
     frame_location: Location
     displays: tuple[Display, ...]
-    unread: str = ""  # why the file could not be read at all: too large, damaged
+    unread: str = ""  # why the file was not read at all: too large, damaged
 
     @property
     def problems(self) -> tuple[Problem, ...]:
-        """What is worth saying of the file, whatever it is graded on."""
+        """The problems of the file, whatever it is graded on."""
         if self.fault is not None:
             return (self.fault,)
         if self.unread:
@@ -67,22 +67,21 @@ class RvizFile:
             if display.package == "rviz"
         ]
         if not any(display.kind == "TF" and display.enabled for display in self.displays):
-            found.append(Problem(catalogue.NO_TF, "no TF display is on in this file", Location(self.path, 1, 1)))
+            found.append(Problem(catalogue.NO_TF, "the file has no enabled TF display", Location(self.path, 1, 1)))
         return tuple(found)
 
 
 def read_rviz(data: bytes, path: str) -> RvizFile:
-    """Read an RViz file; never raises."""
+    """Read an RViz file. Never raises."""
     source = Source(path, data.decode("utf-8", "replace"))
     start = Location(path, 1, 1)
     try:
-        root = read_yaml(data, path)
+        manager = read_yaml(data, path).get("Visualization Manager")
+        problem = Problem(catalogue.BAD_RVIZ, _NOT_RVIZ, start)
     except YamlFault as fault:
+        manager = None
         problem = Problem(catalogue.BAD_RVIZ, f"not readable as YAML: {fault}", fault.location)
-        return RvizFile(path, source, problem, None, start, ())
-    manager = root.get("Visualization Manager")
     if manager is None:
-        problem = Problem(catalogue.BAD_RVIZ, "there is no 'Visualization Manager' in it: this is no RViz file", start)
         return RvizFile(path, source, problem, None, start, ())
     frame = manager.get("Global Options", "Fixed Frame")
     displays = tuple(_displays(manager.get("Displays")))
@@ -92,7 +91,7 @@ def read_rviz(data: bytes, path: str) -> RvizFile:
 
 
 def switched_on(node: Node | None, *, default: bool) -> bool:
-    """A setting as RViz reads it: everything is on but false, 0 and nothing (QVariant::toBool)."""
+    """Return a setting as RViz reads it: everything but false, 0 and the empty text is on (QVariant::toBool)."""
     if node is None or node.text is None:
         return default
     return node.text.lower() not in ("false", "0", "")
@@ -103,16 +102,16 @@ def _is_enabled(display: Node) -> bool:
 
 
 def _displays(listed: Node | None) -> Iterator[Display]:
-    """The displays of a list and of the groups in it; what is in a group that is off is off."""
-    waiting = [(node, True) for node in listed.items] if listed is not None else []
-    for _ in range(_MOST_DISPLAYS):
-        if not waiting:
+    """Yield the displays of a list and of its groups; in a disabled group they are disabled."""
+    pending = [(node, True) for node in listed.items] if listed is not None else []
+    for _ in range(_MAX_DISPLAYS):
+        if not pending:
             return
-        node, shown = waiting.pop(0)
+        node, group_enabled = pending.pop(0)
         named, title = node.get("Class"), node.get("Name")
         package, _, kind = (named.text or "" if named else "").rpartition("/")
-        enabled = shown and _is_enabled(node)
+        enabled = group_enabled and _is_enabled(node)
         yield Display(package, kind, title.text or "" if title else "", enabled, node)
         inner = node.get("Displays")
-        if inner is not None and len(waiting) < _MOST_DISPLAYS:
-            waiting += [(each, enabled) for each in inner.items]
+        if inner is not None and len(pending) < _MAX_DISPLAYS:
+            pending += [(display, enabled) for display in inner.items]

@@ -1,4 +1,4 @@
-"""What a build would install by a package's setup.py: the file is evaluated, never run."""
+"""The files that a build installs by a package's setup.py, which is evaluated, never run."""
 
 import ast
 from collections.abc import Iterable
@@ -7,13 +7,14 @@ from dataclasses import dataclass, replace
 from grader.files.tree import Tree
 from grader.package.data_files import DataFiles, InstalledFile, InstallError
 from grader.package.file_functions import WRITING, EmptyGlob, FoundPaths, file_functions
-from grader.package.globbing import ORDERS, Listing
+from grader.package.globbing import ORDERS, PackageListing
 from grader.source import Location, Source
 from grader.static_python.control_flow import EvaluationStopped, PythonError
 from grader.static_python.functions import standard_functions
+from grader.static_python.inspection import PACKAGE_FOLDER
 from grader.static_python.interpreter import Interpreter
 from grader.static_python.parse import Code, SyntaxFault
-from grader.static_python.values import PACKAGE_FOLDER, START, Position, Unknown, position_of
+from grader.static_python.values import START, Position, Unknown, position_of
 
 _ROOT = f"/{PACKAGE_FOLDER}"
 _SETUPS = ("setuptools.setup", "distutils.core.setup", "?.setup")
@@ -27,7 +28,7 @@ _CHANGES = (
 
 @dataclass(frozen=True, slots=True)
 class Setup:
-    """What is known of a setup.py. `fault` is set where Python cannot read it: nothing else is known then.
+    """The result of a setup.py. `fault` is set where Python cannot read it: nothing else is known then.
 
     `unknown` has what cannot be determined: a file that is not among `copies` may be installed all the same.
     """
@@ -83,7 +84,7 @@ def _outcome(setup: Setup) -> tuple[set[InstalledFile], set[InstallError], set[P
 
 def _evaluate(code: Code, tree: Tree, order: str) -> tuple[Setup, bool]:
     """Evaluate a file with folders listed in some order; return the result and whether it may depend on that order."""
-    listing = Listing(tree, order)
+    listing = PackageListing(tree, order)
     functions = {**standard_functions(_ROOT), **file_functions(listing, _ROOT)}
     interpreter = Interpreter(functions, {"__file__": f"{_ROOT}/setup.py"})
     interpreter.run(code)

@@ -1,4 +1,4 @@
-"""YAML with the place of every value: read event by event, so that neither depth nor aliases can blow it up."""
+"""YAML with the location of every value, read event by event: neither depth nor aliases use unlimited time or memory."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -7,13 +7,13 @@ import yaml
 
 from grader.source import Location
 
-_MOST_EVENTS = 100_000
-_MOST_ALIASES = 1000
-_MOST_DEPTH = 200  # the parser takes its time over each bracket that is open
+_MAX_EVENTS = 100_000
+_MAX_ALIASES = 1000
+_MAX_DEPTH = 200  # the parser gets slower with each open bracket
 
 
 class YamlFault(Exception):
-    """A text that is not YAML: what is wrong, and where."""
+    """A text that is not YAML, with the location of the error."""
 
     def __init__(self, message: str, location: Location) -> None:
         super().__init__(message)
@@ -22,9 +22,9 @@ class YamlFault(Exception):
 
 @dataclass(eq=False, slots=True)
 class Node:
-    """A value and its place: a text as it is written, a list, or a mapping; an alias is the very node that it names.
+    """A value with its location: a text, a list or a mapping. An alias is the same object as its anchor.
 
-    `quoted` tells a text in quotes from a plain one such as true or 1.
+    `quoted` is True for a text in quotes, which is a string even if it is true or 1.
     """
 
     location: Location
@@ -33,7 +33,7 @@ class Node:
     _key: "str | None" = field(default=None, repr=False)
 
     def get(self, *keys: str) -> "Node | None":
-        """What is found below a mapping by these keys, one inside the other."""
+        """Return the node at a path of keys, None where there is none."""
         node: Node | None = self
         for key in keys:
             node = node.value.get(key) if node is not None and isinstance(node.value, dict) else None
@@ -41,17 +41,17 @@ class Node:
 
     @property
     def text(self) -> str | None:
-        """A single value's text; None of lists and mappings."""
+        """The text of a scalar; None for lists and mappings."""
         return self.value if isinstance(self.value, str) else None
 
     @property
     def items(self) -> "list[Node]":
-        """The entries of a list; none of other values."""
+        """The entries of a list; no entries for other values."""
         return self.value if isinstance(self.value, list) else []
 
 
 def read_yaml(data: bytes, path: str) -> Node:
-    """The first document of a YAML text; raises YamlFault. An empty text is an empty mapping."""
+    """Return the first document of a YAML text; an empty text is an empty mapping. Raises YamlFault."""
     is_wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
     text = data.decode("utf-16" if is_wide else "utf-8", "replace")
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
@@ -59,14 +59,14 @@ def read_yaml(data: bytes, path: str) -> Node:
         return _compose(yaml.parse(text, Loader=loader), path)
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
-        last = text.count("\n") + 1  # at the end of a text without a line end, the parser is one line further
+        last = text.count("\n") + 1  # at the end of a text without a newline, the parser reports one line more
         place = Location(path, min(mark.line + 1, last), mark.column + 1) if mark else Location(path, 1, 1)
-        words = " ".join(each for each in (error.context, error.problem) if each)
-        raise YamlFault(words or "it is no YAML", place) from None
+        message = " ".join(filter(None, (error.context, error.problem)))
+        raise YamlFault(message or "this is not YAML", place) from None
     except yaml.YAMLError as error:  # such as characters that YAML forbids
         raise YamlFault(" ".join(str(error).split())[:200], Location(path, 1, 1)) from None
     except RecursionError:
-        raise YamlFault("it is too deeply nested", Location(path, 1, 1)) from None
+        raise YamlFault("the file is too deeply nested", Location(path, 1, 1)) from None
 
 
 def _compose(events: Iterator[yaml.Event], path: str) -> Node:
@@ -76,8 +76,8 @@ def _compose(events: Iterator[yaml.Event], path: str) -> Node:
     aliases = 0
     first = True
     for count, event in enumerate(events):
-        if count > _MOST_EVENTS:
-            raise YamlFault("it holds far more than any such file", root.location)
+        if count > _MAX_EVENTS:
+            raise YamlFault(f"the file has more than {_MAX_EVENTS} values", root.location)
         if isinstance(event, yaml.CollectionEndEvent):
             open_nodes.pop()
         elif isinstance(event, yaml.DocumentEndEvent):
@@ -87,8 +87,12 @@ def _compose(events: Iterator[yaml.Event], path: str) -> Node:
         if isinstance(event, yaml.AliasEvent):
             aliases += 1
             found = anchors.get(event.anchor or "")
-            if found is None or aliases > _MOST_ALIASES:
-                reason = "more aliases than any such file has" if found else f"an alias of nothing: {event.anchor}"
+            if found is None or aliases > _MAX_ALIASES:
+                reason = (
+                    f"the file has more than {_MAX_ALIASES} aliases"
+                    if found
+                    else f"there is no anchor for the alias {event.anchor}"
+                )
                 raise YamlFault(reason, _location(event, path))
             node = found
         else:
@@ -101,8 +105,8 @@ def _compose(events: Iterator[yaml.Event], path: str) -> Node:
             root, first = node, False
         if isinstance(event, yaml.CollectionStartEvent):
             open_nodes.append(node)
-            if len(open_nodes) > _MOST_DEPTH:
-                raise YamlFault("it is too deeply nested", node.location)
+            if len(open_nodes) > _MAX_DEPTH:
+                raise YamlFault("the file is too deeply nested", node.location)
     return root
 
 
@@ -119,7 +123,7 @@ def _attach(parent: Node, node: Node) -> None:
     elif isinstance(parent.value, dict) and parent._key is None:  # noqa: SLF001  a node is built here
         parent._key = node.text if node.text is not None else f"\0{len(parent.value)}"  # noqa: SLF001
     elif isinstance(parent.value, dict):
-        parent.value[parent._key or ""] = node  # noqa: SLF001  the last one counts, for PyYAML as for RViz
+        parent.value[parent._key or ""] = node  # noqa: SLF001  the last key counts, in PyYAML as in RViz
         parent._key = None  # noqa: SLF001
 
 

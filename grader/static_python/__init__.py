@@ -1,1 +1,1 @@
-"""Python files of a submission, followed by reading: nothing of them is ever run or imported."""
+"""Static evaluation of Python files and expressions of a submission: nothing of them is run or imported."""

@@ -5,7 +5,7 @@ from pathlib import PurePosixPath
 from grader.static_python.evaluation import Evaluation
 from grader.static_python.imports import attribute_error
 from grader.static_python.methods import call_method, path_attribute
-from grader.static_python.operators import TYPE_NAMES
+from grader.static_python.operators import type_name
 from grader.static_python.values import BoundMethod, Call, Function, Position, QualifiedName, Unknown, Value
 
 _EXITS = ("sys.exit", "os._exit", "builtins.exit", "builtins.quit")
@@ -64,9 +64,10 @@ def call_value(evaluation: Evaluation, function: Value, call: Call) -> Value:
         case BoundMethod(owner=owner, name=name):
             return call_method(evaluation, owner, name, call)
         case _:
-            type_name = TYPE_NAMES.get(type(function), "a path" if isinstance(function, PurePosixPath) else "")
-            if type_name:
-                evaluation.error(f"{type_name} cannot be called: is there a comma missing before it?", call.at)
+            if type_name(function):
+                evaluation.error(
+                    f"{type_name(function)} cannot be called: is there a comma missing before it?", call.at
+                )
             return Unknown("this call is not supported", call.at)
     evaluate = evaluation.functions.get(call.name)
     if evaluate is not None:

@@ -12,8 +12,8 @@ from typing import Any
 
 from grader.static_python.control_flow import EvaluationStopped, ExitFlow, LoopFlow, PythonError, RaisedFlow
 from grader.static_python.imports import USUAL_NAMES
+from grader.static_python.inspection import MAX_ITEMS
 from grader.static_python.values import (
-    MAX_ITEMS,
     UNKNOWN_KEYS,
     Call,
     Function,

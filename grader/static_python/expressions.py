@@ -3,10 +3,10 @@
 import ast
 from collections.abc import Callable, Iterator
 
+from grader.static_python.inspection import MAX_ITEMS, distinct, items_of, truth
 from grader.static_python.operators import store
 from grader.static_python.simple_expressions import SimpleEvaluator
 from grader.static_python.values import (
-    MAX_ITEMS,
     BoundMethod,
     Function,
     Position,
@@ -14,10 +14,7 @@ from grader.static_python.values import (
     Scope,
     Unknown,
     Value,
-    distinct,
-    items_of,
     position_of,
-    truth,
 )
 
 Comprehension = ast.ListComp | ast.GeneratorExp | ast.SetComp | ast.DictComp

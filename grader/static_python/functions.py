@@ -8,20 +8,18 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from grader.static_python.evaluation import Evaluation, FunctionTable
-from grader.static_python.methods import in_order
-from grader.static_python.operators import extend
-from grader.static_python.values import (
+from grader.static_python.inspection import (
     MAX_ITEMS,
-    Call,
-    Unknown,
-    Value,
     as_text,
     distinct,
     items_of,
     names_package_folder,
+    path_text,
     truth,
-    unknown_in,
 )
+from grader.static_python.methods import in_order
+from grader.static_python.operators import extend
+from grader.static_python.values import Call, Unknown, Value, unknown_in
 
 _MAX_PATH = 4_096
 _MAX_NUMBER = 10**9
@@ -38,19 +36,13 @@ def standard_functions(working_folder: str) -> FunctionTable:
         return posixpath.relpath(absolute(path), absolute(start))
 
     of_path: dict[str, Callable[..., Value]] = {name: getattr(posixpath, name) for name in _PATH_FUNCTIONS}
-    of_path["relpath"] = relative
+    of_path |= {"abspath": absolute, "realpath": absolute, "relpath": relative}
     return {
         **_FUNCTIONS,
         **{f"os.path.{name}": partial(_of_path, function) for name, function in of_path.items()},
-        **dict.fromkeys(("os.path.abspath", "os.path.realpath"), partial(_absolute, absolute)),
         "os.getcwd": lambda *_: working_folder,
         "pathlib.Path.cwd": lambda *_: PurePosixPath(working_folder),
     }
-
-
-def path_text(value: Value) -> str | None:
-    """Return the text of a path or string; None for other values."""
-    return str(value) if isinstance(value, str | PurePosixPath) else None
 
 
 def _of_path(function: Callable[..., Value], _: Evaluation, call: Call) -> Value:
@@ -65,11 +57,6 @@ def _of_path(function: Callable[..., Value], _: Evaluation, call: Call) -> Value
     if any(names_package_folder(part) for part in (found if isinstance(found, tuple) else [str(found)])):
         return Unknown("the name of the package's folder is not known", call.at)
     return found
-
-
-def _absolute(function: Callable[[str], str], _: Evaluation, call: Call) -> Value:
-    path = path_text(call.args[0]) if call.args else None
-    return function(path) if path is not None else call.unknown("the path is known only at run time")
 
 
 def _join(evaluation: Evaluation, call: Call) -> Value:

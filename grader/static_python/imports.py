@@ -8,33 +8,6 @@ from importlib import import_module
 from grader.names import closest, did_you_mean
 from grader.static_python.values import QualifiedName
 
-# The usual meaning of a name that is used without its import.
-USUAL_NAMES = {
-    "os": "os",
-    "glob": "?glob",  # the module or its function; its use decides
-    "path": "os.path",
-    "join": "os.path.join",
-    "Path": "pathlib.Path",
-    "pathlib": "pathlib",
-    "setup": "setuptools.setup",
-    "setuptools": "setuptools",
-    "find_packages": "setuptools.find_packages",
-    "xacro": "xacro",
-    "LaunchDescription": "launch.LaunchDescription",
-    "Node": "launch_ros.actions.Node",
-    "Command": "launch.substitutions.Command",
-    "LaunchConfiguration": "launch.substitutions.LaunchConfiguration",
-    "PathJoinSubstitution": "launch.substitutions.PathJoinSubstitution",
-    "FindPackageShare": "launch_ros.substitutions.FindPackageShare",
-    "ParameterValue": "launch_ros.parameter_descriptions.ParameterValue",
-    "DeclareLaunchArgument": "launch.actions.DeclareLaunchArgument",
-    "IncludeLaunchDescription": "launch.actions.IncludeLaunchDescription",
-    "PythonLaunchDescriptionSource": "launch.launch_description_sources.PythonLaunchDescriptionSource",
-    "IfCondition": "launch.conditions.IfCondition",
-    "UnlessCondition": "launch.conditions.UnlessCondition",
-    "get_package_share_directory": "ament_index_python.packages.get_package_share_directory",
-    "get_package_share_path": "ament_index_python.packages.get_package_share_path",
-}
 _SETUPTOOLS_PUBLIC = ("setup", "find_packages", "find_namespace_packages", "Command", "Distribution", "Extension")
 _SETUPTOOLS = frozenset(
     {"setup", "find_packages", "find_namespace_packages", "Command", "Distribution", "Extension", "Require", "depends",
@@ -74,6 +47,20 @@ _LAUNCH_NAMES: dict[str, tuple[str, ...]] = {
     "ament_index_python": ("get_package_share_directory", "get_package_share_path", "get_package_prefix"),
     "ament_index_python.packages": ("get_package_share_directory", "get_package_share_path", "get_package_prefix"),
 }  # fmt: skip
+# The usual meaning of a name that is used without its import.
+USUAL_NAMES = {
+    "os": "os",
+    "glob": "?glob",  # the module or its function; its use decides
+    "path": "os.path",
+    "join": "os.path.join",
+    "Path": "pathlib.Path",
+    "pathlib": "pathlib",
+    "setuptools": "setuptools",
+    "setup": "setuptools.setup",
+    "find_packages": "setuptools.find_packages",
+    "xacro": "xacro",
+    **{name: f"{module}.{name}" for module, names in _LAUNCH_NAMES.items() for name in names},
+}
 
 
 def import_error(module: str, name: str) -> str | None:

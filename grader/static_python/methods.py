@@ -1,26 +1,14 @@
 """Attributes and methods of plain values: strings, lists, dicts and paths. Most are Python's own, run on bounded values."""
 
 import re
+from contextlib import suppress
 from pathlib import PurePosixPath
 from typing import Any
 
 from grader.static_python.evaluation import Evaluation
-from grader.static_python.operators import extend, forget, join_path
-from grader.static_python.values import (
-    MAX_ITEMS,
-    MAX_TEXT,
-    PACKAGE_FOLDER,
-    UNKNOWN_KEYS,
-    BoundMethod,
-    Call,
-    Position,
-    Unknown,
-    Value,
-    WalkFolders,
-    as_text,
-    names_package_folder,
-    unknown_in,
-)
+from grader.static_python.inspection import MAX_ITEMS, MAX_TEXT, PACKAGE_FOLDER, as_text, names_package_folder
+from grader.static_python.operators import WalkFolders, extend, forget, join_path
+from grader.static_python.values import UNKNOWN_KEYS, BoundMethod, Call, Position, Unknown, Value, unknown_in
 
 _MAX_PARTS = 100  # of a path
 _MAX_NAME = 255  # characters of a file name
@@ -29,6 +17,7 @@ _TEXT_METHODS = frozenset(
     {"strip", "lstrip", "rstrip", "lower", "upper", "title", "capitalize", "removeprefix", "removesuffix", "startswith",
      "endswith", "split", "rsplit", "splitlines", "partition", "rpartition", "count", "find", "isdigit"}
 )  # fmt: skip
+_LIST_METHODS = ("reverse", "clear", "count", "index", "remove", "pop")
 _PATH_ATTRIBUTES = ("name", "stem", "suffix", "parent", "parents", "parts")
 
 
@@ -122,63 +111,45 @@ def _list(evaluation: Evaluation, items: list[Value], name: str, call: Call) -> 
     if isinstance(items, WalkFolders) and name not in ("copy", "index", "count"):
         forget(items, unknown)
     match name, call.args:
-        case "append", [value]:
-            if len(items) < MAX_ITEMS:
-                items.append(evaluation.uncertainty or value)
-        case "extend", [value]:
-            extend(evaluation, items, value, call.at)
+        case "append", [value] if len(items) < MAX_ITEMS:
+            return items.append(evaluation.uncertainty or value)
         case "insert", [int() as index, value] if len(items) < MAX_ITEMS:
-            items.insert(max(-MAX_ITEMS, min(index, MAX_ITEMS)), evaluation.uncertainty or value)
+            return items.insert(max(-MAX_ITEMS, min(index, MAX_ITEMS)), evaluation.uncertainty or value)
+        case "extend", [value]:
+            return extend(evaluation, items, value, call.at)
         case "copy", []:
             return list(items)
         case "sort", [] if is_known:
             items[:] = in_order(evaluation, items, call)
-        case (("reverse" | "clear"), []) if is_known:
-            getattr(items, name)()
-        case "count", [str() as value] if is_known:
-            return items.count(value)
-        case "index", [str() as value] if is_known and value in items:
-            return items.index(value)
-        case "remove", [str() | PurePosixPath() as value] if is_known and value in items:
-            items.remove(value)
-        case "pop", ([] | [int()]) if is_known and -len(items) <= (call.args[0] if call.args else -1) < len(items):
-            return items.pop(*call.args)
-        case (("index" | "count"), _):
-            return unknown
-        case _:
-            forget(items, unknown)
-            return unknown
-    return None
+            return None
+    if is_known and name in _LIST_METHODS and all(isinstance(value, str | int | PurePosixPath) for value in call.args):
+        with suppress(TypeError, ValueError, IndexError, OverflowError):
+            return getattr(items, name)(*call.args)
+    if name not in ("index", "count"):
+        forget(items, unknown)
+    return unknown
 
 
 def _dict(evaluation: Evaluation, table: dict[Any, Value], name: str, call: Call) -> Value:
-    is_complete = UNKNOWN_KEYS not in table
-    is_known = evaluation.uncertainty is None and is_complete
-    unknown = Unknown(f"this use of the dict method {name} is not supported", call.at)
     evaluation.may_fail()
+    is_complete = UNKNOWN_KEYS not in table
+    if name in ("items", "keys", "values") and not call.args:
+        return list(getattr(table, name)())
     match name, call.args:
-        case (("items" | "keys" | "values"), []):
-            return list(getattr(table, name)())
-        case "copy", []:
-            return dict(table)
-        case "get", _ if not is_complete:
-            return unknown
-        case "get", [str() | int() as key, *default]:
-            return table.get(key, default[0] if default else None)
         case "setdefault", [str() | int() as key, value]:
             return table.setdefault(key, evaluation.uncertainty or value)
         case "update", ([] | [dict()]) if len(table) + sum(map(len, call.args)) < MAX_ITEMS:
             added = {**(call.args[0] if call.args else {}), **call.kwargs}
-            table.update({key: evaluation.uncertainty or value for key, value in added.items()})
-            return None
-        case "pop", [str() | int() as key, *default] if is_known and (key in table or default):
-            return table.pop(key, *default[:1])
-        case "clear", [] if is_known:
-            table.clear()
-            return None
-        case _:
-            forget(table, unknown)
-            return unknown
+            return table.update({key: evaluation.uncertainty or value for key, value in added.items()})
+        case ("copy", []) | ("get", [str() | int(), *_]) if is_complete or name == "copy":
+            return getattr(table, name)(*call.args[:2])
+        case ("clear", []) | ("pop", [str() | int(), *_]) if is_complete and evaluation.uncertainty is None:
+            with suppress(KeyError):
+                return getattr(table, name)(*call.args[:2])
+    unknown = Unknown(f"this use of the dict method {name} is not supported", call.at)
+    if name != "get":
+        forget(table, unknown)
+    return unknown
 
 
 def _path(evaluation: Evaluation, path: PurePosixPath, name: str, call: Call) -> Value:

@@ -8,25 +8,12 @@ from typing import Any
 
 from grader.static_python.control_flow import EvaluationStopped
 from grader.static_python.evaluation import Evaluation
-from grader.static_python.values import (
-    MAX_ITEMS,
-    MAX_TEXT,
-    UNKNOWN_KEYS,
-    Call,
-    Position,
-    QualifiedName,
-    Unknown,
-    Value,
-    WalkFolders,
-    as_text,
-    items_of,
-    names_package_folder,
-    size,
-)
+from grader.static_python.inspection import MAX_ITEMS, MAX_TEXT, as_text, items_of, names_package_folder, size
+from grader.static_python.values import UNKNOWN_KEYS, Call, Position, QualifiedName, Unknown, Value
 
-TYPE_NAMES: dict[type, str] = {
+_TYPE_NAMES: dict[type, str] = {
     str: "a string", list: "a list", tuple: "a tuple", dict: "a dict", type(None): "None", PurePosixPath: "a path",
-    int: "a number", float: "a number", bool: "a number",
+    int: "a number", float: "a number",
 }  # fmt: skip
 _MAX_PATH = 4_096
 _RUN_TIME = "its value is known only at run time"
@@ -43,6 +30,10 @@ _COMPARISONS: dict[type[ast.cmpop], Callable[[Any, Any], bool]] = {
     ast.In: lambda left, right: left in right, ast.NotIn: lambda left, right: left not in right,
     ast.Lt: operator.lt, ast.LtE: operator.le, ast.Gt: operator.gt, ast.GtE: operator.ge,
 }  # fmt: skip
+
+
+class WalkFolders(list[Value]):
+    """A list of folders from os.walk: a change of it changes where the walk continues."""
 
 
 def operate(evaluation: Evaluation, op: ast.operator, left: Value, right: Value, at: Position) -> Value:
@@ -71,7 +62,7 @@ def operate(evaluation: Evaluation, op: ast.operator, left: Value, right: Value,
             except OverflowError:
                 return Unknown("a number is too large", at)
     if isinstance(op, ast.Add) and isinstance(left, _NOT_ADDED) and isinstance(right, _NOT_ADDED):
-        evaluation.error(f"Python cannot add {TYPE_NAMES[type(right)]} to {TYPE_NAMES[type(left)]}", at)
+        evaluation.error(f"Python cannot add {type_name(right)} to {type_name(left)}", at)
     if function is not None and any(isinstance(value, Unknown) for value in (left, right)):
         try:
             return function(left, right)
@@ -80,6 +71,11 @@ def operate(evaluation: Evaluation, op: ast.operator, left: Value, right: Value,
     return next(
         (value for value in (left, right) if isinstance(value, Unknown)), Unknown("this operation is not supported", at)
     )
+
+
+def type_name(value: Value) -> str:
+    """Return the type of a plain value for a message: "a string"; an empty text for other values."""
+    return next((name for kind, name in _TYPE_NAMES.items() if isinstance(value, kind)), "")
 
 
 def compare(evaluation: Evaluation, op: ast.cmpop, left: Value, right: Value, at: Position) -> Value:
@@ -101,8 +97,6 @@ def compare(evaluation: Evaluation, op: ast.cmpop, left: Value, right: Value, at
 
 def subscript(evaluation: Evaluation, owner: Value, key: Value, at: Position) -> Value:
     """Return the value of owner[key]; the key may be a slice."""
-    if isinstance(owner, Unknown):
-        return owner
     if isinstance(key, slice):
         whole = isinstance(owner, str) or (isinstance(owner, list | tuple) and are_known(evaluation, owner))
         if whole and all(bound is None or type(bound) is int for bound in (key.start, key.stop, key.step)):

@@ -1,4 +1,4 @@
-"""Python text to a syntax tree, by Python's own parser, with a bound on what it is given."""
+"""Parses Python text with Python's own parser; whatever it refuses is data, not an exception."""
 
 import ast
 import sys
@@ -10,8 +10,8 @@ from io import BytesIO
 
 from grader.source import Location, Source
 
-_SLOW = ("idna", "punycode")  # encodings of names, whose time grows with the square of the length
-_JAZZY = (3, 12)  # the Python that ROS 2 Jazzy runs
+_SLOW_ENCODINGS = ("idna", "punycode")  # encodings of domain names; their time grows with the square of the length
+_JAZZY = (3, 12)  # the Python version of ROS 2 Jazzy
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +24,7 @@ class Code:
 
 @dataclass(frozen=True, slots=True)
 class SyntaxFault:
-    """A file that Python cannot read, in Python's own words; `sure` is False where a newer Python may well read it."""
+    """A file that Python cannot parse, with Python's message; `sure` is False where a newer Python may parse it."""
 
     source: Source
     message: str
@@ -36,9 +36,9 @@ def parse(data: bytes, path: str) -> Code | SyntaxFault:
     """Parse the bytes of a Python file. Never raises: what Python refuses, also for its depth, is a SyntaxFault."""
     try:
         encoding, _ = tokenize.detect_encoding(BytesIO(data).readline)
-        if lookup(encoding).name in _SLOW:
+        if lookup(encoding).name in _SLOW_ENCODINGS:
             place = Location(path, 1, 1)
-            return SyntaxFault(Source(path, ""), f"the encoding {encoding} is not followed", place, sure=False)
+            return SyntaxFault(Source(path, ""), f"the encoding {encoding} is not supported", place, sure=False)
         text = data.decode(encoding)
     except (SyntaxError, ValueError, LookupError) as error:
         source = Source(path, data.decode("utf-8", "replace"))
@@ -50,9 +50,11 @@ def parse(data: bytes, path: str) -> Code | SyntaxFault:
         return SyntaxFault(source, "source code cannot contain null bytes", Location(path, line, 1))
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # such as an invalid escape, which Python accepts
+            warnings.simplefilter("ignore")  # such as an invalid escape sequence, which Python accepts
             tree = _tree(text)
-            compile(tree, path, "exec", dont_inherit=True)  # only made, never run: it finds what the grammar allows
+            compile(
+                tree, path, "exec", dont_inherit=True
+            )  # never run: the compiler finds errors that the grammar allows
             return Code(source, tree)
     except SyntaxError as error:
         place = Location(path, max(error.lineno or 1, 1), max(error.offset or 1, 1))
@@ -63,7 +65,7 @@ def parse(data: bytes, path: str) -> Code | SyntaxFault:
 
 
 def _tree(text: str) -> ast.Module:
-    """The tree of a text. CPython 3.11 loses count where its garbage collector runs in the midst of making one: then once more."""
+    """Return the syntax tree of a text. CPython 3.11 miscounts its depth if its garbage collector runs meanwhile: then try again."""
     try:
         return ast.parse(text)
     except SystemError:  # AST constructor recursion depth mismatch

@@ -6,9 +6,9 @@ from typing import Any
 
 from grader.static_python.calls import attribute, call_value
 from grader.static_python.evaluation import Evaluation
+from grader.static_python.inspection import MAX_TEXT, as_text, distinct, size, truth
 from grader.static_python.operators import compare, extend, operate, subscript
 from grader.static_python.values import (
-    MAX_TEXT,
     UNKNOWN_KEYS,
     Call,
     Function,
@@ -16,11 +16,7 @@ from grader.static_python.values import (
     Scope,
     Unknown,
     Value,
-    as_text,
-    distinct,
     position_of,
-    size,
-    truth,
     unknown_in,
 )
 

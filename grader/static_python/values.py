@@ -3,15 +3,13 @@
 import ast
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from pathlib import PurePosixPath
 from typing import Any, NamedTuple
 
-MAX_ITEMS = 20_000  # of a list or dict
-MAX_TEXT = 100_000  # characters
 UNKNOWN_KEYS = (
     "**"  # the key of an entry that stands for keys that are not known, in a dict and among keyword arguments
 )
-PACKAGE_FOLDER = "<package>"  # stands for the name of the package's folder, which the submission does not determine
+
+_MAX_SEARCHED = 20_000  # parts of a value
 
 # A plain value is a str, number, bool, None, list, tuple, dict or PurePosixPath; a set is a list without duplicates.
 Value = Any
@@ -140,10 +138,6 @@ class Scope:
         return scope
 
 
-class WalkFolders(list[Value]):
-    """A list of folders from os.walk: a change of it changes where the walk continues."""
-
-
 def unknown_in(value: Value) -> Unknown | None:
     """Return the first unknown value in a value, and an unknown value for one that is too large to search."""
     pending, seen, count = [value], set[int](), 0
@@ -154,58 +148,7 @@ def unknown_in(value: Value) -> Unknown | None:
         if isinstance(item, list | tuple | dict) and id(item) not in seen:
             seen.add(id(item))
             count += len(item)
-            if count > MAX_ITEMS:
+            if count > _MAX_SEARCHED:
                 return Unknown("a value is too large to evaluate", START)
             pending += reversed(item.values() if isinstance(item, dict) else item)
     return None
-
-
-def size(value: Value) -> int:
-    """Return about how many parts a value has: how many steps an operation with it costs."""
-    pending, count = [value], 0
-    while pending and count < MAX_ITEMS:
-        item = pending.pop()
-        if isinstance(item, list | tuple | dict):
-            count += len(item)
-            if len(item) < MAX_ITEMS:
-                pending += item.values() if isinstance(item, dict) else item
-        elif isinstance(item, str):
-            count += len(item) // 32
-    return count
-
-
-def items_of(value: Value) -> list[Value] | None:
-    """Return what a loop over a value yields; None where this is unknown."""
-    if isinstance(value, list | tuple | dict) or (isinstance(value, str) and len(value) < MAX_ITEMS):
-        return list(value)
-    return None
-
-
-def truth(value: Value) -> bool | None:
-    """Return whether a condition holds; None where this is known only at run time."""
-    match value:
-        case [*items] if items and all(isinstance(item, Unknown) for item in items):
-            return None
-        case {"**": _}:
-            return None
-        case None | str() | int() | float() | list() | tuple() | dict():
-            return bool(value)
-    return True if isinstance(value, PurePosixPath | Function) else None
-
-
-def as_text(value: Value) -> str | None:
-    """Return str() of a plain value; None of others."""
-    if isinstance(value, int) and value.bit_length() > 1000:
-        return None  # Python itself refuses to write the longest
-    return str(value) if isinstance(value, str | int | float | PurePosixPath | None) else None
-
-
-def distinct(values: list[Value]) -> list[Value]:
-    """Return the values of a set, without duplicates."""
-    plain = all(isinstance(value, str | int | float | PurePosixPath | None) for value in values)
-    return list(dict.fromkeys(values)) if plain else values
-
-
-def names_package_folder(path: str) -> bool:
-    """Return whether a text contains the stand-in for the name of the package's folder, other than as the root of a path."""
-    return PACKAGE_FOLDER in path.removeprefix(f"/{PACKAGE_FOLDER}")

@@ -16,7 +16,7 @@ from grader.submission.urdf import Absent, NeedsExpansion, OtherCandidate, Read,
 from grader.text import printable_path
 
 if TYPE_CHECKING:
-    from grader.documents.documents import Documents
+    from grader.documents.collection import DocumentCollection
     from grader.documents.evidence import Proof
 
 STANDARD_INPUT = "-"
@@ -45,11 +45,11 @@ class Submission:
     no_documents: str = ""
 
     @cached_property
-    def documents(self) -> "Documents":
+    def documents(self) -> "DocumentCollection":
         """The documents in it, each of which is read once."""
-        from grader.documents.documents import Documents  # a URDF on its own has none
+        from grader.documents.collection import DocumentCollection  # a URDF on its own has none
 
-        return Documents(self.tree)
+        return DocumentCollection(self.tree)
 
     @cached_property
     def proofs(self) -> "tuple[Proof, ...]":

@@ -79,7 +79,7 @@ def read_as_ros(data: bytes, path: str, package: Package | None) -> Read | Needs
     if not any(problem.kind is RAW_XACRO for problem in reading.problems):
         return Read(path, data, reading)
     name = path.rpartition("/")[2]
-    readers = package.readers(name) if package is not None else set()
+    readers = package.robot_readers(name) if package is not None else set()
     is_xacro = readers == {"xacro"} if readers else ".xacro" in name and not name.endswith(".urdf")
     if not is_xacro:
         return Read(path, data, reading)

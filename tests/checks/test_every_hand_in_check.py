@@ -61,7 +61,7 @@ def test_without_a_package_the_same_is_missed(case: HandInCase) -> None:
     """Every check of a package says that there is none, as a criterion and, where it can be asked, alone."""
     pictures = HandIn({"Task1_Step8.png": png()})
     outcome = graded(case.check, pictures, **case.arguments)
-    message = "no ROS 2 package was handed in: there is no package.xml"
+    message = "the submission has no ROS 2 package: there is no package.xml"
     assert (outcome.status, outcome.message) == ("failed", message)
     if describe(case.check).subject == "submission":
         error = missing(case.check, pictures, **case.arguments)

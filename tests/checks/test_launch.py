@@ -194,7 +194,7 @@ def test_the_file_of_the_name_is_meant() -> None:
 def test_without_launch_file_the_same_is_missed() -> None:
     """No launch file is one thing that is missed, whatever is asked of it."""
     gone, empty = REFERENCE.without("my_robot/launch"), REFERENCE.renaming(LAUNCH, "my_robot/launch/README.md")
-    message = "the package has no launch file: none ends in .launch.py, .launch.xml or .launch.yaml"
+    message = "the package has no launch file: no file ends in .launch.py, .launch.xml or .launch.yaml"
     for hand_in, words in ((gone, f"{message}, and there is no folder launch"), (empty, message)):
         expected = ("launch file in the package", "", words, None)
         assert lacks(launch_found, hand_in, name=NAME) == expected

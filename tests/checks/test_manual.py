@@ -11,7 +11,7 @@ import pytest
 
 from grader.checks.manual import answered, evidence_shown
 from grader.checks.outcome import Outcome
-from grader.documents.documents import MAX_LINES
+from grader.documents.collection import MAX_LINES
 from grader.source import Location
 from tests.checks.asking import ask
 from tests.checks.hand_ins import ANSWERS, REFERENCE, URDF, HandIn, gif, jpeg, png
@@ -253,7 +253,7 @@ def converter(code: bytes, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_all_documents_share_one_budget(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A document that takes too long uses up the time of those after it; texts are read all the same."""
     converter(SLOW, tmp_path / "slow.py", monkeypatch)
-    monkeypatch.setattr("grader.documents.documents.MAX_SECONDS", 0.5)
+    monkeypatch.setattr("grader.documents.collection.MAX_SECONDS", 0.5)
     began = time.monotonic()
     hand_in = ALONE.with_files({f"{name}.pdf": b"" for name in "abcd"} | {"e.txt": "Task 1 step 15: It vanishes."})
     outcome = answer_in(hand_in)
@@ -268,7 +268,7 @@ def test_the_converter_bounds_its_own_processor_time(tmp_path: Path, monkeypatch
     code += "from grader.documents import converter\n"
     code += "converter._pdf = lambda data: str(sum(0 for _ in iter(int, 1)))\nsys.exit(converter.main())"
     converter(code.encode(), tmp_path / "busy.py", monkeypatch)
-    monkeypatch.setattr("grader.documents.documents.MAX_SECONDS", 60.0)
+    monkeypatch.setattr("grader.documents.collection.MAX_SECONDS", 60.0)
     message = answer_in(ALONE.with_files({"a.pdf": b""})).message
     assert "a.pdf was not read: the Word and PDF files take longer than 60 s in all" in message
 
@@ -295,7 +295,9 @@ def test_no_more_than_a_few_documents_are_converted(tmp_path: Path, monkeypatch:
 @pytest.mark.parametrize("name", ["answers.doc", "answers.odt", "answers.rtf", "answers.pages"])
 def test_a_document_of_another_kind_is_named(name: str) -> None:
     """A kind that is not read is named, so that a person opens it."""
-    message = f"{NOT_FOUND}; needs manual grading (not read: {name} is of a kind that is not read: open it yourself)"
+    message = (
+        f"{NOT_FOUND}; needs manual grading (not read: {name} has a format that is not supported: open it yourself)"
+    )
     assert answer_in(ALONE.with_files({name: b"text"})).message == message
 
 

@@ -97,7 +97,7 @@ def test_of_several_packages_the_named_one_is_meant() -> None:
 @pytest.mark.parametrize("hand_in", [HandIn({"x.png": png()}), HandIn({"my_robot.urdf": REFERENCE.files[URDF]})])
 def test_no_package_is_missed(hand_in: HandIn) -> None:
     """Pictures or a URDF are no package."""
-    message = "no ROS 2 package was handed in: there is no package.xml"
+    message = "the submission has no ROS 2 package: there is no package.xml"
     assert lacks(package_found, hand_in, name="my_robot") == ("package", "", message, None)
 
 
@@ -274,31 +274,31 @@ def test_a_missing_entry_is_told(kind: str, entry: str) -> None:
         (
             setup("glob('urdf/*')", "glob('udrf/*')"),
             "urdf",
-            "the pattern 'udrf/*' in setup.py finds nothing, because there is no folder 'udrf'; did you mean 'urdf'?",
+            "the pattern 'udrf/*' in setup.py matches no file, because there is no folder 'udrf'; did you mean 'urdf'?",
             "glob('udrf/*')",
         ),
         (
             setup("glob('rviz/*')", "glob('rvis/*.rviz')"),
             "rviz",
-            "the pattern 'rvis/*.rviz' in setup.py finds nothing, because there is no folder 'rvis'; did you mean 'rviz'?",
+            "the pattern 'rvis/*.rviz' in setup.py matches no file, because there is no folder 'rvis'; did you mean 'rviz'?",
             "glob('rvis/*.rviz')",
         ),
         (
             setup("glob('urdf/*')", "glob('urdf/*.udrf')"),
             "urdf",
-            "the pattern 'urdf/*.udrf' in setup.py finds nothing; there is urdf/my_robot.urdf",
+            "the pattern 'urdf/*.udrf' in setup.py matches no file; there is urdf/my_robot.urdf",
             "glob('urdf/*.udrf')",
         ),
         (
             setup("glob(os.path.join('launch', '*launch.[pxy][yma]*'))", "glob('launch/*.launch.xml')"),
             "launch",
-            "the pattern 'launch/*.launch.xml' in setup.py finds nothing; there is launch/my_robot_rviz.launch.py",
+            "the pattern 'launch/*.launch.xml' in setup.py matches no file; there is launch/my_robot_rviz.launch.py",
             "glob('launch/*.launch.xml')",
         ),
         (
             setup("glob('urdf/*')", "glob('description/*.urdf')"),
             "urdf",
-            "the pattern 'description/*.urdf' in setup.py finds nothing, because there is no folder 'description'",
+            "the pattern 'description/*.urdf' in setup.py matches no file, because there is no folder 'description'",
             "glob('description/*.urdf')",
         ),
     ],
@@ -322,12 +322,12 @@ def test_a_pattern_for_something_else_is_not_blamed() -> None:
     ("kind", "folder", "message"),
     [
         ("urdf", "my_robot/urdf", "the package has no URDF: no file ends in .urdf or .xacro"),
-        ("rviz", "my_robot/rviz", "the package has no RViz file: none ends in .rviz"),
+        ("rviz", "my_robot/rviz", "the package has no RViz file: no file ends in .rviz"),
         (
             "launch",
             "my_robot/launch",
             (
-                "the package has no launch file: none ends in .launch.py, .launch.xml or .launch.yaml, "
+                "the package has no launch file: no file ends in .launch.py, .launch.xml or .launch.yaml, "
                 "and there is no folder launch"
             ),
         ),
@@ -352,7 +352,7 @@ def test_a_launch_file_without_extension_is_not_found_by_the_pattern() -> None:
     """The usual pattern does not find it; glob('launch/*') does."""
     bare = REFERENCE.renaming(LAUNCH, "my_robot/launch/my_robot_rviz")
     message = (
-        "a build does not install launch/my_robot_rviz: the pattern 'launch/*launch.[pxy][yma]*' in setup.py finds nothing; "
+        "a build does not install launch/my_robot_rviz: the pattern 'launch/*launch.[pxy][yma]*' in setup.py matches no file; "
         "there is launch/my_robot_rviz"
     )
     expected = ("installed launch", FOLDER, message, bare.place(SETUP, "glob(os.path"))

@@ -106,7 +106,7 @@ def test_of_two_files_the_opened_one_is_meant() -> None:
 
 def test_no_rviz_file_is_missed() -> None:
     """Without an RViz file, all of the checks miss the same."""
-    expected = ("RViz file in the package", "", "the package has no RViz file: none ends in .rviz", None)
+    expected = ("RViz file in the package", "", "the package has no RViz file: no file ends in .rviz", None)
     for hand_in in (REFERENCE.without(RVIZ), REFERENCE.renaming(RVIZ, NAME)):
         assert lacks(rviz_found, hand_in, name=NAME, launch=BY_LAUNCH) == expected
         assert lacks(rviz_fixed_frame, hand_in, name=NAME, frame=FRAME) == expected
@@ -116,7 +116,7 @@ def test_no_rviz_file_is_missed() -> None:
 
 def test_no_package_is_missed() -> None:
     """The check of the fixed frame is asked of the submission, and misses the package as others do."""
-    expected = ("package", "", "no ROS 2 package was handed in: there is no package.xml", None)
+    expected = ("package", "", "the submission has no ROS 2 package: there is no package.xml", None)
     assert lacks(rviz_fixed_frame, HandIn({"x.png": png()}), name=NAME, frame=FRAME) == expected
 
 
@@ -129,9 +129,9 @@ def test_no_package_is_missed() -> None:
             9,
         ),
         ("hello: [world\n", "not readable as YAML: while parsing a flow sequence", 2),
-        ("hello\n", "there is no 'Visualization Manager' in it: this is no RViz file", 1),
-        ("", "there is no 'Visualization Manager' in it: this is no RViz file", 1),
-        (str(REFERENCE.files[LAUNCH]), "there is no 'Visualization Manager' in it: this is no RViz file", 1),
+        ("hello\n", "there is no 'Visualization Manager': this is not an RViz file", 1),
+        ("", "there is no 'Visualization Manager': this is not an RViz file", 1),
+        (str(REFERENCE.files[LAUNCH]), "there is no 'Visualization Manager': this is not an RViz file", 1),
     ],
     ids=["tab", "bracket", "text", "empty", "python"],
 )

@@ -47,7 +47,7 @@ def test_a_slow_document_leaves_its_criteria_to_a_person(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """It is not read, everything else has its result, and another document is read all the same."""
-    monkeypatch.setattr("grader.documents.documents.MAX_SECONDS", 1.0)
+    monkeypatch.setattr("grader.documents.collection.MAX_SECONDS", 1.0)
     assert run(["grade", str(hand_in(tmp_path / "alice"))]) == 0
     shown = " ".join(capsys.readouterr().out.split())
     assert shown.count("the Word and PDF files take longer than 1 s in all; needs manual grading") == 2

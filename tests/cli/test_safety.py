@@ -15,7 +15,6 @@ REFERENCE = ROOT / "submissions" / "reference"
 # Modules that the grader, or what it is built on, loads late.
 MODULES = (
     "yaml",
-    "imagesize",
     "docx",
     "pypdf",
     "ast",

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.documents.labels import is_meant, read_label
+from grader.documents.labels import matches, read_label
 from tests.patience import processor_time
 
 
@@ -77,13 +77,13 @@ def test_labels(text: str, task: int | None, steps: set[int]) -> None:
 )
 def test_meaning(wanted: str, found: str, known: int | None, is_it: bool) -> None:
     """A name speaks of what is wanted if task, steps and words agree."""
-    assert is_meant(read_label(wanted), read_label(found), known) is is_it
+    assert matches(read_label(wanted), read_label(found), known) is is_it
 
 
 @given(st.text(max_size=60), st.text(max_size=60), st.none() | st.integers())
 def test_any_text(wanted: str, found: str, known: int | None) -> None:
     """Any two texts can be compared."""
-    assert is_meant(read_label(wanted), read_label(found), known) in (True, False)
+    assert matches(read_label(wanted), read_label(found), known) in (True, False)
 
 
 @given(
@@ -103,4 +103,4 @@ def test_numbers_are_found_in_every_spelling(task: int, step: int, spelling: str
 def test_long_texts(text: str) -> None:
     """A long text takes no longer than a short one."""
     with processor_time(0.5):
-        is_meant(read_label(text), read_label(text))
+        matches(read_label(text), read_label(text))

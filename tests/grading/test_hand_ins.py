@@ -269,7 +269,7 @@ def test_two_defects_are_both_told() -> None:
             REFERENCE.replacing(MANIFEST, "Apache-2.0", "TODO"),
             "PKG003",
             MANIFEST,
-            "<license> of package.xml is still to do",
+            "<license> of package.xml is still TODO",
         ),
         (
             REFERENCE.replacing(MANIFEST, ">my_robot<", ">robot<"),
@@ -299,7 +299,7 @@ def test_two_defects_are_both_told() -> None:
             REFERENCE.without("my_robot/launch"),
             "PKG013",
             SETUP,
-            "the pattern 'launch/*launch.[pxy][yma]*' in setup.py finds nothing, because there is no folder 'launch'",
+            "the pattern 'launch/*launch.[pxy][yma]*' in setup.py matches no file, because there is no folder 'launch'",
         ),
         (
             REFERENCE.replacing(LAUNCH, "    return ", "    "),
@@ -317,7 +317,7 @@ def test_two_defects_are_both_told() -> None:
             REFERENCE.with_files({RVIZ: "hello\n"}),
             "RVZ001",
             RVIZ,
-            "there is no 'Visualization Manager' in it: this is no RViz file",
+            "there is no 'Visualization Manager': this is not an RViz file",
         ),
         (
             REFERENCE.replacing(RVIZ, "rviz_default_plugins/RobotModel", "rviz/RobotModel"),

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from grader.files.tree import File, Tree, make_tree
 from grader.package.file_functions import file_functions
-from grader.package.globbing import ORDERS, BeyondError, Listing
+from grader.package.globbing import ORDERS, PackageListing, SearchError
 from grader.static_python.functions import standard_functions
 from grader.static_python.interpreter import Interpreter
 from grader.static_python.parse import Code, parse
@@ -67,7 +67,7 @@ def value_of(expression: str, tree: Tree, root: str = "/root", order: str = ORDE
         f"import os\nfrom glob import glob\nfrom pathlib import Path\nvalue = {expression}\n".encode(), "setup.py"
     )
     assert isinstance(code, Code)
-    interpreter = Interpreter({**standard_functions(root), **file_functions(Listing(tree, order), root)}, {})
+    interpreter = Interpreter({**standard_functions(root), **file_functions(PackageListing(tree, order), root)}, {})
     value = interpreter.run(code).names["value"]
     return interpreter.errors[0] if interpreter.errors else value
 
@@ -88,8 +88,8 @@ def pythons_glob(pattern: str, root: str, *, recursive: bool = True, hidden: boo
 def test_glob_finds_what_pythons_glob_finds(tree: Tree, pattern: str, recursive: bool, hidden: bool) -> None:
     """The same paths in the same spelling, for any pattern that stays inside of the tree."""
     try:
-        told = [Listing(tree, order).glob(pattern, recursive=recursive, hidden=hidden) for order in ORDERS]
-    except BeyondError:
+        told = [PackageListing(tree, order).glob(pattern, recursive=recursive, hidden=hidden) for order in ORDERS]
+    except SearchError:
         assert ".." in pattern
         return
     with on_disk(tree) as folder:
@@ -189,8 +189,8 @@ def test_folders_hold_what_they_hold(tree: Tree, folder: str) -> None:
 @pytest.mark.parametrize("pattern", ["/etc/*", "../*", "a/../../*", "*/" * 100, "*" * 5000, "**/../" * 20 + "*"])
 def test_what_leads_out_of_the_tree_is_not_told(pattern: str) -> None:
     """A pattern that leads elsewhere, or that nobody writes, is unknown."""
-    with pytest.raises(BeyondError):
-        Listing(make_tree("", [], ["a/b/c", "a/d", "b/c"])).glob(pattern, recursive=True)
+    with pytest.raises(SearchError):
+        PackageListing(make_tree("", [], ["a/b/c", "a/d", "b/c"])).glob(pattern, recursive=True)
 
 
 @pytest.mark.parametrize(
@@ -213,4 +213,4 @@ def test_many_searches_through_many_files_end_soon(expression: str) -> None:
             f"import os\nfrom glob import glob\nfrom pathlib import Path\nvalue = {expression}\n".encode(), "setup.py"
         )
         assert isinstance(code, Code)
-        Interpreter({**standard_functions("/root"), **file_functions(Listing(tree), "/root")}, {}).run(code)
+        Interpreter({**standard_functions("/root"), **file_functions(PackageListing(tree), "/root")}, {}).run(code)

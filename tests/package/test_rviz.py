@@ -116,10 +116,10 @@ def test_what_is_worth_saying() -> None:
     [
         ("Visualization Manager: [", 1, "not readable as YAML"),
         ("\tVisualization Manager:", 1, "not readable as YAML"),
-        ("", 1, "there is no 'Visualization Manager' in it"),
-        ("- a", 1, "there is no 'Visualization Manager' in it"),
-        ("<robot/>", 1, "there is no 'Visualization Manager' in it"),
-        ("Visualization manager: {}", 1, "there is no 'Visualization Manager' in it"),
+        ("", 1, "there is no 'Visualization Manager'"),
+        ("- a", 1, "there is no 'Visualization Manager'"),
+        ("<robot/>", 1, "there is no 'Visualization Manager'"),
+        ("Visualization manager: {}", 1, "there is no 'Visualization Manager'"),
     ],
 )
 def test_faults(text: str, line: int, words: str) -> None:

@@ -389,3 +389,9 @@ def test_a_miscount_of_cpython_costs_nobody_anything(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(ast, "parse", miscounting)
     assert isinstance(parse(b"x = 1\n", "setup.py"), Code)
     assert len(calls) == 2
+
+
+def test_folders_of_a_walk_are_a_list() -> None:
+    """The list of folders that os.walk yields has its own type; a message names it as Python does."""
+    setup = followed("import os\nfor _, folders, _ in os.walk('.'):\n    folders + 'a'\n")
+    assert [fault.message for fault in setup.faults] == ["Python cannot add a string to a list"]

@@ -247,7 +247,7 @@ def test_packages_know_each_other() -> None:
     """Every package is known by its name, the graded one first among equals."""
     found = packages("my_robot", {"b/my_robot": "my_robot", "a/my_robot": "my_robot", "c": "other"})
     assert [each.folder for each in found] == ["a/my_robot", "b/my_robot", "c"]
-    assert {name: each.folder for name, each in found[1].known.items()} == {"my_robot": "a/my_robot", "other": "c"}
+    assert {name: each.folder for name, each in found[1].packages.items()} == {"my_robot": "a/my_robot", "other": "c"}
 
 
 def test_no_package() -> None:

@@ -31,7 +31,7 @@ PRELOAD = (
     "grader.robot.edge_overlap",
     "grader.submission.package_search",
     "grader.submission.urdf_search",
-    "grader.package.linting",
+    "grader.package.problems",
 )
 
 MAX_MISTAKE = 200  # characters of a mistake that statistics count

@@ -1,1 +1,1 @@
-"""Launch files of ROS 2 in Python, XML and YAML, followed by reading: which nodes they start, from which files."""
+"""Launch files of ROS 2 in Python, XML and YAML, evaluated without running them: the nodes that they start, with their files."""

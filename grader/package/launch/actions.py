@@ -8,7 +8,7 @@ from grader.package.launch.conditions import holds
 from grader.package.launch.context import Context
 from grader.package.launch.findings import Findings
 from grader.package.launch.nodes import start_node, start_process, start_urdf_launch
-from grader.package.launch.substitutions import launch_arguments, resolve
+from grader.package.launch.substitutions import resolve
 from grader.static_python.values import START, UNKNOWN_KEYS, Call, Function, Position, QualifiedName, Unknown, Value
 
 _MAX_ACTIONS = 5_000
@@ -140,7 +140,7 @@ class ActionVisitor:
         if when is False:
             return
         path = resolve(call.argument(0, "launch_description_source"), context)
-        given = launch_arguments(call.argument(1, "launch_arguments"), context, call.at)
+        given = _launch_arguments(call.argument(1, "launch_arguments"), context, call.at)
         if not isinstance(path, str) or given is None:
             reason = path.reason if isinstance(path, Unknown) else "the included file is known only at run time"
             self.findings.add_unknown(reason, call.at)
@@ -192,3 +192,17 @@ def _set_argument(call: Call, context: Context, when: bool | None, *, declares: 
         context.arguments[name] = Unknown(f"the launch argument {name!r} has no default", call.at)
     else:
         context.arguments[name] = resolve(value, context)
+
+
+def _launch_arguments(given: Value, context: Context, at: Position) -> dict[str, Value] | None:
+    """Return the launch arguments that an include passes on, resolved; None where they are unknown."""
+    if given is None:
+        return {}
+    if isinstance(given, dict):
+        context.add_error("launch_arguments is given a dict: add .items() to it", at)
+        given = list(given.items())
+    pairs: list[Value] = list(given) if isinstance(given, list | tuple) else [None]
+    if not all(isinstance(pair, list | tuple) and len(pair) == 2 for pair in pairs):
+        return None
+    resolved = [(resolve(name, context), resolve(value, context)) for name, value in pairs]
+    return {name: value for name, value in resolved if isinstance(name, str)}

@@ -1,4 +1,4 @@
-"""What the values of a launch file are resolved with: the launch arguments so far, and the folder of the file."""
+"""The context in which the values of a launch file are resolved: its folder and the launch arguments so far."""
 
 from dataclasses import dataclass, field
 
@@ -32,5 +32,5 @@ class Context:
     steps_left: list[int] = field(default_factory=lambda: [_MAX_STEPS])
 
     def add_error(self, message: str, at: Position) -> None:
-        """Add what stops the launch, if it certainly executes the current action."""
+        """Add an error that stops the launch if it certainly executes the current action."""
         self.errors.append((message, at))

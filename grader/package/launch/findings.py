@@ -1,4 +1,4 @@
-"""What is found in a launch file, collected while its actions are visited."""
+"""The findings in a launch file, collected while its actions are visited."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -11,7 +11,7 @@ from grader.static_python.values import Call, Position, Unknown, Value
 
 @dataclass(slots=True)
 class Findings:
-    """What was found so far in one launch file. `sets_parameters` is set where an action gives parameters to all nodes."""
+    """The findings so far in one launch file. `sets_parameters` is set where an action gives parameters to all nodes."""
 
     locate: Callable[[Position], Location]
     nodes: list[StartedNode] = field(default_factory=list)

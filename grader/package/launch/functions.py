@@ -4,7 +4,8 @@ from pathlib import PurePosixPath
 
 from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.static_python.evaluation import Evaluation, FunctionTable
-from grader.static_python.functions import path_text, standard_functions
+from grader.static_python.functions import standard_functions
+from grader.static_python.inspection import path_text
 from grader.static_python.values import Call, Unknown, Value
 
 _AMENT_INDEX = ("ament_index_python", "ament_index_python.packages")

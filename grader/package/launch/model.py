@@ -43,7 +43,7 @@ class LaunchFault:
 
 @dataclass(frozen=True, slots=True)
 class Launch:
-    """What is known of a launch file and of those that it includes.
+    """The result of a launch file and of those that it includes.
 
     `syntax` is set where the file itself cannot be read; `unknown` has what cannot be determined.
     """

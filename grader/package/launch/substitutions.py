@@ -9,13 +9,20 @@ from grader.package.launch.booleans import BOOLEAN_SUBSTITUTIONS, boolean_substi
 from grader.package.launch.commands import PART_UNKNOWN, file_read
 from grader.package.launch.context import Contents, Context, Resolved
 from grader.package.launch.places import HOME, PREFIX, SHARE
+from grader.static_python.inspection import as_text
 from grader.static_python.text_expressions import evaluate_text
-from grader.static_python.values import START, Call, Position, Unknown, Value, as_text
+from grader.static_python.values import START, Call, Unknown, Value
 
 COMMAND_LINE = "launch.frontend.command line"  # a line that is split into words, as in XML and YAML
 _MAX_DEPTH = 40
 _MAX_TEXT = 100_000
 _PERFORMED = (".perform", ".find")  # methods of substitutions that return a string
+# Methods whose result is the text, or the contents, of the object that they are called on.
+_OF_OWNER = ("perform", "read", "toxml", "toprettyxml", "documentElement", "decode", "strip")
+_PACKAGE_FOLDERS = (
+    "FindPackageShare", "FindPackageShareDirectory", "get_package_share_directory", "get_package_share_path",
+    "FindPackagePrefix", "FindPackage", "get_package_prefix",
+)  # fmt: skip
 
 
 def resolve(value: Value, context: Context, depth: int = 0) -> Resolved:
@@ -38,21 +45,6 @@ def resolve(value: Value, context: Context, depth: int = 0) -> Resolved:
             return _Substitution(value, context, depth).value()
         case _:
             return Unknown("the text of this value is known only at run time", START)
-
-
-def launch_arguments(given: Value, context: Context, at: Position) -> dict[str, Value] | None:
-    """Return the launch arguments that an include passes on, resolved; None where they are unknown."""
-    if given is None:
-        return {}
-    if isinstance(given, dict):
-        context.add_error("launch_arguments is given a dict: add .items() to it", at)
-        given = list(given.items())
-    if not isinstance(given, list | tuple) or not all(
-        isinstance(pair, list | tuple) and len(pair) == 2 for pair in given
-    ):
-        return None
-    resolved = [(resolve(name, context), resolve(value, context)) for name, value in given]
-    return {name: value for name, value in resolved if isinstance(name, str)}
 
 
 def _texts(parts: list[Value] | tuple[Value, ...], context: Context, depth: int) -> list[str] | Unknown:
@@ -92,9 +84,8 @@ class _Substitution:
         if name.endswith("LaunchDescriptionSource"):
             return self.argument("launch_file_path", "location")
         if name in BOOLEAN_SUBSTITUTIONS:
-            return boolean_substitution(
-                name, [self.resolve(operand) for operand in operands_of(self.call)], self.call.at
-            )
+            operands = [self.resolve(operand) for operand in operands_of(self.call)]
+            return boolean_substitution(name, operands, self.call.at)
         return self.python_function(name)
 
     def python_function(self, name: str) -> Resolved:
@@ -119,8 +110,6 @@ class _Substitution:
             case "expanduser":
                 text = self.argument()
                 return text.replace("~", HOME, 1) if isinstance(text, str) and text.startswith("~") else text
-            case "home" if full.startswith("pathlib."):
-                return HOME
             case _:
                 return Unknown(f"the result of {name} is known only at run time", self.call.at)
 
@@ -130,19 +119,14 @@ class _Substitution:
     def argument(self, *names: str) -> Resolved:
         return self.resolve(self.call.argument(0, *names))
 
-    def owner(self) -> Resolved:
-        return self.resolve(self.call.owner)
-
     def contents(self, by: str, *names: str) -> Resolved:
         path = self.argument(*names)
         return Contents(path, by) if isinstance(path, str) else path
 
     def needs_texts(self, message: str, count: int | None = None) -> None:
         """Add an error if a function of Python gets a substitution, which has no text before the launch runs."""
-        calls = (value for value in self.call.args[:count] if isinstance(value, Call))
-        if any(
-            call.name.startswith(("launch.", "launch_ros.")) and not call.name.endswith(_PERFORMED) for call in calls
-        ):
+        names = [value.name for value in self.call.args[:count] if isinstance(value, Call)]
+        if any(name.startswith(("launch.", "launch_ros.")) and not name.endswith(_PERFORMED) for name in names):
             self.context.add_error(message, self.call.at)
 
     def path(self, parts: Value) -> Resolved:
@@ -160,13 +144,11 @@ class _Substitution:
             return self.path(self.call.args)
         return self.path(self.call.argument(0, "substitutions"))
 
-    def share(self) -> Resolved:
+    def package_folder(self) -> Resolved:
         package = self.argument("package", "package_name")
-        return f"{SHARE}/{package}" if isinstance(package, str) else package
-
-    def prefix(self) -> Resolved:
-        package = self.argument("package", "package_name")
-        return PREFIX if isinstance(package, str) else package
+        is_share = "share" in self.call.name.rpartition(".")[2].lower()
+        folder = f"{SHARE}/{package}" if is_share else PREFIX
+        return folder if isinstance(package, str) else package
 
     def configuration(self) -> Resolved:
         name = self.argument("variable_name")
@@ -215,12 +197,8 @@ _FIRST_ARGUMENT: dict[str, tuple[str, ...]] = {
     "FindExecutable": ("name",),
 }
 _METHODS: dict[str, Callable[[_Substitution], Resolved]] = {
-    **dict.fromkeys(
-        ("perform", "read", "toxml", "toprettyxml", "documentElement", "decode", "strip"), _Substitution.owner
-    ),
-    **dict.fromkeys(("FindPackageShare", "FindPackageShareDirectory"), _Substitution.share),
-    **dict.fromkeys(("get_package_share_directory", "get_package_share_path"), _Substitution.share),
-    **dict.fromkeys(("FindPackagePrefix", "FindPackage", "get_package_prefix"), _Substitution.prefix),
+    **dict.fromkeys(_OF_OWNER, lambda substitution: substitution.resolve(substitution.call.owner)),
+    **dict.fromkeys(_PACKAGE_FOLDERS, _Substitution.package_folder),
     "LaunchConfiguration": _Substitution.configuration,
     "PathJoinSubstitution": _Substitution.joined_path,
     "ThisLaunchFileDir": lambda substitution: substitution.context.folder,

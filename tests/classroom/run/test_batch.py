@@ -334,7 +334,7 @@ def test_reports_quote_files_only_as_they_were(tmp_path: Path) -> None:
 # --- Safety -----------------------------------------------------------------------------------------------------------
 
 MODULES = (
-    "numpy", "lxml", "yaml", "signal", "resource", "multiprocessing", "zlib", "imagesize", "json", "token", "selectors",
+    "numpy", "lxml", "yaml", "signal", "resource", "multiprocessing", "zlib", "json", "token", "selectors",
     "pebble", "sqlite3", "rich", "distributed", "pypdf",
 )  # fmt: skip
 

@@ -10,9 +10,9 @@ from fnmatch import translate
 from math import ceil
 from typing import NamedTuple
 
-from grader.documents import converter as document_text
+from grader.documents import converter
 from grader.documents.evidence import stem
-from grader.documents.labels import Label, read_label
+from grader.documents.headings import Heading, find_headings
 from grader.errors import InputError
 from grader.files.tree import File, Tree
 
@@ -20,32 +20,13 @@ MAX_SECONDS = 20.0  # for all Word and PDF files of a submission
 MAX_LINES = 2000  # of one document
 _TEXT_LIMIT, _DOCUMENT_LIMIT = 1024 * 1024, 32 * 1024 * 1024  # bytes
 _MAX_FILES, _MAX_CONVERTED = 40, 8
-_LONGEST_LINE = 1000  # characters in which a heading says what it is about
-_HEADING_WORDS = 6  # a label that begins a passage stands among the first words of its line
-_MARKUP = re.compile(r"^[\s#>*\-_+|`]+")
-_DIGIT = re.compile(r"\d")
-# Numbers that stand for a step: 1.15, or 15) and 15. where they are no count of a short list.
-_DOTTED = re.compile(r"^\(?([1-9])\.(\d{1,2})\b[.):]?\s*")
-_NUMBERED = re.compile(r"^\(?([1-9]\d)[.):]\s+")
 _NO_ANSWERS = frozenset(
     {"CMakeLists.txt", "requirements.txt", "LICENSE.txt", "LICENSE.md", "top_level.txt", "SOURCES.txt"}
 )
-# How a file begins that holds no answers: one of another kind, or a report of the grader, which repeats questions and answers.
+# The beginning of a file without answers: of another format, or a report of the grader, which repeats questions and answers.
 _OTHER = re.compile(
     r"\s*<(?:\?xml|!--|robot|launch|package)|(?:# )?[\d.]+ / [\d.]+ points(?:  |: )|::notice title=[\d.]+ / "
 )
-
-
-class Heading(NamedTuple):
-    """A line that names a task or step: its index, what it names, and the index of the line that ends its passage.
-
-    `task` is that of the label, or of the headings above.
-    """
-
-    start: int
-    label: Label
-    task: int | None
-    end: int
 
 
 class Document(NamedTuple):
@@ -57,14 +38,14 @@ class Document(NamedTuple):
     is_cut: bool
 
 
-class Documents:
-    """The documents of a submission."""
+class DocumentCollection:
+    """The documents of a submission. Each is read once; Word and PDF files share one budget of time."""
 
     def __init__(self, tree: Tree) -> None:
         self._tree = tree
         self._seconds = MAX_SECONDS
         self._converted = 0
-        self._known: dict[str, Document | str | None] = {}
+        self._read_files: dict[str, Document | str | None] = {}
 
     def named(self, patterns: Sequence[str]) -> tuple[list[Document], list[str]]:
         """Return the documents whose names match one of the patterns, and what of them was not read, and why."""
@@ -72,9 +53,9 @@ class Documents:
         unread: list[str] = []
         chosen = self._matching(patterns)
         for file in chosen[:_MAX_FILES]:
-            if file.path not in self._known:
-                self._known[file.path] = self._read(file)
-            document = self._known[file.path]
+            if file.path not in self._read_files:
+                self._read_files[file.path] = self._read(file)
+            document = self._read_files[file.path]
             if isinstance(document, str):
                 unread.append(document)
             elif document is not None:
@@ -102,14 +83,14 @@ class Documents:
         text = text.replace("\r\n", "\n").replace("\r", "\n").removesuffix("\n")
         lines = text.split("\n", MAX_LINES)
         is_cut = len(lines) > MAX_LINES
-        return Document(file, lines[:MAX_LINES], _headings(lines[:MAX_LINES], stem(file.name)), is_cut)
+        return Document(file, lines[:MAX_LINES], find_headings(lines[:MAX_LINES], stem(file.name)), is_cut)
 
     def _text(self, file: File) -> str:
         match file.suffix:
             case ".docx" | ".pdf":
                 return self._convert(file)
             case ".doc" | ".odt" | ".rtf" | ".pages" | ".ipynb":
-                raise InputError(f"{file.path} is of a kind that is not read: open it yourself")
+                raise InputError(f"{file.path} has a format that is not supported: open it yourself")
             case _:
                 data = file.read(_TEXT_LIMIT)
         if data.startswith((b"\xff\xfe", b"\xfe\xff")):
@@ -141,9 +122,9 @@ class Documents:
             raise InputError(f"{file.path} could not be read on this machine: open it yourself") from None
         finally:
             self._seconds -= time.monotonic() - began
-        if document_text.is_out_of_time(done.returncode):
+        if converter.is_out_of_time(done.returncode):
             raise late
-        if done.returncode == document_text.MISSING:
+        if done.returncode == converter.MISSING:
             raise InputError(f"{file.path} is read only with the grader's extra `documents`: open it yourself")
         if done.returncode:
             raise InputError(f"{file.path} cannot be read; it may be damaged: open it yourself")
@@ -151,42 +132,8 @@ class Documents:
 
 
 def _run_converter(kind: str, data: bytes, seconds: float) -> "subprocess.CompletedProcess[bytes]":
-    # -P: neither the current folder, which may be the student's, nor our own is where modules are looked for.
-    command = [sys.executable, "-P", document_text.__file__, kind, str(ceil(seconds)), str(os.getpid())]
+    # -P: modules are imported neither from the current folder, which may be the student's, nor from our own.
+    command = [sys.executable, "-P", converter.__file__, kind, str(ceil(seconds)), str(os.getpid())]
     return subprocess.run(  # which kills it when it is interrupted
         command, input=data, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, timeout=seconds, check=False
     )
-
-
-def _headings(lines: list[str], name: str) -> tuple[Heading, ...]:
-    """Return the headings among some lines; `name` is that of their file, which may name a task."""
-    found: list[tuple[int, Label, int | None, list[str]]] = []
-    task = read_label(name).task
-    for index, line in enumerate(lines):
-        if not _DIGIT.search(line, 0, _LONGEST_LINE):
-            continue
-        words = _words(line[:_LONGEST_LINE])
-        label = read_label(" ".join(words[:_HEADING_WORDS]))
-        if label.steps or label.task is not None:
-            task = label.task if label.task is not None else task
-            found.append((index, label, task, words))
-    headings: list[Heading] = []
-    end = end_of_marked = len(lines)
-    for index, label, task, words in reversed(found):
-        is_marked = lines[index].startswith("#")
-        headings.append(Heading(index, label, task, end_of_marked if is_marked else end))
-        # A sentence that mentions a step ends no passage. Below a heading that is marked as one, only such a heading does,
-        # or a line that names task and step at once.
-        begins = read_label(" ".join(words[:2]))
-        if len(words) <= _HEADING_WORDS or begins.steps or begins.task is not None:
-            end = index
-        if is_marked or (begins.task is not None and read_label(" ".join(words[:4])).steps):
-            end_of_marked = index
-    return tuple(reversed(headings))
-
-
-def _words(line: str) -> list[str]:
-    plain = _MARKUP.sub("", line)
-    plain = _DOTTED.sub(r"task \1 step \2 ", plain)
-    plain = _NUMBERED.sub(r"step \1 ", plain)
-    return [word for word in plain.split() if any(map(str.isalnum, word))]
