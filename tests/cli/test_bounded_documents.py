@@ -51,7 +51,7 @@ def test_a_slow_document_leaves_its_criteria_to_a_person(
     assert run(["grade", str(hand_in(tmp_path / "alice"))]) == 0
     shown = " ".join(capsys.readouterr().out.split())
     assert shown.count("the Word and PDF files take longer than 1 s in all; needs manual grading") == 2
-    assert "The answer in notes.md, from line 1, is for a person to mark" in shown
+    assert "The answer in notes.md, from line 1, needs manual grading" in shown
     assert "90 / 100 points" in shown
 
 
@@ -93,7 +93,7 @@ def _converters(process: "subprocess.Popen[str]") -> list[int]:
 def test_a_converter_without_a_death_signal_watches_its_parent(tmp_path: Path) -> None:
     """Where the kernel does not end it, a thread does: that of a system without PR_SET_PDEATHSIG."""
     child = (
-        f"import sys, time; sys.path.insert(0, {str(ROOT)!r}); from grader.submission import document_text as it\n"
+        f"import sys, time; sys.path.insert(0, {str(ROOT)!r}); from grader.documents import converter as it\n"
         "it._has_death_signal = lambda: False\n"
         "it.end_with_parent(int(sys.argv[1]), 600); print('ready', flush=True); time.sleep(600)"
     )
@@ -133,4 +133,4 @@ def test_a_mark_never_depends_on_a_document(tmp_path: Path) -> None:
     assert "0 graded, 2 unchanged" in again.stderr
     report = " ".join((tmp_path / "reports" / "alice.txt").read_text().split())
     reason = "grading it took longer than 4 s, and was stopped (--timeout raises the limit)"
-    assert report.count(f"The documents could not be read: {reason}; needs manual grading") == 2
+    assert report.count(f"The documents cannot be read: {reason}; needs manual grading") == 2
