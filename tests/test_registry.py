@@ -117,12 +117,13 @@ def test_no_check_is_forgotten() -> None:
 
 
 def test_every_check_is_tested_in_its_family() -> None:
-    """Each family has a file of tests, which names each of its checks."""
+    """Each family has a file of tests, which names each of its checks that its sample does not test at every tolerance."""
     for path in families():
         tests = Path(__file__).parent / "checks" / f"test_{path.stem}.py"
         text = tests.read_text(encoding="utf-8")
         for name in checks_in(path):
-            assert re.search(rf"\b{name}\b", text), f"{tests.name} does not test {name}"
+            is_sampled = name in CASE and CASE[name].edges
+            assert is_sampled or re.search(rf"\b{name}\b", text), f"{tests.name} does not test {name}"
 
 
 def test_an_unknown_check_is_not_found() -> None:

@@ -5,56 +5,48 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal, get_args, get_type_hints
 
-from grader.checks.appearance import shows_box, shows_colour, shows_cylinder, shows_grey, shows_nothing, shows_sphere
-from grader.checks.contact import clear_of, stands_on
-from grader.checks.launch import launch_finds_files, launch_found, launch_starts
-from grader.checks.manual import answered, evidence_shown
-from grader.checks.motion import axis_along, rolls_forward, turns_about_itself
+from grader.checks import appearance, contact, launch, manual, motion, package, placement, rviz, tree
 from grader.checks.outcome import Outcome
-from grader.checks.package import build_installs, installs_files, package_found, package_type, setup_imports
-from grader.checks.placement import bottom_at_height, bottoms_at_height, centre_at, frame_at, under_the_base
-from grader.checks.rviz import rviz_display_on, rviz_fixed_frame, rviz_found, rviz_shows_robot
 from grader.checks.toml_types import TomlType, toml_type
-from grader.checks.tree import held_by, joints_named, root_of_tree, urdf_loads
 from grader.errors import InputError
 
 ENTRY_POINTS = "grader.checks"
 
 CHECKS: tuple[Callable[..., Outcome], ...] = (
-    urdf_loads,
-    shows_box,
-    shows_cylinder,
-    shows_sphere,
-    shows_colour,
-    shows_grey,
-    shows_nothing,
-    held_by,
-    joints_named,
-    root_of_tree,
-    frame_at,
-    centre_at,
-    bottom_at_height,
-    bottoms_at_height,
-    stands_on,
-    clear_of,
-    under_the_base,
-    rolls_forward,
-    axis_along,
-    turns_about_itself,
-    package_found,
-    package_type,
-    build_installs,
-    installs_files,
-    setup_imports,
-    launch_found,
-    launch_starts,
-    launch_finds_files,
-    rviz_found,
-    rviz_fixed_frame,
-    rviz_shows_robot,
-    rviz_display_on,
-    answered,
-    evidence_shown,
+    tree.urdf_loads,
+    appearance.shows_box,
+    appearance.shows_cylinder,
+    appearance.shows_sphere,
+    appearance.shows_colour,
+    appearance.shows_grey,
+    appearance.shows_nothing,
+    tree.held_by,
+    tree.joints_named,
+    tree.root_of_tree,
+    placement.frame_at,
+    placement.centre_at,
+    placement.bottom_at_height,
+    placement.bottoms_at_height,
+    contact.stands_on,
+    contact.clear_of,
+    placement.under_the_base,
+    motion.rolls_forward,
+    motion.axis_along,
+    motion.turns_about_itself,
+    package.package_found,
+    package.package_type,
+    package.build_installs,
+    package.installs_files,
+    package.setup_imports,
+    launch.launch_found,
+    launch.launch_starts,
+    launch.launch_finds_files,
+    rviz.rviz_found,
+    rviz.rviz_fixed_frame,
+    rviz.rviz_shows_robot,
+    rviz.rviz_display_on,
+    manual.answered,
+    manual.evidence_shown,
 )
 
 Subject = Literal["urdf", "robot", "package", "submission"]

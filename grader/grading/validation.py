@@ -132,10 +132,13 @@ class Validation:
         """Compare declared totals with the sums, where all points are valid."""
         if any("points" not in row for row in self.criteria):
             return
+        by_part: dict[str, list[Row]] = {}
+        for row in self.criteria:
+            by_part.setdefault(row.get("part", ""), []).append(row)
         declared: list[tuple[Path, Row, str, list[Row]]] = [((), self.rubric, "the rubric", self.criteria)]
         for index, part in enumerate(self.parts):
-            rows = [row for row in self.criteria if row.get("part") == part.get("id", "")]
-            declared.append((("part", index), part, f"part {part.get('id')!r}", rows))
+            name = part.get("id", "")
+            declared.append((("part", index), part, f"part {name!r}", by_part.get(name, [])))
         for where, owner, name, rows in declared:
             actual = sum((row["points"] for row in rows), Decimal(0))
             if owner.get("points", actual) != actual:

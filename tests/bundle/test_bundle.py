@@ -23,12 +23,13 @@ from grader.cli import bundle as command
 from grader.errors import InputError
 from grader.files.reading import sha256_of
 from grader.grading.grade import grade
-from grader.grading.rubric import load_rubric
+from grader.grading.rubric import load_rubric, shipped_rubrics
 from grader.robot.kinematics import Configuration
 from tests.bundle.platform import Autograder, environment_for, unpacked
 from tests.classroom.gradebooks import grader, hand_in, lab_text, refusal
 from tests.samples import LAB6, ROOT, opened
 
+RUBRICS = [f"grader/rubrics/{name}.toml" for name in shipped_rubrics()]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 
 
@@ -47,8 +48,8 @@ def test_the_files(bundle: Path) -> None:
         "setup.sh", "run_autograder", "autograder.py", "autograder.json", "requirements.txt",
     }  # fmt: skip
     ours = {name for name in names if name.startswith("grader/")}
-    assert ours == {*there, "grader/bundle/on_gradescope/run_autograder", "grader/rubrics/lab6.toml"}
-    assert [name for name in names if "rubrics/" in name] == ["grader/rubrics/lab6.toml"]
+    assert ours == {*there, "grader/bundle/on_gradescope/run_autograder", *RUBRICS}
+    assert [name for name in names if "rubrics/" in name] == RUBRICS
     assert not [name for name in names if "__pycache__" in name or name.endswith(".pyc") or "tests" in name]
     assert list(names) == sorted(names)
 
@@ -191,7 +192,7 @@ def test_files_that_are_not_ours(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
     ):
         (tmp_path / "grader" / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / "grader" / name).touch()
-    assert sorted(package_files()) == ["grader/a.py", "grader/b/c.txt", "grader/rubrics/lab6.toml"]
+    assert sorted(package_files()) == ["grader/a.py", "grader/b/c.txt", *RUBRICS]
 
 
 # --- The rubric -------------------------------------------------------------------------------------------------------

@@ -1,16 +1,13 @@
 """For every check a robot that passes and one that fails, and what the check says of each."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 import pytest
 
-from grader.checks.appearance import shows_box, shows_colour, shows_cylinder, shows_grey, shows_nothing, shows_sphere
-from grader.checks.contact import clear_of, stands_on
-from grader.checks.motion import axis_along, rolls_forward, turns_about_itself
-from grader.checks.placement import bottom_at_height, bottoms_at_height, centre_at, frame_at, under_the_base
-from grader.checks.tree import held_by, joints_named, root_of_tree, urdf_loads
+from grader.checks import appearance, contact, motion, placement, tree
+from grader.checks.outcome import Status
 from tests.checks.asking import AnyCheck
 from tests.checks.robots import Numbers, Scene, box, cylinder, joint, link, paint, scene, sphere, turned, visual
 
@@ -25,7 +22,12 @@ FORWARD = turned(roll=-90)
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """A check with arguments, a scene that passes and one that fails, and where in it the failure stands, if anywhere."""
+    """The sample of a check: arguments, a scene that passes and one that fails, and the place of the failure, if it has one.
+
+    `edges` has, for each tolerance of the check, the scene that is off by so much: in its unit, and in both directions unless
+    the name is in `one_sided`. `of_a_mesh` is the status where each shape is a mesh; `needs_size` is False for a check that does
+    not mind a visual without a size.
+    """
 
     check: AnyCheck
     arguments: Mapping[str, Any]
@@ -34,6 +36,10 @@ class Case:
     failing: Scene
     complains: str
     at: str | None
+    edges: Mapping[str, Callable[[float], Scene]] = field(default_factory=dict)
+    one_sided: tuple[str, ...] = ()
+    of_a_mesh: Status = "passed"
+    needs_size: bool = True
 
     @property
     def name(self) -> str:
@@ -46,11 +52,21 @@ class Case:
         return self.check.__module__.rpartition(".")[2]
 
 
+def painted(name: str, rgba: str) -> Scene:
+    """One link with a visual in a colour."""
+    return scene(link(name, visual(box(0.6, 0.4, 0.2), material=paint(rgba))))
+
+
 def rolling(
-    *, kind: str = "continuous", xyz: Numbers = (-0.15, 0.225, 0.0), rpy: Numbers = FORWARD, axis: Numbers = "0 0 1"
+    *,
+    kind: str = "continuous",
+    xyz: Numbers = (-0.15, 0.225, 0.0),
+    rpy: Numbers = FORWARD,
+    axis: Numbers = "0 0 1",
+    wheel: str = WHEEL,
 ) -> Scene:
-    """A base with one wheel at its left side; unless told, the wheel drives it forward."""
-    return scene(BASE, WHEEL, joint("wheel_joint", kind, "base", "wheel", xyz=xyz, rpy=rpy, axis=axis))
+    """A base with one wheel at its left side, which drives it forward by default."""
+    return scene(BASE, wheel, joint("wheel_joint", kind, "base", "wheel", xyz=xyz, rpy=rpy, axis=axis))
 
 
 def mounted(xyz: Numbers = (0.15, 0.0, 0.225), rpy: Numbers = "", *, lidar: str = LIDAR) -> Scene:
@@ -73,7 +89,7 @@ def standing(*, height: float = 0.1, rpy: Numbers = "", xy: str = "0 0", wheel: 
 
 CASES = (
     Case(
-        urdf_loads,
+        tree.urdf_loads,
         {},
         passing=mounted(),
         says="ROS 2 loads the file and every link is in its one tree",
@@ -81,90 +97,103 @@ CASES = (
         complains="'lidar' is not connected to the robot: no joint has it as its child (roots are 'base', 'lidar');"
         " ROS 2 rejects the file",
         at='name="lidar"',
+        needs_size=False,
     ),
     Case(
-        shows_box,
+        appearance.shows_box,
         {"link": "base", "size": (0.6, 0.4, 0.2), "tolerance": 0.002},
         passing=scene(BASE),
         says="'base' shows a box 0.6 0.4 0.2 m",
         failing=scene(link("base", visual(box(0.6, 0.2, 0.4)))),
         complains="'base' shows a box 0.6 0.2 0.4 m; it should be 0.6 0.4 0.2 m (x, y, z)",
         at="size=",
+        edges={"tolerance": lambda off: scene(link("base", visual(box(0.6, 0.4 + off, 0.2))))},
+        of_a_mesh="failed",
     ),
     Case(
-        shows_cylinder,
+        appearance.shows_cylinder,
         {"link": "lidar", "radius": 0.1, "length": 0.05, "tolerance": 0.002},
         passing=scene(LIDAR),
         says="'lidar' shows a cylinder of radius 0.1 m and length 0.05 m",
         failing=scene(link("lidar", visual(cylinder(0.2, 0.05)))),
         complains="'lidar' shows a cylinder of radius 0.2 m and length 0.05 m; it should have radius 0.1 m and length 0.05 m",
         at="radius=",
+        edges={"tolerance": lambda off: scene(link("lidar", visual(cylinder(0.1 + off, 0.05))))},
+        of_a_mesh="failed",
     ),
     Case(
-        shows_sphere,
+        appearance.shows_sphere,
         {"link": "caster", "radius": 0.05, "tolerance": 0.002},
         passing=scene(CASTER),
         says="the radius of the sphere that 'caster' shows is 0.05 m",
         failing=scene(link("caster", visual(sphere(0.1)))),
         complains="the radius of the sphere that 'caster' shows is 0.1 m; it should be 0.05 m (50 mm too large)",
         at="radius=",
+        edges={"tolerance": lambda off: scene(link("caster", visual(sphere(0.05 + off))))},
+        of_a_mesh="failed",
     ),
     Case(
-        shows_colour,
+        appearance.shows_colour,
         {"link": "base", "colour": (0.0, 0.6, 0.0, 1.0), "tolerance": 0.01},
         passing=scene(BASE),
         says="'base' is shown in rgba 0 0.6 0 1",
         failing=scene(link("base", visual(box(0.6, 0.4, 0.2), material=paint("0 1 0 1")))),
         complains="'base' is shown in rgba 0 1 0 1; it should be 0 0.6 0 1",
         at="rgba=",
+        edges={"tolerance": lambda off: painted("base", f"0 {0.6 + off} 0 1")},
     ),
     Case(
-        shows_grey,
+        appearance.shows_grey,
         {"link": "lidar", "at_least": 0.75, "tolerance": 0.01},
         passing=scene(link("lidar", visual(cylinder(), material=paint("0.8 0.8 0.8 1")))),
         says="'lidar' is shown in rgb 0.8 0.8 0.8",
         failing=scene(link("lidar", visual(cylinder(), material=paint("0.7 0.7 0.7 1")))),
         complains="'lidar' is shown in rgb 0.7 0.7 0.7; it should be at least 0.75",
         at="rgba=",
+        edges={"tolerance": lambda off: painted("lidar", f"0.8 {0.8 + off} 0.8 1")},
     ),
     Case(
-        shows_nothing,
+        appearance.shows_nothing,
         {"link": "foot"},
         passing=scene(FOOT),
         says="'foot' shows nothing",
         failing=scene(link("foot", visual(box(0.1, 0.1, 0.1)))),
         complains="'foot' shows a box; it should have no visual",
         at="<visual>",
+        needs_size=False,
     ),
     Case(
-        held_by,
+        tree.held_by,
         {"link": "lidar", "parent": "base", "joint_type": "fixed"},
         passing=mounted(),
         says="the fixed joint 'base_lidar_joint' connects 'lidar' to 'base'",
         failing=scene(BASE, LIDAR, joint("base_lidar_joint", "continuous", "base", "lidar")),
         complains="the joint that moves 'lidar' is continuous; it should be fixed (joint 'base_lidar_joint')",
         at='type="continuous"',
+        needs_size=False,
     ),
     Case(
-        joints_named,
+        tree.joints_named,
         {"parent": "base", "joints": {"base_lidar_joint": "lidar", "wheel_joint": "wheel"}},
         passing=scene(BASE, LIDAR, WHEEL, MOUNT, joint("wheel_joint", "continuous", "base", "wheel")),
         says="the joints are named 'base_lidar_joint' and 'wheel_joint'",
         failing=scene(BASE, LIDAR, WHEEL, MOUNT, joint("weel_joint", "continuous", "base", "wheel")),
         complains="the joint of 'wheel' should be named 'wheel_joint', not 'weel_joint'",
         at='name="weel_joint"',
+        needs_size=False,
     ),
     Case(
-        root_of_tree,
+        tree.root_of_tree,
         {"link": "foot", "holds": "base"},
         passing=scene(FOOT, BASE, joint("base_joint", "fixed", "foot", "base")),
         says="'foot' is the root, and 'base' is fixed to it",
         failing=scene(FOOT, BASE, joint("base_joint", "fixed", "base", "foot")),
         complains="'foot' is not the root: it is a child of 'base' (joint 'base_joint')",
         at="<joint",
+        needs_size=False,
     ),
     Case(
-        frame_at,
+        placement.frame_at,
         {"link": "lidar", "relative_to": "base", "xyz": (0.15, 0.0, 0.225), "tolerance": 0.002},
         passing=mounted(),
         says="the frame 'lidar' is at 0.15 0 0.225 m in 'base'",
@@ -172,9 +201,11 @@ CASES = (
         complains="the frame 'lidar' is at 0.15 0.01 0.2 m in 'base'; it should be at 0.15 0 0.225 m"
         " (y 10 mm too large, z 25 mm too small)",
         at='xyz="0.15 0.01 0.2"',
+        edges={"tolerance": lambda off: mounted((0.15, off, 0.225))},
+        needs_size=False,
     ),
     Case(
-        centre_at,
+        placement.centre_at,
         {"link": "wheel", "relative_to": "base", "xyz": (-0.15, 0.225, 0.0), "tolerance": 0.002},
         passing=rolling(),
         says="the centre of what 'wheel' shows is at -0.15 0.225 0 m in 'base'",
@@ -182,27 +213,33 @@ CASES = (
         complains="the centre of what 'wheel' shows is at -0.15 0.2 0 m in 'base'; it should be at -0.15 0.225 0 m"
         " (y 25 mm too small)",
         at='xyz="-0.15 0.2 0.0"',
+        edges={"tolerance": lambda off: rolling(xyz=(-0.15, 0.225 + off, 0.0))},
+        of_a_mesh="pending",
     ),
     Case(
-        bottom_at_height,
+        placement.bottom_at_height,
         {"link": "base", "relative_to": "base", "height": 0.0, "tolerance": 0.002},
         passing=scene(BASE),
         says="the bottom of 'base' in the frame 'base' is at z = 0 m",
         failing=scene(link("base", visual(box(0.6, 0.4, 0.2)))),
         complains="the bottom of 'base' in the frame 'base' is at z = -0.1 m; it should be 0 m (100 mm too low)",
         at="<visual>",
+        edges={"tolerance": lambda off: scene(link("base", visual(box(0.6, 0.4, 0.2), xyz=(0.0, 0.0, 0.1 + off))))},
+        of_a_mesh="pending",
     ),
     Case(
-        bottoms_at_height,
+        placement.bottoms_at_height,
         {"links": ["wheel", "caster"], "relative_to": "foot", "height": 0.0, "tolerance": 0.002},
         passing=standing(),
         says="the bottoms of 'wheel' and 'caster' are at z = 0 0 m in 'foot'",
         failing=standing(wheel=0.05),
         complains="the bottoms of 'wheel' and 'caster' are at z = 0.05 0 m in 'foot'; they should be at 0 m ('wheel' 50 mm too high)",
         at='xyz="-0.15 0.225 0.05"',  # of the wheel's joint
+        edges={"tolerance": lambda off: standing(wheel=off)},
+        of_a_mesh="pending",
     ),
     Case(
-        stands_on,
+        contact.stands_on,
         {"link": "lidar", "on": "base", "tolerance": 0.002},
         passing=mounted(),
         says="'lidar' stands on the top of 'base', at z = 0.2 m in 'base'",
@@ -210,18 +247,23 @@ CASES = (
         complains="the bottom of 'lidar' is at z = 0.175 m in 'base'; it should be at the top of 'base',"
         " 0.2 m (25 mm too low)",
         at=None,  # lidar or base: either may be in the wrong place
+        edges={"tolerance": lambda off: mounted((0.15, 0.0, 0.225 + off))},
+        of_a_mesh="pending",
     ),
     Case(
-        clear_of,
+        contact.clear_of,
         {"link": "wheel", "of": "base", "tolerance": 0.002},
         passing=rolling(),
         says="'wheel' does not cut into 'base'",
         failing=rolling(xyz=(-0.15, 0.2, 0.0)),
         complains="'wheel' cuts 25 mm deep into 'base'",
         at="<visual>\n<geometry>\n<cylinder",
+        edges={"tolerance": lambda off: rolling(xyz=(-0.15, 0.225 - off, 0.0))},
+        one_sided=("tolerance",),
+        of_a_mesh="pending",
     ),
     Case(
-        under_the_base,
+        placement.under_the_base,
         {"link": "foot", "base": "base", "wheels": ["wheel"], "tolerance": 0.002, "angle": 1.0},
         passing=standing(),
         says="the frame 'foot' is under 'base', level with the bottoms of the wheels",
@@ -229,18 +271,25 @@ CASES = (
         complains="the frame 'foot' should be under 'base', level with the bottoms of the wheels:"
         " the lowest point of 'wheel' is 50 mm below it",
         at='xyz="0 0 0.05"',
+        edges={
+            "tolerance": lambda off: standing(height=0.1 + off),
+            "angle": lambda off: standing(rpy=turned(yaw=off)),
+        },
+        of_a_mesh="pending",
     ),
     Case(
-        rolls_forward,
+        motion.rolls_forward,
         {"link": "wheel", "base": "base", "tolerance": 1.0},
         passing=rolling(),
         says="a small positive turn of 'wheel' drives 'base' forward (joint 'wheel_joint')",
         failing=rolling(rpy=turned(roll=90)),
         complains="a small positive turn of 'wheel' drives 'base' backward; it should drive it forward (joint 'wheel_joint')",
         at="rpy=",
+        edges={"tolerance": lambda off: rolling(rpy=turned(roll=-90, yaw=off))},
+        of_a_mesh="pending",
     ),
     Case(
-        axis_along,
+        motion.axis_along,
         {
             "link": "wheel",
             "axis": (0.0, 0.0, 1.0),
@@ -253,15 +302,22 @@ CASES = (
         failing=rolling(rpy=turned(roll=90)),
         complains="the z axis of the frame 'wheel' points along 0 -1 0 in 'base'; it should point along 0 1 0 (180 degrees off)",
         at="rpy=",
+        edges={"tolerance": lambda off: rolling(rpy=turned(roll=-90 + off))},
+        needs_size=False,
     ),
     Case(
-        turns_about_itself,
+        motion.turns_about_itself,
         {"link": "wheel", "base": "base", "tolerance": 0.002, "angle": 1.0},
         passing=rolling(),
         says="'wheel' turns about its own axis",
         failing=rolling(axis="0 1 0"),
         complains="'wheel' wobbles: its joint axis is 90 degrees off the cylinder's axis; it should be along it (joint 'wheel_joint')",
         at='xyz="0 1 0"',
+        edges={
+            "tolerance": lambda off: rolling(wheel=link("wheel", visual(cylinder(), xyz=(off, 0.0, 0.0)))),
+            "angle": lambda off: rolling(wheel=link("wheel", visual(cylinder(), rpy=turned(roll=off)))),
+        },
+        of_a_mesh="failed",
     ),
 )
 

@@ -2,6 +2,7 @@
 
 import pytest
 
+from grader.checks.registry import describe
 from tests.checks.asking import ask, graded, missing
 from tests.checks.cases import CASES, Case
 from tests.checks.robots import Scene, box, joint, mesh
@@ -14,6 +15,10 @@ RELATED = [case for case in CASES if case.name != "joints_named" and set(NAMING)
 RELATED = [case for case in RELATED if case.arguments.get("relative_to") != case.arguments.get("link")]
 
 every_case = pytest.mark.parametrize("case", CASES, ids=[case.name for case in CASES])
+every_edge = pytest.mark.parametrize(
+    ("case", "argument"),
+    [pytest.param(case, argument, id=f"{case.name}-{argument}") for case in CASES for argument in case.edges],
+)
 every_related_case = pytest.mark.parametrize("case", RELATED, ids=[case.name for case in RELATED])
 
 
@@ -69,13 +74,11 @@ def test_a_loop_of_joints_does_not_hang_a_check(case: Case) -> None:
     assert ask(case.check, looped, **case.arguments) == ask(case.check, case.passing, **case.arguments)
 
 
-def test_what_is_said_of_meshes() -> None:
-    """A mesh has a colour and a frame but an unknown size: needs manual grading: what is measured, no mesh is a cylinder."""
-    found = {case.name: graded(case.check, case.passing.with_shape(mesh()), **case.arguments).status for case in CASES}
-    pending = {"bottom_at_height", "bottoms_at_height", "stands_on", "clear_of", "under_the_base", "rolls_forward"}
-    assert {name for name, status in found.items() if status == "pending"} - {"centre_at"} == pending
-    failed = {"shows_box", "shows_cylinder", "shows_sphere", "turns_about_itself"}
-    assert {name for name, status in found.items() if status == "failed"} == failed
+@every_case
+def test_a_mesh_has_a_frame_and_a_colour_but_no_size(case: Case) -> None:
+    """What is measured of a mesh needs manual grading; a mesh is no box, cylinder or sphere."""
+    outcome = graded(case.check, case.passing.with_shape(mesh()), **case.arguments)
+    assert outcome.status == case.of_a_mesh
 
 
 def test_a_pending_outcome_names_the_mesh() -> None:
@@ -87,14 +90,30 @@ def test_a_pending_outcome_names_the_mesh() -> None:
             assert "needs manual grading" in outcome.message
 
 
-def test_a_shape_without_size_is_no_shape() -> None:
+@every_case
+def test_a_shape_without_size_is_no_shape(case: Case) -> None:
     """Checks that look at what is shown say that a zero-size visual shows nothing; the others do not mind it."""
-    indifferent = {"urdf_loads", "shows_nothing", "held_by", "joints_named", "root_of_tree", "frame_at", "axis_along"}
-    for case in CASES:
-        empty = case.passing.with_shape(box(0.0, 0.0, 0.0))
-        if case.name in indifferent:
-            assert ask(case.check, empty, **case.arguments).status == "passed"
-        else:
-            error = missing(case.check, empty, **case.arguments)
-            assert error.kind == "visual"
-            assert f"{error.name!r} has no visual" in str(error)
+    empty = case.passing.with_shape(box(0.0, 0.0, 0.0))
+    if case.needs_size:
+        error = missing(case.check, empty, **case.arguments)
+        assert error.kind == "visual"
+        assert f"{error.name!r} has no visual" in str(error)
+    else:
+        assert ask(case.check, empty, **case.arguments).status == "passed"
+
+
+@every_case
+def test_every_tolerance_has_an_edge(case: Case) -> None:
+    """A sample has an edge for each argument of its check that is a tolerance."""
+    parameters = describe(case.check).parameters
+    assert set(case.edges) == {"tolerance", "angle"} & parameters.keys()
+
+
+@every_edge
+@pytest.mark.parametrize("sign", [1, -1])
+def test_the_edge_of_a_tolerance(case: Case, argument: str, sign: int) -> None:
+    """A check passes just inside its tolerance, and fails just outside, unless it has one side and this is the other."""
+    edge, tolerance = case.edges[argument], case.arguments[argument]
+    inside, outside = (ask(case.check, edge(sign * share * tolerance), **case.arguments) for share in (0.95, 1.05))
+    assert inside.status == "passed", inside
+    assert outside.status == ("passed" if sign < 0 and argument in case.one_sided else "failed"), outside

@@ -51,7 +51,7 @@ def test_a_slow_document_leaves_its_criteria_to_a_person(
     assert run(["grade", str(hand_in(tmp_path / "alice"))]) == 0
     shown = " ".join(capsys.readouterr().out.split())
     assert shown.count("the Word and PDF files take longer than 1 s in all; needs manual grading") == 2
-    assert "The answer in notes.md, from line 1, is for a person to mark" in shown
+    assert "The answer in notes.md, from line 1, needs manual grading" in shown
     assert "90 / 100 points" in shown
 
 
@@ -133,4 +133,4 @@ def test_a_mark_never_depends_on_a_document(tmp_path: Path) -> None:
     assert "0 graded, 2 unchanged" in again.stderr
     report = " ".join((tmp_path / "reports" / "alice.txt").read_text().split())
     reason = "grading it took longer than 4 s, and was stopped (--timeout raises the limit)"
-    assert report.count(f"The documents could not be read: {reason}; needs manual grading") == 2
+    assert report.count(f"The documents cannot be read: {reason}; needs manual grading") == 2

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from grader.cli.app import COMMANDS
+from grader.grading.rubric import shipped_rubrics
 from grader.report.formats import Format
 from grader.report.rubrics import EVERY_KIND
 from tests.command_line import PATIENCE
@@ -16,6 +17,12 @@ from tests.golden.cases import ROOT, run
 
 PARTS = ["task1", "task2", "task3", "questions"]
 FORMATS = [f"{kind.value}=" for kind in Format]
+RUBRICS = list(shipped_rubrics())
+
+
+def rubrics(start: str) -> list[str]:
+    """Return the ids of the shipped rubrics that begin so."""
+    return [name for name in RUBRICS if name.startswith(start)]
 
 
 def codes(start: str) -> list[str]:
@@ -39,11 +46,11 @@ def in_bash(line: str) -> list[str]:
         ("grader --show-completion ", ["bash", "zsh", "fish"]),
         ("grader rubric ", ["list", "show", "checks", "check"]),
         ("grader grade x --fa", ["--fail-under"]),
-        ("grader grade x --rubric ", ["lab6"]),
-        ("grader grade x --rubric=l", ["lab6"]),
-        ("grader batch x --rubric l", ["lab6"]),
-        ("grader rubric show ", ["lab6"]),
-        ("grader rubric check la", ["lab6"]),
+        ("grader grade x --rubric ", RUBRICS),
+        ("grader grade x --rubric=l", rubrics("l")),
+        ("grader batch x --rubric l", rubrics("l")),
+        ("grader rubric show ", RUBRICS),
+        ("grader rubric check la", rubrics("la")),
         ("grader grade --part ", PARTS),
         ("grader grade x --rubric lab6 --part ta", PARTS[:3]),
         ("grader grade x --rubric rubrics/lab6.toml --part q", ["questions"]),
@@ -185,9 +192,9 @@ def test_a_real_bash(tmp_path: Path) -> None:
         "complete -o default -F _grader_completion grader",
         "export explain",
         "task1 task2 task3",
-        "lab6",
+        " ".join(rubrics("la")),
         "questions",
-        "lab6",
+        " ".join(RUBRICS),
         "",
         "show",
         "show",

@@ -53,7 +53,7 @@ def test_what_is_shown(top: Path, graded_class: Path) -> None:
     first, second, third, last = done.stdout.split("points, 0 to ")
     assert first == (
         "\n1 of 4  Anna Ek (anna): About essay  4 points\n"
-        "Why? The answer in answers.md, from line 1, is for a person to mark\n"
+        "Why? The answer in answers.md, from line 1, needs manual grading\n"
         "Found:\n  # Step 1\n  The roots.\n"
         "Model answer:\n  Because of the roots.\n"
         f"in {graded_class}/class/anna/answers.md, line 1\n"

@@ -37,7 +37,7 @@ def test_at_a_glance(top: Path) -> None:
     assert "criterion  points  passed  by hand  of  share  tells\n" in text
     assert "box           2.5       2        0   3    67%  -0.19\n" in text
     assert "essay           4       0        2   2    38%       \n" in text
-    assert "     1  About box: 'base' shows a box 1 1 2 m, expected 1 1 1 m (x, y, z)\n" in text
+    assert "     1  About box: 'base' shows a box 1 1 2 m; it should be 1 1 1 m (x, y, z)\n" in text
     assert "Who needs a look\n  cleo: it could not be graded: " in text
     assert "  dora: nothing was handed in\n" in text
 

@@ -1,0 +1,134 @@
+"""The stories of CONTRIBUTING, performed in a copy of the project: the steps that it names are all that is needed."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.command_line import PATIENCE
+
+ROOT = Path(__file__).parent.parent
+LEFT_OUT = (".git", ".venv", "__pycache__", ".hypothesis", ".pytest_cache", ".mypy_cache", ".ruff_cache")
+
+pytestmark = pytest.mark.slow
+
+CHECK = '''
+
+def shows_cube(robot: Configuration, *, link: str, edge: NonNegative, tolerance: NonNegative) -> Outcome:
+    """A link shows a cube with edges of the given length in metres."""
+    return shows_box(robot, link=link, size=(edge, edge, edge), tolerance=tolerance)
+'''
+SAMPLE = """CASES = (
+    Case(
+        appearance.shows_cube,
+        {"link": "base", "edge": 0.2, "tolerance": 0.002},
+        passing=scene(link("base", visual(box(0.2, 0.2, 0.2)))),
+        says="'base' shows a box 0.2 0.2 0.2 m",
+        failing=scene(link("base", visual(box(0.2, 0.2, 0.3)))),
+        complains="'base' shows a box 0.2 0.2 0.3 m; it should be 0.2 0.2 0.2 m (x, y, z)",
+        at="size=",
+        edges={"tolerance": lambda off: scene(link("base", visual(box(0.2, 0.2, 0.2 + off))))},
+        of_a_mesh="failed",
+    ),
+"""
+RUBRIC = """\
+id = "lab0"
+title = "Lab 0: one box"
+reference = "lab0/robot.urdf"
+
+[[part]]
+id = "model"
+title = "The model"
+
+[[criterion]]
+id = "box"
+part = "model"
+title = "The base shows a box 0.6 x 0.4 x 0.2"
+points = 2
+check = "shows_box"
+with = { link = "base", size = [0.6, 0.4, 0.2], tolerance = 0.002 }
+"""
+REFERENCE = """\
+<?xml version="1.0"?>
+<robot name="box">
+  <link name="base"><visual><geometry><box size="0.6 0.4 0.2"/></geometry></visual></link>
+</robot>
+"""
+FORMAT = '''"""A report as one line: the submission and its score."""
+
+from grader.grading.report import Report
+from grader.text import printable
+
+
+def render_line(report: Report) -> str:
+    """Return a report in one line."""
+    return f"{printable(report.submission.id)}: {report.score} of {report.max_score}\\n"
+'''
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Path:
+    """A copy of the project, to be changed."""
+    return Path(shutil.copytree(ROOT, tmp_path / "project", ignore=shutil.ignore_patterns(*LEFT_OUT)))
+
+
+def replace(path: Path, old: str, new: str) -> None:
+    """Replace the first occurrence of a text in a file, which must be there."""
+    text = path.read_text(encoding="utf-8")
+    assert old in text, f"{path} does not hold {old!r}"
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+
+
+def python(project: Path, *arguments: str) -> None:
+    """Run Python in the copy of the project, with its modules; its output is shown where it fails."""
+    done = subprocess.run(
+        [sys.executable, *arguments],
+        cwd=project,
+        env={**os.environ, "PYTHONPATH": str(project)},
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=PATIENCE,
+    )
+    assert done.returncode == 0, done.stdout[-5000:] + done.stderr[-5000:]
+
+
+def passes(project: Path, *tests: str) -> None:
+    """Run tests in the copy of the project; all of them must pass."""
+    python(project, "-m", "pytest", "-q", "-n0", "-p", "no:cacheprovider", "--no-header", *tests)
+
+
+def test_a_new_check(project: Path) -> None:
+    """A check is a function, a line of the registry and a sample; the catalogue is generated."""
+    with (project / "grader/checks/appearance.py").open("a", encoding="utf-8") as family:
+        family.write(CHECK)
+    replace(project / "grader/checks/registry.py", "CHECKS: tuple[Callable[..., Outcome], ...] = (\n",
+            "CHECKS: tuple[Callable[..., Outcome], ...] = (\n    appearance.shows_cube,\n")  # fmt: skip
+    replace(project / "tests/checks/cases.py", "CASES = (\n", SAMPLE)
+    python(project, "docs/make.py")
+    passes(project, "tests/test_registry.py", "tests/test_architecture.py", "tests/checks/test_every_check.py",
+           "tests/checks/test_appearance.py", "tests/test_docs.py::test_a_made_page_is_current")  # fmt: skip
+
+
+def test_a_new_rubric(project: Path) -> None:
+    """A rubric is a TOML file and its reference solution."""
+    (project / "rubrics/lab0.toml").write_text(RUBRIC, encoding="utf-8")
+    (project / "rubrics/lab0").mkdir()
+    (project / "rubrics/lab0/robot.urdf").write_text(REFERENCE, encoding="utf-8")
+    python(project, "-m", "grader", "rubric", "check", "lab0")
+    passes(project, "tests/test_submissions.py", "tests/grading/test_rubric.py", "tests/cli/test_completion.py",
+           "tests/cli/test_answers.py", "tests/bundle/test_bundle.py")  # fmt: skip
+
+
+@pytest.mark.skipif(not (ROOT / "grader/report/formats.py").exists(), reason="the registry of formats is not there yet")
+def test_a_new_format(project: Path) -> None:
+    """A format is a module and a row of the registry."""
+    (project / "grader/report/line.py").write_text(FORMAT, encoding="utf-8")
+    row = '    JSON = "json", "json", "as_json:render_json"\n'
+    replace(project / "grader/report/formats.py", row, f'{row}    LINE = "line", "line", "line:render_line"\n')
+    python(project, "-m", "grader", "grade", "submissions/reference", "--format", "line")
+    passes(project, "tests/report", "tests/cli/test_save.py", "tests/cli/test_completion.py",
+           "tests/submission/test_own_reports.py", "tests/test_architecture.py")  # fmt: skip
