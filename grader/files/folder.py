@@ -8,7 +8,7 @@ from itertools import islice
 from pathlib import Path
 
 from grader.errors import InputError
-from grader.files.reading import advice_for, capped, read_start
+from grader.files.reading import advice_for, capped, read_start, shown_below
 from grader.files.tree import (
     BUILT,
     IGNORED,
@@ -46,6 +46,7 @@ class _Walk:
 
     def __init__(self, folder: Path, top: str) -> None:
         self._folder = folder
+        self._shown = shown_below(folder, top)
         self._top = os.path.realpath(folder)
         self._trusted = os.path.realpath(top) if top else self._top
         if top and self._top != os.path.normpath(f"{self._trusted}{os.fspath(folder).removeprefix(top)}"):
@@ -68,7 +69,7 @@ class _Walk:
             for entry in self._entries(where):
                 self._count += 1
                 if self._count > MOST_FILES:
-                    raise too_many(printable_path(self._folder))
+                    raise too_many(self._shown)
                 path = f"{where}/{entry.name}" if where else entry.name
                 if not self._is_ignored(entry, path) and self._take(entry, path, real_folder):
                     (links if entry.is_symlink() else waiting).append(path)
@@ -120,7 +121,7 @@ class _Walk:
                 return sorted(islice(found, MOST_FILES + 1), key=lambda each: each.name)
         except OSError as error:
             if not where:
-                raise InputError(f"cannot read {printable_path(self._folder)}: {error.strerror}") from None
+                raise InputError(f"cannot read {self._shown}: {error.strerror}") from None
             self.left_out.append(f"{clean(where)} is a folder that cannot be opened: {error.strerror}")
             return []
 

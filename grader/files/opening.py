@@ -6,7 +6,7 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from grader.errors import InputError
-from grader.files.reading import MAX_FILE_SIZE, not_there, open_regular, read_start
+from grader.files.reading import MAX_FILE_SIZE, not_there, open_regular, read_start, shown_below
 from grader.files.tree import MOST_FILES, File, Tree, make_tree, too_many
 from grader.text import printable_path
 
@@ -39,20 +39,20 @@ def outer_tree(path: Path, top: str = "") -> Tree | None:
 
     Below the folder `top` no symlink is followed.
     """
+    shown = shown_below(path, top)
     try:
         is_folder = path.is_dir()
         if not is_folder and not os.path.lexists(path):
-            raise not_there(path)
+            raise InputError(f"{shown} does not exist") if top else not_there(path)
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise InputError(f"cannot read {printable_path(path)}: {reason}") from None
+        raise InputError(f"cannot read {shown}: {reason}") from None
     if is_folder:
         from grader.files.folder import read_folder  # what a single URDF does not need is loaded late
 
         return read_folder(path, top)
     if path.name.lower().endswith((".urdf", ".xacro", ".xml")):
         return None
-    shown = printable_path(path)
     kind = archive_kind(read_start(path, 512, top=top))
     if kind is None:
         if path.name.lower().endswith(ARCHIVES):

@@ -6,7 +6,8 @@ from decimal import Decimal
 from pathlib import Path
 from typing import NamedTuple
 
-from grader.classroom.gradebook.grades import Grades, StudentGrade
+from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.lms.canvas import fill_gradebook
 from grader.classroom.lms.comments import feedback_items
 from grader.classroom.lms.feedback import FeedbackItem, feedback_html
@@ -49,10 +50,10 @@ def lms_grades(standings: Grades, *, feedback: bool, pending_as_zero: bool) -> I
             standing.verdict in ("graded", "errored") and not replace(standing, pending=Decimal(0)).why_not_final
         )
         if reason and not (waits_only and pending_as_zero):
-            yield LmsGrade(standing.student, None, "", reason, standing.is_expected is not False)
+            yield LmsGrade(standing.student, None, "", reason, standing.is_on_roster is not False)
             continue
         text = _feedback(standings, standing) if feedback else ""
-        yield LmsGrade(standing.student, standing.total, text, is_on_roster=standing.is_expected is not False)
+        yield LmsGrade(standing.student, standing.total, text, is_on_roster=standing.is_on_roster is not False)
 
 
 class Filling(NamedTuple):

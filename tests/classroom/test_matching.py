@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.run_writer import save_student
 from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.lms.grades import LmsGrade
 from grader.classroom.lms.matching import LmsStudent, join
@@ -28,7 +29,7 @@ Asked = Callable[[str], Student | None]
 
 def in_roster(name: str) -> Student | None:
     """Whose a folder of this name is."""
-    place = Roster(map(RosterEntry, CLASS)).match(Student(name)).place
+    place = Roster(map(RosterEntry, CLASS)).match(Student(name)).position
     return None if place is None else CLASS[place]
 
 
@@ -37,7 +38,7 @@ def in_a_team(name: str) -> Student | None:
     found = Roster(RosterEntry(each, "red") for each in CLASS).match(
         Student(f"red/{name}", name, login=name, team="red")
     )
-    return None if found.place is None else CLASS[found.place]
+    return None if found.position is None else CLASS[found.position]
 
 
 def in_lms(name: str) -> Student | None:
@@ -52,7 +53,7 @@ def in_gradebook(name: str, tmp_path: Path) -> Student | None:
     with Gradebook(tmp_path / "book.db", create=True) as book:
         with book.transaction():
             for each in CLASS:
-                book.keep_student(each, None)
+                save_student(book, each, None)
         try:
             return Grades(book).find(name).student
         except InputError:
@@ -104,10 +105,10 @@ def test_exact_case_decides_before_another() -> None:
 def test_numbers_of_an_lms_decide() -> None:
     """A number goes before a name, and a name is of nobody whose number is another."""
     people = Roster(map(RosterEntry, CLASS))
-    assert people.match(Student("x", "Ann Ash", canvas="5")).place == 1
-    assert people.match(Student("x", moodle="6")).place == 1
+    assert people.match(Student("x", "Ann Ash", canvas="5")).position == 1
+    assert people.match(Student("x", moodle="6")).position == 1
     found = people.match(Student("x", "Bea Ash", moodle="7"))
-    assert (found.place, found.doubt) == (None, "has the name of 200, but another number")
+    assert (found.position, found.doubt) == (None, "has the name of 200, but another number")
 
 
 def test_what_is_not_on_the_roster_is_matched_by_number_only() -> None:

@@ -315,9 +315,9 @@ def test_what_has_one_cause_is_one_remark() -> None:
         "About loads: 0 of 3. The file has no root",
         "3 criteria are not decided, because loads failed: 0 of 7.",
     ]
-    waits = Outcome("pending", "nobody can tell; a person has to look")
+    waits = Outcome("pending", "nobody can tell; needs manual grading")
     assert list(feedback_items([result(name, waits) for name in ("box", "tall")])) == [
-        FeedbackItem("2 criteria wait for a person", Decimal(0), Decimal(3), "Nobody can tell; a person has to look")
+        FeedbackItem("2 criteria wait for a person", Decimal(0), Decimal(3), "Nobody can tell; needs manual grading")
     ]
 
 
