@@ -9,8 +9,7 @@ from typing import NamedTuple
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.lms.canvas import fill_gradebook
-from grader.classroom.lms.comments import feedback_items
-from grader.classroom.lms.feedback import FeedbackItem, feedback_html
+from grader.classroom.lms.feedback import FeedbackItem, feedback_html, feedback_items
 from grader.classroom.lms.grades import LmsGrade
 from grader.classroom.lms.moodle import fill_worksheet
 from grader.classroom.lms.preflight import Filled, Preflight, RowNote
@@ -84,7 +83,7 @@ def fill(is_moodle: bool, standings: Grades, filling: Filling) -> Filled:
         )
     wanted = (rubric.id, rubric.title)
     return fill_gradebook(
-        data, grades, out_of=out_of, wanted=wanted, column=column, any_maximum=any_maximum, shown=shown
+        data, grades, out_of=out_of, rubric_names=wanted, column=column, any_maximum=any_maximum, shown=shown
     )
 
 

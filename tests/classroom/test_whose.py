@@ -131,7 +131,7 @@ def test_contested_submissions_change_nothing(tmp_path: Path) -> None:
     before = students(tmp_path)["7"]
     submit(tmp_path / "class/Ash, Alice")
     done = batch(tmp_path, roster=roster)
-    assert "Alice Ash, Ash, Alice may each be of 7: left unassigned, and what 7 had before stays" in done.stderr
+    assert "Alice Ash, Ash, Alice may each belong to 7: left unassigned; 7 keeps an earlier submission" in done.stderr
     assert students(tmp_path)["7"] == before
 
 

@@ -331,7 +331,7 @@ def test_another_maximum_is_refused(top: Path) -> None:
     (top / "canvas.csv").write_text(canvas("100", ben="102"))
     arguments = ("canvas", "--into", top / "canvas.csv", "--output", top / "out.csv")
     assert refusal(export(top, *arguments)) == (
-        "Canvas' Points Possible of 'A small lab (77)' is 100, and the rubric's points are 11: change the maximum in the LMS"
+        "Canvas' Points Possible of 'A small lab (77)' is 100, but the rubric's maximum is 11: change the maximum in the LMS"
         " and export again, or write the points as they are with --any-maximum"
     )
     assert not (top / "out.csv").exists()
@@ -346,9 +346,9 @@ def test_a_large_class_does_not_flood_the_screen() -> None:
     waits = [RowNote(number, f"Student {number}", "10 points need manual grading") for number in range(3, 41)]
     late = [RowNote(number, f"Doe, {number}", "nothing was submitted") for number in (41, 42)]
     one = [RowNote(43, "Zoe", "has a grade that is locked in Moodle")]
-    unknown = tuple(RowNote(number, "x\x1b", "nobody") for number in range(50, 103))
-    conflicts = tuple(Conflict(number, "y", "1", "2") for number in range(50))
-    found = Preflight("Grade", 0, 0, conflicts, (*waits, *late, *one), unknown, (), (), (), ("warned",))
+    unknown = [RowNote(number, "x\x1b", "nobody") for number in range(50, 103)]
+    conflicts = [Conflict(number, "y", "1", "2") for number in range(50)]
+    found = Preflight("Grade", 0, 0, conflicts, [*waits, *late, *one], unknown, warnings=["warned"])
     lines = list(preflight_lines(found))
     assert lines[0] == "column 'Grade': 0 filled, 0 the same already"
     assert lines[1:51] == [f"row {number}, y: was 1, becomes 2" for number in range(50)]

@@ -132,7 +132,7 @@ def test_what_is_no_gradebook(make: Callable[[Path], None], said: str, folder: P
 def test_a_gradebook_in_a_missing_folder(folder: Path, tmp_path: Path) -> None:
     """The line names the gradebook."""
     place = tmp_path / "missing" / "lab6.db"
-    assert refused("batch", folder, "--gradebook", place).startswith(f"the gradebook {place}: ")
+    assert refused("batch", folder, "--gradebook", place).startswith(f"cannot create the gradebook {place}: ")
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="nothing is closed to root")

@@ -225,7 +225,7 @@ def test_a_scheduler_that_is_lost(tmp_path: Path) -> None:
             assert process.returncode == 2, said
     *_, stopped, last = said.splitlines()
     assert stopped.startswith("grader: stopped: ")
-    assert last == f"grader: the Dask scheduler at {address} is there no longer"
+    assert last == f"grader: lost the connection to the Dask scheduler at {address}"
     assert set(verdicts(book).values()) == {"graded"}
     assert grader("batch", folder, "--gradebook", book).returncode == 0
     assert (len(verdicts(book)), doubled(book)) == (1_000, [])
