@@ -237,7 +237,7 @@ def test_another_assignment_of_moodle_is_refused(tmp_path: Path) -> None:
         place.rename(tmp_path / "class" / f"Jane Doe {number}_{number + 70}_assignsubmission_file")
     done = batch(tmp_path)
     assert done.returncode == 2
-    assert "Moodle gives the students of this class other numbers" in done.stderr
+    assert "the Moodle ids of its students are not those of this class" in done.stderr
 
 
 @pytest.mark.parametrize("layout", ["moodle", "canvas"])

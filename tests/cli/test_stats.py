@@ -72,7 +72,7 @@ def test_an_empty_gradebook(tmp_path: Path) -> None:
     """One that nothing was graded into is told of in a line."""
     book = tmp_path / "book.db"
     Gradebook(book, create=True).close()
-    why = f"nothing has been graded into {book} yet: grader batch PATH --gradebook {book} does that"
+    why = f"nothing has been graded into {book} yet: run grader batch PATH --gradebook {book}"
     assert refusal(grader("stats", "--gradebook", book)) == why
 
 
@@ -109,7 +109,7 @@ def test_who_is_left_behind_by_a_new_rubric(tmp_path: Path) -> None:
         graded_into(book, old, [came_out(old, key, "ppppp") for key in ("anna", "ben")])
         graded_into(book, new, [came_out(new, "anna", "ppppp")])
     text = stats(tmp_path / "book.db")
-    assert "2 graded\n1 of the graded with an earlier version of the rubric: not in what follows\n" in text
+    assert "2 graded\n1 of the graded by an earlier rubric only: not in what follows\n" in text
     assert "  ben: graded with an earlier version of the rubric\n" in text
 
 

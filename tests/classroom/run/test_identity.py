@@ -168,3 +168,11 @@ def test_what_could_not_be_written_is_refused_first(top: Path, option: str, valu
     assert (done.returncode, done.stdout) == (2, "")
     assert words in done.stderr
     assert (top / "g.db").read_bytes() == before
+
+
+def test_a_corrected_id_stays_on_the_roster(top: Path) -> None:
+    """A student with a new id on the roster is not reported as one who is no longer on it."""
+    batch(top, roster=BOTH)
+    done = batch(top, roster=BOTH.replace("102", "099"))
+    assert "102 is 099 now, with all manual marks" in done.stderr
+    assert "not on the roster" not in done.stdout + done.stderr
