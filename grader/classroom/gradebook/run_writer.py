@@ -35,18 +35,10 @@ class RunWriter:
         with book.transaction():
             _save_rubric(book, rubric)
             (last_mark,) = book.connection.execute("SELECT coalesce(max(id), 0) FROM mark").fetchone()
-            self.run = _insert(
-                book,
-                "run",
-                started=_now(),
-                source=storable(source),
-                layout=layout,
-                rubric=rubric.sha256,
-                version=__version__,
-                last_mark=last_mark,
-                deadline=deadline,
-                assignment=storable(assignment),
-            )
+            row = {"started": _now(), "source": storable(source), "layout": layout, "rubric": rubric.sha256}
+            row |= {"version": __version__, "last_mark": last_mark}
+            row |= {"deadline": deadline, "assignment": storable(assignment)}
+            self.run = _insert(book, "run", row)
 
     def use_template(self, template: str) -> None:
         """Store the records that follow as differences from a template; an empty one means none."""
@@ -59,27 +51,13 @@ class RunWriter:
     def add_result(self, student: int, result: GradingResult) -> int:
         """Add a result, unless the student's newest one is the same; return its id."""
         newest = self._book.connection.execute(_NEWEST, (student,)).fetchone()
-        if newest is not None and newest[1:] == (
-            self._rubric, __version__, result.digest, self._template, result.record,
-        ):  # fmt: skip
+        same = (self._rubric, __version__, result.digest, self._template, result.record)
+        if newest is not None and newest[1:] == same:
             return int(newest[0])
-        return _insert(
-            self._book,
-            "result",
-            student=student,
-            rubric=self._rubric,
-            version=__version__,
-            digest=result.digest,
-            verdict=result.verdict,
-            reason=storable(result.reason),
-            score=result.score,
-            out_of=result.out_of,
-            pending=result.pending,
-            statuses=result.statuses,
-            failures=result.failures,
-            template=self._template,
-            record=result.record,
-        )
+        values = {**result._asdict(), "reason": storable(result.reason)}
+        del values["key"], values["fingerprint"]  # the other fields are columns
+        row = {"student": student, "rubric": self._rubric, "version": __version__, "template": self._template}
+        return _insert(self._book, "result", row | values)
 
     def add_submission(self, student: int, result: int, submission: ClassSubmission, fingerprint: str) -> None:
         """Record that this run found a submission, and which result it has."""
@@ -121,7 +99,7 @@ def save_student(book: Gradebook, student: Student, enrolment: Enrolment | None)
     found = book.connection.execute(_FIND, (student.key,)).fetchone()
     if found is None:
         row = Profile(student, enrolment or NO_ROSTER).columns()
-        return _insert(book, "student", **dict(zip(PROFILE_COLUMNS, row, strict=True)))
+        return _insert(book, "student", dict(zip(PROFILE_COLUMNS, row, strict=True)))
     identity, before = int(found[0]), Profile.from_columns(found[1:])
     after = before.updated(student, enrolment)
     if after != before:
@@ -146,7 +124,7 @@ def _save_rubric(book: Gradebook, rubric: Rubric) -> None:
     )
 
 
-def _insert(book: Gradebook, table: str, **values: Any) -> int:
+def _insert(book: Gradebook, table: str, values: dict[str, Any]) -> int:
     """Insert a row and return its id."""
     query = f"INSERT INTO {table} ({', '.join(values)}) VALUES ({', '.join('?' * len(values))})"
     return int(book.connection.execute(query, tuple(values.values())).lastrowid or 0)

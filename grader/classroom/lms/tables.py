@@ -8,7 +8,6 @@ accepts, is an error.
 import codecs
 import re
 from dataclasses import dataclass, replace
-from functools import cache
 
 from grader.errors import InputError
 from grader.files.reading import capped
@@ -100,42 +99,27 @@ def _delimiter(text: str) -> str:
     return found[1] if found else ","
 
 
-@cache
-def _cell(delimiter: str) -> re.Pattern[str]:
-    # Possessive, so that an open quote fails in one pass. Behind a closing quote csv continues with plain text.
-    return re.compile(rf'"((?:[^"]++|"")*+)"([^{delimiter}\r\n]*+)|((?!")[^{delimiter}\r\n]*+)')
-
-
 def _rows(text: str, delimiter: str, shown: str) -> tuple[TableRow, ...]:
-    pattern, at, count = _cell(delimiter), 0, 0
+    # Possessive, so that an open quote fails in one pass. Behind a closing quote csv continues with plain text.
+    cell = rf'(?:"((?:[^"]++|"")*+)"([^{delimiter}\r\n]*+)|(?!")[^{delimiter}\r\n]*+)'
+    pattern = re.compile(rf"({cell})({delimiter}|\r\n|\r|\n|\Z)")
+    at, count = 0, 0
     rows: list[TableRow] = []
     cells: list[Cell] = []
-    while at < len(text):
+    while at < len(text) or cells:  # a text that ends behind a delimiter has one more empty cell
         if not cells and len(rows) >= ROW_LIMIT:
             raise InputError(f"{shown} has more than {ROW_LIMIT} rows, the limit")
         found = pattern.match(text, at)
         if found is None:
             raise InputError(f"{shown} is not a CSV file: a quotation mark in row {len(rows) + 1} is never closed")
-        cells.append(_cell_of(found))
+        raw, inner, rest, end = found.groups()
+        cells.append(Cell(raw, raw if inner is None else inner.replace('""', '"') + rest))
         count += 1
         if count > CELL_LIMIT:
             raise InputError(f"{shown} has more than {CELL_LIMIT} cells, the limit")
         at = found.end()
-        if text[at : at + 1] == delimiter:
-            at += 1
-            if at < len(text):
-                continue
-            cells.append(Cell("", ""))  # the text ends behind a delimiter
-        end = "\r\n" if text.startswith("\r\n", at) else text[at : at + 1]
-        at += len(end)
-        is_blank = len(cells) == 1 and not cells[0].raw
-        rows.append(TableRow(len(rows) + 1, () if is_blank else tuple(cells), end))
-        cells = []
+        if end != delimiter:
+            is_blank = len(cells) == 1 and not cells[0].raw
+            rows.append(TableRow(len(rows) + 1, () if is_blank else tuple(cells), end))
+            cells = []
     return tuple(rows)
-
-
-def _cell_of(found: re.Match[str]) -> Cell:
-    raw: str = found[0]
-    if found[1] is None:
-        return Cell(raw, raw)
-    return Cell(raw, found[1].replace('""', '"') + found[2])
