@@ -152,7 +152,7 @@ def _graded(folder: Path) -> Iterable[tuple[str, GradingResult]]:
 
 def _lost(graded: GradingResult) -> set[str]:
     """The criteria of the URDF that failed or were skipped."""
-    lost = {each.id for each, sign in zip(LAB6.criteria, graded.signs, strict=True) if sign in "fs"}
+    lost = {each.id for each, sign in zip(LAB6.criteria, graded.statuses, strict=True) if sign in "fs"}
     return lost & set(made_up.criteria())
 
 

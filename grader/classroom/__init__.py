@@ -1,1 +1,1 @@
-"""Many submissions: what a class has handed in, graded side by side, kept in a gradebook, and back to the LMS."""
+"""Classes of submissions: intake, parallel runs, the gradebook, and files of learning management systems."""

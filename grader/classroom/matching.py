@@ -1,7 +1,7 @@
-"""Which student is meant: one matcher for class folders, rosters, gradebooks, LMS files and what a person types.
+"""Find out which student is meant: one matcher for class folders, rosters, gradebooks, LMS files and typed names.
 
-A student is identified by clues. The first kind of clue at which anybody is found decides; where it finds several, or somebody whom
-an LMS knows by another number, nobody is taken. Spelling is compared in one way everywhere (`clues_of` and `claims_of`).
+A student is identified by clues. The first kind of clue with a match decides; if it matches several students, or one whom an LMS
+knows by another id, the match is ambiguous and nobody is chosen. Spelling is normalised in one place (`clues_of`, `claims_of`).
 """
 
 import re
@@ -14,13 +14,13 @@ from grader.classroom.students import Student
 from grader.text import printable_path
 
 _SUFFIX = re.compile(r"(sn?r|senior|jn?r|junior|i{2,3}|iv|vi?|esq|esquire)\.?", re.IGNORECASE)
-_UNWRITTEN = str.maketrans("", "", "&<>\"`|':\\/")
+_IGNORED_CHARACTERS = str.maketrans("", "", "&<>\"`|':\\/")
 _WORD_CATEGORIES = frozenset({"Lu", "Ll", "Lt", "Lm", "Lo", "Mn", "Mc", "Me", "Nd", "Pc"})
 _MAX_WORDS = 8
 
 
 class Clue(IntEnum):
-    """What identifies a student, the most reliable first."""
+    """The kinds of data that identify a student, the most reliable first."""
 
     CANVAS = 0  # the user id
     MOODLE = 1  # the participant id
@@ -30,22 +30,22 @@ class Clue(IntEnum):
     CANVAS_NAME = 5  # a full name as Canvas writes it into file names
     NAME = 6
     SURNAME = 7
-    PLACE = 8  # where a submission was before
+    PATH = 8  # where the submission was in an earlier run
 
 
 Clues = Mapping[Clue, Collection[str]]
 NUMBERS = (Clue.CANVAS, Clue.MOODLE)
-CERTAIN = Clue.WORD  # a clue of this kind or above is a student's own, exactly as written
-OF_FOLDERS = tuple(clue for clue in Clue if clue < Clue.SURNAME)  # what a submission's name is compared by
+CERTAIN = Clue.WORD  # a match by this kind or a more reliable one is certain
+OF_FOLDERS = tuple(clue for clue in Clue if clue < Clue.SURNAME)  # for the name of a submission
 OF_TEAM_FOLDERS = (*OF_FOLDERS, Clue.SURNAME)
-OF_RECORDS = (*NUMBERS, Clue.WORD, Clue.ANY_CASE, Clue.NAME, Clue.CANVAS_NAME)  # two lists of people
-TYPED = (*NUMBERS, Clue.WORD, Clue.NAME)  # what a person may type, who is then asked to be exact
+OF_RECORDS = (*NUMBERS, Clue.WORD, Clue.ANY_CASE, Clue.NAME, Clue.CANVAS_NAME)  # for two lists of students
+TYPED = (*NUMBERS, Clue.WORD, Clue.NAME)  # for what a person types, who can be asked to be more exact
 
 
 class Match(NamedTuple):
-    """Who is meant: the positions of those whom the first matching kind of clue finds.
+    """The positions of the people that the first matching kind of clue finds.
 
-    `contradicted` has those whom it finds as well, but whom an LMS knows by another number: they are not meant.
+    `contradicted` are those whom it finds as well, but whom an LMS knows by another id.
     """
 
     people: tuple[int, ...]
@@ -54,12 +54,12 @@ class Match(NamedTuple):
 
     @property
     def only(self) -> int | None:
-        """The one who is meant; None for nobody or several."""
+        """The only match; None if there is none or several."""
         return self.people[0] if len(self.people) == 1 else None
 
 
 class People:
-    """A list of people by their clues."""
+    """An index of people by their clues."""
 
     def __init__(self, people: Iterable[Clues]) -> None:
         self.clues = tuple(people)
@@ -72,7 +72,7 @@ class People:
                     table[value] = index if before is None else (*_tuple(before), index)
 
     def find(self, claims: Clues, kinds: Sequence[Clue] = OF_FOLDERS, among: Collection[int] | None = None) -> Match:
-        """Who has these clues, of everybody or of the positions in `among`."""
+        """Find people by clues, among all or among the positions in `among`; `kinds` are tried in order."""
         for clue in kinds:
             table = self._tables[clue]
             found = {index for value in claims.get(clue, ()) for index in _tuple(table.get(value, ()))}
@@ -84,14 +84,14 @@ class People:
         return Match(())
 
     def named(self, name: str) -> tuple[int, ...]:
-        """Everybody whom a number, key, login, address or full name may mean that a person types: whatever kind of clue it is."""
+        """Return the positions of all people whom a typed id, key, login, address or full name may mean."""
         claims = {**claims_of(Student(name, name)), Clue.CANVAS: (name,), Clue.MOODLE: (name,)}
-        found = (self.find({kind: claims.get(kind, ())}, (kind,)) for kind in TYPED)
-        return tuple(sorted({each for some in found for each in some.people}))
+        matches = (self.find({kind: claims.get(kind, ())}, (kind,)) for kind in TYPED)
+        return tuple(sorted({index for match in matches for index in match.people}))
 
 
 def clues_of(student: Student, aliases: Iterable[str] = ()) -> Clues:
-    """The clues in a record of a student: a row of a roster or LMS file, or a student of the gradebook."""
+    """Return the clues in a record: a row of a roster or LMS file, or a student of the gradebook."""
     local_part, at, _ = student.email.partition("@")
     words = {_composed(word.strip()) for word in (student.key, student.login, student.sis, student.email, *aliases)}
     return _present(
@@ -109,7 +109,7 @@ def clues_of(student: Student, aliases: Iterable[str] = ()) -> Clues:
 
 
 def claims_of(student: Student) -> Clues:
-    """The clues in the name of a submission, or in what a person types: a word may be anything that identifies a student."""
+    """Return the clues in the name of a submission, or in what a person types: a word may be any kind of id."""
     words = {_composed(word) for word in (student.key, student.login, student.name if student.team else "")}
     lower = {plain_word(word) for word in words}
     in_canvas = student.key.rpartition("_")[0] if student.canvas or student.maybe_canvas else ""
@@ -128,7 +128,7 @@ def claims_of(student: Student) -> Clues:
 
 
 def numbers_of(student: Student) -> Clues:
-    """Only the numbers by which an LMS knows a student."""
+    """Return only the ids that an LMS gives a student."""
     return _present({Clue.CANVAS: (student.canvas,), Clue.MOODLE: (student.moodle,)})
 
 
@@ -145,46 +145,46 @@ def _tuple(found: int | tuple[int, ...]) -> tuple[int, ...]:
 
 
 def _contradict(left: Clues, right: Clues) -> bool:
-    """Whether two are certainly not the same: an LMS knows them by different numbers."""
+    """Return whether two are certainly different people: an LMS knows them by different ids."""
     return any(clue in left and clue in right and set(left[clue]).isdisjoint(right[clue]) for clue in NUMBERS)
 
 
 def plain_word(word: str) -> str:
-    """A login, number or address for comparison: case and spaces do not count, nor how an accent is encoded."""
+    """Normalise a login, id or address: case, spaces and the encoding of accents are ignored."""
     return " ".join(_composed(word).casefold().split())
 
 
 def plain_name(name: str) -> str:
-    """A full name for comparison: compatible characters, case and spaces made alike, `Doe, Jane` the same as `Jane Doe`.
+    """Normalise a full name: compatible characters, case and spaces; `Doe, Jane` becomes `jane doe`.
 
-    Apostrophes and the like do not count: Moodle removes them from the names of files (moodlelib.php, PARAM_FILE).
+    Apostrophes and similar characters are ignored: Moodle removes them from file names (moodlelib.php, PARAM_FILE).
     """
     words = name.casefold().replace("_", " ")
     if not words.isascii():
         words = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", name).casefold()).replace("_", " ")
         words = "".join(letter for letter in words if unicodedata.category(letter) != "Cf")  # direction marks
-    last, comma, first = words.translate(_UNWRITTEN).partition(",")
+    last, comma, first = words.translate(_IGNORED_CHARACTERS).partition(",")
     return " ".join(f"{first} {last}".split()) if comma else " ".join(last.split())
 
 
 def plain_group(name: str) -> str:
-    """The name of a group or team for comparison: case does not count, nor whether a space, `_` or `-` separates words."""
+    """Normalise the name of a group or team: case is ignored, and a space, `_` and `-` are the same."""
     return " ".join(plain_word(name).replace("_", " ").replace("-", " ").split())
 
 
 def is_word(letter: str) -> bool:
-    """Whether Ruby, in which Canvas is written, counts a character as part of a word: a letter, mark, digit or connector."""
+    """Return whether a character is part of a word in Ruby, in which Canvas is written: a letter, mark, digit or connector."""
     return (letter.isascii() and letter.isalnum()) or unicodedata.category(letter) in _WORD_CATEGORIES
 
 
 def canvas_name(sortable: str) -> str:
-    """What Canvas makes of a sortable name in file names (canvas-lms, content_zipper.rb), for comparison."""
+    """Normalise a sortable name as Canvas writes it into file names (canvas-lms, content_zipper.rb)."""
     plain = unicodedata.normalize("NFC", re.sub(r"_(\d+)_", r"\1", sortable))
     return "".join(letter for letter in plain if is_word(letter)).casefold()
 
 
 def canvas_names(name: str) -> Iterator[str]:
-    """What Canvas may call a student in a file name: it sorts by the last word of a name, or as its user has set."""
+    """Yield what Canvas may call a student in a file name: it sorts by the last word of a name, or as the user has set."""
     if "," in name:
         yield canvas_name(name)
         return
@@ -197,7 +197,7 @@ def canvas_names(name: str) -> Iterator[str]:
 
 
 def surname(name: str) -> str:
-    """The part of a full name that people are sorted by: what precedes a comma, or the last word."""
+    """Return the surname in a full name: the words before a comma, or the last word."""
     last, comma, _ = name.partition(",")
     words = last.split()
     return plain_name(last) if comma else plain_name(words[-1] if words else "")

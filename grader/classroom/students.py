@@ -1,15 +1,15 @@
-"""Who handed in, and what each of them has handed in."""
+"""Students, and what they have submitted in a class."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
 class Student:
-    """A student or a team. `key` names them in the gradebook, and is unique there; the rest is empty where it is not known.
+    """A student or a team. `key` is unique in the gradebook; the other fields are empty where they are not known.
 
-    `login`, `sis` (the number that the university gives), `canvas` (Canvas' user id) and `moodle` (Moodle's participant id) are what
-    rosters and LMS files know them by. `team` is the team folder that a submission lies in, in the teams layout. `maybe_canvas` are
-    the numbers one of which is Canvas' user id, where a file's name can be read in more than one way. Neither of these two is kept.
+    `login`, `sis` (the university's id), `canvas` (Canvas' user id) and `moodle` (Moodle's participant id) are the ids in rosters
+    and LMS files. `team` is the team folder of the submission, in the teams layout. `maybe_canvas` are numbers one of which is
+    Canvas' user id, where a file name can be read in several ways. The gradebook stores neither of these two.
     """
 
     key: str
@@ -25,12 +25,11 @@ class Student:
 
 @dataclass(frozen=True, slots=True)
 class ClassSubmission:
-    """What one student has handed in: the last attempt, and where the earlier ones are.
+    """The submission of one student in a class: the last attempt, and where the earlier ones are.
 
-    `paths` lead from the top of the class folder (or archive) to one folder, one file, or the several files that an LMS has
-    saved side by side; with forward slashes. `names` says what the student called each of these, where the LMS has renamed
-    them. `submitted` is a time as ISO 8601, empty where nobody says. `is_certain` is False where a roster assigns it by something
-    less than the student's own number, key or login.
+    `paths` are relative to the class folder or zip, with forward slashes: one folder, one file, or the several files that an LMS
+    has saved side by side. `names` are the student's own names of these, where the LMS has renamed them. `submitted` is ISO 8601,
+    empty if unknown. `is_certain` is False if a roster matched it by less than the student's own id, key or login.
     """
 
     student: Student

@@ -98,7 +98,7 @@ def _mark(standings: "Grades", pending: "PendingCriterion", points: "Decimal", b
     shown = pending.newest
     while True:
         try:
-            mark(standings.book, pending.standing, pending.result.criterion, points, by, comment, shown=shown)
+            mark(standings.book, pending.grade, pending.result.criterion, points, by, comment, shown=shown)
         except NewerMarkError as error:
             shown = error.mark.id
             complain(f"somebody has marked this since it was shown: {mark_words(error.mark)}")

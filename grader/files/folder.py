@@ -10,7 +10,7 @@ from pathlib import Path
 from grader.errors import FileError, InputError
 from grader.files import limits
 from grader.files.ignore_rules import BUILD_FOLDERS, IGNORED_FOLDERS, ignored_part, is_generated
-from grader.files.reading import advice_for, capped, read_start
+from grader.files.reading import advice_for, capped, read_start, shown_below
 from grader.files.tree import File, IgnoredFile, Tree, make_tree, parents
 from grader.text import printable_path
 
@@ -37,6 +37,7 @@ class _Walk:
 
     def __init__(self, folder: Path, top: str) -> None:
         self._folder = folder
+        self._shown = shown_below(folder, top)
         self._top = os.path.realpath(folder)
         self._trusted = os.path.realpath(top) if top else self._top
         if top and self._top != os.path.normpath(f"{self._trusted}{os.fspath(folder).removeprefix(top)}"):
@@ -59,7 +60,7 @@ class _Walk:
             for entry in self._entries(where):
                 self._count += 1
                 if self._count > limits.MAX_FILES:
-                    raise limits.too_many(printable_path(self._folder))
+                    raise limits.too_many(self._shown)
                 path = f"{where}/{entry.name}" if where else entry.name
                 if not self._is_ignored(entry, path) and self._add(entry, path, real_folder):
                     (links if entry.is_symlink() else waiting).append(path)
@@ -114,7 +115,7 @@ class _Walk:
                 return sorted(islice(found, limits.MAX_FILES + 1), key=lambda entry: entry.name)
         except OSError as error:
             if not where:
-                raise InputError(f"cannot read {printable_path(self._folder)}: {error.strerror}") from None
+                raise InputError(f"cannot read {self._shown}: {error.strerror}") from None
             self._ignore(printable_path(where), f"is a folder that cannot be opened: {error.strerror}")
             return []
 

@@ -9,7 +9,7 @@ from pathlib import Path, PurePosixPath
 from grader.errors import FileError, InputError
 from grader.files import limits
 from grader.files.limits import Allowance
-from grader.files.reading import not_there, open_regular, read_start
+from grader.files.reading import not_there, open_regular, read_start, shown_below
 from grader.files.tree import File, IgnoredFile, Tree, make_tree
 from grader.text import printable_path
 
@@ -46,20 +46,20 @@ def outer_tree(path: Path, top: str = "") -> Tree | None:
 
     Below the folder `top` no symlink is followed. Raises InputError.
     """
+    shown = shown_below(path, top)
     try:
         is_folder = path.is_dir()
         if not is_folder and not os.path.lexists(path):
-            raise not_there(path)
+            raise InputError(f"{shown} does not exist") if top else not_there(path)
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise InputError(f"cannot read {printable_path(path)}: {reason}") from None
+        raise InputError(f"cannot read {shown}: {reason}") from None
     if is_folder:
         from grader.files.folder import read_folder  # late: a single URDF does not need it
 
         return read_folder(path, top)
     if path.name.lower().endswith((".urdf", ".xacro", ".xml")):
         return None
-    shown = printable_path(path)
     kind = archive_kind(read_start(path, 512, top=top))
     if kind is None:
         if path.name.lower().endswith(ARCHIVES):

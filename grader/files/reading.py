@@ -31,20 +31,25 @@ def read_capped(path: Path | str, limit: int = URDF_LIMIT, *, advice: str = _ADV
 def read_start(path: Path | str, count: int, shown: str = "", top: str = "") -> bytes:
     """Return the first bytes of a regular file; raises InputError, with one sentence, for anything else.
 
-    `shown` is its name in messages (default: the path). Below the folder `top` no symlink is followed.
+    `shown` is what messages call it (default: the path, below `top` relative to it). Below the folder `top` no symlink is followed.
     """
     handle = open_regular(path, shown, top)
     try:
         return _read(handle, count)
     except OSError as error:
-        raise InputError(f"cannot read {shown or printable_path(path)}: {error.strerror or error}") from None
+        raise InputError(f"cannot read {shown or shown_below(path, top)}: {error.strerror or error}") from None
     finally:
         os.close(handle)
 
 
+def shown_below(path: Path | str, top: str) -> str:
+    """Return a path for messages, relative to the folder `top` if it lies below it."""
+    return printable_path(os.fspath(path).removeprefix(f"{top}{os.sep}") if top else path)
+
+
 def open_regular(path: Path | str, shown: str = "", top: str = "") -> int:
     """Return a descriptor of a regular file; raises InputError as `read_start` does."""
-    shown = shown or printable_path(path)
+    shown = shown or shown_below(path, top)
     try:
         handle = _open_below(top, os.fspath(path)) if top else os.open(path, _FLAGS)
     except OSError as error:

@@ -4,8 +4,9 @@ from collections.abc import Iterable
 from typing import Any
 
 from grader import __version__
-from grader.classroom.gradebook.grades import AttentionList, StudentGrade
+from grader.classroom.gradebook.grades import AttentionList
 from grader.classroom.gradebook.statistics import ClassStatistics, CriterionStatistics
+from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.grading.rubric import Rubric
 from grader.report.plain import exact, rounded, to_json
 

@@ -16,7 +16,7 @@ _INDENT = 2
 def render_pending(pending: PendingCriterion, place: str, console: Console) -> None:
     """Print a question of a student, `place` of all that wait. Nothing of the submission is taken for markup or control codes."""
     criterion, outcome = pending.result.criterion, pending.result.outcome
-    student = pending.standing.student
+    student = pending.grade.student
     who = f"{student.name} ({student.key})" if student.name else student.key
     console.print()
     head = f"{place}  {printable(who)}: {printable(criterion.title)}  {points_words(criterion.points)} points"
@@ -49,7 +49,7 @@ def _show(what: str, text: str, console: Console) -> None:
 
 def _where(pending: PendingCriterion, path: str) -> str:
     """A file of the submission as a person may open it."""
-    origin = pending.standing.files
+    origin = pending.grade.files
     if len(origin.paths) == 1:
         return str(Path(origin.root, origin.paths[0], path))
     called = dict(zip(origin.names or [each.rpartition("/")[2] for each in origin.paths], origin.paths, strict=True))

@@ -18,7 +18,8 @@ from grader.usecases.writing import save
 if TYPE_CHECKING:
     from datetime import datetime
 
-    from grader.classroom.gradebook.grades import Grades, StudentGrade
+    from grader.classroom.gradebook.grades import Grades
+    from grader.classroom.gradebook.student_grade import StudentGrade
     from grader.grading.report import Report
 
 _TOGETHER = 50

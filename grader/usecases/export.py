@@ -6,10 +6,10 @@ from decimal import Decimal
 from pathlib import Path
 from typing import NamedTuple
 
-from grader.classroom.gradebook.grades import Grades, StudentGrade
+from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.lms.canvas import fill_gradebook
-from grader.classroom.lms.comments import feedback_items
-from grader.classroom.lms.feedback import FeedbackItem, feedback_html
+from grader.classroom.lms.feedback import FeedbackItem, feedback_html, feedback_items
 from grader.classroom.lms.grades import LmsGrade
 from grader.classroom.lms.moodle import fill_worksheet
 from grader.classroom.lms.preflight import Filled, Preflight, RowNote
@@ -49,10 +49,10 @@ def lms_grades(standings: Grades, *, feedback: bool, pending_as_zero: bool) -> I
             standing.verdict in ("graded", "errored") and not replace(standing, pending=Decimal(0)).why_not_final
         )
         if reason and not (waits_only and pending_as_zero):
-            yield LmsGrade(standing.student, None, "", reason, standing.is_expected is not False)
+            yield LmsGrade(standing.student, None, "", reason, standing.is_on_roster is not False)
             continue
         text = _feedback(standings, standing) if feedback else ""
-        yield LmsGrade(standing.student, standing.total, text, is_on_roster=standing.is_expected is not False)
+        yield LmsGrade(standing.student, standing.total, text, is_on_roster=standing.is_on_roster is not False)
 
 
 class Filling(NamedTuple):
@@ -83,7 +83,7 @@ def fill(is_moodle: bool, standings: Grades, filling: Filling) -> Filled:
         )
     wanted = (rubric.id, rubric.title)
     return fill_gradebook(
-        data, grades, out_of=out_of, wanted=wanted, column=column, any_maximum=any_maximum, shown=shown
+        data, grades, out_of=out_of, rubric_names=wanted, column=column, any_maximum=any_maximum, shown=shown
     )
 
 

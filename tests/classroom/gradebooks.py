@@ -8,7 +8,8 @@ from pathlib import Path
 from grader.checks.outcome import Outcome
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.result import NOT_GRADED, STATUS_LETTERS, GradingResult, Verdict
-from grader.classroom.run.worker import Task, _of
+from grader.classroom.gradebook.run_writer import RunWriter, save_student
+from grader.classroom.run.worker import Task, result_of
 from grader.classroom.students import ClassSubmission, Student
 from grader.files.reading import sha256_of
 from grader.grading.report import Report, Result
@@ -61,20 +62,20 @@ def came_out(rubric: Rubric, key: str, signs: str, digest: str = "a", reason: st
     from grader.grading.record import StoredSubmission
 
     report = Report(StoredSubmission(key), rubric, tuple(part.id for part in rubric.parts), results)
-    return _of(report, Task(key, (key,)), verdict, reason, sha256_of(digest.encode()), "")
+    return result_of(report, Task(key, (key,)), verdict, reason, sha256_of(digest.encode()), "")
 
 
 def graded_into(book: Gradebook, rubric: Rubric, found: Iterable[GradingResult], submitted: str = "") -> int:
     """Keep what came out as one run; its number."""
-    run = book.begin("class", "folders", rubric)
+    writer = RunWriter(book, "class", "folders", rubric)
     with book.transaction():
         for each in found:
             who = Student(each.key)
-            student = book.keep_student(who, None)
-            result = book.keep(student, rubric.sha256, each)
-            book.see(student, run, result, ClassSubmission(who, (each.key,), submitted=submitted), "")
-    book.finish(run)
-    return run
+            student = save_student(book, who, None)
+            result = writer.add_result(student, each)
+            writer.add_submission(student, result, ClassSubmission(who, (each.key,), submitted=submitted), "")
+    writer.finish()
+    return writer.run
 
 
 def units(points: str | Decimal) -> int:

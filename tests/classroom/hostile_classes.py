@@ -26,10 +26,12 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, rule, run_state_machine_as_test
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.grades import Grades, StudentGrade
+from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import mark
+from grader.classroom.gradebook.student_grade import StudentGrade
+from grader.classroom.intake.fingerprint import is_zip
 from grader.classroom.intake.intake import read_class
-from grader.classroom.intake.opening import is_bulk, open_submission
+from grader.classroom.intake.opening import open_submission
 from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.run.batch import Batch, RunSettings
 from grader.classroom.students import Student
@@ -311,7 +313,7 @@ class HostileClass(RuleBasedStateMachine):
 
 def _pack(folder: Path, to: Path) -> None:
     """A class folder as a zip, symlinks as such; what has a name that a zip cannot hold stays out."""
-    is_bulk.cache_clear()
+    is_zip.cache_clear()
     with zipfile.ZipFile(to, "w") as archive:
         for path in sorted(folder.rglob("*"), key=str):
             member = zipfile.ZipInfo(path.relative_to(folder).as_posix())

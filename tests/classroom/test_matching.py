@@ -10,9 +10,11 @@ from hypothesis import strategies as st
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.run_writer import save_student
 from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.lms.grades import LmsGrade
-from grader.classroom.lms.matching import LmsStudent, join
+from grader.classroom.lms.matching import LmsStudent, match_rows
+from grader.classroom.lms.preflight import Preflight
 from grader.classroom.matching import Clue, People, canvas_name, canvas_names, clues_of, plain_name, surname
 from grader.classroom.students import Student
 from grader.errors import InputError
@@ -28,7 +30,7 @@ Asked = Callable[[str], Student | None]
 
 def in_roster(name: str) -> Student | None:
     """Whose a folder of this name is."""
-    place = Roster(map(RosterEntry, CLASS)).match(Student(name)).place
+    place = Roster(map(RosterEntry, CLASS)).match(Student(name)).position
     return None if place is None else CLASS[place]
 
 
@@ -37,14 +39,19 @@ def in_a_team(name: str) -> Student | None:
     found = Roster(RosterEntry(each, "red") for each in CLASS).match(
         Student(f"red/{name}", name, login=name, team="red")
     )
-    return None if found.place is None else CLASS[found.place]
+    return None if found.position is None else CLASS[found.position]
 
 
 def in_lms(name: str) -> Student | None:
     """Whose grade goes into a row of an LMS file that has this login, address and name."""
     row = LmsStudent(1, name, Student("", name, email=name, login=name))
-    grade = join([row], [LmsGrade(each, Decimal(1)) for each in CLASS]).matched.get(1)
+    grade = join([row], [LmsGrade(each, Decimal(1)) for each in CLASS]).get(1)
     return grade.student if grade is not None else None
+
+
+def join(rows: list[LmsStudent], grades: list[LmsGrade]) -> dict[int, LmsGrade]:
+    """The grades by row number."""
+    return match_rows(rows, grades, Preflight(""))
 
 
 def in_gradebook(name: str, tmp_path: Path) -> Student | None:
@@ -52,7 +59,7 @@ def in_gradebook(name: str, tmp_path: Path) -> Student | None:
     with Gradebook(tmp_path / "book.db", create=True) as book:
         with book.transaction():
             for each in CLASS:
-                book.keep_student(each, None)
+                save_student(book, each, None)
         try:
             return Grades(book).find(name).student
         except InputError:
@@ -98,16 +105,16 @@ def test_exact_case_decides_before_another() -> None:
     """Beside the exact word another case is nobody's."""
     grades = [LmsGrade(Student(key), Decimal(1)) for key in ("alice", "ALICE")]
     found = join([LmsStudent(1, "alice", Student("", login="alice"))], grades)
-    assert found.matched[1].student.key == "alice"
+    assert found[1].student.key == "alice"
 
 
 def test_numbers_of_an_lms_decide() -> None:
     """A number goes before a name, and a name is of nobody whose number is another."""
     people = Roster(map(RosterEntry, CLASS))
-    assert people.match(Student("x", "Ann Ash", canvas="5")).place == 1
-    assert people.match(Student("x", moodle="6")).place == 1
+    assert people.match(Student("x", "Ann Ash", canvas="5")).position == 1
+    assert people.match(Student("x", moodle="6")).position == 1
     found = people.match(Student("x", "Bea Ash", moodle="7"))
-    assert (found.place, found.doubt) == (None, "has the name of 200, but another number")
+    assert (found.position, found.doubt) == (None, "has the name of 200, but another number")
 
 
 def test_what_is_not_on_the_roster_is_matched_by_number_only() -> None:
@@ -115,16 +122,16 @@ def test_what_is_not_on_the_roster_is_matched_by_number_only() -> None:
     row = LmsStudent(1, "Ann Ash", Student("", "Ann Ash", login="aash", canvas="7"))
     stranger = LmsGrade(Student("aash", "Ann Ash"), Decimal(1), is_on_roster=False)
     numbered = LmsGrade(Student("aash", "Ann Ash", canvas="7"), Decimal(1), is_on_roster=False)
-    assert not join([row], [stranger]).matched
-    assert join([row], [stranger, LmsGrade(ANN, Decimal(2))]).matched[1].student == ANN
-    assert join([row], [numbered]).matched[1] == numbered
+    assert not join([row], [stranger])
+    assert join([row], [stranger, LmsGrade(ANN, Decimal(2))])[1].student == ANN
+    assert join([row], [numbered])[1] == numbered
 
 
 @given(st.lists(st.sampled_from("abAB"), min_size=1, max_size=5), st.lists(st.sampled_from("abAB"), max_size=5))
 def test_pairs_are_the_only_ones(rows: list[str], keys: list[str]) -> None:
     """A row has a grade exactly where one row and one student have its word, or, if none has it exactly, its letters."""
     grades = [LmsGrade(Student(key, login=f"{key}{index}"), Decimal(index)) for index, key in enumerate(keys)]
-    found = join([LmsStudent(index, row, Student("", login=row)) for index, row in enumerate(rows)], grades).matched
+    found = join([LmsStudent(index, row, Student("", login=row)) for index, row in enumerate(rows)], grades)
     for index, row in enumerate(rows):
         exact = [each for each in grades if each.student.key == row]
         if rows.count(row) == 1 and len(exact) == 1:

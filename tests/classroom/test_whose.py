@@ -90,7 +90,7 @@ def test_marks_never_leave_the_roster(tmp_path: Path) -> None:
     before = students(tmp_path)["7"]
     changed = "id,login,email\n7,alice,alice\n8,alice,bob@example.org\n"  # now two may be meant
     done = batch(tmp_path, roster=changed)
-    assert "alice may be of several in the roster: left unassigned" in done.stderr
+    assert "alice is ambiguous: it matches several students on the roster: left unassigned" in done.stderr
     after = students(tmp_path)
     assert [after["7"][each] for each in ("score", "marks_by_hand", "status")] == [65.5, 1, "graded"]
     assert before["score"] == 65.5
@@ -119,7 +119,7 @@ def test_sections_with_rosters_of_their_own(tmp_path: Path) -> None:
     assert "not on the roster" not in batch(tmp_path).stdout
     shutil.rmtree(tmp_path / "class/bea")
     done = batch(tmp_path, roster="id\nann\nabe\n")
-    assert "bea: not in the class folder any more; not on the roster" in done.stdout
+    assert "bea: no longer in the class folder; not on the roster" in done.stdout
     assert "cal" not in done.stdout
 
 
@@ -131,7 +131,7 @@ def test_contested_submissions_change_nothing(tmp_path: Path) -> None:
     before = students(tmp_path)["7"]
     submit(tmp_path / "class/Ash, Alice")
     done = batch(tmp_path, roster=roster)
-    assert "Alice Ash, Ash, Alice may each be of 7: left unassigned, and what 7 had before stays" in done.stderr
+    assert "Alice Ash, Ash, Alice may each belong to 7: left unassigned; 7 keeps an earlier submission" in done.stderr
     assert students(tmp_path)["7"] == before
 
 
@@ -237,7 +237,7 @@ def test_another_assignment_of_moodle_is_refused(tmp_path: Path) -> None:
         place.rename(tmp_path / "class" / f"Jane Doe {number}_{number + 70}_assignsubmission_file")
     done = batch(tmp_path)
     assert done.returncode == 2
-    assert "Moodle gives the students of this class other numbers" in done.stderr
+    assert "the Moodle ids of its students are not those of this class" in done.stderr
 
 
 @pytest.mark.parametrize("layout", ["moodle", "canvas"])
@@ -269,7 +269,7 @@ def test_a_display_name_removes_nobody(tmp_path: Path) -> None:
     before = students(tmp_path)["doejane_12"]
     shutil.copy(BAD / "my_robot.urdf", tmp_path / "class/mallory_12_14_1003_robot.urdf")
     done = batch(tmp_path, "--layout", "canvas")
-    assert "may be of another user" in done.stderr
+    assert "may belong to another user" in done.stderr
     assert students(tmp_path)["doejane_12"] == before
 
 
@@ -310,7 +310,7 @@ def test_a_case_variant_takes_no_key_over_later(tmp_path: Path) -> None:
     before = students(tmp_path)["alice"]
     shutil.rmtree(tmp_path / "class/alice")
     done = batch(tmp_path, roster=roster)
-    assert "ALICE may be of alice, who had another before: left unassigned" in done.stderr
+    assert "ALICE may belong to alice, who had another submission: left unassigned" in done.stderr
     assert students(tmp_path)["alice"] == before
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.gradebook.schema import STEPS
+from grader.classroom.gradebook.schema import APPLICATION_ID, STEPS
 from grader.grading.rubric import load_rubric, shipped_rubrics
 from grader.report.formats import Format
 from tests.classroom.gradebooks import batch, grader, lab_text, refusal
@@ -174,13 +174,8 @@ def test_lab6_keeps_its_answers_apart() -> None:
 
 def test_a_gradebook_of_an_earlier_grader(top: Path) -> None:
     """Its records hold the model answer and its marks an account: reports show neither, and `review` finds the former."""
-    book = sqlite3.connect(top / "book.db")
+    book = _version_1(top / "book.db")
     with book:
-        book.execute("DROP TRIGGER result_unchanged")
-        book.execute("DROP TABLE model_answer")
-        for column in ("mark DROP COLUMN signed", "student DROP COLUMN entry", "run DROP COLUMN assignment"):
-            book.execute(f"ALTER TABLE {column}")
-        book.execute("PRAGMA user_version = 1")
         _as_it_was(book)
         book.execute(
             "INSERT INTO mark (student, criterion, points, comment, author, at, result)"
@@ -200,6 +195,27 @@ def test_a_gradebook_of_an_earlier_grader(top: Path) -> None:
     assert "jdoe" not in text
     shown = grader("review", "--gradebook", top / "book.db", stdin="q\n")
     assert f"Model answer:\n  {SECRET}\n" in shown.stdout
+
+
+def _version_1(path: Path) -> sqlite3.Connection:
+    """Replace a gradebook by one of version 1 with the same rows; the old one is closed."""
+    new = path.rename(path.with_suffix(".new"))
+    book = sqlite3.connect(path)
+    book.executescript(STEPS[0])
+    book.execute("ATTACH ? AS new", (str(new),))
+    for table in ("rubric", "criterion", "template", "student", "run", "result", "seen"):
+        source = "submission" if table == "seen" else table
+        columns = [name for _, name, *_ in book.execute(f"PRAGMA new.table_info({source})")]
+        count = len(
+            list(book.execute(f"PRAGMA main.table_info({table})"))
+        )  # later versions have added columns at the end
+        book.execute(f"INSERT INTO main.{table} SELECT {', '.join(columns[:count])} FROM new.{source}")
+    book.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+    book.execute("PRAGMA user_version = 1")
+    book.commit()
+    book.execute("DETACH new")
+    book.execute("DROP TRIGGER result_unchanged")
+    return book
 
 
 def _as_it_was(book: sqlite3.Connection) -> None:

@@ -31,8 +31,8 @@ def as_json(*arguments: object) -> dict[str, Any]:
 def test_one_run_is_not_enough(graded_class: Path) -> None:
     """One line says what to do."""
     book = graded_class / "book.db"
-    again = f"grader batch PATH --gradebook {book} makes one more, or name a second gradebook"
-    assert refusal(grader("diff", book)) == f"there are no two runs to compare: {again}"
+    again = f"grader batch PATH --gradebook {book} again, or name a second gradebook"
+    assert refusal(grader("diff", book)) == f"there are not two runs to compare: run {again}"
 
 
 def test_all_reasons(top: Path) -> None:
@@ -45,18 +45,18 @@ def test_all_reasons(top: Path) -> None:
     batch(top)
     assert diff(top) == (
         "anna: 6 to 3 (-3)\n  the submission changed\n    box: 2.5 to 0 (-2.5)\n    tall: 0.5 to 0 (-0.5)\n"
-        "dora: none to 6\n  handed in for the first time\n"
+        "dora: none to 6\n  first submission\n"
     )
     grader("mark", "dora", "essay", "3", "--gradebook", top / "book.db")
     (top / "newer.toml").write_text(lab_text(loads="4", extra="1"))
     batch(top, rubric=top / "newer.toml")
     assert diff(top).endswith(
-        "dora: 6 to 11 (+5)\n  the rubric changed; marked by hand\n"
+        "dora: 6 to 11 (+5)\n  the rubric changed; manual marks changed\n"
         "    loads: 3 to 4 (+1)\n    essay: none to 3\n    extra: none to 1\n"
         "emil: 3 to 5 (+2)\n  the rubric changed\n    loads: 3 to 4 (+1)\n    extra: none to 1\n"
     )
     assert diff(top, "--to", 2) == "nothing changed\n"
-    assert refusal(grader("diff", top / "book.db", "--from", 9)) == "there is no run 9; there are: 1, 2, 3, 4"
+    assert refusal(grader("diff", top / "book.db", "--from", 9)) == "there is no run 9; the runs are: 1, 2, 3, 4"
 
 
 def test_two_gradebooks(top: Path, tmp_path: Path) -> None:
@@ -69,11 +69,11 @@ def test_two_gradebooks(top: Path, tmp_path: Path) -> None:
     assert (data["from"]["run"], data["to"]["run"]) == (1, 2)
     essay = [{"id": "essay", "before": None, "after": 0}]
     assert data["students"] == [
-        {"id": "emil", "before": 3, "after": 3, "because": ["marked by hand"], "criteria": essay},
-        {"id": "zoe", "before": None, "after": 6, "because": ["handed in for the first time"], "criteria": []},
+        {"id": "emil", "before": 3, "after": 3, "because": ["manual marks changed"], "criteria": essay},
+        {"id": "zoe", "before": None, "after": 6, "because": ["first submission"], "criteria": []},
     ]
     back = as_json(top / "book.db", tmp_path / "before.db")["students"]
-    assert [each["because"] for each in back] == [["marked by hand"], ["not there any more"]]
+    assert [each["because"] for each in back] == [["manual marks changed"], ["no longer there"]]
     both = refusal(grader("diff", top / "book.db", tmp_path / "before.db", "--from", 1))
     assert both == "--from and --to are runs of one gradebook: name one, or leave them out"
     assert "there is no gradebook" in refusal(grader("diff", top / "book.db", tmp_path / "none.db"))

@@ -71,8 +71,8 @@ def test_csv(top: Path) -> None:
         "anna,Anna Ek,anna@example.org,ae1,anna,graded,10.5,11,0,0,0,10.5,,3,2.5,0.5,3.5,1",
         "ben,Ben Oh,ben@example.org,bo2,ben,graded,6,6,0,0,0,6,,3,2.5,0.5,,",
         f"cleo,Cleo Ray,cleo@example.org,cr3,cleo,unreadable,0,11,11,0,0,0,{BROKEN},,,,,",
-        "dora,Dora Fi,dora@example.org,df4,dora,missing,,,,,,,nothing was handed in,,,,,",
-        "emil,Ben Oh,emil@example.org,eo5,emil,graded,4.25,11,5,0,0,4.25,5 points wait for a person,3,1.25,0,,",
+        "dora,Dora Fi,dora@example.org,df4,dora,missing,,,,,,,nothing was submitted,,,,,",
+        "emil,Ben Oh,emil@example.org,eo5,emil,graded,4.25,11,5,0,0,4.25,5 points need manual grading,3,1.25,0,,",
     ]
     again = export(top, "csv", "--output", top / "grades.csv")
     assert (again.returncode, again.stdout, again.stderr) == (0, "", "")
@@ -167,7 +167,7 @@ def test_lateness_is_a_line_of_its_own(tmp_path: Path) -> None:
         ("3", "2.5", "0.5", "4", "1")
     }
     told = {each["id"]: each for each in json.loads(export(tmp_path, "json").stdout)["students"]}
-    words = "2 days late: handed in 2026-09-12T10:00:00Z, due 2026-09-10T12:00+00:00"
+    words = "2 days late: submitted 2026-09-12T10:00:00Z, deadline 2026-09-10T12:00+00:00"
     assert told["anna"]["late"] == {"days": 2, "points": -2.2, "because": words}
     assert (told["anna"]["score"], told["anna"]["total"]) == (11, 8.8)
     report = json.loads((tmp_path / "reports" / "anna.json").read_text())
@@ -182,7 +182,7 @@ def test_lateness_is_a_line_of_its_own(tmp_path: Path) -> None:
     (tmp_path / "canvas.csv").write_text(canvas(anna="101", emil="105"))
     done = export(tmp_path, "canvas", "--into", tmp_path / "canvas.csv")
     assert [row[-1] for row in csv.reader(done.stdout.splitlines()[2:])] == ["8.80", "5.50"]
-    assert "is no time" in refusal(export(tmp_path, "csv", "--due", "soon"))
+    assert "is not a date or time" in refusal(export(tmp_path, "csv", "--due", "soon"))
 
 
 # --- For Canvas and Moodle --------------------------------------------------------------------------------------------
@@ -208,22 +208,22 @@ def test_who_gets_a_grade_in_canvas(top: Path) -> None:
     assert done.stderr.splitlines() == [
         "grader: column 'A small lab (77)': 2 filled, 0 the same already",
         f"grader: without a grade, {BROKEN}: 1 (Cleo, X)",
-        "grader: without a grade, nothing was handed in: 1 (Dora, X)",
-        "grader: without a grade, 5 points wait for a person: 1 (Emil, X)",
+        "grader: without a grade, nothing was submitted: 1 (Dora, X)",
+        "grader: without a grade, 5 points need manual grading: 1 (Emil, X)",
     ]
     zero = export(top, "canvas", "--into", top / "canvas.csv", "--pending-as-zero")
     assert zero.stdout == done.stdout + '"Emil, X",105,,emil,S1,3.00\n'
 
 
 def test_only_what_waits_is_taken_for_zero(top: Path) -> None:
-    """Whoever is not in the class folder any more, or was not graded by the newest rubric, gets no grade by it."""
+    """Whoever is no longer in the class folder, or was not graded by the newest rubric, gets no grade by it."""
     (top / "canvas.csv").write_text(canvas(**EVERYONE))
     assert batch(top).returncode == 0  # where the copy is
     shutil.rmtree(top / "class" / "emil")
     assert batch(top).returncode == 0
     done = export(top, "canvas", "--into", top / "canvas.csv", "--pending-as-zero")
     assert [row[3] for row in csv.reader(done.stdout.splitlines()[2:])] == ["anna", "ben"]
-    assert "without a grade, it is not in the class folder any more: 1 (Emil, X)\n" in done.stderr
+    assert "without a grade, it is no longer in the class folder: 1 (Emil, X)\n" in done.stderr
 
 
 def test_strict_writes_nothing(top: Path) -> None:
@@ -331,7 +331,7 @@ def test_another_maximum_is_refused(top: Path) -> None:
     (top / "canvas.csv").write_text(canvas("100", ben="102"))
     arguments = ("canvas", "--into", top / "canvas.csv", "--output", top / "out.csv")
     assert refusal(export(top, *arguments)) == (
-        "Canvas' Points Possible of 'A small lab (77)' is 100, and the rubric's points are 11: change the maximum in the LMS"
+        "Canvas' Points Possible of 'A small lab (77)' is 100, but the rubric's maximum is 11: change the maximum in the LMS"
         " and export again, or write the points as they are with --any-maximum"
     )
     assert not (top / "out.csv").exists()
@@ -343,18 +343,18 @@ def test_another_maximum_is_refused(top: Path) -> None:
 
 def test_a_large_class_does_not_flood_the_screen() -> None:
     """Who has no grade is a line for each reason, and no kind of lines goes on for ever."""
-    waits = [RowNote(number, f"Student {number}", "10 points wait for a person") for number in range(3, 41)]
-    late = [RowNote(number, f"Doe, {number}", "nothing was handed in") for number in (41, 42)]
+    waits = [RowNote(number, f"Student {number}", "10 points need manual grading") for number in range(3, 41)]
+    late = [RowNote(number, f"Doe, {number}", "nothing was submitted") for number in (41, 42)]
     one = [RowNote(43, "Zoe", "has a grade that is locked in Moodle")]
-    unknown = tuple(RowNote(number, "x\x1b", "nobody") for number in range(50, 103))
-    conflicts = tuple(Conflict(number, "y", "1", "2") for number in range(50))
-    found = Preflight("Grade", 0, 0, conflicts, (*waits, *late, *one), unknown, (), (), (), ("warned",))
+    unknown = [RowNote(number, "x\x1b", "nobody") for number in range(50, 103)]
+    conflicts = [Conflict(number, "y", "1", "2") for number in range(50)]
+    found = Preflight("Grade", 0, 0, conflicts, [*waits, *late, *one], unknown, warnings=["warned"])
     lines = list(preflight_lines(found))
     assert lines[0] == "column 'Grade': 0 filled, 0 the same already"
     assert lines[1:51] == [f"row {number}, y: was 1, becomes 2" for number in range(50)]
     assert lines[51:54] == [
-        "without a grade, 10 points wait for a person: 38 (Student 3, Student 4, Student 5, ... and 35 more)",
-        "without a grade, nothing was handed in: 2 (Doe, 41; Doe, 42)",
+        "without a grade, 10 points need manual grading: 38 (Student 3, Student 4, Student 5, ... and 35 more)",
+        "without a grade, nothing was submitted: 2 (Doe, 41; Doe, 42)",
         "without a grade, has a grade that is locked in Moodle: 1 (Zoe)",
     ]
     assert lines[54] == "in the file, but not in the gradebook: row 50, x\\x1b: nobody"
@@ -402,7 +402,7 @@ def test_what_a_student_reads_in_moodle(tmp_path: Path) -> None:
     assert items[0].startswith("About box: 0 of 2.5. &#x27;base&#x27; shows a box 1 1 2 m")
     assert items[2].startswith("About essay: 2 of 4. &lt;b&gt;Why&lt;/b&gt; not\\x1b[31m".replace("\\", "&#92;"))
     assert items[3] == "About picture: 1 of 1. nice"
-    assert items[4] == "Handed in late: -1.6. 2 days late, by the roster"
+    assert items[4] == "Handed in late: -1.6. 2 days late, from the roster"
     assert not set(feedback) & set("\x1b\u202e")
     assert feedback.startswith("<p>Graded automatically: 4.4 of 11 points.</p>")
 

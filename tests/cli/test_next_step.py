@@ -80,7 +80,7 @@ def test_what_to_type_with_a_gradebook(place: Path) -> None:
     """Whom and what to name, and how to come to something to compare."""
     assert typed("batch class --gradebook book.db", place).returncode == 0
     for line, why in (
-        ("mark zoe lidar-frame 1 --gradebook book.db", "; grader export csv --gradebook book.db lists everyone"),
+        ("mark zoe lidar-frame 1 --gradebook book.db", "; grader export csv --gradebook book.db lists all students"),
         ("mark anna lidar 1 --gradebook book.db", "has no criterion 'lidar' (grader rubric show lab6 lists them)"),
         ("diff book.db", f"{BATCH} makes one more, or name a second gradebook"),
         ("export csv --gradebook book.db --output out/a.csv", "there is no folder out (mkdir -p out makes it)"),

@@ -185,13 +185,13 @@ def test_a_third_mark_is_shown_as_well(graded_class: Path, top: Path) -> None:
         assert found is not None
         shown, seen = found.newest, []
         for points in (1, 2):
-            theirs = mark(other, found.standing, found.result.criterion, Decimal(points), "", "")
+            theirs = mark(other, found.grade, found.result.criterion, Decimal(points), "", "")
             assert (theirs.points if theirs is not None else 0) == points - 1
             with pytest.raises(NewerMarkError) as caught:
-                mark(one, found.standing, found.result.criterion, Decimal(4), "Kim", "", shown=shown)
+                mark(one, found.grade, found.result.criterion, Decimal(4), "Kim", "", shown=shown)
             shown = caught.value.mark.id
             seen.append(caught.value.mark.points)
-        mark(one, found.standing, found.result.criterion, Decimal(4), "Kim", "", shown=shown)
+        mark(one, found.grade, found.result.criterion, Decimal(4), "Kim", "", shown=shown)
     assert seen == [1, 2]
     assert [row[2] for row in marks(top)] == [1, 2, 4]
 

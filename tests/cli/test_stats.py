@@ -39,7 +39,7 @@ def test_at_a_glance(top: Path) -> None:
     assert "essay           4       0        2   2    38%       \n" in text
     assert "     1  About box: 'base' shows a box 1 1 2 m; it should be 1 1 1 m (x, y, z)\n" in text
     assert "Who needs a look\n  cleo: it could not be graded: " in text
-    assert "  dora: nothing was handed in\n" in text
+    assert "  dora: nothing was submitted\n" in text
 
 
 def test_as_json(top: Path) -> None:
@@ -72,7 +72,7 @@ def test_an_empty_gradebook(tmp_path: Path) -> None:
     """One that nothing was graded into is told of in a line."""
     book = tmp_path / "book.db"
     Gradebook(book, create=True).close()
-    why = f"nothing has been graded into {book} yet: grader batch PATH --gradebook {book} does that"
+    why = f"nothing has been graded into {book} yet: run grader batch PATH --gradebook {book}"
     assert refusal(grader("stats", "--gradebook", book)) == why
 
 
@@ -110,7 +110,7 @@ def test_who_is_left_behind_by_a_new_rubric(tmp_path: Path) -> None:
         graded_into(book, new, [came_out(new, "anna", "ppppp")])
     text = stats(tmp_path / "book.db")
     assert "2 graded\n1 of the graded by an earlier rubric only: not in what follows\n" in text
-    assert "  ben: graded by an earlier rubric only\n" in text
+    assert "  ben: graded with an earlier version of the rubric\n" in text
 
 
 def test_names_are_harmless(top: Path) -> None:

@@ -1,1 +1,1 @@
-"""The gradebook: its tables, the grades, the marks and the statistics made from them."""
+"""The gradebook: its tables, the current grades, manual marks, late penalties and statistics."""

@@ -1,4 +1,4 @@
-"""Marks by hand: what a person says of a criterion, kept beside what the checks say, never instead of it."""
+"""Manual marks: the points that a person gives for a criterion, stored beside the automatic points."""
 
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -6,20 +6,20 @@ from decimal import Decimal, InvalidOperation
 from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.grades import Grades, StudentGrade
+from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.result import UNITS_PER_POINT
 from grader.classroom.gradebook.stored import storable
+from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.errors import InputError
 from grader.grading.report import Result
 from grader.grading.rubric import Criterion, Rubric
 from grader.names import did_you_mean
 
-_UNIT = Decimal(1) / UNITS_PER_POINT
-TAKEN_BACK = "-"  # in place of points: what the check says counts again
+TAKE_BACK = "-"  # in place of points: the automatic result counts again
 
 
 class Mark(NamedTuple):
-    """A mark in the gradebook: points (None where it took an earlier mark back), who gave it (empty without `--by`), why and when."""
+    """A mark in the gradebook: points (None if it takes an earlier mark back), who gave it (empty without `--by`), why and when."""
 
     id: int
     points: Decimal | None
@@ -29,7 +29,7 @@ class Mark(NamedTuple):
 
 
 class NewerMarkError(Exception):
-    """Somebody has marked a criterion since it was shown."""
+    """Somebody has marked the criterion since it was shown."""
 
     def __init__(self, mark: Mark) -> None:
         super().__init__()
@@ -37,7 +37,7 @@ class NewerMarkError(Exception):
 
 
 class QueuedCriterion(NamedTuple):
-    """A criterion of a student, by their key, that waited for a person when it was looked up."""
+    """A student's key and a criterion that needed manual grading when the queue was made."""
 
     key: str
     criterion: str
@@ -45,41 +45,41 @@ class QueuedCriterion(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class PendingCriterion:
-    """One criterion of one student that a person still has to decide; `newest` is the id of its newest mark, 0 if it has none."""
+    """A student's criterion that needs manual grading; `newest` is the id of its newest mark, 0 if it has none."""
 
-    standing: StudentGrade
+    grade: StudentGrade
     result: Result
     newest: int = 0
 
 
 def read_points(text: str, criterion: Criterion) -> Decimal | None:
-    """Points that a person gives, None for `-`, which takes a mark back; raises InputError, which says what there may be."""
-    if text.strip() == TAKEN_BACK:
+    """Return the points in a text, None for `-`, which takes a mark back; raises InputError, which names the range."""
+    if text.strip() == TAKE_BACK:
         return None
-    most = format(criterion.points.normalize(), "f") if criterion.points else "0"
+    maximum = format(criterion.points.normalize(), "f") if criterion.points else "0"
     try:
         points = Decimal(text.strip().replace(",", "."))
     except InvalidOperation:
         points = Decimal("NaN")
     if points.is_finite() and not 0 <= points <= criterion.points:
-        raise InputError(f"{criterion.id} is worth 0 to {most} points, not {text.strip()}")
-    if not points.is_finite() or points != points.quantize(_UNIT):
-        raise InputError(f"points are a number from 0 to {most}, with at most 4 decimals, not {text!r}")
+        raise InputError(f"{criterion.id} is worth 0 to {maximum} points, not {text.strip()}")
+    if not points.is_finite() or points != points.quantize(Decimal(1) / UNITS_PER_POINT):
+        raise InputError(f"points are a number from 0 to {maximum}, with at most 4 decimals, not {text!r}")
     return points
 
 
 def criterion_of(rubric: Rubric, name: str) -> Criterion:
-    """The criterion of this id; raises InputError."""
-    known = {criterion.id: criterion for criterion in rubric.criteria}
-    if name not in known:
-        guess = did_you_mean(name, known)
+    """Return the criterion with this id; raises InputError."""
+    criteria = {criterion.id: criterion for criterion in rubric.criteria}
+    if name not in criteria:
+        guess = did_you_mean(name, criteria)
         raise InputError(f"the rubric {rubric.id} has no criterion {name!r}{guess} ({rubric.shown_by} lists them)")
-    return known[name]
+    return criteria[name]
 
 
 def mark(
     book: Gradebook,
-    standing: StudentGrade,
+    grade: StudentGrade,
     criterion: Criterion,
     points: Decimal | None,
     by: str,
@@ -87,44 +87,48 @@ def mark(
     *,
     shown: int | None = None,
 ) -> Mark | None:
-    """Add a mark to a student's newest result; return the mark that was the newest one before, if there was one.
+    """Add a mark to a student's newest result; return the mark that was the newest before, if there was one.
 
-    `by` is the name that reports show; the account is kept for the audit only. `shown` is the id of the newest mark that the
-    person has seen, 0 for none: where there is a newer one nothing is written, and NewerMarkError holds it. Without `shown`
-    the mark is added whatever is there. Raises InputError for a student who has handed in nothing.
+    Args:
+        book: The gradebook.
+        grade: The student; raises InputError for one who has submitted nothing.
+        criterion: What is marked.
+        points: The points, or None to take the newest mark back.
+        by: The name that reports show; the user account is stored for the audit only.
+        why: The comment.
+        shown: The id of the newest mark that the person has seen, 0 for none. If there is a newer one, nothing is written and
+            NewerMarkError holds it. Without `shown` the mark is always added.
+
     """
-    if standing.result is None:
-        raise InputError(f"{standing.student.key} has handed in nothing that could be marked")
+    if grade.result is None:
+        raise InputError(f"{grade.student.key} has submitted nothing that could be marked")
     units = None if points is None else int(points * UNITS_PER_POINT)
     at = datetime.now(UTC).isoformat(timespec="seconds")
     name = storable(by)
-    row = (standing.id, criterion.id, units, storable(why), name or storable(account()), name, at, standing.result)
-    with book.complaining():
-        book.connection.execute("PRAGMA synchronous = FULL")  # a person's word outlives a power cut
+    row = (grade.id, criterion.id, units, storable(why), name or storable(account()), name, at, grade.result)
+    with book.input_errors():
+        book.connection.execute("PRAGMA synchronous = FULL")  # a manual mark must survive a power cut
     with book.transaction():
-        before = newest_mark(book, standing.id, criterion.id)
+        before = newest_mark(book, grade.id, criterion.id)
         if before is not None and shown is not None and before.id != shown:
             raise NewerMarkError(before)
-        book.connection.execute(
-            "INSERT INTO mark (student, criterion, points, comment, author, signed, at, result)"
-            " VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
-            row,
-        )
+        columns = "student, criterion, points, comment, author, grader_name, at, result"
+        book.connection.execute(f"INSERT INTO mark ({columns}) VALUES (?, ?, ?, ?, ?, ?, ?, ?)", row)
     return before
 
 
 def newest_mark(book: Gradebook, student: int, criterion: str) -> Mark | None:
-    """Return the newest mark of a student's criterion, also one that took an earlier one back."""
-    query = (
-        "SELECT id, points, signed, comment, at FROM mark WHERE student = ? AND criterion = ? ORDER BY id DESC LIMIT 1"
-    )
-    for identity, units, signed, comment, at in list(book.rows(query, student, criterion)):
-        return Mark(identity, None if units is None else Decimal(units) / UNITS_PER_POINT, signed, comment, at)
-    return None
+    """Return the newest mark of a student's criterion, also one that takes an earlier one back."""
+    query = "SELECT id, points, grader_name, comment, at FROM mark WHERE student = ? AND criterion = ?"
+    row = book.first(f"{query} ORDER BY id DESC LIMIT 1", student, criterion)
+    if row is None:
+        return None
+    identity, units, by, comment, at = row
+    return Mark(identity, None if units is None else Decimal(units) / UNITS_PER_POINT, by, comment, at)
 
 
 def account() -> str:
-    """Return the account of who is at the keyboard, as the system knows it."""
+    """Return the name of the user account, or an empty string."""
     import getpass
 
     try:
@@ -133,32 +137,33 @@ def account() -> str:
         return ""
 
 
-def manual_grading_queue(standings: Grades, criterion: str = "") -> list[QueuedCriterion]:
-    """What a person still has to decide, one criterion after the other, so that like is marked beside like.
+def manual_grading_queue(grades: Grades, criterion: str = "") -> list[QueuedCriterion]:
+    """Return what needs manual grading, one criterion after the other, so that similar answers follow each other.
 
-    Of hand-ins that could not be read nothing is asked: that is not a question of points.
+    Unreadable submissions are not in it: they need a fix, not points.
     """
-    rubric = standings.newest_rubric()
+    rubric = grades.newest_rubric()
     return [
-        QueuedCriterion(str(key), each.id)
-        for position, each in enumerate(rubric.criteria)
-        if criterion in ("", each.id)
-        for (key,) in standings.book.rows(_WAITING, rubric.sha256, position + 1, each.id)
+        QueuedCriterion(str(key), row.id)
+        for position, row in enumerate(rubric.criteria)
+        if criterion in ("", row.id)
+        for (key,) in grades.book.rows(_QUEUE, rubric.sha256, position + 1, row.id)
     ]
 
 
-_WAITING = (
-    "SELECT key FROM grade WHERE verdict <> 'unreadable' AND rubric = ? AND substr(signs, ?, 1) = '?' AND NOT EXISTS"
-    " (SELECT 1 FROM ruling WHERE ruling.student = grade.id AND ruling.criterion = ?) ORDER BY key"
+_QUEUE = (
+    "SELECT key FROM grade WHERE verdict <> 'unreadable' AND rubric = ? AND substr(statuses, ?, 1) = '?' AND NOT EXISTS"
+    " (SELECT 1 FROM manual_mark WHERE student = grade.id AND criterion = ?) ORDER BY key"
 )
 
 
-def pending_criterion(standings: Grades, queued: QueuedCriterion) -> PendingCriterion | None:
-    """What is to be decided, as it stands now; None where somebody has decided it meanwhile."""
-    standing = standings.find(queued.key)
+def pending_criterion(grades: Grades, queued: QueuedCriterion) -> PendingCriterion | None:
+    """Return a queued criterion in its current state; None if somebody has marked it meanwhile."""
+    grade = grades.find(queued.key)
     newest = newest_mark(
-        standings.book, standing.id, queued.criterion
-    )  # first, so that no later one is taken for shown
-    results = standings.report(standing).results
-    found = next((each for each in results if each.criterion.id == queued.criterion and each.is_open), None)
-    return PendingCriterion(standing, found, newest.id if newest is not None else 0) if found is not None else None
+        grades.book, grade.id, queued.criterion
+    )  # before the report, so that no later mark counts as shown
+    for result in grades.report(grade).results:
+        if result.criterion.id == queued.criterion and result.is_open:
+            return PendingCriterion(grade, result, newest.id if newest is not None else 0)
+    return None

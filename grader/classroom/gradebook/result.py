@@ -5,13 +5,13 @@ from typing import Literal, NamedTuple
 from grader.checks.outcome import Status
 
 Verdict = Literal["graded", "unreadable", "errored", "unchanged"]
-UNITS_PER_POINT = 10_000  # points are kept as whole numbers of ten-thousandths
+UNITS_PER_POINT = 10_000  # the gradebook stores points as integers, so that SQL adds them exactly
 STATUS_LETTERS: dict[Status, str] = {"passed": "p", "failed": "f", "skipped": "s", "pending": "?", "errored": "!"}
 NOT_GRADED = "-"
 
 
 class GradingResult(NamedTuple):
-    """What came of one hand-in. `signs` has a letter for each criterion of the rubric; points are in ten-thousandths."""
+    """The result of one submission. `statuses` has a letter for each criterion of the rubric; points are in ten-thousandths."""
 
     key: str
     verdict: Verdict
@@ -20,7 +20,7 @@ class GradingResult(NamedTuple):
     score: int = 0
     out_of: int = 0
     pending: int = 0
-    signs: str = ""
-    misses: str = "[]"
+    statuses: str = ""
+    failures: str = "[]"
     record: bytes = b""
     reason: str = ""

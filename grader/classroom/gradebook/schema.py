@@ -1,6 +1,6 @@
-"""The tables of a gradebook, one step for each version of them. Points are whole numbers of ten-thousandths."""
+"""The tables of a gradebook, as one SQL script for each version. Points are whole numbers of ten-thousandths."""
 
-APPLICATION_ID = 0x47524452  # by which a SQLite file says what it is: "GRDR"
+APPLICATION_ID = 0x47524452  # "GRDR": the type of the file in its SQLite header
 
 _FIRST = """
 CREATE TABLE rubric (
@@ -165,8 +165,8 @@ ALTER TABLE student ADD COLUMN entry TEXT NOT NULL DEFAULT '';     -- the row of
 ALTER TABLE run ADD COLUMN assignment TEXT NOT NULL DEFAULT '';    -- what the class folder calls it, empty where it does not
 """
 
-# `author` is for the audit: the name that `--by` gave, else the account of who typed. Reports show `signed`, which holds only the
-# former. Of marks that an earlier grader kept nobody knows which of the two `author` is, so they are not signed.
+# `author` is for the audit: the name from `--by`, else the user account. Reports show `signed`, which holds only the name from
+# `--by`. Marks from before this step have no `signed`, because their `author` may be an account.
 _ANSWERS_AND_NAMES = """
 ALTER TABLE mark ADD COLUMN signed TEXT NOT NULL DEFAULT '';
 
@@ -178,5 +178,86 @@ CREATE TABLE model_answer (
 ) WITHOUT ROWID;
 """
 
-# The first makes version 1; each later one brings a gradebook to the next.
-STEPS = (_FIRST, _ROSTER_AND_ASSIGNMENT, _ANSWERS_AND_NAMES)
+# Version 4 names tables, columns and views by standard terms. SQLite rewrites the triggers that refer to what it renames; the
+# views are made anew because the names of their columns change as well.
+_STANDARD_NAMES = """
+DROP VIEW grade;
+DROP VIEW ruled;
+DROP VIEW ruling;
+
+ALTER TABLE seen RENAME TO submission;                            -- of one student as one run has found it
+ALTER TABLE submission RENAME COLUMN place TO files;
+ALTER TABLE result RENAME COLUMN signs TO statuses;
+ALTER TABLE result RENAME COLUMN misses TO failures;
+ALTER TABLE run RENAME COLUMN due TO deadline;
+ALTER TABLE student RENAME COLUMN due TO deadline;
+ALTER TABLE student RENAME COLUMN expected TO is_on_roster;
+ALTER TABLE student RENAME COLUMN entry TO roster_entry;
+ALTER TABLE mark RENAME COLUMN signed TO grader_name;
+
+DROP TRIGGER mark_stays;
+DROP TRIGGER mark_unchanged;
+DROP TRIGGER mark_not_replaced;
+CREATE TRIGGER mark_stays BEFORE DELETE ON mark
+BEGIN SELECT raise(ABORT, 'a manual mark is never deleted'); END;
+CREATE TRIGGER mark_unchanged BEFORE UPDATE ON mark
+BEGIN SELECT raise(ABORT, 'a manual mark is never changed: add another'); END;
+CREATE TRIGGER mark_not_replaced BEFORE INSERT ON mark WHEN EXISTS (SELECT 1 FROM mark WHERE id = new.id)
+BEGIN SELECT raise(ABORT, 'a manual mark is never changed: add another'); END;
+
+-- The manual marks that count: the newest of each student and criterion, unless it takes the mark back.
+CREATE VIEW manual_mark AS
+SELECT * FROM mark WHERE points IS NOT NULL
+AND id = (SELECT max(id) FROM mark AS newer WHERE newer.student = mark.student AND newer.criterion = mark.criterion);
+
+-- What the manual marks change in each student's newest result. CROSS JOIN makes SQLite start from the few marks. A mark is
+-- older where it was given for another submission, or when the criterion had another maximum.
+CREATE VIEW override AS
+SELECT student,
+    count(*) AS marks,
+    sum(points - iif(status = 'p', maximum, 0)) AS score,
+    sum(iif(status = '-', maximum, 0)) AS out_of,
+    sum(iif(status = '?', maximum, 0)) AS pending,
+    sum(status = '!') AS faults,
+    sum(is_older) AS older, sum(points > maximum) AS over
+FROM (
+    SELECT manual_mark.student, manual_mark.points, criterion.points AS maximum,
+        substr(result.statuses, criterion.position + 1, 1) AS status,
+        marked.id <> result.id AND (
+            marked.digest = '' OR marked.digest <> result.digest OR before.points IS NOT criterion.points
+        ) AS is_older
+    FROM manual_mark
+    CROSS JOIN result AS marked ON marked.id = manual_mark.result
+    LEFT JOIN criterion AS before ON before.rubric = marked.rubric AND before.id = manual_mark.criterion
+    CROSS JOIN submission ON submission.student = manual_mark.student
+        AND submission.run = (SELECT max(run) FROM submission AS newer WHERE newer.student = manual_mark.student)
+    CROSS JOIN result ON result.id = submission.result
+    CROSS JOIN criterion ON criterion.rubric = result.rubric AND criterion.id = manual_mark.criterion
+)
+GROUP BY student;
+
+-- The current grade of every student: the automatic points with the manual marks.
+CREATE VIEW grade AS
+SELECT student.*, submission.run, submission.result, result.rubric, result.version, result.digest,
+    coalesce(result.verdict, 'missing') AS verdict, coalesce(result.reason, '') AS reason,
+    result.score + coalesce(override.score, 0) AS score,
+    result.out_of + coalesce(override.out_of, 0) AS out_of,
+    result.pending - coalesce(override.pending, 0) AS pending,
+    length(statuses) - length(replace(statuses, '!', '')) - coalesce(override.faults, 0) AS faults,
+    coalesce(override.marks, 0) AS marks, coalesce(override.older, 0) AS older_marks,
+    coalesce(override.over, 0) AS over_marks,
+    coalesce(submission.is_gone, 0) AS is_gone,
+    result.statuses, coalesce(result.failures, '[]') AS failures,
+    coalesce(submission.files, '[[], [], 0, []]') AS files, submission.fingerprint,
+    coalesce(submission.is_late, 0) AS is_late, coalesce(submission.submitted, '') AS submitted,
+    run.source
+FROM student
+LEFT JOIN submission ON submission.student = student.id
+    AND submission.run = (SELECT max(run) FROM submission AS newer WHERE newer.student = student.id)
+LEFT JOIN result ON result.id = submission.result
+LEFT JOIN run ON run.id = submission.run
+LEFT JOIN override ON override.student = student.id;
+"""
+
+# The first step makes version 1; each later one brings a gradebook to the next version. A step that was released never changes.
+STEPS = (_FIRST, _ROSTER_AND_ASSIGNMENT, _ANSWERS_AND_NAMES, _STANDARD_NAMES)

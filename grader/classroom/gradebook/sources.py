@@ -1,9 +1,11 @@
-"""The text of a kept hand-in's files for quoting, as long as they are what they were when it was graded."""
+"""Read the source files of a graded submission for quoting, as long as they have not changed since."""
 
 import time
+from functools import cached_property
 from typing import NamedTuple
 
-from grader.classroom.intake.opening import fingerprint, open_submission
+from grader.classroom.intake.fingerprint import fingerprint
+from grader.classroom.intake.opening import open_submission
 from grader.errors import InputError
 from grader.grading.rubric import Rubric
 from grader.source import Source
@@ -11,7 +13,7 @@ from grader.submission.submission import Submission
 
 
 class SubmissionFiles(NamedTuple):
-    """Where a hand-in was when it was graded: below the class folder or archive `root`; what it looked like then."""
+    """Where a submission was when it was graded: paths below the class `root`, and the fingerprint of the files."""
 
     root: str
     paths: tuple[str, ...]
@@ -21,23 +23,19 @@ class SubmissionFiles(NamedTuple):
 
 
 class SubmissionSources:
-    """Opens a hand-in when the first of its lines is asked for."""
+    """Opens a submission when one of its files is first asked for."""
 
     def __init__(self, files: SubmissionFiles, rubric: Rubric) -> None:
         self._files, self._rubric = files, rubric
-        self._submission: Submission | None = None
-        self._is_open = False
 
     def __call__(self, path: str) -> Source | None:
-        """The text of one file; None where it cannot be read, or is another by now."""
-        if not self._is_open:
-            self._is_open = True
-            self._submission = self._open()
+        """Return the text of one file; None if it cannot be read or has changed."""
         return self._submission.source(path) if self._submission is not None else None
 
-    def _open(self) -> Submission | None:
-        root, paths, names, key, kept = self._files
-        if not kept or fingerprint(root, paths, time.time_ns()) != kept:
+    @cached_property
+    def _submission(self) -> Submission | None:
+        root, paths, names, key, stored = self._files
+        if not stored or fingerprint(root, paths, time.time_ns()) != stored:
             return None
         try:
             return open_submission(root, paths, names, key).submission(self._rubric)

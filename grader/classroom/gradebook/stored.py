@@ -1,116 +1,118 @@
-"""What the gradebook has of a student, against which a run holds what it finds."""
+"""What a gradebook has stored about a student: identity, enrolment, and the newest submission."""
 
 import json
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from grader.classroom.students import ClassSubmission, Student
 
-_STUDENT = ("key", "name", "email", "login", "sis", "canvas", "moodle")
-
 
 class Enrolment(NamedTuple):
-    """What the roster says of a student: whether they are in it, when it is due for them, and how late they were."""
+    """What the roster says about a student. The fields are columns of the table `student`."""
 
-    expected: int | None  # 1 on the roster, 0 not on it, None while there is none
-    due: str = ""
-    extension: float = 0.0
+    is_on_roster: int | None  # None where there is no roster
+    deadline: str = ""  # the student's own deadline, ISO 8601
+    extension: float = 0.0  # days
     days_late: float | None = None
-    entry: str = ""  # the whole row of the roster as JSON, for a run that names none
+    roster_entry: str = ""  # the row of the roster as JSON, for a later run without --roster
 
 
-UNKNOWN = Enrolment(None)
-_COLUMNS = (*_STUDENT, *Enrolment._fields)
-ALL_STUDENTS = f"SELECT {', '.join(_STUDENT)} FROM student ORDER BY key"
-FIND_STUDENT = f"SELECT id, {', '.join(_COLUMNS)} FROM student WHERE key = ?"
-ADD_STUDENT = f"INSERT INTO student ({', '.join(_COLUMNS)}) VALUES (?{', ?' * (len(_COLUMNS) - 1)})"
-CHANGE_STUDENT = f"UPDATE student SET {', '.join(f'{name} = ?' for name in _COLUMNS)} WHERE id = ?"
-KNOWN = f"""
-SELECT student.id, seen.result, result.rubric, result.version, result.digest, result.verdict, seen.fingerprint,
-    seen.place, seen.is_late, seen.submitted, seen.is_gone, run.source, {", ".join(f"student.{name}" for name in _COLUMNS)}
-FROM student JOIN seen ON seen.student = student.id AND seen.run =
-    (SELECT max(run) FROM seen AS newer WHERE newer.student = student.id)
-JOIN result ON result.id = seen.result
-JOIN run ON run.id = seen.run
+NO_ROSTER = Enrolment(None)
+STUDENT_COLUMNS = ("key", "name", "email", "login", "sis", "canvas", "moodle")
+PROFILE_COLUMNS = (*STUDENT_COLUMNS, *Enrolment._fields)
+_COUNT = len(STUDENT_COLUMNS)
+STORED_SUBMISSIONS = f"""
+SELECT student.id, result.id, result.rubric, result.version, result.digest, result.verdict, submission.fingerprint,
+    submission.files, submission.is_late, submission.submitted, submission.is_gone, run.source,
+    {", ".join(f"student.{name}" for name in PROFILE_COLUMNS)}
+FROM student JOIN submission ON submission.student = student.id AND submission.run =
+    (SELECT max(run) FROM submission AS newer WHERE newer.student = student.id)
+JOIN result ON result.id = submission.result
+JOIN run ON run.id = submission.run
+ORDER BY student.key
 """
 
 
-class StoredSubmission(NamedTuple):
-    """What the gradebook has of a student: the newest result, what it was made from, and what was told of the student."""
+class Profile(NamedTuple):
+    """A student with the enrolment."""
 
-    student: int
+    student: Student
+    enrolment: Enrolment
+
+    @classmethod
+    def from_columns(cls, values: Sequence[Any]) -> "Profile":
+        """Return the profile in a row of PROFILE_COLUMNS."""
+        return cls(Student(*values[:_COUNT]), Enrolment(*values[_COUNT:]))
+
+    def columns(self) -> tuple[Any, ...]:
+        """Return a row of PROFILE_COLUMNS."""
+        return (*_student_columns(self.student), *self.enrolment)
+
+    def updated(self, student: Student, enrolment: Enrolment | None) -> "Profile":
+        """Return the profile with new data: empty fields of `student`, and an `enrolment` of None, keep the old values."""
+        pairs = zip(_student_columns(student), _student_columns(self.student), strict=True)
+        values: tuple[Any, ...] = tuple(new or old for new, old in pairs)
+        return Profile(Student(*values), self.enrolment if enrolment is None else enrolment)
+
+
+class StoredSubmission(NamedTuple):
+    """The newest submission of a student in the gradebook, with its result and the student's profile."""
+
+    student_id: int
     result: int
     rubric: str
     version: str
     digest: str
     verdict: str
     fingerprint: str
-    place: str
+    files: str  # JSON, see files_json
     is_late: int
     submitted: str
     is_gone: int
     source: str
-    told: tuple[Any, ...]
+    profile: Profile
+
+    @classmethod
+    def from_row(cls, row: Sequence[Any]) -> "StoredSubmission":
+        """Return the submission in a row of STORED_SUBMISSIONS."""
+        return cls._make((*row[:12], Profile.from_columns(row[12:])))
 
     @property
     def key(self) -> str:
         """The student's key."""
-        return str(self.told[0])
+        return self.profile.student.key
 
     @property
-    def record(self) -> Student:
-        """What is known of the student."""
-        return Student(*self.told[: len(_STUDENT)])
+    def paths(self) -> list[str]:
+        """The paths of the submission below the class."""
+        return list(json.loads(self.files)[0])
 
     @property
-    def entry(self) -> str:
-        """The row of the roster, as JSON; empty for one who is not on it."""
-        return str(self.told[len(_STUDENT) + Enrolment._fields.index("entry")])
-
-    @property
-    def is_expected(self) -> bool:
+    def is_on_roster(self) -> bool:
         """Whether the student was on the roster."""
-        return bool(self.told[len(_STUDENT)])
+        return bool(self.profile.enrolment.is_on_roster)
 
-    def is_same(self, hand_in: ClassSubmission, enrolment: Enrolment | None) -> bool:
-        """Whether nothing new is said of the student and the hand-in, whatever is in it."""
+    def is_same(self, submission: ClassSubmission, enrolment: Enrolment | None) -> bool:
+        """Return whether a submission has the same files, times, student and enrolment; the contents are not compared."""
         return (
             not self.is_gone
-            and self.place == place_of(hand_in)
-            and self.is_late == hand_in.is_late
-            and self.submitted == hand_in.submitted
-            and told_of(self.told, hand_in.student, enrolment) == self.told
+            and self.files == files_json(submission)
+            and self.is_late == submission.is_late
+            and self.submitted == submission.submitted
+            and self.profile.updated(submission.student, enrolment) == self.profile
         )
 
 
-def known_of(row: tuple[Any, ...]) -> StoredSubmission:
-    """What a row of KNOWN says."""
-    (
-        identity, result, rubric, version, digest, verdict, fingerprint, place, is_late, submitted, is_gone, source, *told,
-    ) = row  # fmt: skip
-    return StoredSubmission(
-        identity, result, rubric, version, digest, verdict, fingerprint, place, is_late, submitted, is_gone, source,
-        tuple(told),
-    )  # fmt: skip
-
-
 def storable(text: str) -> str:
-    """Text as a gradebook can hold it: what is no Unicode is spelt out."""
+    """Return text that SQLite can store: lone surrogates are written as escapes."""
     return text.encode("utf-8", "backslashreplace").decode()
 
 
-def place_of(hand_in: ClassSubmission) -> str:
-    """Where a hand-in is, as JSON: paths, names, attempt, paths of earlier attempts."""
-    return json.dumps((hand_in.paths, hand_in.names, hand_in.attempt, hand_in.earlier))
+def files_json(submission: ClassSubmission) -> str:
+    """Return where a submission is, as JSON: paths, names, attempt, paths of earlier attempts."""
+    return json.dumps((submission.paths, submission.names, submission.attempt, submission.earlier))
 
 
-def values_of(student: Student) -> tuple[str, ...]:
-    """A student's columns."""
-    told = (student.key, student.name, student.email, student.login, student.sis, student.canvas, student.moodle)
-    return told if "".join(told).isascii() else tuple(map(storable, told))
-
-
-def told_of(before: tuple[Any, ...], student: Student, enrolment: Enrolment | None) -> tuple[Any, ...]:
-    """What is known of a student after something more was said."""
-    count = len(_STUDENT)
-    values = tuple(new or old for new, old in zip(values_of(student), before[:count], strict=True))
-    return values + (before[count:] if enrolment is None else tuple(enrolment))
+def _student_columns(student: Student) -> tuple[str, ...]:
+    values = tuple(getattr(student, name) for name in STUDENT_COLUMNS)
+    return values if "".join(values).isascii() else tuple(map(storable, values))

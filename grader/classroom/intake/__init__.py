@@ -1,1 +1,1 @@
-"""What a class has handed in: the layouts of folders and downloads, the roster, whose each hand-in is."""
+"""The submissions of a class: layouts of folders and downloads, the roster, and whose each submission is."""

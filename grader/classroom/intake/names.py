@@ -1,10 +1,10 @@
-"""What file names and times in a class folder mean: endings, copies that a browser has numbered, dates."""
+"""Parse file names and times in a class folder: endings, numbered copies of a browser, dates."""
 
 import re
 from datetime import UTC, datetime
 from functools import lru_cache
 
-# What one student's work comes as. Where two names differ in their ending only, the earlier ending here counts.
+# The files that are submissions. If two names differ in their ending only, the earlier ending here counts.
 ENDINGS = (
     ".zip", ".tar.gz", ".tgz", ".tar.bz2", ".tar.xz", ".tar", ".gz", ".bz2", ".xz", ".7z", ".rar",
     ".urdf.xacro", ".urdf", ".xacro",
@@ -18,7 +18,7 @@ _OFFSET = re.compile(r"\s+(?=[+-][0-9:]+$)")
 
 @lru_cache(maxsize=64)  # each name is asked for several times in a row
 def ending_of(name: str) -> str:
-    """The ending for which a file is taken for a submission, as it is written; empty where it has none of these."""
+    """Return the ending that makes a file a submission, as written; empty if it has none of ENDINGS."""
     dot = name.rfind(".")
     last = name[dot:].lower()
     if dot < 0 or last not in _LAST:
@@ -27,8 +27,13 @@ def ending_of(name: str) -> str:
     return name[dot - len(before) :] if before and name[:dot].lower().endswith(before) else name[dot:]
 
 
+def stems_of(folders: list[str], files: list[str]) -> list[str]:
+    """Return the names that may be submissions, files without their endings."""
+    return folders + [name.removesuffix(ending) for name in files if (ending := ending_of(name))]
+
+
 def without_copy(stem: str, ending: str = "") -> tuple[str, int]:
-    """A name as it was before a browser added the number of a copy, and that number: `alice (2)` is `alice`, 2.
+    """Return a name without the number that a browser gives a copy, and that number: `alice`, 2 for `alice (2)`.
 
     A browser may put the number in front of the last ending only: `alice.tar (1).gz`.
     """
@@ -42,7 +47,7 @@ def without_copy(stem: str, ending: str = "") -> tuple[str, int]:
 
 
 def iso_time(text: str) -> str:
-    """A date or time as ISO 8601, to the second; empty where it is none. A time without a zone is left without one."""
+    """Return a date or time as ISO 8601, to the second; empty if it is neither. A time without a zone stays without one."""
     text = text.strip()
     if ":" in text:
         text = _OFFSET.sub("", _ZONE.sub("+00:00", text))
@@ -56,7 +61,7 @@ def iso_time(text: str) -> str:
 
 
 def utc_time(text: str) -> str:
-    """A date or time as ISO 8601 in UTC, where one that names no zone is meant in UTC; empty where it is none."""
+    """Return a date or time as ISO 8601 in UTC; one without a zone is taken as UTC. Empty if it is neither."""
     written = iso_time(text)
     if not written:
         return ""

@@ -1,4 +1,4 @@
-"""Who is in the class, and who of them has handed something in: by what is surely theirs, never by a guess."""
+"""The roster of a class, and which of its students a submission belongs to: only certain or unambiguous matches."""
 
 import json
 from collections.abc import Iterable, Sequence
@@ -13,8 +13,9 @@ from grader.classroom.students import ClassSubmission, Student
 class RosterEntry:
     """One row of a roster. `due` and `submitted` are ISO 8601; what the roster does not say is empty or None.
 
-    `section` is the group or team that hands in together, or else the section: nobody tells the two apart but by a hand-in.
+    `section` is the group or team that submits together, or else the section: only a submission tells the two apart.
     `aliases` are further names that are as good as a login, such as one at GitHub beside one at the university.
+    Gradebooks store entries as JSON with these field names.
     """
 
     student: Student
@@ -28,19 +29,19 @@ class RosterEntry:
 
 
 class RosterMatch(NamedTuple):
-    """Whose submission it is: the position in the entries, or None. `clue` says how it was found.
+    """The student of a submission: the position in the entries, or None. `clue` says how the match was found.
 
-    `doubt` says in words why nobody was taken although somebody might be meant, and `several` has the positions of those who might be.
+    `doubt` says why an ambiguous submission is left unassigned; `several` are the positions of the students that it may belong to.
     """
 
-    place: int | None
+    position: int | None
     clue: Clue = Clue.SURNAME
     doubt: str = ""
     several: tuple[int, ...] = ()
 
 
 class Roster:
-    """The students of a class, in the order of the file; `notes` says what in it was not understood.
+    """The students of a class, in the order of the file; `notes` says which cells were not understood.
 
     `assignments` has Canvas' ids of the assignments that the file has columns for.
     """
@@ -51,7 +52,7 @@ class Roster:
         self.entries = tuple(entries)
         self.notes = notes
         self.assignments = frozenset(assignments)
-        self._by_key = {entry.student.key: index for index, entry in enumerate(self.entries)}
+        self._by_key = {entry.student.key: entry for entry in self.entries}
         self._people = People(clues_of(entry.student, entry.aliases) for entry in self.entries)
         self._groups: dict[str, list[int]] = {}
         for index, entry in enumerate(self.entries):
@@ -59,11 +60,13 @@ class Roster:
                 self._groups.setdefault(group, []).append(index)
 
     def with_lms_numbers(self, students: Iterable[Student]) -> "Roster":
-        """The roster with the numbers by which an LMS knows these students, by key, where it does not say them itself."""
-        known = {each.key: each for each in students if each.canvas or each.moodle}
-        return Roster(
-            (_knowing(each, known.get(each.student.key)) for each in self.entries), self.notes, self.assignments
+        """Return the roster with the LMS ids of these students, by key, where it has none itself."""
+        known = {student.key: student for student in students}
+        entries = (
+            replace(entry, student=_with_numbers(entry.student, known.get(entry.student.key, entry.student)))
+            for entry in self.entries
         )
+        return Roster(entries, self.notes, self.assignments)
 
     @property
     def students(self) -> tuple[Student, ...]:
@@ -71,39 +74,38 @@ class Roster:
         return tuple(entry.student for entry in self.entries)
 
     def entry(self, key: str) -> RosterEntry | None:
-        """The row of the student with this key."""
-        index = self._by_key.get(key)
-        return None if index is None else self.entries[index]
+        """Return the row of the student with this key."""
+        return self._by_key.get(key)
 
     def knows(self, name: str) -> bool:
-        """Whether a name is that of one student in the roster."""
-        return self.match(Student(name)).place is not None
+        """Return whether a name is that of one student on the roster."""
+        return self.match(Student(name)).position is not None
 
     def knows_surname(self, name: str) -> bool:
-        """Whether a name is that of one student in the roster, or the surname of one."""
+        """Return whether a name is that of one student on the roster, or the surname of one."""
         return self._people.find(claims_of(Student(name)), OF_TEAM_FOLDERS).only is not None
 
     def knows_submission(self, name: str) -> bool:
-        """Whether a name is that of one student in the roster, or of a group."""
+        """Return whether a name is that of one student on the roster, or of a group."""
         return self.knows(name) or bool(self.members(Student(name)))
 
     def members(self, team: Student) -> Sequence[int]:
-        """The positions of those whose group is named like a submission, by its key or its name.
+        """Return the indices of the students whose group is named like a submission, by its key or name.
 
-        What lies in a team's folder is named by the team: it counts for no group.
+        A submission in a team's folder was named by the team, and counts for no group.
         """
         if team.team:
             return ()
         return self._groups.get(plain_group(team.key)) or self._groups.get(plain_group(team.name)) or ()
 
     def candidates(self, student: Student) -> tuple[int, ...]:
-        """The positions of everybody whom the number or name of a submission may mean."""
+        """Return the indices of all students that the id or name of a submission may mean."""
         return self._people.find(claims_of(student)).people
 
     def match(self, student: Student) -> RosterMatch:
-        """Whose a submission is, given what its name says.
+        """Return whose a submission is, given the student that its name tells.
 
-        What lies in a team's folder can only be of a student whose group is that team: anybody in the team may have named it.
+        A submission in a team's folder can only be of a student in that group: anybody in the team may have named it.
         """
         claims = claims_of(student)
         group = self._groups.get(plain_group(student.team), ()) if student.team else None
@@ -111,59 +113,49 @@ class Roster:
         if found.only is not None:
             return RosterMatch(found.only, found.clue)
         if found.people:
-            return RosterMatch(None, found.clue, doubt="may be of several in the roster", several=found.people)
+            return RosterMatch(
+                None, found.clue, "is ambiguous: it matches several students on the roster", found.people
+            )
         if found.contradicted:
             other = self.entries[found.contradicted[0]].student
-            return RosterMatch(None, found.clue, doubt=f"has the name of {other.key}, but another number")
+            return RosterMatch(None, found.clue, f"has the name of {other.key}, but another number")
         elsewhere = self._people.find(claims, OF_TEAM_FOLDERS).people if student.team else ()
         if elsewhere:
             entry = self.entries[elsewhere[0]]
-            group_words = (
-                f"whose group is {entry.section!r}"
-                if entry.section
-                else "who has no group in the roster (its column group names the team folders)"
-            )
-            return RosterMatch(None, found.clue, doubt=f"is named like {entry.student.key}, {group_words}")
+            no_group = "who has no group on the roster (its column group names the team folders)"
+            group_words = f"whose group is {entry.section!r}" if entry.section else no_group
+            return RosterMatch(None, found.clue, f"is named like {entry.student.key}, {group_words}")
         return RosterMatch(None)
 
-    def complete(self, index: int, hand_in: ClassSubmission) -> ClassSubmission:
-        """The submission of a student in the roster, with the name and numbers that an LMS gives. Times in the roster count first."""
-        entry, said = self.entries[index], hand_in.student
-        own = entry.student
+    def complete(self, index: int, submission: ClassSubmission) -> ClassSubmission:
+        """Return the submission of a student with the data of the roster, and the name and ids of the LMS where it has none."""
+        entry = self.entries[index]
+        student = _with_numbers(entry.student, submission.student)
         return replace(
-            hand_in,
-            student=replace(
-                own,
-                name=own.name or said.name,
-                canvas=own.canvas or said.canvas,
-                moodle=own.moodle or said.moodle,
-            ),
-            is_late=hand_in.is_late if entry.is_late is None else entry.is_late,
-            submitted=entry.submitted or hand_in.submitted,
+            submission,
+            student=replace(student, name=student.name or submission.student.name),
+            is_late=submission.is_late if entry.is_late is None else entry.is_late,
+            submitted=entry.submitted or submission.submitted,
         )
 
 
-def _knowing(entry: RosterEntry, known: Student | None) -> RosterEntry:
-    if known is None:
-        return entry
-    own = entry.student
-    numbered = replace(own, canvas=own.canvas or known.canvas, moodle=own.moodle or known.moodle)
-    return replace(entry, student=numbered)
+def _with_numbers(student: Student, other: Student) -> Student:
+    return replace(student, canvas=student.canvas or other.canvas, moodle=student.moodle or other.moodle)
 
 
 def entry_to_json(entry: RosterEntry) -> str:
-    """A row of a roster as a gradebook keeps it."""
+    """Return a row of a roster as a gradebook stores it."""
     return json.dumps(asdict(entry), sort_keys=True)
 
 
 def roster_from_json(entries: Iterable[str]) -> Roster | None:
-    """The roster that a gradebook has kept; None where there is none."""
-    rows = [entry_from_json(each) for each in entries]
+    """Return the roster that a gradebook has stored; None if there is none."""
+    rows = [entry_from_json(entry) for entry in entries]
     return Roster(rows) if rows else None
 
 
 def entry_from_json(text: str) -> RosterEntry:
-    """A row of a roster that a gradebook has kept."""
+    """Return a row of a roster that a gradebook has stored."""
     row = json.loads(text)
     student = {**row["student"], "maybe_canvas": ()}
     return RosterEntry(**{**row, "student": Student(**student), "aliases": tuple(row["aliases"])})

@@ -1,11 +1,11 @@
-"""A roster as a CSV: an instructor's own, a gradebook that Canvas exports, or a grading worksheet of Moodle."""
+"""Read a roster from a CSV file: an instructor's own, a gradebook from Canvas, or a grading worksheet from Moodle."""
 
 import re
 from pathlib import Path
 
 from grader.classroom.intake.names import iso_time
 from grader.classroom.intake.roster import Roster, RosterEntry
-from grader.classroom.intake.roster_cells import RosterRow, canvas_assignments, rows_of, text_of
+from grader.classroom.intake.roster_rows import RosterRow, canvas_assignments, rows_of, text_of
 from grader.classroom.students import Student
 from grader.errors import InputError
 from grader.files.reading import read_capped
@@ -18,10 +18,10 @@ _PARTICIPANT = re.compile(r"(?:participant|teilnehmer(?:/?in)?)\s*([0-9]+)", re.
 
 
 def read_roster(path: Path) -> Roster:
-    """The roster in a CSV file, in UTF-8, UTF-16 with a byte order mark, or cp1252; raises InputError for one that is of no use.
+    """Return the roster in a CSV file in UTF-8, UTF-16 with a byte order mark, or cp1252; raises InputError.
 
-    Columns stand in any order, between commas, semicolons or tabs; those that are not known are passed over. A student's key is
-    their id, else the university's number, login, address, name, or number in an LMS.
+    Columns can be in any order, separated by commas, semicolons or tabs; unknown columns are ignored. A student's key is the id, else
+    the university's id, login, address, name, or LMS id.
     """
     shown = printable_path(path)
     text = text_of(read_capped(path, _LIMIT, advice=""), shown)
@@ -38,7 +38,7 @@ def read_roster(path: Path) -> Roster:
                 raise InputError(f"{shown} has the {what} {value} twice, in lines {first} and {row.line}")
         entries.append(entry)
     if not entries:
-        raise InputError(f"{shown} has no students in it")
+        raise InputError(f"{shown} has no students")
     return Roster(entries, tuple(notes), canvas_assignments(text, shown))
 
 
@@ -52,11 +52,11 @@ def _entry(row: RosterRow, shown: str, notes: list[str]) -> RosterEntry:
     name = row["name"] or " ".join(part for part in (row["first"], row["last"]) if part)
     key = own_id or row["sis"] or login or row["email"] or name or row["canvas"] or moodle
     if not key:
-        raise InputError(f"line {row.line} of {shown} says nothing of who the student is")
+        raise InputError(f"line {row.line} of {shown} has no id, login, name or email address: add one of them")
     is_late, days_late = _late(row, shown)
     submitted = iso_time(row["submitted"])
     if row["submitted"] and not submitted:
-        notes.append(f"line {row.line}: {row['submitted']!r} is no time such as 2026-09-01T10:00, and was passed over")
+        notes.append(f"line {row.line}: {row['submitted']!r} is not a time such as 2026-09-01T10:00, and was ignored")
     return RosterEntry(
         Student(printable_path(key), name, row["email"], login, sis, row["canvas"], moodle),
         row["group"] or row["section"],
@@ -69,7 +69,7 @@ def _entry(row: RosterRow, shown: str, notes: list[str]) -> RosterEntry:
 
 
 def _due(row: RosterRow, shown: str) -> tuple[str, float]:
-    """Until when a student may hand in, and by how many days more: an extension is either."""
+    """Return a student's own deadline and extension in days: the column extension may hold either."""
     days = _number(row["extension"].removesuffix("days").removesuffix("day").strip())
     written = row["due"] or ("" if days is not None else row["extension"])
     due = iso_time(written)

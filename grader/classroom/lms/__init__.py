@@ -1,1 +1,1 @@
-"""The files of a learning management system: a gradebook of Canvas, a grading worksheet of Moodle, filled with our totals."""
+"""Files of learning management systems: a Canvas gradebook or a Moodle grading worksheet, filled with the totals."""

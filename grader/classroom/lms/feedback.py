@@ -1,22 +1,23 @@
-"""One student's comment for a learning management system, as HTML, and how it is known again.
+"""A student's comment for a learning management system, as HTML: which points were lost and why, each cause once.
 
-Moodle keeps the HTML of an uploaded comment as it is and hands it out again in the next worksheet
-(mod/assign/feedback/comments/locallib.php). A mark at the end, which readers do not see, holds a hash of the words: a comment
-whose words a person has changed or added to is no longer ours.
+Moodle stores the HTML of an uploaded comment unchanged and includes it in the next worksheet
+(mod/assign/feedback/comments/locallib.php). An HTML comment at its end holds a hash of the words: without a match, a person has
+changed the words or added to them, and the comment is theirs.
 """
 
 import html
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 
-from grader.classroom.lms.grades import cut, exact_words
+from grader.classroom.lms.grades import exact_text, rounded_down
 from grader.classroom.lms.spreadsheet import FORMULA_BEHIND_SEMICOLON, spelt_out
 from grader.files.reading import sha256_of
+from grader.grading.report import Result
 
 LIMIT = 4_000  # characters
-_ONE_TEXT = 600
+_MAX_MESSAGE = 600
 _OPENING = "Graded automatically"
 _MARK = re.compile(r"<!-- grader ([0-9a-f]{12}) -->")
 _TAG = re.compile(r"<[^>]*+>")
@@ -24,7 +25,7 @@ _TAG = re.compile(r"<[^>]*+>")
 
 @dataclass(frozen=True, slots=True)
 class FeedbackItem:
-    """One criterion as the student reads of it."""
+    """One line of a comment: a criterion, or several that share a cause."""
 
     title: str
     points: Decimal
@@ -32,45 +33,80 @@ class FeedbackItem:
     message: str = ""
 
 
-def feedback_html(score: Decimal, out_of: Decimal, remarks: Sequence[FeedbackItem]) -> str:
-    """A comment of one line and at most 4,000 characters: the score as it is exported, then the remarks, in their order."""
-    opening = f"<p>{_OPENING}: {exact_words(cut(score))} of {exact_words(out_of)} points.</p>"
-    items = [_item(remark) for remark in remarks]
-    room = LIMIT - len(opening) - 100  # for the list's tags, the mark, and how many more there are
+def feedback_items(results: Iterable[Result]) -> Iterator[FeedbackItem]:
+    """Yield an item for each criterion below its maximum or with a person's comment, in order.
+
+    Criteria that are skipped because of the same criterion, or pending for the same reason, are one item.
+    """
+    groups: dict[tuple[str, str], list[Result]] = {}
+    for number, result in enumerate(results):
+        if result.points < result.criterion.points or (result.manual_mark is not None and result.manual_mark.comment):
+            groups.setdefault(_cause(result) or ("", str(number)), []).append(result)
+    for (kind, cause), group in groups.items():
+        out_of = sum((result.criterion.points for result in group), Decimal(0))
+        if len(group) == 1:
+            (result,) = group
+            message = _capitalised(result.outcome.message) if result.manual_mark is None else result.manual_mark.comment
+            yield FeedbackItem(result.criterion.title, result.points, out_of, message)
+        elif kind == "skipped":
+            yield FeedbackItem(f"{len(group)} criteria were skipped because {cause} failed", Decimal(0), out_of)
+        else:
+            yield FeedbackItem(f"{len(group)} criteria need manual grading", Decimal(0), out_of, _capitalised(cause))
+
+
+def _cause(result: Result) -> tuple[str, str] | None:
+    """Return why a criterion is skipped or pending, if other criteria may have the same cause."""
+    if result.manual_mark is not None:
+        return None
+    if result.because is not None:
+        return "skipped", result.because
+    return ("pending", result.outcome.message) if result.is_open else None
+
+
+def _capitalised(message: str) -> str:
+    """Return a message as in the terminal report: a first word that is no plain word, such as an attribute, stays as it is."""
+    return message[:1].upper() + message[1:] if message.partition(" ")[0].isalpha() else message
+
+
+def feedback_html(score: Decimal, out_of: Decimal, items: Sequence[FeedbackItem]) -> str:
+    """Return a comment of one line and at most LIMIT characters: the exported score, then the items in order."""
+    opening = f"<p>{_OPENING}: {exact_text(rounded_down(score))} of {exact_text(out_of)} points.</p>"
+    lines = [_item(item) for item in items]
+    room = LIMIT - len(opening) - 100  # for the list's tags, the mark, and the line that counts the rest
     shown = 0
-    while shown < len(items) and room >= len(items[shown]):
-        room -= len(items[shown])
+    while shown < len(lines) and room >= len(lines[shown]):
+        room -= len(lines[shown])
         shown += 1
-    more = [f"<li>... and {len(items) - shown} more</li>"] if shown < len(items) else []
-    listed = f"<ul>{''.join([*items[:shown], *more])}</ul>" if items else ""
+    more = [f"<li>... and {len(lines) - shown} more</li>"] if shown < len(lines) else []
+    listed = f"<ul>{''.join([*lines[:shown], *more])}</ul>" if lines else ""
     return f"{opening}{listed}<!-- grader {_hash(opening + listed)} -->"
 
 
-def is_our_feedback(text: str) -> bool:
-    """Whether a comment is one of `feedback_html`, its words untouched; tags and spaces may have been written anew."""
+def is_own_feedback(text: str) -> bool:
+    """Return whether a comment is from `feedback_html`, its words unchanged; tags and spaces may have changed."""
     mark = _MARK.search(text)
     if mark is None:
         return False
-    words = text[: mark.start()] + text[mark.end() :]
-    return _words(words).startswith(_OPENING) and mark[1] == _hash(words)
+    rest = text[: mark.start()] + text[mark.end() :]
+    return _plain(rest).startswith(_OPENING) and mark[1] == _hash(rest)
 
 
-def _item(remark: FeedbackItem) -> str:
-    points = exact_words(remark.points)
-    if remark.points >= 0:  # less is what being late costs: that is of nothing
-        points += f" of {exact_words(remark.out_of)}"
-    message = _escaped(remark.message)
-    return f"<li>{_escaped(remark.title)}: {points}.{' ' if message else ''}{message}</li>"
+def _item(item: FeedbackItem) -> str:
+    points = exact_text(item.points)
+    if item.points >= 0:  # a late penalty is negative, and has no maximum
+        points += f" of {exact_text(item.out_of)}"
+    message = _escaped(item.message)
+    return f"<li>{_escaped(item.title)}: {points}.{' ' if message else ''}{message}</li>"
 
 
 def _escaped(text: str) -> str:
-    """A student's text on one line of HTML.
+    """Return a student's text on one line of HTML.
 
-    Two things are written as character references, so that they stay what they are: a backslash, which PHP's reader of CSV
-    takes for an escape, and what a spreadsheet would take for a formula behind the semicolon of another reference.
+    Two things become character references: a backslash, which PHP's CSV reader takes for an escape, and what a spreadsheet would take
+    for a formula behind the semicolon of another reference.
     """
     line = spelt_out(" ".join(text.split()))
-    short = line if len(line) <= _ONE_TEXT else line[: _ONE_TEXT - 3] + "..."
+    short = line if len(line) <= _MAX_MESSAGE else line[: _MAX_MESSAGE - 3] + "..."
     escaped = html.escape(short).replace("\\", "&#92;")
     return FORMULA_BEHIND_SEMICOLON.sub(lambda found: "".join(map(_reference, found[0])), escaped)
 
@@ -80,8 +116,8 @@ def _reference(character: str) -> str:
 
 
 def _hash(text: str) -> str:
-    return sha256_of(_words(text).encode("utf-8", "replace"))[:12]
+    return sha256_of(_plain(text).encode("utf-8", "replace"))[:12]
 
 
-def _words(text: str) -> str:
+def _plain(text: str) -> str:
     return " ".join(html.unescape(_TAG.sub(" ", text)).split())

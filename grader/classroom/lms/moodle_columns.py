@@ -1,8 +1,8 @@
-"""Which column of a Moodle grading worksheet is which, in whatever language it was downloaded.
+"""Detect the columns of a Moodle grading worksheet, in any language.
 
 The order of the columns is fixed (mod/assign/gradingtable.php): Identifier, then, unless the marking is blind, Full name and
-what else the site shows of a user; Status, group, marker; Grade, and directly behind it Maximum grade, or Scale. So the
-Identifier is known by its shape, a word and a number, and the Grade by the column behind it.
+other data of a user; Status, group, marker; Grade, and directly behind it Maximum grade, or Scale. So the Identifier is detected by
+its shape, a word and a number, and the Grade by the column behind it.
 """
 
 import re
@@ -22,7 +22,6 @@ _ADDRESS = re.compile(r"[^@\s]+@[^@\s]+")
 class MoodleColumns:
     """The columns by index, None where there are none. `numbers` hold ID numbers and user names."""
 
-    titles: tuple[str, ...]
     identifier: int
     name: int | None
     email: int | None
@@ -33,47 +32,39 @@ class MoodleColumns:
     feedback: int | None
     has_modified: bool
 
-    @property
-    def title(self) -> str:
-        """The header of the column that is filled."""
-        return self.titles[self.grade]
 
-
-def people_rows(table: Table) -> list[TableRow]:
-    """The rows below the header that have anything in them."""
+def student_rows(table: Table) -> list[TableRow]:
+    """Return the rows below the header that are not empty."""
     return [row for row in table.rows[1:] if any(cell.value.strip() for cell in row.cells)]
 
 
 def find_columns(table: Table, column: str, feedback_column: str, shown: str) -> MoodleColumns:
-    """The columns of a grading worksheet; `column` and `feedback_column` are headers that somebody names.
+    """Return the columns of a grading worksheet; `column` and `feedback_column` are headers that the user names.
 
-    Raises InputError where it is no worksheet, where a column cannot be told, and where the grade is a word of a scale.
+    Raises InputError if it is not a worksheet, if a column cannot be detected, and if the assignment is graded by a scale.
     """
-    titles = tuple(cell.value.strip() for cell in table.rows[0].cells) if table.rows else ()
+    titles = table.titles
     headers = [title.casefold() for title in titles]
-    rows = people_rows(table)
+    rows = student_rows(table)
     first = [index for index, header in enumerate(headers) if index == 0 or header in IDENTIFIER]
     identifier = next((index for index in first if _all(rows, index, _IDENTIFIER)), None)
     if identifier is None:
         raise InputError(
-            f"{shown} is not a grading worksheet of Moodle: its first column has not 'Participant 123' in every row; {_list(titles)}"
+            f"{shown} is not a grading worksheet of Moodle: its first column does not have 'Participant 123' in every row; {_list(titles)}"
         )
     grade = _named(titles, column, shown) if column else _grade(headers, rows, identifier)
     if grade is None:
-        raise InputError(
-            f"nobody can tell which column of {shown} has the grades, name it with --column; {_list(titles)}"
-        )
+        raise InputError(f"cannot detect the column of {shown} with the grades, name it with --column; {_list(titles)}")
     maximum = grade + 1
     if not rows or any(not _is_maximum(row.value(maximum)) for row in rows if len(row.cells) == len(titles)):
         raise InputError(
-            f"{shown} has no maximum grade in numbers behind {titles[grade]!r}: an assignment that is graded by a scale takes no points"
+            f"{shown} has no number as the maximum grade behind {titles[grade]!r}: an assignment that is graded by a scale takes no points"
         )
     between = range(identifier + 1, grade)
     email = next((index for index in between if _all(rows, index, _ADDRESS)), None)
     name = next((index for index in between[:1] if index != email and headers[index] not in STATUS), None)
     return MoodleColumns(
-        titles,
-        identifier,
+        identifier=identifier,
         name=name,
         email=email,
         numbers=tuple(index for index in between if headers[index] in NUMBERS),
@@ -86,7 +77,7 @@ def find_columns(table: Table, column: str, feedback_column: str, shown: str) ->
 
 
 def _grade(headers: Sequence[str], rows: Sequence[TableRow], identifier: int) -> int | None:
-    """The column before the maximum grade: by the maximum's header, by English headers, else by what stands in the two."""
+    """Return the column before the maximum grade: by the maximum's header, by English headers, else by the values."""
     for index in range(identifier + 2, len(headers)):
         if headers[index] in MAXIMUM or (headers[index - 1], headers[index]) == ("grade", "scale"):
             return index - 1
@@ -97,7 +88,7 @@ def _grade(headers: Sequence[str], rows: Sequence[TableRow], identifier: int) ->
 
 
 def _is_grade_and_maximum(rows: Sequence[TableRow], index: int) -> bool:
-    """Whether a column has one and the same number everywhere, and the column before it nothing, or numbers up to it."""
+    """Return whether a column has the same number everywhere, and the column before it nothing, or numbers up to it."""
     limits = {read_points(row.value(index)) for row in rows}
     limit = limits.pop() if len(limits) == 1 else None
     if not limit or limit < 0:
@@ -112,7 +103,7 @@ def _is_maximum(text: str) -> bool:
 
 
 def _all(rows: Sequence[TableRow], index: int, pattern: re.Pattern[str]) -> bool:
-    """Whether all that stands in a column has a shape, and something stands there."""
+    """Return whether all values in a column match a pattern, and there is at least one."""
     values = [value for row in rows if (value := row.value(index))]
     return bool(values) and all(pattern.fullmatch(value) for value in values)
 

@@ -1,7 +1,7 @@
-"""Headers of a Moodle grading worksheet, in small letters, as its language packs have them (assign.php, assignfeedback_comments.php).
+"""Headers of a Moodle grading worksheet, in lower case, as its language packs have them (assign.php, assignfeedback_comments.php).
 
 In English, German, French, Spanish, Italian, Portuguese, Brazilian and Dutch, as far as they were looked up. The worksheet's
-other columns are known by their place and by what stands in them, so that a language that is not here mostly works as well.
+other columns are detected by their place and their values, so that a language that is not here mostly works as well.
 """
 
 IDENTIFIER = frozenset({"identifier", "id", "identifiant", "identificador", "identificativo", "identificatie"})

@@ -1,20 +1,19 @@
-"""What filling an LMS file would do, before anyone imports it: what changes, what is left out and why, and who is not matched."""
+"""What importing a filled LMS file would do: what changes, what is left out and why, and who is unmatched."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 
-@dataclass(frozen=True, slots=True)
-class RowNote:
-    """Someone without a new grade, and why. `row` counts from 1 in the LMS file; 0 for a student who has no row there."""
+class RowNote(NamedTuple):
+    """A row or student without a new grade, and why. `row` counts from 1 in the LMS file; 0 for a student without a row."""
 
     row: int
     who: str
     why: str
 
 
-@dataclass(frozen=True, slots=True)
-class Conflict:
-    """A row that has a grade already, and another one than ours: it is filled, and `was` becomes `becomes`."""
+class Conflict(NamedTuple):
+    """A row with another grade, which is overwritten: `was` becomes `becomes`."""
 
     row: int
     who: str
@@ -22,36 +21,35 @@ class Conflict:
     becomes: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Preflight:
-    """What the filled file does when it is imported.
+    """What importing the filled file does.
 
-    `filled` rows are changed and `unchanged` ones have our grade already; all other rows of students are left out of the file,
-    so that nothing of theirs can change. `ungraded` are rows of students of ours that get no grade; `unknown` rows are of
-    nobody whom we know; `missing` are students with a grade who have no row; `ambiguous` are rows and students that could be
-    matched in more than one way, which is never guessed. `kept_feedback` are rows whose comment a person has written.
+    `filled` rows are changed and `unchanged` ones have the grade already; all other students' rows are removed from the file, so that
+    nothing of theirs can change. `ungraded` are rows of students without a grade, `unknown` rows that match nobody, `missing`
+    students with a grade but without a row, `ambiguous` rows and students with several possible matches, which are left
+    unassigned. `kept_feedback` are rows with a comment that a person wrote.
     """
 
     column: str
-    filled: int
-    unchanged: int
-    conflicts: tuple[Conflict, ...]
-    ungraded: tuple[RowNote, ...]
-    unknown: tuple[RowNote, ...]
-    missing: tuple[RowNote, ...]
-    ambiguous: tuple[RowNote, ...]
-    kept_feedback: tuple[RowNote, ...]
-    warnings: tuple[str, ...]
+    filled: int = 0
+    unchanged: int = 0
+    conflicts: list[Conflict] = field(default_factory=list)
+    ungraded: list[RowNote] = field(default_factory=list)
+    unknown: list[RowNote] = field(default_factory=list)
+    missing: list[RowNote] = field(default_factory=list)
+    ambiguous: list[RowNote] = field(default_factory=list)
+    kept_feedback: list[RowNote] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
 
     @property
     def matches(self) -> bool:
-        """Every row has its student and every grade its row; whether each of them is graded is another question."""
+        """Whether every row has its student and every grade its row."""
         return not (self.unknown or self.missing or self.ambiguous)
 
 
-@dataclass(frozen=True, slots=True)
-class Filled:
-    """A filled LMS file, byte for byte as it was but for the cells that were written, and what was found on the way."""
+class Filled(NamedTuple):
+    """A filled LMS file, unchanged except for the cells that were written, and what importing it does."""
 
     data: bytes
     preflight: Preflight

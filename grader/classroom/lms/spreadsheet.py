@@ -1,7 +1,7 @@
-"""Plain CSV for people: read by any spreadsheet, and nothing in it that one would run.
+"""Write CSV for any spreadsheet, with nothing in it that one would run as a formula.
 
 What starts a formula is after OWASP's page on CSV injection: = + - @, a tab, a line break, the full-width forms of the four;
-also behind spaces. A spreadsheet whose separator is a semicolon begins a cell behind each one, quotes or none.
+also behind spaces. A spreadsheet with the semicolon as separator begins a cell behind each semicolon, quoted or not.
 """
 
 import csv
@@ -20,38 +20,40 @@ CellValue = str | int | Decimal | None
 
 
 def write_table(header: Sequence[str], rows: Iterable[Sequence[CellValue]]) -> str:
-    """A table as CSV: commas, CRLF, quotes where they are needed. Numbers stay numbers, None is an empty cell."""
+    """Return a table as CSV: commas, CRLF, quotes where necessary. Numbers stay numbers, None is an empty cell."""
     text = io.StringIO(newline="")
     writer = csv.writer(text)
-    writer.writerow([neutral(each) for each in header])
-    writer.writerows([_cell(each) for each in row] for row in rows)
+    writer.writerow(map(neutral, header))
+    writer.writerows(map(_cell, row) for row in rows)
     return text.getvalue()
 
 
 def rows_of_table(text: str) -> list[list[str]]:
-    """The rows below the header of a table that `write_table` has made."""
+    """Return the rows below the header of a table from `write_table`."""
     return list(csv.reader(io.StringIO(text, newline="")))[1:]
 
 
 def neutral(text: str) -> str:
-    """Text that no spreadsheet takes for a formula: an apostrophe goes before what would start one."""
+    """Return text that no spreadsheet takes for a formula: an apostrophe precedes what would start one."""
     safe = _INSIDE.sub(r"\1'", spelt_out(text))
     return f"'{safe}" if _AT_START.match(safe) else safe
 
 
 def spelt_out(text: str) -> str:
-    """Text with everything spelt out that CSV or UTF-8 cannot hold, or that turns the line around: controls, lone surrogates."""
-    return "".join(f"\\x{ord(each):02x}" if _is_unspeakable(each) else each for each in text)
+    """Return text with escapes for controls, lone surrogates and bidirectional marks."""
+    return "".join(f"\\x{ord(character):02x}" if _needs_escape(character) else character for character in text)
 
 
-def _is_unspeakable(character: str) -> bool:
+def _needs_escape(character: str) -> bool:
     kind = unicodedata.category(character)
     return (
-        kind == "Cs" or (kind == "Cc" and character not in "\t\r\n") or unicodedata.bidirectional(character) in _TURNS
+        kind == "Cs"
+        or (kind == "Cc" and character not in "\t\r\n")
+        or unicodedata.bidirectional(character) in _BIDIRECTIONAL
     )
 
 
-_TURNS = frozenset({"LRE", "RLE", "LRO", "RLO", "PDF", "LRI", "RLI", "FSI", "PDI"})
+_BIDIRECTIONAL = frozenset({"LRE", "RLE", "LRO", "RLO", "PDF", "LRI", "RLI", "FSI", "PDI"})
 
 
 def _cell(value: CellValue) -> str:

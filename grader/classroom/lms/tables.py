@@ -1,12 +1,13 @@
-"""A CSV file kept as it was written, so that one cell can be changed and every other byte stays.
+"""A CSV file in which one cell can be changed while every other byte stays.
 
-Values are those that Python's csv module reads; what it does not refuse (an open quote) is refused here.
+An LMS compares the file with what it exported, so nothing else may change. Python's csv module gives values, but not how they were
+written (which cells were quoted, the line ends, blank lines): so rows are split here, into the same values. An open quote, which csv
+accepts, is an error.
 """
 
 import codecs
 import re
 from dataclasses import dataclass, replace
-from functools import cache
 
 from grader.errors import InputError
 from grader.files.reading import capped
@@ -24,7 +25,7 @@ _BOMS = (
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """One cell: `raw` as it is written, with its quotes, and the value that it has."""
+    """One cell: `raw` as it is written, with its quotes, and its value."""
 
     raw: str
     value: str
@@ -32,60 +33,65 @@ class Cell:
 
 @dataclass(frozen=True, slots=True)
 class TableRow:
-    """One row: `number` is 1 for the first, `end` the line break behind it. A blank line has no cells."""
+    """One row: `number` counts from 1, `end` is the line break behind it. A blank line has no cells."""
 
     number: int
     cells: tuple[Cell, ...]
     end: str
 
     def value(self, column: int | None) -> str:
-        """What stands in a column without the spaces around it; empty where the row is shorter or no column is meant."""
+        """Return the value in a column without surrounding spaces; empty if the row is shorter or the column is None."""
         return self.cells[column].value.strip() if column is not None and column < len(self.cells) else ""
 
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """A CSV file: its rows, and what is needed to write them back byte for byte."""
+    """A CSV file: its rows, and what is needed to write them back unchanged."""
 
     rows: tuple[TableRow, ...]
     delimiter: str
     encoding: str
     bom: bytes
 
+    @property
+    def titles(self) -> tuple[str, ...]:
+        """The cells of the first row, without surrounding spaces."""
+        return tuple(cell.value.strip() for cell in self.rows[0].cells) if self.rows else ()
+
     def encoded(self) -> bytes:
-        """The file's bytes. What the encoding lacks, in a cell that was changed, becomes an HTML character reference."""
+        """Return the file's bytes. A character that the encoding lacks becomes an HTML character reference."""
         text = "".join(self.delimiter.join(cell.raw for cell in row.cells) + row.end for row in self.rows)
         return self.bom + text.encode(self.encoding, "xmlcharrefreplace")
 
     def changed(self, row: TableRow, column: int, value: str) -> TableRow:
-        """A row with another value in one cell, in quotes where the old one was, or where it has to be."""
+        """Return a row with another value in one cell, quoted if the old one was, or if necessary."""
         quoted = row.cells[column].raw.startswith('"') or re.search(rf'[{self.delimiter};\t"\r\n]|^\s|\s$', value)
         raw = '"' + value.replace('"', '""') + '"' if quoted else value
         return replace(row, cells=(*row.cells[:column], Cell(raw, value), *row.cells[column + 1 :]))
 
 
 def read_table(data: bytes, shown: str) -> Table:
-    """The rows of a CSV file; `shown` is what messages call it.
+    """Return the rows of a CSV file; `shown` is its name in messages.
 
-    UTF-8, UTF-16 with its mark, or Windows-1252 where it is no UTF-8. The delimiter is the first comma, semicolon or tab that
-    stands outside quotes. Raises InputError, in one sentence, for a file that is too large or no CSV.
+    It is UTF-8, UTF-16 with a byte order mark, or else Windows-1252. The delimiter is the first comma, semicolon or tab outside
+    quotes. Raises InputError for a file that is too large or not CSV.
     """
     capped(data, SIZE_LIMIT, shown, "")
     bom, encoding, text = _decoded(data, shown)
     if "\0" in text:
-        raise InputError(f"{shown} is not a CSV file: it has a NUL character in it")
+        raise InputError(f"{shown} is not a CSV file: it contains a NUL character")
     delimiter = _delimiter(text)
     return Table(_rows(text, delimiter, shown), delimiter, encoding, bom)
 
 
 def _decoded(data: bytes, shown: str) -> tuple[bytes, str, str]:
-    bom, encoding = next((each for each in _BOMS if data.startswith(each[0])), (b"", ""))
+    bom, encoding = next((pair for pair in _BOMS if data.startswith(pair[0])), (b"", ""))
     for candidate in (encoding,) if encoding else ("utf-8", "windows-1252"):
         try:
             return bom, candidate, data[len(bom) :].decode(candidate)
         except UnicodeDecodeError:
             continue
-    raise InputError(f"{shown} is no text in {encoding or 'UTF-8 or Windows-1252'}: export it again, as CSV in UTF-8")
+    raise InputError(f"{shown} is not text in {encoding or 'UTF-8 or Windows-1252'}: export it again, as CSV in UTF-8")
 
 
 def _delimiter(text: str) -> str:
@@ -93,42 +99,27 @@ def _delimiter(text: str) -> str:
     return found[1] if found else ","
 
 
-@cache
-def _cell(delimiter: str) -> re.Pattern[str]:
-    # Possessive, so that an open quote is a miss and costs one pass. Behind a closing quote csv reads on as plain text.
-    return re.compile(rf'"((?:[^"]++|"")*+)"([^{delimiter}\r\n]*+)|((?!")[^{delimiter}\r\n]*+)')
-
-
 def _rows(text: str, delimiter: str, shown: str) -> tuple[TableRow, ...]:
-    pattern, at, count = _cell(delimiter), 0, 0
+    # Possessive, so that an open quote fails in one pass. Behind a closing quote csv continues with plain text.
+    cell = rf'(?:"((?:[^"]++|"")*+)"([^{delimiter}\r\n]*+)|(?!")[^{delimiter}\r\n]*+)'
+    pattern = re.compile(rf"({cell})({delimiter}|\r\n|\r|\n|\Z)")
+    at, count = 0, 0
     rows: list[TableRow] = []
     cells: list[Cell] = []
-    while at < len(text):
+    while at < len(text) or cells:  # a text that ends behind a delimiter has one more empty cell
         if not cells and len(rows) >= ROW_LIMIT:
             raise InputError(f"{shown} has more than {ROW_LIMIT} rows, the limit")
         found = pattern.match(text, at)
         if found is None:
             raise InputError(f"{shown} is not a CSV file: a quotation mark in row {len(rows) + 1} is never closed")
-        cells.append(_cell_of(found))
+        raw, inner, rest, end = found.groups()
+        cells.append(Cell(raw, raw if inner is None else inner.replace('""', '"') + rest))
         count += 1
         if count > CELL_LIMIT:
             raise InputError(f"{shown} has more than {CELL_LIMIT} cells, the limit")
         at = found.end()
-        if text[at : at + 1] == delimiter:
-            at += 1
-            if at < len(text):
-                continue
-            cells.append(Cell("", ""))  # the text ends behind a delimiter
-        end = "\r\n" if text.startswith("\r\n", at) else text[at : at + 1]
-        at += len(end)
-        is_blank = len(cells) == 1 and not cells[0].raw
-        rows.append(TableRow(len(rows) + 1, () if is_blank else tuple(cells), end))
-        cells = []
+        if end != delimiter:
+            is_blank = len(cells) == 1 and not cells[0].raw
+            rows.append(TableRow(len(rows) + 1, () if is_blank else tuple(cells), end))
+            cells = []
     return tuple(rows)
-
-
-def _cell_of(found: re.Match[str]) -> Cell:
-    raw: str = found[0]
-    if found[1] is None:
-        return Cell(raw, raw)
-    return Cell(raw, found[1].replace('""', '"') + found[2])

@@ -1,1 +1,1 @@
-"""A run over a class: the batch, its processes, and what a worker does."""
+"""A run over a class: the batch, its worker processes, and the work that they do."""

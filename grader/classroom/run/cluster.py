@@ -1,4 +1,4 @@
-"""The same work on a Dask cluster: each of its workers grades in processes of its own, so that no hand-in can end it."""
+"""Grade on a Dask cluster: each Dask worker grades in processes of its own, so that no submission can end it."""
 
 import asyncio
 import logging
@@ -17,16 +17,16 @@ from grader.classroom.run.worker import PRELOAD, prepare
 from grader.errors import InputError
 from grader.text import printable_path
 
-_PATIENCE = 10.0  # seconds to find the scheduler, and to have an answer of every worker
-_NO_LIMIT = 0.0  # every run says how long its tasks may take
-_one_at_a_time = threading.Lock()  # a worker may have many threads
+_CONNECT_TIMEOUT = 10.0  # seconds to find the scheduler, and to get an answer from every worker
+_NO_TIMEOUT = 0.0  # every run passes its own
+_lock = threading.Lock()  # a Dask worker may have many threads
 
 
 class Cluster(Executor):
-    """An executor whose tasks run on the workers of a Dask cluster; raises InputError where it cannot be used.
+    """An executor whose tasks run on the workers of a Dask cluster; raises InputError if it cannot be used.
 
-    `root` is the class: every worker has to see it at the same path. A worker that is lost is Dask's business: its tasks go to
-    another one, and one that ends worker after worker is told as WorkerError.
+    `root` is the class: every worker has to see it at the same path. If a worker is lost, Dask gives its tasks to another one; a
+    task that ends one worker after the other raises WorkerError.
     """
 
     def __init__(self, address: str, timeout: float, root: Path) -> None:
@@ -36,109 +36,111 @@ class Cluster(Executor):
             raise InputError("--cluster needs Dask: pip install 'urdf-grader[cluster]'") from None
         self._timeout, self._address = timeout, address
         self._is_gone = False
-        _hush()
+        _silence_logs()
         dask: Any = distributed  # it has no annotations
         try:
-            asyncio.run(_reach(address))  # a client that has failed keeps its process from ending
-            self._client = dask.Client(address, timeout=_PATIENCE, set_as_default=False)
-        except Exception as error:  # noqa: BLE001  whatever a wrong address, another program or TLS brings about
+            asyncio.run(_connect_once(address))  # a client that has failed keeps its process from ending
+            self._client = dask.Client(address, timeout=_CONNECT_TIMEOUT, set_as_default=False)
+        except Exception as error:  # noqa: BLE001  a wrong address, another program, TLS: Dask raises many types
             reason = str(error) or type(error).__name__
             raise InputError(
-                f"there is no Dask scheduler at {address or repr(address)}: {reason} (dask scheduler starts one)"
+                f"there is no Dask scheduler at {address or repr(address)}: {reason} (start one with dask scheduler)"
             ) from None
         try:
-            self.workers = self._checked(address, root)
+            self.workers = self._check_workers(address, root)
         except BaseException:
             self._client.close()
             raise
 
     def submit(self, function: Callable[..., Any], /, *arguments: Any, **named: Any) -> "Future[Any]":
-        """Have a function run on the cluster."""
-        done: Future[Any] = Future()
-        gone = InputError(f"the Dask scheduler at {self._address} is there no longer")
+        """Run a function on the cluster."""
+        outer: Future[Any] = Future()
+        gone = InputError(f"lost the connection to the Dask scheduler at {self._address}")
         if self._is_gone:
             raise gone
         try:
-            task = self._client.submit(_apart, self._timeout, function, arguments, named, pure=False)
-            self._client.loop.add_callback(self._follow, task, done)
-        except Exception:  # noqa: BLE001  Dask has many words for it
+            task = self._client.submit(_run_in_process, self._timeout, function, arguments, named, pure=False)
+            self._client.loop.add_callback(self._pass_on, task, outer)
+        except Exception:  # noqa: BLE001  Dask raises many types
             raise gone from None
-        return done
+        return outer
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """Leave the cluster; its workers stay."""
-        del wait, cancel_futures  # whoever leaves waits for nothing more
+        """Disconnect from the cluster; its workers stay."""
+        del wait, cancel_futures
         self._client.close()
 
-    def _checked(self, address: str, root: Path) -> int:
-        """How many tasks the workers take at once; raises InputError where one of them could not grade this class."""
+    def _check_workers(self, address: str, root: Path) -> int:
+        """Return how many tasks the workers run at once; raises InputError if one of them could not grade this class."""
         threads = self._client.nthreads()
         if not threads:
-            raise InputError(f"the Dask cluster at {address} has no workers yet: dask worker {address}")
+            raise InputError(f"the Dask cluster at {address} has no workers yet: start one with dask worker {address}")
         try:
-            answers = self._client.run(_introduce, str(root))
-        except Exception as error:  # noqa: BLE001  a worker without the grader, whatever it says
+            answers = self._client.run(_version_and_access, str(root))
+        except Exception as error:  # noqa: BLE001  a worker without the grader raises any type
             raise InputError(f"a worker of {address} cannot grade: {type(error).__name__}: {error}") from None
-        for worker, (version, sees) in sorted(answers.items()):
+        for worker, (version, sees_class) in sorted(answers.items()):
             if version != __version__:
                 raise InputError(f"the worker {worker} has grader {version}, and this is {__version__}")
-            if not sees:
+            if not sees_class:
                 raise InputError(f"the worker {worker} does not see {printable_path(root)}: share that folder with it")
         return sum(threads.values())
 
-    async def _follow(self, task: Any, done: "Future[Any]") -> None:
-        """Wait for a task of the cluster's, and keep the promise whatever becomes of it."""
+    async def _pass_on(self, task: Any, outer: "Future[Any]") -> None:
+        """Wait for a task of the cluster, and complete its future in any case."""
         try:
             result = await self._client.gather(task, asynchronous=True)
-        except (CancelledError, asyncio.CancelledError, OSError):  # nobody here cancels anything
+        except (CancelledError, asyncio.CancelledError, OSError):  # no task is cancelled here: the cluster ended
             self._is_gone = True
-            result = WorkerError("the cluster that grades came to an end", is_own_fault=False)
+            result = WorkerError("the cluster ended", is_own_fault=False)
         except Exception as error:  # noqa: BLE001  such as Dask's KilledWorker
-            known = type(error).__name__ == "KilledWorker"
-            result = WorkerError("it ended one worker of the cluster after the other") if known else error
+            is_killer = type(error).__name__ == "KilledWorker"
+            result = WorkerError("it ended one worker of the cluster after the other") if is_killer else error
         if isinstance(result, Exception):
-            done.set_exception(result)
+            outer.set_exception(result)
         else:
-            done.set_result(result)
+            outer.set_result(result)
 
 
-def _hush() -> None:
-    """Keep Dask from telling at length what is told here in a line."""
+def _silence_logs() -> None:
+    """Turn off Dask's log messages: errors are reported in one line here."""
     for name in [name for name in logging.root.manager.loggerDict if name.partition(".")[0] == "distributed"]:
         logging.getLogger(name).setLevel(logging.CRITICAL + 1)
 
 
-async def _reach(address: str) -> None:
-    """Speak to the scheduler once; raises whatever keeps from it."""
+async def _connect_once(address: str) -> None:
+    """Connect to the scheduler and disconnect; raises any error."""
     from distributed import Security
     from distributed.comm.core import connect
 
-    how = Security().get_connection_args("client")  # type: ignore[no-untyped-call]
-    comm = await connect(address, timeout=_PATIENCE, **how)  # type: ignore[no-untyped-call]
+    arguments = Security().get_connection_args("client")  # type: ignore[no-untyped-call]
+    comm = await connect(address, timeout=_CONNECT_TIMEOUT, **arguments)  # type: ignore[no-untyped-call]
     await comm.close()
 
 
-def _introduce(root: str) -> tuple[str, bool]:
-    """What a worker has to say for itself: which grader it has, and whether it sees the class."""
+def _version_and_access(root: str) -> tuple[str, bool]:
+    """Return, on a worker, the version of its grader and whether it sees the class."""
     return __version__, Path(root).exists()
 
 
-def _apart(timeout: float, function: Callable[..., Any], arguments: tuple[Any, ...], named: dict[str, Any]) -> Any:
-    """Run a function in a process of this worker's: what it gives, or WorkerError, which raised would fill the worker's log."""
-    with _one_at_a_time:
+def _run_in_process(
+    timeout: float, function: Callable[..., Any], arguments: tuple[Any, ...], named: dict[str, Any]
+) -> Any:
+    """Run a function in a process of this worker; return WorkerError, which would fill the worker's log if it were raised."""
+    with _lock:
         processes = _processes()
     try:
         return processes.submit_within(timeout, function, arguments, named).result()
-    except WorkerError as lost:
-        return lost
+    except WorkerError as error:
+        return error
 
 
 @lru_cache(maxsize=1)
 def _processes() -> Processes:
     from distributed import get_worker
 
-    # Dask starts its workers as daemons, which may have no processes of their own; those that pebble starts end with it.
+    # Dask starts its workers as daemons, which may not have processes of their own; those that pebble starts end with it.
     multiprocessing.current_process().daemon = False
-    processes = Processes(get_worker().state.nthreads, _NO_LIMIT, prepare, preload=PRELOAD)
-    Finalize(None, processes.shutdown, exitpriority=1)  # before a worker that ends waits for what it has started
+    processes = Processes(get_worker().state.nthreads, _NO_TIMEOUT, prepare, preload=PRELOAD)
+    Finalize(None, processes.shutdown, exitpriority=1)  # before a worker that ends waits for its processes
     return processes

@@ -1,5 +1,5 @@
-"""Loaded only by the process that workers are forked from: one that starts while the command ends says so to nobody."""
+"""Loaded only by the fork server: keep it silent when a worker starts while the command ends."""
 
 import sys
 
-sys.excepthook = lambda *_: None  # what goes wrong in a worker is told by the one that waits for it
+sys.excepthook = lambda *_: None  # the parent process reports what goes wrong in a worker

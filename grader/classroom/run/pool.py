@@ -1,30 +1,32 @@
-"""Processes that do the work, on this machine: an executor as in `concurrent.futures` whose tasks end, whatever they do."""
+"""Worker processes on this machine: an executor as in `concurrent.futures` whose tasks end in any case."""
 
-import multiprocessing
 import os
-import signal
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import CancelledError, Executor, Future
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager, suppress
 from typing import Any
 
-from pebble import CONSTS, ProcessExpired, ProcessPool
+from pebble import ProcessExpired, ProcessPool
 
+from grader.classroom.run.worker_process import (
+    EXIT_CHANNEL_BLOCKED,
+    exit_words,
+    start_server,
+    start_worker,
+    worker_context,
+)
 from grader.errors import GraderError
 
-MEMORY = 2 * 1024**3  # bytes that one worker may have
-NO_MEMORY = f"grading it needs more memory than a worker may have ({MEMORY // 1024**3} GiB)"
-_WATCHED = 0.5  # seconds between two looks at whether the pool still lives
-_TRIES = 3  # to have work taken by a pool, which may break at any moment
-_SPEAKING = 3.0  # seconds that a worker waits for its turn to speak, which one that was ended in its own turn keeps
-_MUTE = 1  # the exit code of a worker that had to wait longer
-_LEFT = 70  # the exit code of a worker that was ended in the midst of its work as if all were well
+MAX_MEMORY = 2 * 1024**3  # bytes for each worker
+NO_MEMORY = f"grading it needs more memory than a worker may use ({MAX_MEMORY // 1024**3} GiB)"
+_POOL_ENDED = "the worker processes ended"
+_CHECK_INTERVAL = 0.5  # seconds
+_MAX_TRIES = 3  # to submit a task to a pool, which may break at any moment
 
 
 class WorkerError(GraderError):
-    """Work that came to nothing, and why, in words for a report. It may have been the fault of what ran beside it."""
+    """Why a task has no result, as a message for a report. `is_own_fault` is False if another task may be the cause."""
 
     def __init__(self, reason: str, *, is_own_fault: bool = True) -> None:
         super().__init__(reason)
@@ -32,11 +34,10 @@ class WorkerError(GraderError):
 
 
 class Processes(Executor):
-    """Worker processes. What takes longer than `timeout` seconds, or ends its worker, raises WorkerError from its future.
+    """Worker processes. A task that takes longer than `timeout` seconds, or ends its worker, raises WorkerError from its future.
 
-    Another worker then takes the place of the one that ended. All of them end with the process that has started them, however
-    that ends. `prepare` is run in each at its start; `preload` names the modules that are loaded once for all of them, where
-    the system can fork.
+    Another worker then replaces the one that ended. All of them end with the process that started them, however that ends.
+    `prepare` runs in each worker when it starts; the modules in `preload` are loaded once for all, where the system can fork.
     """
 
     def __init__(
@@ -44,13 +45,13 @@ class Processes(Executor):
         workers: int,
         timeout: float,
         prepare: Callable[[int], None],
-        memory: int = MEMORY,
+        memory: int = MAX_MEMORY,
         preload: Sequence[str] = (),
     ) -> None:
         self._workers, self._timeout, self._prepare, self._memory = workers, timeout, prepare, memory
-        self._context = _context(preload)
+        self._context = worker_context(preload)
         self._lock = threading.RLock()
-        self._promised: set[Future[Any]] = set()
+        self._pending: set[Future[Any]] = set()
         self._is_shut = threading.Event()
         self._has_begun = False
         self._pool = self._new_pool()
@@ -58,157 +59,95 @@ class Processes(Executor):
         self._watch.start()
 
     def submit(self, function: Callable[..., Any], /, *arguments: Any, **named: Any) -> "Future[Any]":
-        """Have a function run in a worker."""
+        """Run a function in a worker."""
         return self.submit_within(self._timeout, function, arguments, named)
 
     def submit_within(
         self, timeout: float, function: Callable[..., Any], arguments: tuple[Any, ...], named: dict[str, Any]
     ) -> "Future[Any]":
-        """Have a function run in a worker for at most so many seconds, whatever the others may take."""
-        done: Future[Any] = Future()
+        """Run a function in a worker with a timeout of its own, in seconds."""
+        outer: Future[Any] = Future()
         with self._lock:
-            inner = self._scheduled(timeout, function, arguments, named)
-            self._promised.add(done)
-        inner.add_done_callback(lambda future: self._pass_on(future, done, timeout))
-        return done
+            inner = self._schedule(timeout, function, arguments, named)
+            self._pending.add(outer)
+        inner.add_done_callback(lambda future: self._pass_on(future, outer, timeout))
+        return outer
 
-    def _scheduled(
+    def _schedule(
         self, timeout: float, function: Callable[..., Any], arguments: tuple[Any, ...], named: dict[str, Any]
     ) -> "Future[Any]":
         if not self._has_begun:
             self._has_begun = True
-            _start_server(self._context)
-        for left in reversed(range(_TRIES)):
-            self._mend()
+            start_server(self._context)
+        for tries_left in reversed(range(_MAX_TRIES)):
+            self._replace_broken_pool()
             try:
                 return self._pool.schedule(function, arguments, named, timeout)
             except (RuntimeError, BrokenProcessPool):  # it broke just now
-                if not left or self._is_shut.is_set():
+                if not tries_left or self._is_shut.is_set():
                     raise
         raise AssertionError
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
-        """End the workers: at once, whatever they do."""
+        """End the workers at once, whatever they do."""
         del cancel_futures
         self._is_shut.set()
-        self._end()
+        self._pool.stop()  # type: ignore[no-untyped-call]
         if wait:
             self._pool.join()
             self._watch.join()
 
     def _new_pool(self) -> ProcessPool:
-        return ProcessPool(
-            self._workers, initializer=_begin, initargs=(self._prepare, self._memory), context=self._context
-        )
-
-    def _end(self) -> None:
-        self._pool.stop()  # type: ignore[no-untyped-call]
+        arguments = (self._prepare, self._memory)
+        return ProcessPool(self._workers, initializer=start_worker, initargs=arguments, context=self._context)
 
     def _watch_pool(self) -> None:
-        """A pool can break where a worker is ended in the midst of speaking, and then forgets what it had promised."""
-        while not self._is_shut.wait(_WATCHED):
+        """Replace a broken pool: one breaks if a worker is killed while it sends, and then never completes its futures."""
+        while not self._is_shut.wait(_CHECK_INTERVAL):
             with self._lock:
-                if self._promised:
-                    self._mend()
+                if self._pending:
+                    self._replace_broken_pool()
 
-    def _mend(self) -> None:
-        """Take a new pool for one that is broken; what was in it is lost."""
+    def _replace_broken_pool(self) -> None:
         if self._pool.active or self._is_shut.is_set():
             return
-        self._end()
-        threading.Thread(target=self._pool.join, daemon=True).start()  # which ends what is left of it
+        self._pool.stop()  # type: ignore[no-untyped-call]
+        threading.Thread(target=self._pool.join, daemon=True).start()  # ends the workers that are left
         self._pool = self._new_pool()
-        for done in tuple(self._promised):
-            self._settle(done, WorkerError("the processes that grade came to an end", is_own_fault=False))
+        for outer in tuple(self._pending):
+            self._complete(outer, WorkerError(_POOL_ENDED, is_own_fault=False))
 
-    def _pass_on(self, inner: "Future[Any]", done: "Future[Any]", timeout: float) -> None:
+    def _pass_on(self, inner: "Future[Any]", outer: "Future[Any]", timeout: float) -> None:
         try:
-            self._settle(done, result=inner.result())
+            self._complete(outer, result=inner.result())
         except TimeoutError:
-            self._settle(
-                done,
-                WorkerError(f"grading it took longer than {timeout:g} s, and was stopped (--timeout raises the limit)"),
+            self._complete(
+                outer, WorkerError(f"grading it took longer than {timeout:g} s (--timeout raises the limit)")
             )
         except ProcessExpired as error:
-            is_own_fault = error.exitcode != _MUTE
-            self._settle(
-                done, WorkerError(f"the process that graded it {_end_of(error.exitcode)}", is_own_fault=is_own_fault)
-            )
+            is_own_fault = error.exitcode != EXIT_CHANNEL_BLOCKED
+            reason = f"the process that graded it {exit_words(error.exitcode)}"
+            self._complete(outer, WorkerError(reason, is_own_fault=is_own_fault))
         except (BrokenProcessPool, CancelledError):
-            self._settle(done, WorkerError("the processes that grade came to an end", is_own_fault=False))
+            self._complete(outer, WorkerError(_POOL_ENDED, is_own_fault=False))
         except MemoryError:
-            self._settle(done, WorkerError(NO_MEMORY))
-        except Exception as error:  # noqa: BLE001  it is told, whatever it is
-            self._settle(done, error)
+            self._complete(outer, WorkerError(NO_MEMORY))
+        except Exception as error:  # noqa: BLE001  the caller decides what to do with it
+            self._complete(outer, error)
 
-    def _settle(self, done: "Future[Any]", error: Exception | None = None, *, result: Any = None) -> None:
-        """Keep a promise, once."""
+    def _complete(self, outer: "Future[Any]", error: Exception | None = None, *, result: Any = None) -> None:
+        """Complete a future, once."""
         with self._lock:
-            if done not in self._promised:
+            if outer not in self._pending:
                 return
-            self._promised.discard(done)
+            self._pending.discard(outer)
         if error is not None:
-            done.set_exception(error)
+            outer.set_exception(error)
         else:
-            done.set_result(result)
-
-
-def _end_of(code: int) -> str:
-    if code == _LEFT:
-        return "ended in the midst of it"
-    return f"was ended by signal {-code}" if code < 0 else f"ended with exit code {code}"
-
-
-def _context(preload: Sequence[str]) -> Any:
-    """Where workers come from: a server that has loaded everything once, and forks; spawned where there is no such thing."""
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # each worker is one thread; there are enough of them
-    # Python looks for modules in the current folder first, which may be a class's: nothing there may be imported.
-    os.environ["PYTHONSAFEPATH"] = "1"
-    methods = multiprocessing.get_all_start_methods()
-    context: Any = multiprocessing.get_context("forkserver" if "forkserver" in methods else "spawn")
-    if "forkserver" in methods and preload:
-        context.set_forkserver_preload([*preload, "grader.classroom.run.fork_server"])
-    return context
-
-
-def _start_server(context: Any) -> None:
-    """Start what workers are forked from; while it loads it would take Ctrl-C for its own, and tell of it at length."""
-    if context.get_start_method() == "forkserver":
-        from multiprocessing import forkserver, resource_tracker
-
-        resource_tracker.ensure_running()  # it takes care of itself, and has signals let through when it is done
-        with _deaf():
-            forkserver.ensure_running()
-
-
-@contextmanager
-def _deaf() -> Iterator[None]:
-    """Keep Ctrl-C waiting; processes that are started in here never hear of it."""
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-def _begin(prepare: Callable[[int], None], memory: int) -> None:
-    """Make a worker ready for work; from now on it ends with the process that has started it, whatever it does."""
-    leave = os._exit
-    # Of one that ends with 0 pebble hears nothing.
-    os._exit = lambda status: leave(status or _LEFT)
-    CONSTS.channel_lock_timeout = _SPEAKING
-    prepare(memory)
-    parent = multiprocessing.parent_process()
-    with suppress(ImportError, AttributeError, OSError):
-        import fcntl
-
-        # A signal when the pipe to that process closes: no thread could tell what the interpreter does not get out of.
-        assert parent is not None
-        fcntl.fcntl(parent.sentinel, fcntl.F_SETOWN, os.getpid())
-        fcntl.fcntl(parent.sentinel, fcntl.F_SETFL, fcntl.fcntl(parent.sentinel, fcntl.F_GETFL) | os.O_ASYNC)
+            outer.set_result(result)
 
 
 def processors() -> int:
-    """How many workers this machine keeps busy."""
+    """Return the number of processors that this process may use."""
     affinity = getattr(os, "sched_getaffinity", None)
     return len(affinity(0)) if affinity is not None else os.cpu_count() or 1

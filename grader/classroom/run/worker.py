@@ -1,8 +1,7 @@
-"""What a worker does: grade some hand-ins, each on its own. Everything here is plain data, fit to be sent anywhere."""
+"""The work of a worker process: grade submissions one by one. Everything here is plain data that can be sent to any process."""
 
 import gc
 import json
-import os
 import time
 import zlib
 from collections.abc import Sequence
@@ -13,7 +12,8 @@ from typing import NamedTuple
 
 from grader.checks.outcome import Outcome, Status
 from grader.classroom.gradebook.result import NOT_GRADED, STATUS_LETTERS, UNITS_PER_POINT, GradingResult, Verdict
-from grader.classroom.intake.opening import fingerprint, open_submission
+from grader.classroom.intake.fingerprint import fingerprint
+from grader.classroom.intake.opening import open_submission
 from grader.classroom.run.pool import NO_MEMORY
 from grader.errors import InputError
 from grader.files.opening import ARCHIVES
@@ -25,7 +25,7 @@ from grader.grading.rubric import Rubric, read_rubric
 from grader.submission.submission import Submission
 from grader.submission.urdf import Absent, Unreadable
 
-# What a process is to have loaded before it forks, late imports included.
+# The modules that a process loads before it forks, late imports included.
 PRELOAD = (
     "grader.classroom.run.worker",
     "grader.robot.edge_overlap",
@@ -38,19 +38,19 @@ MAX_MISTAKE = 200  # characters of a mistake that statistics count
 
 
 class ClassContext(NamedTuple):
-    """What all tasks of a run share: the top of the class folder or archive, and the rubric's file."""
+    """What all tasks of a run share: the path of the class folder or zip, and the rubric's file."""
 
     root: str
     rubric: bytes
     rubric_path: str
-    template: str = ""  # the record that those of the class are kept beside
+    template: str = ""  # records are stored as differences from this one
     max_size: int = URDF_LIMIT  # bytes of a URDF
 
 
 class Task(NamedTuple):
-    """One hand-in: where it is, and its digest if it has been graded by the same rubric and grader before.
+    """One submission: where it is, and its digest if it has been graded by the same rubric and grader before.
 
-    `no_documents` says why its documents are not read: grading it was lost with them.
+    `no_documents` says why its documents are not read: its grading was lost with them.
     """
 
     key: str
@@ -60,13 +60,13 @@ class Task(NamedTuple):
     no_documents: str = ""
 
 
-def grade_all(common: ClassContext, tasks: Sequence[Task]) -> list[GradingResult]:
-    """Grade hand-ins one after the other; what is wrong with one of them costs the others nothing."""
-    return [_grade_one(common, task) for task in tasks]
+def grade_all(context: ClassContext, tasks: Sequence[Task]) -> list[GradingResult]:
+    """Grade submissions one after the other, in isolation: an error affects only its own submission."""
+    return [_grade_one(context, task) for task in tasks]
 
 
 def prepare(memory: int) -> None:
-    """Make a process fit for grading: bounded in memory (bytes), deaf to Ctrl-C, which is for the one that hands out the work."""
+    """Prepare a process for grading: limit its memory (bytes), and ignore Ctrl-C, which the parent process handles."""
     import signal
 
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -75,42 +75,41 @@ def prepare(memory: int) -> None:
 
         resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
     gc.collect()
-    gc.freeze()  # what is loaded now stays: it need not be looked through again
+    gc.freeze()  # loaded modules are not garbage: do not examine them again
     gc.set_threshold(10_000, 10, 20)
 
 
-def _grade_one(common: ClassContext, task: Task) -> GradingResult:
-    rubric, template = _rules(common.rubric, common.rubric_path, common.template)
-    mark = fingerprint(common.root, task.paths, time.time_ns(), common.max_size)
+def _grade_one(context: ClassContext, task: Task) -> GradingResult:
+    rubric, template = _rubric(context.rubric, context.rubric_path, context.template)
+    seen = fingerprint(context.root, task.paths, time.time_ns(), context.max_size)
     digest = ""
     try:
-        opened = open_submission(common.root, task.paths, task.names, task.key, common.max_size)
+        opened = open_submission(context.root, task.paths, task.names, task.key, context.max_size)
         digest = opened.digest
         if digest == task.graded:
-            return GradingResult(task.key, "unchanged", digest, mark)
+            return GradingResult(task.key, "unchanged", digest, seen)
         submission = opened.submission(rubric, task.no_documents)
         report = grade(rubric, submission)
     except InputError as error:
-        return failed(rubric, task, "unreadable", _of_class(str(error), common), digest, mark)
+        return failed(rubric, task, "unreadable", str(error), digest, seen)
     except MemoryError:
         if not task.no_documents:
-            return _grade_one(common, task._replace(no_documents=NO_MEMORY))
-        return failed(rubric, task, "errored", NO_MEMORY, digest, mark)
-    except (Exception, SystemExit) as error:  # noqa: BLE001  a fault of ours must cost nobody else anything
-        return failed(
-            rubric, task, "errored", f"the grader itself failed: {type(error).__name__}: {error}", digest, mark
-        )
-    faulty = next((each.outcome.message for each in report.results if each.outcome.status == "errored"), "")
-    if faulty:
-        return _of(report, task, "errored", faulty, digest, mark, template)
-    reason = _of_class(_nothing_readable(submission), common)
-    return _of(report, task, "unreadable" if reason else "graded", reason, digest, mark, template)
+            return _grade_one(context, task._replace(no_documents=NO_MEMORY))
+        return failed(rubric, task, "errored", NO_MEMORY, digest, seen)
+    except (Exception, SystemExit) as error:  # noqa: BLE001  a fault of the grader affects only this submission
+        reason = f"the grader itself failed: {type(error).__name__}: {error}"
+        return failed(rubric, task, "errored", reason, digest, seen)
+    for result in report.results:
+        if result.outcome.status == "errored":
+            return result_of(report, task, "errored", result.outcome.message, digest, seen, template)
+    reason = _why_unreadable(submission)
+    return result_of(report, task, "unreadable" if reason else "graded", reason, digest, seen, template)
 
 
-def _nothing_readable(submission: Submission) -> str:
-    """Why what is to be graded of a hand-in could not be read, although its folder could; empty where it was read.
+def _why_unreadable(submission: Submission) -> str:
+    """Return why nothing in a submission could be read, although its folder could; empty if something was read.
 
-    As on its own, an archive that is damaged or empty is unreadable where nothing else that could be graded lies beside it.
+    A damaged or empty archive makes a submission unreadable if there is nothing else to grade beside it.
     """
     if isinstance(submission.urdf, Unreadable):
         return submission.urdf.reason
@@ -119,7 +118,7 @@ def _nothing_readable(submission: Submission) -> str:
     tree, closed = submission.tree, submission.tree.unopened
     if closed:
         because = str(closed[0])
-        more = f" (nor could {len(closed) - 1} more be opened)" if len(closed) > 1 else ""
+        more = f" (and {len(closed) - 1} more cannot be opened)" if len(closed) > 1 else ""
         return f"nothing to grade was found: {because}{more}"
     if not tree.generated and all(file.suffix in ARCHIVES for file in tree.files.values()):
         because = str(tree.ignored[0]) if tree.ignored else f"{next(iter(tree.files))} is empty"
@@ -127,46 +126,44 @@ def _nothing_readable(submission: Submission) -> str:
     return ""
 
 
-def _of_class(reason: str, common: ClassContext) -> str:
-    """A reason as a class is told it: with paths in the class."""
-    return reason.replace(f"{common.root}{os.sep}", "")
-
-
 def failed(
-    rubric: Rubric, task: Task, verdict: Verdict, reason: str, digest: str = "", mark: str = ""
+    rubric: Rubric, task: Task, verdict: Verdict, reason: str, digest: str = "", seen: str = ""
 ) -> GradingResult:
-    """The result of a hand-in that could not be graded: no criterion is decided, and each says why."""
+    """Return the result of a submission that could not be graded: every criterion is undecided, and says why."""
     status: Status = "errored" if verdict == "errored" else "pending"
-    message = reason if status == "errored" else f"{reason}; a person has to look"
+    message = reason if status == "errored" else f"{reason}; needs manual grading"
     results = tuple(Result(criterion, Outcome(status, message)) for criterion in rubric.criteria)
     name = Path(task.paths[0]).name if len(task.paths) == 1 else task.key
     report = Report(StoredSubmission(name), rubric, tuple(part.id for part in rubric.parts), results)
-    return _of(report, task, verdict, reason, digest, mark)
+    return result_of(report, task, verdict, reason, digest, seen)
 
 
-def _of(
+def result_of(
     report: Report,
     task: Task,
     verdict: Verdict,
     reason: str,
     digest: str,
-    mark: str,
+    seen: str,
     template: Template | None = None,
 ) -> GradingResult:
-    signs = [NOT_GRADED] * len(report.rubric.criteria)
-    misses = []
+    """Return a report as plain data; `seen` is the fingerprint of the files."""
+    statuses = [NOT_GRADED] * len(report.rubric.criteria)
+    failures = []
     for criterion, outcome, *_ in report.results:
-        signs[criterion.position] = STATUS_LETTERS[outcome.status]
+        statuses[criterion.position] = STATUS_LETTERS[outcome.status]
         if outcome.status == "failed":
-            misses.append((criterion.position, (outcome.mistake or outcome.message)[:MAX_MISTAKE]))
-    score, out_of, pending = (int(each * UNITS_PER_POINT) for each in (report.score, report.max_score, report.pending))
+            failures.append((criterion.position, (outcome.mistake or outcome.message)[:MAX_MISTAKE]))
+    score, out_of, pending = (
+        int(points * UNITS_PER_POINT) for points in (report.score, report.max_score, report.pending)
+    )
     record = zlib.compress(to_record(report, template).encode(), 1)
     return GradingResult(
-        task.key, verdict, digest, mark, score, out_of, pending, "".join(signs), json.dumps(misses), record, reason
+        task.key, verdict, digest, seen, score, out_of, pending, "".join(statuses), json.dumps(failures), record, reason
     )
 
 
 @lru_cache(maxsize=4)
-def _rules(data: bytes, path: str, template: str) -> tuple[Rubric, Template]:
+def _rubric(data: bytes, path: str, template: str) -> tuple[Rubric, Template]:
     rubric = read_rubric(data, Path(path))
     return rubric, Template(template, rubric)

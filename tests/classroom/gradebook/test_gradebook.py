@@ -61,7 +61,7 @@ def test_what_a_new_file_is(book: Gradebook) -> None:
         "user_version": len(STEPS),
         "application_id": APPLICATION_ID,
     }
-    with pytest.raises(InputError, match="FOREIGN KEY"), book.complaining():
+    with pytest.raises(InputError, match="FOREIGN KEY"), book.input_errors():
         book.connection.execute("INSERT INTO mark VALUES (9, 99, 'essay', 1, '', '', '', 99, '')")
 
 
@@ -192,14 +192,15 @@ def is_decided(result: Any) -> bool:
 
 def test_a_student_without_a_hand_in_has_no_points(book: Gradebook) -> None:
     """Whoever is only on the roster is missing, with nothing to add up."""
+    from grader.classroom.gradebook.run_writer import save_student
     from grader.classroom.gradebook.stored import Enrolment
     from grader.classroom.students import Student
 
     with book.transaction():
-        book.keep_student(Student("dora"), Enrolment(1))
+        save_student(book, Student("dora"), Enrolment(1))
     ((score, verdict, faults),) = book.rows("SELECT score, verdict, faults FROM grade WHERE key = 'dora'")
     assert (score, verdict, faults or 0) == (None, "missing", 0)
-    assert Grades(book).find("dora").why_not_final == "nothing was handed in"
+    assert Grades(book).find("dora").why_not_final == "nothing was submitted"
 
 
 # --- Versions ---------------------------------------------------------------------------------------------------------
@@ -222,7 +223,7 @@ def test_an_older_file_is_brought_up_to_date(book: Gradebook, monkeypatch: pytes
             assert list(newer.rows("SELECT key, nickname, many FROM student, pets")) == [("anna", "none", 1)]
             assert (all_of(newer, "mark"), all_of(newer, "result")) == before
     monkeypatch.undo()
-    with pytest.raises(InputError, match=r"was made by a newer grader: install that one"):
+    with pytest.raises(InputError, match=r"was made by a newer grader: install that version"):
         Gradebook(book.path)
 
 
@@ -296,7 +297,7 @@ WHY = {
     "none": "there is no gradebook",
     "text": "file is not a database",
     "folder": "unable to open database file",
-    "of-others": "is a database, but no gradebook",
+    "of-others": "is a database, but not a gradebook",
     "newer": "was made by a newer grader",
     "hollow": "no such table",
     "damaged": "malformed",

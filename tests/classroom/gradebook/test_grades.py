@@ -9,6 +9,7 @@ import pytest
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import criterion_of, mark
+from grader.classroom.gradebook.run_writer import RunWriter, save_student
 from grader.classroom.gradebook.stored import Enrolment
 from grader.classroom.students import ClassSubmission, Student
 from grader.errors import InputError
@@ -30,7 +31,7 @@ def book(tmp_path: Path) -> Iterator[Gradebook]:
     with Gradebook(tmp_path / "book.db", create=True) as opened:
         with opened.transaction():
             for person in PEOPLE:
-                opened.keep_student(person, None)
+                save_student(opened, person, None)
         yield opened
 
 
@@ -45,7 +46,7 @@ def test_people_are_known_by_all_that_names_one_of_them(book: Gradebook) -> None
 def test_several_are_never_one(book: Gradebook, name: str) -> None:
     """Nobody is taken whom somebody else might be, even where the names are of two kinds."""
     keys = "'ben', 'emil'" if name == "Ben Oh" else "'anna', 'emil'"
-    with pytest.raises(InputError, match=f"'{name}' may be any of {keys}: name one by this key"):
+    with pytest.raises(InputError, match=f"'{name}' is ambiguous: it may be {keys}; use one of these ids"):
         Grades(book).find(name)
 
 
@@ -62,8 +63,8 @@ def test_nobody(book: Gradebook, name: str, guess: str) -> None:
     """The message guesses who was meant."""
     with pytest.raises(InputError) as caught:
         Grades(book).find(name)
-    everyone = f"; grader export csv --gradebook {book.path} lists everyone"
-    assert str(caught.value) == f"there is no {name!r} in the gradebook{guess or everyone}"
+    everyone = f"; grader export csv --gradebook {book.path} lists all students"
+    assert str(caught.value) == f"there is no student {name!r} in the gradebook{guess or everyone}"
 
 
 def looks(book: Gradebook) -> dict[str, str]:
@@ -78,18 +79,18 @@ def put(book: Gradebook, key: str, name: str = "essay") -> None:
 
 
 def test_who_needs_a_look(tmp_path: Path) -> None:
-    """Whoever has handed in nothing or nothing readable, or is a stranger, and where the grader failed."""
+    """Whoever has submitted nothing or nothing readable, or is a stranger, and where the grader failed."""
     with Gradebook(tmp_path / "book.db", create=True) as book:
         signs = {"anna": "ppp??", "ben": "p!p??", "fay": "ppppp"}
         graded_into(book, LAB, [came_out(LAB, key, each) for key, each in signs.items()])
         graded_into(book, LAB, [came_out(LAB, "cleo", "?????", reason="no zip")])
         with book.transaction():
-            book.keep_student(Student("dora"), Enrolment(1))
-            book.keep_student(Student("fay"), Enrolment(0))
+            save_student(book, Student("dora"), Enrolment(1))
+            save_student(book, Student("fay"), Enrolment(0))
         assert looks(book) == {
             "ben": "the grader failed on a criterion",
             "cleo": "it could not be graded: no zip",
-            "dora": "nothing was handed in",
+            "dora": "nothing was submitted",
             "fay": "not on the roster",
         }
         short = Grades(book).needing_attention(1)
@@ -112,7 +113,7 @@ def test_a_mark_from_before(rubric: Rubric, digest: str, is_older: bool, tmp_pat
         put(book, "anna")
         assert looks(book) == {}
         graded_into(book, rubric, [came_out(rubric, "anna", "ppp?f", digest)])
-        why = "a mark by hand is from before the submission or the points changed"
+        why = "1 manual mark is from before the submission or the points changed"
         assert looks(book) == ({"anna": why} if is_older else {})
         assert Grades(book).find("anna").marks == 1
 
@@ -137,7 +138,7 @@ def test_who_was_left_behind_by_a_new_rubric(tmp_path: Path) -> None:
     with Gradebook(tmp_path / "book.db", create=True) as book:
         graded_into(book, LAB, [came_out(LAB, key, "ppppp") for key in ("anna", "ben")])
         graded_into(book, newer, [came_out(newer, "anna", "ppppp")])
-        assert looks(book) == {"ben": "graded by an earlier rubric only"}
+        assert looks(book) == {"ben": "graded with an earlier version of the rubric"}
         assert Grades(book).find("ben").score == LAB.points
 
 
@@ -160,12 +161,12 @@ def test_names_that_are_no_text(tmp_path: Path) -> None:
     """What a folder in another encoding calls a student, and where the class is, is kept as far as it can be read."""
     graded = came_out(LAB, "x", "ppppp")._replace(verdict="unreadable", reason="no \udcff")
     with Gradebook(tmp_path / "book.db", create=True) as book:
-        run = book.begin("class\udcff", "moodle", LAB)
+        writer = RunWriter(book, "class\udcff", "moodle", LAB)
         student = Student("x", "J\udcfcrg \u00d8")
         with book.transaction():
-            result = book.keep(book.keep_student(student, None), LAB.sha256, graded)
-            book.see(book.keep_student(student, None), run, result, ClassSubmission(student, ("a\udcff",)), "")
-        known = next(each for each in book.all_known() if each.key == "x")
+            result = writer.add_result(save_student(book, student, None), graded)
+            writer.add_submission(save_student(book, student, None), result, ClassSubmission(student, ("a\udcff",)), "")
+        known = next(each for each in book.stored_submissions() if each.key == "x")
         assert known is not None
         assert known.is_same(ClassSubmission(student, ("a\udcff",)), None)
         found = Grades(book).find("x")

@@ -27,7 +27,7 @@ def cost(score: str, days: float, policy: str = POLICY) -> Decimal:
 
 def days(submitted: str, rubric: Rubric = LAB, due: datetime | None = None, own: str = "", **more: Any) -> int:
     """How many days late a hand-in is; `own` is when it was due for this student."""
-    return lateness(rubric, SubmissionTimes(submitted=submitted, due=own, **more), Decimal(11), due).days
+    return lateness(rubric, SubmissionTimes(submitted=submitted, deadline=own, **more), Decimal(11), due).days
 
 
 @pytest.mark.parametrize(
@@ -103,7 +103,7 @@ def test_a_date_alone_is_due_at_its_end() -> None:
 def test_days_by_the_roster_go_before_all() -> None:
     """They are rounded up to whole ones; none is not late, whatever the LMS has flagged."""
     late = SubmissionTimes(is_late=True, submitted="2026-10-10T12:00:00Z", days_late=1.2)
-    assert lateness(LAB, late, Decimal(11)) == Lateness(2, Decimal("-2.2"), "2 days late, by the roster")
+    assert lateness(LAB, late, Decimal(11)) == Lateness(2, Decimal("-2.2"), "2 days late, from the roster")
     assert days("", is_late=True, days_late=0.0) == 0
 
 
@@ -117,14 +117,16 @@ def test_a_flag_without_a_time_is_one_day() -> None:
 
 def test_without_a_policy_nothing_is_lost() -> None:
     """How late it was is still said."""
-    found = lateness(lab(), SubmissionTimes(submitted="2026-09-12T12:00:00Z", due="2026-09-10T12:00:00Z"), Decimal(11))
+    found = lateness(
+        lab(), SubmissionTimes(submitted="2026-09-12T12:00:00Z", deadline="2026-09-10T12:00:00Z"), Decimal(11)
+    )
     assert (found.days, found.points) == (2, Decimal(0))
 
 
 def test_words_say_when_it_was_due() -> None:
     """With the offset that was taken for it, so that a wrong one is seen."""
-    late = SubmissionTimes(submitted="2026-09-12T12:00:00Z", due="2026-09-10T23:59", extension=1.0)
-    words = "1 day late: handed in 2026-09-12T12:00:00Z, due 2026-09-10T23:59+00:00, extended by 1 day"
+    late = SubmissionTimes(submitted="2026-09-12T12:00:00Z", deadline="2026-09-10T23:59", extension=1.0)
+    words = "1 day late: submitted 2026-09-12T12:00:00Z, deadline 2026-09-10T23:59+00:00, extension 1 day"
     assert lateness(LAB, late, Decimal(11)).reason == words
 
 
@@ -149,7 +151,7 @@ def test_times_at_the_ends_of_the_calendar(due: str) -> None:
 @pytest.mark.parametrize("text", ["", "tomorrow", "2026-13-01", "12:00", "2026-11-20T25:00"])
 def test_what_is_no_time(text: str) -> None:
     """One line says how to write it."""
-    with pytest.raises(InputError, match="is no time: write it as 2026-11-20T23:59"):
+    with pytest.raises(InputError, match="is not a date or time: write it as 2026-11-20T23:59"):
         read_time(text)
 
 

@@ -70,7 +70,7 @@ def test_a_roster_makes_students_sure(tmp_path: Path) -> None:
     ("group", "words"),
     [
         ("blue", "whose group is 'blue'"),
-        ("", "who has no group in the roster (its column group names the team folders)"),
+        ("", "who has no group on the roster (its column group names the team folders)"),
     ],
 )
 @pytest.mark.parametrize("name", ["ash", "ASH", "Ann Ash", "1"])
@@ -131,7 +131,7 @@ def test_a_course_of_nbgrader(tmp_path: Path) -> None:
         ClassSubmission(ann, ("submitted/ann/lab6",), submitted="2015-02-02T15:58:23Z")
     ]
     assert intake.ignored == (
-        "submitted/bea holds nothing for the assignment lab6",
+        "submitted/bea has no submission for the assignment lab6",
         "submitted/notes.txt is not a student's folder",
     )
     assert taken(read_class(tmp_path / "c" / "submitted")) == {"ann": ("ann/lab6",)}
@@ -176,10 +176,10 @@ def test_an_assignment_that_is_not_told(tmp_path: Path) -> None:
     lay_out(tmp_path / "c", "submitted/ann/ps1/")
     assert taken(read_class(tmp_path / "c")) == {"ann": ("submitted/ann/ps1",)}
     lay_out(tmp_path / "c", "submitted/ann/ps2/")
-    with pytest.raises(InputError, match="which assignment is to be graded; there are: ps1, ps2"):
+    with pytest.raises(InputError, match="name the assignment to grade with --assignment; there are: ps1, ps2"):
         read_class(tmp_path / "c")
-    with pytest.raises(InputError, match="nobody has handed in the assignment ps3; there are: ps1, ps2"):
+    with pytest.raises(InputError, match="there is no submission for the assignment ps3; there are: ps1, ps2"):
         read_class(tmp_path / "c", assignment="ps3")
     lay_out(tmp_path / "c", "submitted/ann/LAB 6/", "submitted/ann/Lab_6/")
-    with pytest.raises(InputError, match="which assignment"):
+    with pytest.raises(InputError, match="name the assignment"):
         read_class(tmp_path / "c")

@@ -47,7 +47,7 @@ def test_children_are_submissions(tmp_path: Path) -> None:
     }
     assert intake.ignored == (
         "README.md is not a folder, an archive or a URDF",
-        "build is a folder of a build",
+        "build is a build folder",
     )
 
 
@@ -69,9 +69,9 @@ def test_a_folder_goes_before_its_archive(tmp_path: Path) -> None:
     intake = read_class(tmp_path)
     assert taken(intake) == {"ann": ("ann",), "bea": ("bea.zip",)}
     assert intake.ignored == (
-        "ann.zip was passed over: ann has the same name, and counts",
-        "bea.tar.gz was passed over: bea.zip has the same name, and counts",
-        "bea.urdf was passed over: bea.zip has the same name, and counts",
+        "ann.zip was ignored: ann has the same name, and counts",
+        "bea.tar.gz was ignored: bea.zip has the same name, and counts",
+        "bea.urdf was ignored: bea.zip has the same name, and counts",
     )
 
 

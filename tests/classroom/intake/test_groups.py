@@ -16,7 +16,7 @@ ANN = Student("100", "Ann Ash", login="aash")
 BEA = Student("200", "Bea Birch", login="bbirch")
 CAL = Student("300", "Cal Cedar", login="ccedar")
 DAN = Student("400", "Dan Dale", login="ddale")
-SHARED = "submitted by groups, and counted for each of their members: {}"
+SHARED = "group submissions that count for each member: {}"
 
 
 def roster(red: str = "Team Red", blue: str = "Team Blue") -> Roster:
@@ -122,5 +122,5 @@ def test_the_order_is_that_of_the_keys(tmp_path: Path) -> None:
 def test_an_assignment_is_nbgraders(tmp_path: Path, layout: str) -> None:
     """Named for another layout it would do nothing, which is an error."""
     lay_out(tmp_path, "ann/my_robot.urdf", "bea.zip")
-    with pytest.raises(InputError, match="--assignment goes with the layout nbgrader only"):
+    with pytest.raises(InputError, match="--assignment is only for the layout nbgrader"):
         read_class(tmp_path, layout=layout, assignment="ps1")

@@ -11,7 +11,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.intake.intake import LAYOUTS, read_class
+from grader.classroom.intake.class_layout import LAYOUTS
+from grader.classroom.intake.intake import read_class
 from grader.classroom.intake.layouts.layout import MAX_LINES
 from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.students import Student
@@ -34,8 +35,8 @@ def roster(*students: Student) -> Roster:
     [
         ((), "is empty"),
         ((".hidden", "__MACOSX/"), "is empty"),
-        (("notes.txt", "grades.csv"), "is a submission: grades.csv is not a folder"),
-        (("package.xml", "setup.py", "urdf/"), "is one submission and no class"),
+        (("notes.txt", "grades.csv"), "there is no submission in .*: grades.csv is not a folder"),
+        (("package.xml", "setup.py", "urdf/"), "is one submission and not a class"),
     ],
 )
 def test_what_holds_no_class_is_refused(tmp_path: Path, paths: tuple[str, ...], message: str) -> None:
@@ -56,7 +57,7 @@ def test_what_is_no_class_is_refused(tmp_path: Path) -> None:
     ):
         with pytest.raises(InputError, match=message):
             read_class(tmp_path / name)
-    with pytest.raises(InputError, match="there is no layout 'moodel'; there are: auto, folders"):
+    with pytest.raises(InputError, match="there is no layout 'moodel'; the layouts are: auto, folders"):
         read_class(tmp_path, layout="moodel")
     with pytest.raises(InputError):
         read_class(Path("nul\0byte"))
@@ -150,7 +151,7 @@ def test_of_two_submissions_of_one_student_the_certain_one_counts(tmp_path: Path
     intake = read_class(lay_out(tmp_path, "Ann Ash/", "aash.zip"), roster())
     assert taken(intake) == {"100": ("aash.zip",), "Ann Ash": ("Ann Ash",)}
     assert intake.unmatched == ("Ann Ash",)
-    assert intake.notes == ("Ann Ash may be of 100 as well, whose aash counts: left unassigned",)
+    assert intake.notes == ("Ann Ash may belong to 100 as well, but aash counts: left unassigned",)
 
 
 @pytest.mark.parametrize(
@@ -161,7 +162,7 @@ def test_between_equal_claims_nobody_decides(tmp_path: Path, names: tuple[str, s
     intake = read_class(lay_out(tmp_path, *names), roster())
     assert "100" not in taken(intake)
     assert (intake.contested, intake.absent) == ((ANN,), (BEA, CAL))
-    assert "may each be of 100: left unassigned, and what 100 had before stays" in intake.notes[0]
+    assert "may each belong to 100: left unassigned; 100 keeps an earlier submission" in intake.notes[0]
 
 
 def test_an_unmatched_submission_never_takes_a_key_of_the_roster(tmp_path: Path) -> None:
@@ -169,7 +170,7 @@ def test_an_unmatched_submission_never_takes_a_key_of_the_roster(tmp_path: Path)
     lay_out(tmp_path, "sam.zip")
     intake = read_class(tmp_path, roster(Student("sam"), Student("7", login="sam")))
     assert taken(intake) == {"./sam.zip": ("sam.zip",)}
-    assert intake.notes == ("sam may be of several in the roster: left unassigned",)
+    assert intake.notes == ("sam is ambiguous: it matches several students on the roster: left unassigned",)
     assert (len(intake.contested), intake.absent) == (2, ())
 
 
@@ -177,7 +178,7 @@ def test_a_case_variant_takes_no_key_over(tmp_path: Path) -> None:
     """Beside the exact key another case is nobody's, and its key cannot be mistaken for the student's."""
     intake = read_class(lay_out(tmp_path, "sam.zip", "SAM/"), roster(Student("sam"), Student("Sam2")))
     assert taken(intake) == {"./SAM": ("SAM",), "sam": ("sam.zip",)}
-    assert intake.notes == ("SAM may be of sam as well, whose sam counts: left unassigned",)
+    assert intake.notes == ("SAM may belong to sam as well, but sam counts: left unassigned",)
 
 
 def test_the_rosters_word_on_time_counts(tmp_path: Path) -> None:

@@ -116,7 +116,7 @@ def test_empty_folders_and_too_many_files(tmp_path: Path, monkeypatch: pytest.Mo
     monkeypatch.setattr("grader.classroom.intake.layouts.moodle._MAX_FILES", 2)
     intake = read_class(lay_out(tmp_path, *(f"{top}/{name}" for name in "abc"), f"{text}/onlinetext.html"))
     assert taken(intake) == {"Jane Doe_12": (top,)}
-    assert intake.ignored == (f"{top} has more than 2 files: what stands beside it was not read",)
+    assert intake.ignored == (f"{top} has more than 2 files: the files beside it were not read",)
 
 
 @pytest.mark.parametrize("word", ["Participant", "Teilnehmerin", "参加者"])
@@ -125,7 +125,7 @@ def test_hidden_names(tmp_path: Path, word: str) -> None:
     lay_out(tmp_path, f"{word}_12_{FOLDER}/", f"{word}_13_{FOLDER}/", "README.md")
     intake = read_class(tmp_path)
     assert [each.student for each in intake.submissions()] == [Student(f"{word}_{n}", moodle=n) for n in ("12", "13")]
-    assert intake.ignored == ("README.md is not named as Moodle names what was handed in",)
+    assert intake.ignored == ("README.md is not named like a submission in Moodle",)
 
 
 def test_teams(tmp_path: Path) -> None:

@@ -14,7 +14,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.classroom.gradebook.sources import SubmissionFiles, SubmissionSources
-from grader.classroom.intake.opening import fingerprint, is_bulk, open_submission
+from grader.classroom.intake.fingerprint import fingerprint, is_zip
+from grader.classroom.intake.opening import open_submission
 from grader.errors import InputError
 from grader.files import reading
 from grader.files.folder import read_folder
@@ -289,7 +290,7 @@ def test_a_zip_that_was_replaced_is_read_anew(tmp_path: Path) -> None:
         place.unlink(missing_ok=True)
         with zipfile.ZipFile(place, "w") as archive:
             archive.writestr("ann.urdf", URDF.replace(b"'a'", f"'{name}'".encode()))
-        assert is_bulk(str(place))
+        assert is_zip(str(place))
         seen.append(open_submission(str(place), ("ann.urdf",), (), "ann").data)
     assert [b"one" in seen[0], b"other" in seen[1]] == [True, True]  # type: ignore[operator]
 

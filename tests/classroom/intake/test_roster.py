@@ -111,27 +111,27 @@ def test_a_time_that_is_none_is_noted(tmp_path: Path) -> None:
     """What an LMS writes about handing in may be no time: it is passed over, and said."""
     roster = read(tmp_path, "id,submitted\n1,yesterday\n")
     assert roster.entries[0].submitted == ""
-    assert roster.notes == ("line 2: 'yesterday' is no time such as 2026-09-01T10:00, and was passed over",)
+    assert roster.notes == ("line 2: 'yesterday' is not a time such as 2026-09-01T10:00, and was ignored",)
 
 
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("", "has no students in it"),
-        ("id,name\n", "has no students in it"),
+        ("", "has no students"),
+        ("id,name\n", "has no students"),
         ("points,grade\n1,2\n", "no column for an id, login, name or email in its first line, only: points, grade"),
         ("id,name\n1,Ann\n2,Bea\n1,Cal\n", "has the id 1 twice, in lines 2 and 4"),
         ("id,canvas id\n1,7\n2,7\n", "has the canvas id 7 twice, in lines 2 and 3"),
         ('id,name\n1,"An\nn"\n1,Bea\n', "has the id 1 twice, in lines 2 and 4"),
         ("id,name\n1\n", "line 2 of .* has 1 cells where the first line has 2"),
         ("id,name\n1,Ann,extra\n", "line 2 of .* has 3 cells where the first line has 2"),
-        ("id,name,points\n,,7\n", "line 2 of .* says nothing of who the student is"),
+        ("id,name,points\n,,7\n", "line 2 of .* has no id, login, name or email address: add one of them"),
         ("id,name\n1,Ann\n2,'Bea\n3,\"Cal\n", "line 4 of .* cannot be read as CSV"),
         ("id,due\n1,12/7/26\n", "line 2 of .* has the date '12/7/26': write it as"),
         ("id,late\n1,maybe\n", "line 2 of .* has 'maybe' for late: write yes, no"),
-        (b"\xff\xfe\x00", "no text that can be read"),
-        (b"i\0d\0,\0", "no text that can be read"),
-        (b"id\n\x81\n", "no text that can be read"),
+        (b"\xff\xfe\x00", "is not a text file"),
+        (b"i\0d\0,\0", "is not a text file"),
+        (b"id\n\x81\n", "is not a text file"),
     ],
 )
 def test_what_cannot_be_used(tmp_path: Path, text: str | bytes, message: str) -> None:

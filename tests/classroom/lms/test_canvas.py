@@ -30,7 +30,9 @@ def gradebook(*rows: str, header: str = HEADER, points: str = POINTS, end: str =
 
 def fill(data: bytes, *grades: LmsGrade, column: str = "", out_of: str = "100", any_maximum: bool = False) -> Filled:
     wanted = ("lab6", "A wheeled base")
-    return fill_gradebook(data, grades, out_of=Decimal(out_of), wanted=wanted, column=column, any_maximum=any_maximum)
+    return fill_gradebook(
+        data, grades, out_of=Decimal(out_of), rubric_names=wanted, column=column, any_maximum=any_maximum
+    )
 
 
 def lines(filled: Filled) -> list[str]:
@@ -85,10 +87,10 @@ def test_the_surest_key_decides() -> None:
         data, graded("a", "10", canvas="12", name="Jane Doe"), graded("b", "20", canvas="13", name="Rick Roe")
     )
     assert lines(filled)[2:] == ['"Roe, Rick",12,,,A,10.00']
-    assert filled.preflight.unknown == (
-        RowNote(3, "Doe, Jane", "no student of the gradebook has this number, address or name"),
-    )
-    assert filled.preflight.missing == (RowNote(0, "Rick Roe", "has a grade, but no row in the file"),)
+    assert filled.preflight.unknown == [
+        RowNote(3, "Doe, Jane", "no student of the gradebook has this id, address or name"),
+    ]
+    assert filled.preflight.missing == [RowNote(0, "Rick Roe", "has a grade, but no row in the file")]
     assert not filled.preflight.matches
 
 
@@ -132,7 +134,7 @@ def test_rows_without_a_grade_are_left_out_with_the_reason() -> None:
     assert [(left.who, left.why) for left in filled.preflight.ungraded] == [
         ("Pen", "a person still has to look"),
         ("Exe", "is excused in Canvas"),
-        ("Nas", "is not given this assignment in Canvas"),
+        ("Nas", "is not assigned this assignment in Canvas"),
         ("Rag", "the row has 5 cells and the header 6"),
     ]
     assert filled.preflight.matches
@@ -143,7 +145,7 @@ def test_grades_that_are_there_already() -> None:
     rows = ["Ann,11,,,A,58.5", "Bob,12,,,A,80", "Cem,13,,,A,B+", "Dee,14,,,A,-"]
     filled = fill(gradebook(*rows), *(graded(str(n), canvas=str(n)) for n in range(11, 15)))
     assert lines(filled)[2:] == ["Ann,11,,,A,58.5", "Bob,12,,,A,58.50", "Cem,13,,,A,58.50", "Dee,14,,,A,58.50"]
-    assert filled.preflight.conflicts == (Conflict(4, "Bob", "80", "58.50"), Conflict(5, "Cem", "B+", "58.50"))
+    assert filled.preflight.conflicts == [Conflict(4, "Bob", "80", "58.50"), Conflict(5, "Cem", "B+", "58.50")]
     assert (filled.preflight.filled, filled.preflight.unchanged) == (3, 1)
 
 
@@ -180,13 +182,13 @@ def test_the_column(header: str, column: str, chosen: str) -> None:
 @pytest.mark.parametrize(
     ("header", "column", "words"),
     [
-        ("Lab 6 a (1),Lab 6 b (2)", "", "several columns.*'Lab 6 a \\(1\\)', 'Lab 6 b \\(2\\)'"),
-        ("Quiz (1),Test (2)", "", "several columns.*'Quiz \\(1\\)', 'Test \\(2\\)'"),
-        ("Notes", "", "no assignment's column.*'Notes'"),
-        ("Lab 6 (1)", "Lab 7", "no column that can be filled 'Lab 7'; there is: 'Lab 6 \\(1\\)'"),
+        ("Lab 6 a (1),Lab 6 b (2)", "", "several possible columns.*'Lab 6 a \\(1\\)' and 'Lab 6 b \\(2\\)'"),
+        ("Quiz (1),Test (2)", "", "several possible columns.*'Quiz \\(1\\)' and 'Test \\(2\\)'"),
+        ("Notes", "", "no column of an assignment.*'Notes'"),
+        ("Lab 6 (1)", "Lab 7", "no writable column 'Lab 7'; the columns are: 'Lab 6 \\(1\\)'"),
         ("Lab 6 (1),Lab 6 (2)", "Lab 6", "more than one column 'Lab 6'"),
-        ("Lab 6 (1),Final Score", "Final Score", "no column that can be filled"),
-        ("Lab 6 (1),Lab 6 (1)", "", "several columns"),
+        ("Lab 6 (1),Final Score", "Final Score", "no writable column"),
+        ("Lab 6 (1),Lab 6 (1)", "", "several possible columns"),
     ],
 )
 def test_a_column_that_is_not_plain(header: str, column: str, words: str) -> None:
@@ -199,7 +201,7 @@ def test_read_only_columns_are_none() -> None:
     """A column that Canvas marks as read only, in whatever language, is not filled."""
     data = gradebook(header=HEADER + ",Extra (7)", points=POINTS + ",(nur lesen)")
     assert fill(data).preflight.column == "Lab 6 (98765)"
-    with pytest.raises(InputError, match="no column that can be filled"):
+    with pytest.raises(InputError, match="no writable column"):
         fill(data, column="7")
 
 
@@ -240,14 +242,14 @@ def test_warnings() -> None:
     assert "has no points possible" in fill(gradebook(points="Points Possible,,,,,")).preflight.warnings[0]
     assert "no row Points Possible" in fill(gradebook(points="")).preflight.warnings[0]
     filled = fill(gradebook(header=HEADER.replace("Lab 6", "Quiz")))
-    assert filled.preflight.warnings == (
-        "'Quiz (98765)' is the only assignment in the file, and its title does not name 'A wheeled base'",
-    )
+    assert filled.preflight.warnings == [
+        "'Quiz (98765)' is the only assignment in the file, but its title does not contain 'A wheeled base'",
+    ]
     filled = fill(gradebook(header=HEADER + ",Lab 7 (3)", points=POINTS + ",10"))
     assert "1 more assignments" in filled.preflight.warnings[0]
     filled = fill(gradebook(header=HEADER.replace("Section", "Section,Section"), points="Points Possible,,,,,,100"))
     assert "more than one column Section" in filled.preflight.warnings[0]
-    assert "another way" in fill(gradebook().decode().encode("utf-16")).preflight.warnings[0]
+    assert "another format" in fill(gradebook().decode().encode("utf-16")).preflight.warnings[0]
 
 
 @pytest.mark.parametrize(("possible", "said"), [("10.00", "10"), ("0", "0"), ('"1.000,00"', "1000")])
@@ -257,7 +259,7 @@ def test_another_maximum_is_refused(possible: str, said: str) -> None:
     with pytest.raises(InputError) as raised:
         fill(data, graded("x", "9.33", canvas="11"))
     assert str(raised.value) == (
-        f"Canvas' Points Possible of 'Lab 6 (98765)' is {said}, and the rubric's points are 100: change the maximum in the"
+        f"Canvas' Points Possible of 'Lab 6 (98765)' is {said}, but the rubric's maximum is 100: change the maximum in the"
         " LMS and export again, or write the points as they are with --any-maximum"
     )
     assert fill(data, graded("x", "9.33", canvas="11"), any_maximum=True).preflight.filled == 1

@@ -12,8 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.checks.outcome import Outcome
-from grader.classroom.lms.comments import feedback_items
-from grader.classroom.lms.feedback import LIMIT, FeedbackItem, feedback_html, is_our_feedback
+from grader.classroom.lms.feedback import LIMIT, FeedbackItem, feedback_html, feedback_items, is_own_feedback
 from grader.classroom.lms.grades import LmsGrade
 from grader.classroom.lms.moodle import fill_worksheet
 from grader.classroom.lms.preflight import Conflict, Filled, RowNote
@@ -113,7 +112,7 @@ def test_a_suspended_student_has_a_plain_name() -> None:
     """The span and the picture that Moodle puts around a suspended student's name are no part of it."""
     name = '<span class=""usersuspended"">Jane &amp; Doe <img src=""x"" title=""Suspended"" /></span>'
     filled = fill(worksheet(row(7, name)), graded("x", None, why_not="pending", name="Jane & Doe"))
-    assert filled.preflight.ungraded == (RowNote(2, "Jane & Doe", "pending"),)
+    assert filled.preflight.ungraded == [RowNote(2, "Jane & Doe", "pending")]
 
 
 def test_blind_marking() -> None:
@@ -137,7 +136,7 @@ def test_rows_without_a_grade_are_left_out() -> None:
     assert len(cells(filled)) == 1
     assert [left.why for left in filled.preflight.ungraded] == [
         "has a grade that is locked in Moodle",
-        "has 58.50 points, and Moodle takes 50 at most",
+        "has 58.50 points, but the maximum in Moodle is 50",
         "not handed in",
         "the row has 11 cells and the header 10",
     ]
@@ -153,7 +152,7 @@ def test_grades_that_are_there_already() -> None:
     """The same grade stays as it is written; another one is overwritten, and said so."""
     filled = fill(worksheet(row(1, old="58.5"), row(2, old="80.00")), graded("1", moodle="1"), graded("2", moodle="2"))
     assert [each[4] for each in cells(filled)[1:]] == ["58.5", "58.50"]
-    assert filled.preflight.conflicts == (Conflict(3, "Jane Doe", "80.00", "58.50"),)
+    assert filled.preflight.conflicts == [Conflict(3, "Jane Doe", "80.00", "58.50")]
     assert (filled.preflight.filled, filled.preflight.unchanged) == (1, 1)
     assert "modified more recently" in filled.preflight.warnings[0]
 
@@ -225,7 +224,7 @@ def test_a_language_that_is_not_known() -> None:
     filled = fill(data, grade)
     assert filled.preflight.column == "Arvosana"
     assert cells(filled)[1][5:] == ["58.50", "100.00", "-", ""]
-    assert any("no column for feedback" in warning for warning in filled.preflight.warnings)
+    assert any("no known column for feedback" in warning for warning in filled.preflight.warnings)
     assert any("Last modified" in warning for warning in filled.preflight.warnings)
     assert cells(fill(data, grade, feedback_column="Palaute"))[1][8] == COMMENT
     assert cells(fill(data, grade, column="Arvosana"))[1][5] == "58.50"
@@ -251,10 +250,10 @@ def test_a_workflow_a_marker_and_an_online_text() -> None:
         (b"Student,ID,SIS Login ID,Section,Lab 6 (1)\nJane,1,ab1,A,\n", "not a grading worksheet.*'Student', 'ID'"),
         (
             b'Identifier,Full name,Grade,Scale\nParticipant 1,Jane,,"poor\ngood"\n',
-            "no maximum grade in numbers behind 'Grade'",
+            "no number as the maximum grade behind 'Grade'",
         ),
-        (b"Identifier,Full name,Grade,Maximum grade\nParticipant 1,Jane,,\n", "no maximum grade in numbers"),
-        (b"Tunniste,Nimi,Arvosana\nOsallistuja 1,Jane,\n", "nobody can tell which column.*'Arvosana'"),
+        (b"Identifier,Full name,Grade,Maximum grade\nParticipant 1,Jane,,\n", "no number as the maximum grade"),
+        (b"Tunniste,Nimi,Arvosana\nOsallistuja 1,Jane,\n", "cannot detect the column.*'Arvosana'"),
     ],
 )
 def test_other_files_are_refused(data: bytes, words: str) -> None:
@@ -274,11 +273,11 @@ def test_columns_that_are_not_there() -> None:
 
 def test_warnings() -> None:
     """Another maximum, and a file that has to be uploaded with other settings, are said."""
-    assert fill(worksheet(row(1)), out_of="70", any_maximum=True).preflight.warnings == (
-        "Moodle counts to 100.00 points, and the rubric to 70",
-    )
+    assert fill(worksheet(row(1)), out_of="70", any_maximum=True).preflight.warnings == [
+        "the maximum in Moodle is 100.00 points, and that of the rubric 70",
+    ]
     data = b"Identifier;Grade;Maximum grade;Last modified (grade)\nParticipant 1;;100,00;-\n"
-    assert fill(data).preflight.warnings == ("choose semicolon and UTF-8 where the file is uploaded: so it is written",)
+    assert fill(data).preflight.warnings == ["when you upload the file, choose semicolon and UTF-8"]
 
 
 def test_another_maximum_is_refused() -> None:
@@ -287,7 +286,7 @@ def test_another_maximum_is_refused() -> None:
     with pytest.raises(InputError) as raised:
         fill(data, graded("1", "9.33", moodle="1"))
     assert str(raised.value) == (
-        "Moodle's 'Maximum Grade' is 10, and the rubric's points are 100: change the maximum in the LMS and export again,"
+        "Moodle's 'Maximum Grade' is 10, but the rubric's maximum is 100: change the maximum in the LMS and export again,"
         " or write the points as they are with --any-maximum"
     )
     assert fill(data, graded("1", "9.33", moodle="1"), any_maximum=True).preflight.filled == 1
@@ -313,11 +312,11 @@ def test_what_has_one_cause_is_one_remark() -> None:
     )
     assert re.findall("<li>(.*?)</li>", text) == [
         "About loads: 0 of 3. The file has no root",
-        "3 criteria are not decided, because loads failed: 0 of 7.",
+        "3 criteria were skipped because loads failed: 0 of 7.",
     ]
-    waits = Outcome("pending", "nobody can tell; a person has to look")
+    waits = Outcome("pending", "nobody can tell; needs manual grading")
     assert list(feedback_items([result(name, waits) for name in ("box", "tall")])) == [
-        FeedbackItem("2 criteria wait for a person", Decimal(0), Decimal(3), "Nobody can tell; a person has to look")
+        FeedbackItem("2 criteria need manual grading", Decimal(0), Decimal(3), "Nobody can tell; needs manual grading")
     ]
 
 
@@ -350,15 +349,15 @@ def test_feedback() -> None:
         "<p>Graded automatically: 99.99 of 100 points.</p>"
         "<ul><li>&lt;b&gt;: 1.5 of 2. say &quot;a b&quot; &#92;</li><li>c: 0 of 1.</li></ul><!-- grader "
     )
-    assert is_our_feedback(text)
+    assert is_own_feedback(text)
 
 
 def test_feedback_that_an_editor_has_written_anew() -> None:
     """Other tags and spaces around the same words are still ours; other words, or none of ours, are not."""
-    assert is_our_feedback(COMMENT.replace("<p>", "<p dir='ltr'>\n ").replace("</li>", "</li>\n"))
-    assert not is_our_feedback(COMMENT.replace("too low", "far too low"))
-    assert not is_our_feedback("Graded automatically: 3 of 4 points.")
-    assert not is_our_feedback("")
+    assert is_own_feedback(COMMENT.replace("<p>", "<p dir='ltr'>\n ").replace("</li>", "</li>\n"))
+    assert not is_own_feedback(COMMENT.replace("too low", "far too low"))
+    assert not is_own_feedback("Graded automatically: 3 of 4 points.")
+    assert not is_own_feedback("")
 
 
 def test_feedback_has_an_end() -> None:
@@ -385,8 +384,8 @@ def test_feedback_is_always_safe(remarks: list[FeedbackItem]) -> None:
     assert neutral(text) == text
     assert set(re.findall(r"</?\w+", text)) <= {"<p", "</p", "<ul", "</ul", "<li", "</li"}
     assert "\\" not in text
-    assert is_our_feedback(text)
-    assert is_our_feedback(text.encode("cp1252", "xmlcharrefreplace").decode("cp1252"))
+    assert is_own_feedback(text)
+    assert is_own_feedback(text.encode("cp1252", "xmlcharrefreplace").decode("cp1252"))
     text.encode("utf-8")
 
 

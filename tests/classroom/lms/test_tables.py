@@ -128,8 +128,8 @@ def test_refused() -> None:
         (b'a,b\n1,"2', "row 2 is never closed"),
         (b"a,b\n\0,2", "NUL"),
         ("a,b".encode("utf-32"), "NUL"),
-        (b"\xff\xfea", "no text in utf-16-le"),
-        (b"a,\x81", "no text in UTF-8 or Windows-1252"),
+        (b"\xff\xfea", "not text in utf-16-le"),
+        (b"a,\x81", "not text in UTF-8 or Windows-1252"),
     ]:
         with pytest.raises(InputError, match=words):
             read_table(data, "x.csv")

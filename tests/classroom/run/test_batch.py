@@ -81,7 +81,7 @@ def test_a_class_is_graded_as_each_submission_alone(name: str, request: pytest.F
             if code != 2:  # in a folder that can be read there may still be nothing else that can
                 assert standing.verdict in ("graded", "unreadable")
                 assert alone == one[standing.student.key], path
-                is_red = bool({"f", "s"} & set(standing.signs)) or is_undecided(alone)
+                is_red = bool({"f", "s"} & set(standing.statuses)) or is_undecided(alone)
                 assert code == int(is_red), path
             else:
                 assert standing.verdict == "unreadable"
@@ -356,5 +356,5 @@ def test_awkward_names_are_found_in_the_roster(tmp_path: Path) -> None:
     strangers, absent = class_with_roster(tmp_path / "class", tmp_path / "roster.csv", 300)
     done = grader("batch", tmp_path / "class", "--gradebook", tmp_path / "lab6.db", "--roster", tmp_path / "roster.csv")
     assert done.returncode == 0
-    assert [key for (key,) in rows(tmp_path / "lab6.db", "SELECT key FROM grade WHERE expected = 0")] == strangers
+    assert [key for (key,) in rows(tmp_path / "lab6.db", "SELECT key FROM grade WHERE is_on_roster = 0")] == strangers
     assert rows(tmp_path / "lab6.db", "SELECT count(*) FROM grade WHERE verdict = 'missing'") == [(absent,)]

@@ -69,11 +69,11 @@ def _pictures(top: Path) -> Path:
     [
         (_missing, "does not exist"),
         (_empty, "is empty"),
-        (_one_submission, "is one submission and no class"),
+        (_one_submission, "is one submission and not a class"),
         (_one_file, "is neither a folder nor a zip"),
         (_broken_zip, "cannot be read as a zip"),
         (_empty_zip, "is empty"),
-        (_pictures, "is a submission"),
+        (_pictures, "there is no submission in"),
     ],
 )
 def test_what_is_no_class(make: Callable[[Path], Path], said: str, tmp_path: Path) -> None:
@@ -114,8 +114,8 @@ def _newer(place: Path) -> None:
         (_folder, "unable to open database file"),
         (_text, "file is not a database"),
         (_short_text, "file is not a database"),
-        (_other_program, "is a database, but no gradebook"),
-        (_newer, "was made by a newer grader: install that one, or name another file"),
+        (_other_program, "is a database, but not a gradebook"),
+        (_newer, "was made by a newer grader: install that version, or name another file"),
     ],
 )
 def test_what_is_no_gradebook(make: Callable[[Path], None], said: str, folder: Path, tmp_path: Path) -> None:
@@ -132,7 +132,7 @@ def test_what_is_no_gradebook(make: Callable[[Path], None], said: str, folder: P
 def test_a_gradebook_in_a_missing_folder(folder: Path, tmp_path: Path) -> None:
     """The line names the gradebook."""
     place = tmp_path / "missing" / "lab6.db"
-    assert refused("batch", folder, "--gradebook", place).startswith(f"the gradebook {place}: ")
+    assert refused("batch", folder, "--gradebook", place).startswith(f"cannot create the gradebook {place}: ")
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="nothing is closed to root")

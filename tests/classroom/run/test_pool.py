@@ -71,23 +71,23 @@ def _stop() -> None:
 
 def test_no_more_memory_than_allowed(pool: Processes) -> None:
     """What needs more is lost, and its worker goes on."""
-    assert lost(pool.submit(_eat)) == "grading it needs more memory than a worker may have (2 GiB)"
+    assert lost(pool.submit(_eat)) == "grading it needs more memory than a worker may use (2 GiB)"
     assert pool.submit(len, "abc").result(PATIENCE) == 3
 
 
 @pytest.mark.parametrize(
     ("function", "arguments", "reason"),
     [
-        (_leave, (0,), "the process that graded it ended in the midst of it"),
+        (_leave, (0,), "the process that graded it ended at work"),
         (_leave, (7,), "the process that graded it ended with exit code 7"),
         (os.abort, (), "the process that graded it was ended by signal 6"),
         (signal.raise_signal, (signal.SIGKILL,), "the process that graded it was ended by signal 9"),
         (
             _stop,
             (),
-            "grading it took longer than 1.5 s, and was stopped (--timeout raises the limit)",
+            "grading it took longer than 1.5 s (--timeout raises the limit)",
         ),
-        (time.sleep, (600,), "grading it took longer than 1.5 s, and was stopped (--timeout raises the limit)"),
+        (time.sleep, (600,), "grading it took longer than 1.5 s (--timeout raises the limit)"),
     ],
 )
 def test_what_ends_or_holds_a_worker_is_lost(
@@ -96,7 +96,7 @@ def test_what_ends_or_holds_a_worker_is_lost(
     """And nothing else with it."""
     ended = pool.submit_within(1.5, function, arguments, {})
     others = [pool.submit(pow, number, 2) for number in range(20)]
-    assert lost(ended) in (reason, "grading it took longer than 1.5 s, and was stopped (--timeout raises the limit)")
+    assert lost(ended) in (reason, "grading it took longer than 1.5 s (--timeout raises the limit)")
     assert [each.result(PATIENCE) for each in others] == [number**2 for number in range(20)]
 
 

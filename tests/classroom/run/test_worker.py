@@ -118,5 +118,5 @@ def test_several_archives_are_counted(tmp_path: Path) -> None:
         (tmp_path / "ann" / name).write_bytes(b"garbage")
     assert graded(tmp_path, "ann").reason == (
         "nothing to grade was found: a.zip is no archive, although it is named as one: it is damaged or empty "
-        "(nor could 2 more be opened)"
+        "(and 2 more cannot be opened)"
     )

@@ -1,1 +1,1 @@
-"""The ways in which a class's submissions lie in a folder or zip. Each turns names into hand-ins; none opens a submission."""
+"""The layouts of a class folder or zip. Each reads the submissions from names; none opens a submission."""

@@ -1,11 +1,11 @@
-"""Several things of one student: attempts, of which the last counts, and names that differ in their ending only."""
+"""Several attempts or copies of one student's submission: the last one counts."""
 
 import re
 from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 from grader.classroom.intake.layouts.layout import IgnoredFiles
-from grader.classroom.intake.listing import Listing
+from grader.classroom.intake.listing import ClassListing
 from grader.classroom.intake.names import ENDINGS, ending_of, without_copy
 from grader.text import printable_path
 
@@ -14,17 +14,17 @@ _MAX_ATTEMPTS = 1_000
 
 
 class Attempts(NamedTuple):
-    """What counts, the number of the attempt that it is, and the earlier ones in order."""
+    """The last attempt, its number, and the earlier ones in order."""
 
     last: str
     number: int
     earlier: tuple[str, ...]
 
 
-def attempts_in(listing: Listing, folder: str) -> Attempts | None:
-    """The attempts in a folder that holds nothing else; of two with the same number a folder is the later one."""
+def attempts_in(listing: ClassListing, folder: str) -> Attempts | None:
+    """Return the attempts in a folder that holds nothing else; of two with the same number a folder is the later one."""
     first = listing.first(folder)
-    if first is None or _number(first) is None:  # as nearly every folder is told
+    if first is None or _number(first) is None:  # a shortcut for nearly all folders
         return None
     children = listing.children(folder, _MAX_ATTEMPTS)
     found: list[tuple[int, bool, str]] = []
@@ -41,7 +41,7 @@ def attempts_in(listing: Listing, folder: str) -> Attempts | None:
 
 
 def home_of(path: str) -> str:
-    """What the path of a submission has in common with its other attempts, copies and endings."""
+    """Return the part of a submission's path that its other attempts, copies and endings share."""
     folder, _, name = path.rpartition("/")
     if folder and _number(name) is not None:
         return home_of(folder)
@@ -57,19 +57,16 @@ def _number(name: str) -> int | None:
 def last_copy(
     names: Iterable[tuple[int, str]], is_folder: Callable[[str], bool], ignored: IgnoredFiles, start: str
 ) -> Attempts:
-    """Of names with the numbers that a browser gave them the highest; of two with one number see `folders`."""
+    """Return the copies with the browser's numbers as attempts; of two with one number, the better ending counts (`folders`)."""
     by_number: dict[int, list[str]] = {}
     for number, name in names:
         by_number.setdefault(number, []).append(name)
-    chosen: list[tuple[int, str]] = []
-    for number, same in sorted(by_number.items()):
-        best, *others = sorted(same, key=lambda name: (_rank(name, is_folder=is_folder(name)), name))
-        chosen.append((number, best))
-        for other in others:
-            ignored.add(start + other, f"was passed over: {printable_path(best)} has the same name, and counts")
-    *earlier, last = chosen
-    return Attempts(last[1], len(chosen), tuple(name for _, name in earlier))
-
-
-def _rank(name: str, *, is_folder: bool) -> int:
-    return -1 if is_folder else ENDINGS.index(ending_of(name).lower())
+    chosen: list[str] = []
+    for _, same in sorted(by_number.items()):
+        ranked = sorted(
+            same, key=lambda name: (-1 if is_folder(name) else ENDINGS.index(ending_of(name).lower()), name)
+        )
+        chosen.append(ranked[0])
+        for other in ranked[1:]:
+            ignored.add(start + other, f"was ignored: {printable_path(ranked[0])} has the same name, and counts")
+    return Attempts(chosen[-1], len(chosen), tuple(chosen[:-1]))

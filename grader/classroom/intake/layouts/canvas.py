@@ -1,17 +1,16 @@
-"""Canvas' bulk download: all files side by side, each with its student's name and number in its own name.
+"""The Canvas layout, a bulk download: all files side by side, each with its student's name and user id in its name.
 
 canvas-lms, lib/content_zipper.rb: `{name}[_LATE]_{user id}_{attachment id}_{file}`, or `[LATE_]anon_{5 letters}_{attachment
-id}_{file}` where students are anonymous; `..._text.html` is a text entry, `..._link.html` a web address. A file that is handed
-in again under the same name is saved with `-1`, `-2` behind its stem (attachment.rb, make_unique_filename).
+id}_{file}` where students are anonymous; `..._text.html` is a text entry, `..._link.html` a web address. A file that is submitted
+again under the same name is saved with `-1`, `-2` behind its stem (attachment.rb, make_unique_filename).
 """
 
 import re
 from collections import defaultdict
 from collections.abc import Iterable
-from dataclasses import replace
 from typing import NamedTuple
 
-from grader.classroom.intake.layouts.layout import IgnoredFiles, SubmissionList, listed
+from grader.classroom.intake.layouts.layout import IgnoredFiles, SubmissionList, submission_list
 from grader.classroom.intake.listing import Children
 from grader.classroom.intake.names import ending_of
 from grader.classroom.matching import is_word
@@ -29,7 +28,7 @@ _REPEATED = re.compile(
 
 
 class _CanvasFile(NamedTuple):
-    """One file of a download: whose it is, and what the student called it."""
+    """One file of a download: whose it is, and the student's own name of it."""
 
     path: str
     name: str
@@ -40,14 +39,19 @@ class _CanvasFile(NamedTuple):
     attachment: int
     file: str
 
+    @property
+    def is_ambiguous(self) -> bool:
+        """Whether the name can be read in several ways."""
+        return len(self.maybe_users) > 1
 
-def fits(children: Children) -> bool:
-    """Whether this is surely a download of Canvas: at least three in four of what could be submissions are named like it.
 
-    Canvas writes names in lower case; a name with capitals speaks against it.
+def is_layout(children: Children) -> bool:
+    """Return whether this is a download of Canvas: at least three in four possible submissions are named like one.
+
+    Canvas writes names in lower case, so a name with capitals does not count.
     """
     names = children.folders + children.files
-    fitting = {name for name in names if _is_lower(_saved(name))}
+    fitting = {name for name in names if _is_lower(_parsed(name))}
     if not fitting:
         return False
     folders = set(children.folders)
@@ -56,41 +60,42 @@ def fits(children: Children) -> bool:
 
 
 def find_submissions(children: Children, start: str, ignored: IgnoredFiles) -> SubmissionList:
-    """The hand-ins of a download, one for each user. Folders count as files that someone has unpacked."""
+    """Return the submissions of a download, one for each user. Folders count as files that someone has unpacked."""
     by_user: dict[tuple[bool, str], list[_CanvasFile]] = defaultdict(list)
     for name in (*children.folders, *children.files):
-        saved = _saved(name)
-        if saved is None:
-            ignored.add(start + name, "is not named as Canvas names what was handed in")
+        file = _parsed(name)
+        if file is None:
+            ignored.add(start + name, "is not named like a submission in Canvas")
         else:
-            by_user[saved.is_anonymous, saved.user].append(saved)
-    ignored.add_all((start + name, reason) for name, reason in children.refused)
-    known = {user: _certain(saved, start, ignored) for user, saved in by_user.items()}
-    shelf = listed(_hand_in(saved, start) for saved in known.values() if saved)
-    contested = (_student(each) for user, saved in by_user.items() if not known[user] for each in saved)
-    return replace(shelf, contested=tuple(dict.fromkeys(contested)))
+            by_user[file.is_anonymous, file.user].append(file)
+    ignored.add_all(start, children.refused)
+    certain = {user: _certain(files, start, ignored) for user, files in by_user.items()}
+    contested = dict.fromkeys(_student(file) for user, files in by_user.items() if not certain[user] for file in files)
+    found = (_submission(files, start) for files in certain.values() if files)
+    return submission_list(found, contested=tuple(contested))
 
 
-def _certain(saved: list[_CanvasFile], start: str, ignored: IgnoredFiles) -> list[_CanvasFile]:
-    """The files of a user without those that may be another user's.
+def _certain(files: list[_CanvasFile], start: str, ignored: IgnoredFiles) -> list[_CanvasFile]:
+    """Return the files of a user without those that may be another user's.
 
     Users choose their names, and one may end in a number: `mallory_77` with the id 99 has a file `mallory_77_99_...`. Canvas writes
-    one user's name in one way, so a name that can be read in two ways must be one that a file has which cannot.
+    one user's name in one way, so a name that can be read in two ways counts only if a file with an unambiguous name has it too.
     """
-    if len({each.name for each in saved}) == 1:
-        return saved
-    certain = {each.name for each in saved if len(each.maybe_users) < 2}
-    for each in saved:
-        if each.name not in certain:
-            ignored.add(start + each.path, f"may be of another user than {each.user}: its name can be read in two ways")
-    return [each for each in saved if each.name in certain]
+    if len({file.name for file in files}) == 1:
+        return files
+    names = {file.name for file in files if not file.is_ambiguous}
+    for file in files:
+        if file.name not in names:
+            reason = f"may belong to another user than {file.user}: its name can be read in two ways"
+            ignored.add(start + file.path, reason)
+    return [file for file in files if file.name in names]
 
 
-def _is_lower(saved: _CanvasFile | None) -> bool:
-    return saved is not None and not any(letter.isupper() for letter in saved.name)
+def _is_lower(file: _CanvasFile | None) -> bool:
+    return file is not None and not any(letter.isupper() for letter in file.name)
 
 
-def _saved(name: str) -> _CanvasFile | None:
+def _parsed(name: str) -> _CanvasFile | None:
     if name.count("_") < 2:
         return None
     found = _NAME.fullmatch(name)
@@ -109,41 +114,37 @@ def _saved(name: str) -> _CanvasFile | None:
     )
 
 
-def _hand_in(saved: Iterable[_CanvasFile], start: str) -> ClassSubmission:
-    last, earlier = _attempts(saved)
-    first = min(
-        last, key=lambda each: (len(each.maybe_users) > 1, each.name)
-    )  # one that can be read in one way, if there is
+def _submission(files: Iterable[_CanvasFile], start: str) -> ClassSubmission:
+    by_file = _attempts_by_file(files)
+    last = [attempts[-1] for attempts in by_file]
     return ClassSubmission(
-        _student(first),
-        tuple(start + each.path for each in last),
-        is_late=any(each.is_late for each in last),
-        attempt=1 + max((len(each) for each in earlier), default=0),
-        earlier=tuple(start + each.path for attempts in earlier for each in attempts),
-        names=tuple(each.file for each in last),
+        _student(min(last, key=lambda file: (file.is_ambiguous, file.name))),
+        tuple(start + file.path for file in last),
+        is_late=any(file.is_late for file in last),
+        attempt=max(map(len, by_file)),
+        earlier=tuple(start + file.path for attempts in by_file for file in attempts[:-1]),
+        names=tuple(file.file for file in last),
     )
 
 
-def _student(saved: _CanvasFile) -> Student:
-    """Whose a file is; where its name can be read in several ways, with all the numbers that may be the user's."""
-    is_certain = len(saved.maybe_users) < 2
-    key = f"{saved.name}_{saved.user}"
-    if saved.is_anonymous or not is_certain:
-        return Student(key, maybe_canvas=() if is_certain else saved.maybe_users)
-    return Student(key, canvas=saved.user)
+def _student(file: _CanvasFile) -> Student:
+    """Return whose a file is; if its name is ambiguous, with all numbers that may be the user id."""
+    key = f"{file.name}_{file.user}"
+    if file.is_anonymous or file.is_ambiguous:
+        return Student(key, maybe_canvas=file.maybe_users if file.is_ambiguous else ())
+    return Student(key, canvas=file.user)
 
 
-def _attempts(saved: Iterable[_CanvasFile]) -> tuple[list[_CanvasFile], list[list[_CanvasFile]]]:
-    """The files that count, and for each of them the earlier ones of that name, in order.
+def _attempts_by_file(files: Iterable[_CanvasFile]) -> list[list[_CanvasFile]]:
+    """Return the attempts at each file, in order, sorted by the file's name.
 
-    `step-1.png` is a later `step.png` only where there is a `step.png`: without it, the number is the student's own.
+    `step-1.png` is a later `step.png` only if there is a `step.png`: without it, the number is the student's own.
     """
-    given = sorted(saved, key=lambda each: (each.attachment, each.path))
-    plain = {each.file for each in given}
+    given = sorted(files, key=lambda file: (file.attachment, file.path))
+    names = {file.file for file in given}
     by_file: dict[str, list[_CanvasFile]] = defaultdict(list)
-    for each in given:
-        found = _REPEATED.fullmatch(each.file)
-        first = f"{found['stem']}{found['ending']}" if found else each.file
-        by_file[first if first in plain else each.file].append(each)
-    last = [attempts[-1] for _, attempts in sorted(by_file.items())]
-    return last, [attempts[:-1] for _, attempts in sorted(by_file.items()) if len(attempts) > 1]
+    for file in given:
+        found = _REPEATED.fullmatch(file.file)
+        first = f"{found['stem']}{found['ending']}" if found else file.file
+        by_file[first if first in names else file.file].append(file)
+    return [attempts for _, attempts in sorted(by_file.items())]

@@ -1,4 +1,4 @@
-"""What every layout has to give: hand-ins in a row, and what was left out."""
+"""What every layout returns: the submissions of a class, and what it ignored."""
 
 import os
 from collections import Counter
@@ -11,11 +11,11 @@ from grader.classroom.students import ClassSubmission, Student
 from grader.text import printable_path
 
 MAX_LINES = 200
-_HERE = "./"  # with which no name begins
+_PATH_KEY = "./"  # no file name begins with this
 
 
 class Submissions(Protocol):
-    """Hand-ins, sorted by their students' keys, which are printable and differ. A student is told without a look into the files."""
+    """Submissions, sorted by their students' keys, which are printable and unique. Students are known from names alone."""
 
     @property
     def assignments(self) -> frozenset[str]:
@@ -23,98 +23,97 @@ class Submissions(Protocol):
 
     @property
     def contested(self) -> tuple[Student, ...]:
-        """Students of whom something was ignored because it may be another's."""
+        """Students of whom a file was ignored because it may be another student's."""
 
     def __len__(self) -> int:
-        """How many there are."""
+        """Return the number of submissions."""
 
     def student(self, index: int) -> Student:
-        """Who has handed in, as far as the names say."""
+        """Return the student, as far as names tell."""
 
-    def hand_in(self, index: int) -> ClassSubmission:
-        """What was handed in."""
+    def submission(self, index: int) -> ClassSubmission:
+        """Return the submission."""
 
-    def place(self, index: int) -> str:
-        """Where it stands in the class: the path of the student's folder or file."""
+    def path(self, index: int) -> str:
+        """Return the path of the student's folder or first file in the class."""
 
 
 @dataclass(frozen=True, slots=True)
 class SubmissionList:
-    """A shelf whose hand-ins are all at hand."""
+    """Submissions in memory."""
 
-    hand_ins: Sequence[ClassSubmission]
+    submissions: Sequence[ClassSubmission]
     assignments: frozenset[str] = frozenset()
     contested: tuple[Student, ...] = ()
 
     def __len__(self) -> int:
-        return len(self.hand_ins)
+        return len(self.submissions)
 
     def student(self, index: int) -> Student:
-        """Who has handed in."""
-        return self.hand_ins[index].student
+        """Return the student."""
+        return self.submissions[index].student
 
-    def hand_in(self, index: int) -> ClassSubmission:
-        """What was handed in."""
-        return self.hand_ins[index]
+    def submission(self, index: int) -> ClassSubmission:
+        """Return the submission."""
+        return self.submissions[index]
 
-    def place(self, index: int) -> str:
-        """The path of the first of its files."""
-        return self.hand_ins[index].paths[0]
-
-
-def listed(hand_ins: Iterable[ClassSubmission]) -> SubmissionList:
-    """A shelf of these submissions. A key that is not printable, or that several have, is replaced by the key of the place."""
-    given = list(hand_ins)
-    counts = Counter(each.student.key for each in given)
-    keys = [
-        each.student.key
-        if counts[each.student.key] == 1 and each.student.key.isprintable()
-        else place_key(each.paths[0])
-        for each in given
-    ]
-    made = [
-        each if key == each.student.key else replace(each, student=replace(each.student, key=key))
-        for each, key in zip(given, keys, strict=True)
-    ]
-    return SubmissionList(sorted(made, key=lambda each: each.student.key))
+    def path(self, index: int) -> str:
+        """Return the path of the first file."""
+        return self.submissions[index].paths[0]
 
 
-def place_key(path: str) -> str:
-    """The key of a submission whose own name cannot be its key: its path, which no other submission can have.
+def submission_list(
+    submissions: Iterable[ClassSubmission],
+    assignments: frozenset[str] = frozenset(),
+    contested: tuple[Student, ...] = (),
+) -> SubmissionList:
+    """Return the submissions sorted by key. A key that is not printable or not unique is replaced by a path key."""
+    found = list(submissions)
+    counts = Counter(submission.student.key for submission in found)
+    for index, submission in enumerate(found):
+        key = submission.student.key
+        if counts[key] > 1 or not key.isprintable():
+            student = replace(submission.student, key=path_key(submission.paths[0]))
+            found[index] = replace(submission, student=student)
+    return SubmissionList(sorted(found, key=lambda submission: submission.student.key), assignments, contested)
 
-    It begins with `./`, as no name does, so no student can take such a key over by naming a folder after it.
+
+def path_key(path: str) -> str:
+    """Return the key of a submission whose own name cannot be its key: its path, which is unique.
+
+    It begins with `./`, as no file name does, so that no student can take over such a key by naming a folder like it.
     """
     if path.isprintable():
-        return f"{_HERE}{path}"
-    return f"{_HERE}{printable_path(path)}-{sha256(os.fsencode(path)).hexdigest()}"
+        return f"{_PATH_KEY}{path}"
+    return f"{_PATH_KEY}{printable_path(path)}-{sha256(os.fsencode(path)).hexdigest()}"
 
 
-def is_place_key(key: str) -> bool:
-    """Whether a key is that of a place."""
-    return key.startswith(_HERE)
+def is_path_key(key: str) -> bool:
+    """Return whether a key was made by `path_key`."""
+    return key.startswith(_PATH_KEY)
 
 
 class IgnoredFiles:
-    """What is no submission, and why: the first lines in the order of the alphabet, and a count of the rest."""
+    """The files that are not submissions, and why: the first lines in alphabetical order, and a count of the rest."""
 
     def __init__(self) -> None:
         self._lines: list[str] = []
         self._count = 0
 
     def add(self, path: str, reason: str) -> None:
-        """Leave something out; `reason` goes on where the name ends."""
+        """Add a file; the reason continues a sentence that begins with its name."""
         self._lines.append(f"{printable_path(path)} {reason}")
         self._count += 1
         if len(self._lines) > 10 * MAX_LINES:
             self._lines = sorted(self._lines)[:MAX_LINES]
 
-    def add_all(self, refused: Iterable[tuple[str, str]]) -> None:
-        """Leave out names, each with its reason."""
+    def add_all(self, folder: str, refused: Iterable[tuple[str, str]]) -> None:
+        """Add names in a folder (which ends in a slash or is empty), each with its reason."""
         for name, reason in refused:
-            self.add(name, reason)
+            self.add(folder + name, reason)
 
     def lines(self) -> tuple[str, ...]:
-        """At most MAX_LINES lines, and one more that says how many there would be."""
+        """Return at most MAX_LINES lines, and one that counts the rest."""
         shown = sorted(self._lines)[:MAX_LINES]
         more = self._count - len(shown)
         return (*shown, f"and {more} more") if more else tuple(shown)

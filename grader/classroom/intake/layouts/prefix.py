@@ -1,4 +1,4 @@
-"""The part that all names of a class have in front of the student's: class repositories of GitHub are `<assignment>-<login>`."""
+"""The prefix of all names in a class: class repositories of GitHub are `<assignment>-<login>`."""
 
 import re
 from collections import Counter
@@ -8,10 +8,10 @@ _LAB = re.compile(r"lab-?\d+-", re.IGNORECASE)
 
 
 def class_prefix(names: Sequence[str], rubric_id: str, knows: Callable[[str], bool] | None) -> str:
-    """The prefix to remove from the names that have it, in lower case; empty where there is none.
+    """Return the prefix to remove from the names that have it, in lower case; empty if there is none.
 
-    That is the rubric's id with a hyphen, or `lab` and a number where most names have it. With a roster, whose students `knows`
-    recognises, it can be any prefix behind which the most names are in the roster. One more folder cannot change what the others mean.
+    It is the rubric's id with a hyphen, or `lab` and a number if most names have it. With a roster (`knows` says whether a name is on
+    it) it can be any prefix behind which the most names are on the roster. One more folder cannot change what the others mean.
     """
     if not names or (knows and all(map(knows, names))):
         return ""
@@ -24,22 +24,22 @@ def class_prefix(names: Sequence[str], rubric_id: str, knows: Callable[[str], bo
     for prefix, count in labs.most_common(1):
         if count * 2 > len(names):
             return prefix
-    return _prefix_of_most(names, knows) if knows is not None else ""
+    return _roster_prefix(names, knows) if knows is not None else ""
 
 
-def _prefix_of_most(names: Sequence[str], knows: Callable[[str], bool]) -> str:
-    """The prefix that leaves the most known names: at least two, and more than are known as they are."""
+def _roster_prefix(names: Sequence[str], knows: Callable[[str], bool]) -> str:
+    """Return the prefix that leaves the most known names: at least two, and more than are known with their prefix."""
     counts = Counter(
         name[: index + 1].lower()
         for name in names
         for index, letter in enumerate(name)
         if letter == "-" and knows(name[index + 1 :])
     )
-    least = max(1, sum(map(knows, names)))
-    best = max(counts.items(), key=lambda each: (each[1], each[0]), default=("", 0))
-    return best[0] if best[1] > least else ""
+    minimum = max(1, sum(map(knows, names)))
+    prefix, count = max(counts.items(), key=lambda item: (item[1], item[0]), default=("", 0))
+    return prefix if count > minimum else ""
 
 
 def has_prefix(name: str, prefix: str) -> bool:
-    """Whether a name goes on behind a prefix."""
+    """Return whether a name starts with a prefix and continues behind it, in any case."""
     return len(name) > len(prefix) and name[: len(prefix)].lower() == prefix

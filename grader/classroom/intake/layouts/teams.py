@@ -1,22 +1,22 @@
-"""Team repositories: `<team>/Lab6/<Surname>/...` or `<team>/lab6/<login>/lab/...`, a folder of the lab with one for each student.
+"""The teams layout: `<team>/Lab6/<Surname>/...` or `<team>/lab6/<login>/lab/...`, a lab folder with one folder for each student.
 
-A lab folder may as well hold a package or a workspace, so only what cannot be one is taken for students. Teams without such a
-folder stay one hand-in each.
+A lab folder may also hold a package or a workspace, so only folders that cannot be part of one count as students. A team without
+such a lab folder is one submission.
 """
 
 import re
 from collections.abc import Callable
 from dataclasses import replace
 
-from grader.classroom.intake.layouts.folders import find_submissions as find_folder_submissions
-from grader.classroom.intake.layouts.layout import IgnoredFiles, SubmissionList, listed
-from grader.classroom.intake.listing import Children, Listing
-from grader.classroom.intake.names import ending_of
+from grader.classroom.intake.layouts import folders
+from grader.classroom.intake.layouts.layout import IgnoredFiles, SubmissionList, submission_list
+from grader.classroom.intake.listing import Children, ClassListing
+from grader.classroom.intake.names import stems_of
 from grader.classroom.students import ClassSubmission
 
-_MAX_TEAMS = 10_000  # beyond which nobody looks for teams unasked
+_MAX_TEAMS = 10_000  # with more folders, the layout has to be named
 _MAX_NAMES = 1_000  # in one folder
-_MAX_SEEN = 300  # entries that are looked at for a URDF
+_MAX_ENTRIES = 300  # that are searched for a URDF
 _PARTS = frozenset(
     {
         "src", "urdf", "launch", "rviz", "config", "resource", "resources", "test", "tests", "build", "install", "log",
@@ -34,36 +34,36 @@ _PACKAGE = frozenset({"package.xml", "setup.py", "CMakeLists.txt"})
 
 
 def lab_folder(rubric_id: str) -> re.Pattern[str]:
-    """What a lab's folder may be called: of `lab6` it is Lab6, lab_6 and Lab 06."""
+    """Return a pattern for the names of a lab's folder: of `lab6` it matches Lab6, lab_6 and Lab 06."""
     words = re.findall(r"[^\W\d_]+|\d+", rubric_id.casefold())
     parts = [f"0*{int(word)}" if word.isdecimal() else re.escape(word) for word in words]
     return re.compile(r"[\s_-]*".join(parts) or r"(?!)", re.IGNORECASE)
 
 
 def find_labs(
-    listing: Listing,
+    listing: ClassListing,
     children: Children,
     start: str,
     rubric_id: str,
     knows: Callable[[str], bool] | None,
     *,
-    is_told: bool = False,
+    is_explicit: bool = False,
 ) -> dict[str, str]:
-    """The lab folders that hold students' folders, each with its team; `is_told` where the user says that there are teams."""
+    """Return the lab folders that hold students' folders, each with its team; `is_explicit` if the user has named the layout."""
     labs: dict[str, str] = {}
     pattern = lab_folder(rubric_id)
-    if len(children.folders) > _MAX_TEAMS and not is_told:
+    if len(children.folders) > _MAX_TEAMS and not is_explicit:
         return labs
     for team in sorted(children.folders):
         for name in sorted(listing.children(start + team, _MAX_NAMES).folders):
             lab = f"{start}{team}/{name}"
-            if pattern.fullmatch(name) and _holds_students(listing, lab, knows, is_told=is_told):
+            if pattern.fullmatch(name) and _holds_students(listing, lab, knows, is_explicit=is_explicit):
                 labs[lab] = team
     return labs
 
 
 def find_submissions(
-    listing: Listing,
+    listing: ClassListing,
     children: Children,
     start: str,
     ignored: IgnoredFiles,
@@ -71,60 +71,56 @@ def find_submissions(
     knows: Callable[[str], bool] | None,
     labs: dict[str, str],
 ) -> SubmissionList:
-    """The hand-ins of the students in these lab folders, and of the teams without one."""
+    """Return the submissions of the students in these lab folders, and of the teams without one."""
     teams = set(labs.values())
     rest = children._replace(folders=[name for name in children.folders if name not in teams])
-    alone = find_folder_submissions(listing, rest, start, ignored, rubric_id, knows)
-    hand_ins = [alone.hand_in(index) for index in range(len(alone))]
+    alone = folders.find_submissions(listing, rest, start, ignored, rubric_id, knows)
+    found = [alone.submission(index) for index in range(len(alone))]
     for lab, team in labs.items():
-        shelf = find_folder_submissions(listing, listing.children(lab), f"{lab}/", ignored)
-        hand_ins += (_of_team(shelf.hand_in(index), team) for index in range(len(shelf)))
-    return replace(listed(hand_ins), contested=alone.contested)
+        members = folders.find_submissions(listing, listing.children(lab), f"{lab}/", ignored)
+        found += (_of_team(members.submission(index), team) for index in range(len(members)))
+    return submission_list(found, contested=alone.contested)
 
 
-def _of_team(hand_in: ClassSubmission, team: str) -> ClassSubmission:
-    """A submission in a team's folder: its key has the team in front, so that no other team can take it over."""
-    student = hand_in.student
+def _of_team(submission: ClassSubmission, team: str) -> ClassSubmission:
+    """Return a submission in a team's folder with the team in its key, so that no other team can take it over."""
+    student = submission.student
     name = student.login or student.key
-    return replace(hand_in, student=replace(student, key=f"{team}/{name}", name=name, login=name, team=team))
-
-
-def is_part(name: str) -> bool:
-    """Whether a folder is called like a part of a package, a workspace or a report, and so hardly like a student."""
-    lower = name.lower()
-    return lower in _PARTS or _PART.fullmatch(lower) is not None
+    return replace(submission, student=replace(student, key=f"{team}/{name}", name=name, login=name, team=team))
 
 
 def is_package(children: Children) -> bool:
-    """Whether a folder looks like one submission: it has a package's files, or folders that are called like parts of one."""
-    return not _PACKAGE.isdisjoint(children.files) or any(is_part(name) for name in children.folders)
+    """Return whether a folder looks like one submission: a package's files, or folders named like parts of one."""
+    return not _PACKAGE.isdisjoint(children.files) or any(
+        name in _PARTS or _PART.fullmatch(name) for name in map(str.lower, children.folders)
+    )
 
 
-def _holds_students(listing: Listing, lab: str, knows: Callable[[str], bool] | None, *, is_told: bool) -> bool:
+def _holds_students(listing: ClassListing, lab: str, knows: Callable[[str], bool] | None, *, is_explicit: bool) -> bool:
     inner = listing.children(lab, _MAX_NAMES)
-    names = inner.folders + [name.removesuffix(ending_of(name)) for name in inner.files if ending_of(name)]
+    names = stems_of(inner.folders, inner.files)
     if not names or is_package(inner):
         return False
     known = sum(map(knows, names)) if knows else 0
     if known and known >= min(len(names), 2):
         return True
-    if is_told:
+    if is_explicit:
         return bool(inner.folders)
     within = [_has_robot(listing, f"{lab}/{name}") for name in inner.folders]
     return within.count(True) >= 2 and None not in within
 
 
-def _has_robot(listing: Listing, folder: str) -> bool | None:
-    """Whether a URDF or a package is somewhere in a folder; None where the folder is itself a package."""
-    waiting = [folder]
-    left = _MAX_SEEN
+def _has_robot(listing: ClassListing, top: str) -> bool | None:
+    """Return whether there is a URDF or a package below a folder; None if the folder is itself a package."""
+    waiting = [top]
+    left = _MAX_ENTRIES
     while waiting and left > 0:
-        where = waiting.pop(0)
-        children = listing.children(where, left)
+        folder = waiting.pop(0)
+        children = listing.children(folder, left)
         left -= len(children.folders) + len(children.files) + 1
         if "package.xml" in children.files:
-            return True if where != folder else None
+            return True if folder != top else None
         if any(name.lower().endswith(".urdf") for name in children.files):
             return True
-        waiting += [f"{where}/{name}" for name in sorted(children.folders)]
+        waiting += [f"{folder}/{name}" for name in sorted(children.folders)]
     return False

@@ -1,4 +1,4 @@
-"""The rows of a roster: from the bytes of a CSV to cells that are known by what they say of a student."""
+"""Read the rows of a roster: from the bytes of a CSV file to cells by field."""
 
 import csv
 import io
@@ -29,12 +29,12 @@ _ALIASES = {
 _FIELD_OF = {alias: field for field, aliases in _ALIASES.items() for alias in aliases.split()}
 _WHO = ("id", "sis", "login", "github", "email", "name", "canvas", "moodle")
 _ASSIGNMENT = re.compile(r".+ \((\d+)\)", re.DOTALL)  # Canvas' column of an assignment: Lab 6 (98765)
-_AS_TEXT = re.compile(r'="(.*)"', re.DOTALL)  # how spreadsheets are kept from making a number of something
+_AS_TEXT = re.compile(r'="(.*)"', re.DOTALL)  # keeps a spreadsheet from reading a text as a number
 
 
 @dataclass(frozen=True, slots=True)
 class RosterRow:
-    """A student's row: the line that it begins in, and its cells by field."""
+    """A student's row: the line where it begins, and its cells by field."""
 
     line: int
     cells: Mapping[str, str]
@@ -44,7 +44,7 @@ class RosterRow:
 
 
 def text_of(data: bytes, shown: str) -> str:
-    """The text of a CSV in UTF-8, in UTF-16 with a byte order mark, or else in cp1252; raises InputError."""
+    """Return the text of a CSV file in UTF-8, in UTF-16 with a byte order mark, or in cp1252; raises InputError."""
     encodings = ("utf-16",) if data.startswith((b"\xff\xfe", b"\xfe\xff")) else ("utf-8-sig", "cp1252")
     for encoding in encodings:
         try:
@@ -53,11 +53,11 @@ def text_of(data: bytes, shown: str) -> str:
             continue
         if "\0" not in text:
             return text
-    raise InputError(f"{shown} is no text that can be read: save it as CSV in UTF-8")
+    raise InputError(f"{shown} is not a text file: save it as CSV in UTF-8")
 
 
 def rows_of(text: str, shown: str) -> Iterator[RosterRow]:
-    """The rows of students, each with its cells by field."""
+    """Yield the rows of students."""
     fields: list[str] | None = None
     of_canvas = False
     width = 0
@@ -73,14 +73,14 @@ def rows_of(text: str, shown: str) -> Iterator[RosterRow]:
             raise InputError(f"line {line} of {shown} has {count} cells where the first line has {width}")
         row = RosterRow(line, _by_field(fields, cells))
         if of_canvas:
-            if not row["id"]:  # Canvas has rows of points and of remarks between the header and the students
+            if not row["id"]:  # Canvas has rows of points and comments above the students
                 continue
             row = RosterRow(line, {**row.cells, "canvas": row["canvas"] or row["id"]})
         yield row
 
 
 def canvas_assignments(text: str, shown: str) -> frozenset[str]:
-    """The assignments that a gradebook exported from Canvas has columns for; none in any other roster."""
+    """Return the assignments with columns in a gradebook that was exported from Canvas; none for any other roster."""
     header = next((cells for _, cells in _cells(text, shown) if any(cells)), [])
     if not _is_canvas_header(header):
         return frozenset()
@@ -93,7 +93,7 @@ def _is_canvas_header(cells: list[str]) -> bool:
 
 
 def _cells(text: str, shown: str) -> Iterator[tuple[int, list[str]]]:
-    """The cells of every row, without needless spaces, with the line that it begins in."""
+    """Yield the line where each row begins, and its cells with spaces normalised."""
     text = text.removeprefix("sep=;\r\n").removeprefix("sep=;\n").removeprefix("sep=,\r\n").removeprefix("sep=,\n")
     header = next((line for line in text.splitlines() if line.strip(' ,;\t"')), "")
     unquoted = re.sub(r'"[^"]*"', "", header)
@@ -115,7 +115,7 @@ def _clean(cell: str) -> str:
 
 
 def _header(cells: list[str], shown: str) -> list[str]:
-    """The field of every column, empty where it is not known."""
+    """Return the field of each column, empty for an unknown column."""
     fields = [_FIELD_OF.get(_plain(cell), "") for cell in cells]
     if not any(field in (*_WHO, "last") for field in fields):
         named = ", ".join(cell for cell in cells if cell)[:200]
@@ -128,7 +128,7 @@ def _plain(header: str) -> str:
 
 
 def _by_field(fields: list[str], cells: list[str]) -> dict[str, str]:
-    """The first cell with something in it for every field."""
+    """Return the first cell that is not empty for each field."""
     found: dict[str, str] = {}
     for field, cell in zip(fields, cells, strict=False):
         if field and cell:
