@@ -11,8 +11,7 @@ from grader.classroom.gradebook.changes import Change, Step
 from grader.classroom.gradebook.gradebook import Run
 from grader.report.layout import wrapped
 from grader.report.plain import exact, to_json
-from grader.report.points import points_words
-from grader.text import printable
+from grader.text import format_points, printable
 
 _MOST_NAMED, _MOST_LINES = 3, 12
 
@@ -82,11 +81,11 @@ def _span(before: Decimal | None, after: Decimal | None) -> str:
 
 
 def _signed(points: Decimal) -> str:
-    return f"{'+' if points >= 0 else '-'}{points_words(abs(points))}"
+    return f"{'+' if points >= 0 else '-'}{format_points(abs(points))}"
 
 
 def _words(points: Decimal | None) -> str:
-    return "none" if points is None else points_words(points)
+    return "none" if points is None else format_points(points)
 
 
 def _number(points: Decimal | None) -> int | float | None:

@@ -10,8 +10,7 @@ from rich.text import Text
 from grader.classroom.gradebook.grades import Looks
 from grader.classroom.gradebook.statistics import ClassStatistics, CriterionStatistics
 from grader.report.layout import wrapped
-from grader.report.points import points_words
-from grader.text import printable
+from grader.text import format_points, printable
 
 _BAR = 40
 _MOST_FAILURES = 10
@@ -43,16 +42,16 @@ def _show_marks(statistics: ClassStatistics, console: Console) -> None:
     console.print()
     waits = f"; {statistics.pending} still wait for a person" if statistics.pending else ""
     words = (
-        f"Marks of {points_words(statistics.out_of)}: mean {_mean(statistics)}, deviation {statistics.deviation:.1f}, "
-        f"lowest {points_words(statistics.lowest)}, median {points_words(statistics.median)}, "
-        f"highest {points_words(statistics.highest)}{waits}"
+        f"Marks of {format_points(statistics.out_of)}: mean {_mean(statistics)}, deviation {statistics.deviation:.1f}, "
+        f"lowest {format_points(statistics.lowest)}, median {format_points(statistics.median)}, "
+        f"highest {format_points(statistics.highest)}{waits}"
     )
     wrapped(console, Text(words), 0)
     most = max(statistics.bins)
     step = statistics.out_of / len(statistics.bins)
     for index, count in enumerate(statistics.bins):
         bar = "#" * -(-count * min(_BAR, console.width - 30) // most)
-        span = f"{points_words(step * index)} to {points_words(step * (index + 1))}"
+        span = f"{format_points(step * index)} to {format_points(step * (index + 1))}"
         console.print(Text(f"  {span:>14} {count:>6}  {bar}"), no_wrap=True, crop=False)
 
 
@@ -67,7 +66,7 @@ def _show_criteria(criteria: Iterable[CriterionStatistics], console: Console) ->
     for each in asked:
         table.add_row(
             printable(each.criterion.id),
-            points_words(each.criterion.points),
+            format_points(each.criterion.points),
             str(each.passed),
             *([str(each.marked)] if has_marks else []),
             str(each.decided + each.pending + each.errored),

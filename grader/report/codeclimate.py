@@ -7,8 +7,7 @@ from grader.grading.report import Report
 from grader.report.findings import Level, findings
 from grader.report.places import Base
 from grader.report.plain import to_json_list
-from grader.report.points import so_many_points
-from grader.text import printable
+from grader.text import counted_points, printable
 
 _SEVERITIES: dict[Level, str] = {"error": "major", "warning": "minor", "note": "info"}
 
@@ -18,7 +17,7 @@ def render_codeclimate(report: Report, base: Base) -> str:
     issues = []
     for each in findings(report, base):
         place = each.place or each.whole
-        cost = f" ({so_many_points(each.lost)} lost)" if each.lost else ""
+        cost = f" ({counted_points(each.lost)} lost)" if each.lost else ""
         issues.append(
             {
                 "description": each.text.replace("\n", " ") + cost,

@@ -8,11 +8,10 @@ from functools import cache
 from typing import Literal, NamedTuple
 
 from grader.grading.report import Report, Result
+from grader.report.content import place_words, sentence, told, undecided, untold
 from grader.report.places import Base, Place, archive_around, placed
-from grader.report.points import so_many_points
-from grader.report.words import place_words, sentence, told, undecided, untold
 from grader.source import Location, Source
-from grader.text import printable
+from grader.text import counted_points, printable
 
 Level = Literal["error", "warning", "note"]
 _ORDER: tuple[Level, ...] = ("error", "warning", "note")
@@ -71,7 +70,7 @@ def _of_criterion(result: Result, report: Report, source_of: Callable[[str], Sou
     aim = f"Passes when: {sentence(criterion.title)}"
     lines = [*what.sentences, *filter(None, [what.feedback]), aim]
     if behind:
-        lines.append(f"Skipped because of it: {len(behind)} more, {so_many_points(sum(behind, Decimal(0)))}.")
+        lines.append(f"Skipped because of it: {len(behind)} more, {counted_points(sum(behind, Decimal(0)))}.")
     place = placed(what.place, source_of(what.place.path), base) if what.place is not None else None
     whole = place or _whole(report, base, of_package=criterion.check.subject == "package")
     lost = sum(behind, criterion.points - result.points)
@@ -82,7 +81,7 @@ def _undecided(report: Report, base: Base) -> Iterator[Finding]:
     """What a program decides as a rule, and has to leave to a person here, with the reasons."""
     left = undecided(report)
     if left:
-        points = so_many_points(sum((each.criterion.points for each in left), Decimal(0)))
+        points = counted_points(sum((each.criterion.points for each in left), Decimal(0)))
         reasons = dict.fromkeys(sentence(each.outcome.message) for each in left)
         text = "\n".join((*reasons, f"Not decided ({points}): {', '.join(each.criterion.id for each in left)}"))
         place = _whole(report, base, of_package=all(each.criterion.check.subject == "package" for each in left))

@@ -46,6 +46,13 @@ class Format(StrEnum):
         return member
 
 
+class OutputFormat(StrEnum):
+    """The formats of an inspection, of a class, and of the changes between two runs."""
+
+    TERMINAL = "terminal"
+    JSON = "json"
+
+
 def render(report: "Report", kind: Format, base: "Base | None" = None, screen: Screen | None = None) -> str:
     """Return a report in a format; only that format's module is imported.
 

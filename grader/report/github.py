@@ -8,12 +8,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from decimal import Decimal
 
 from grader.grading.report import Report
+from grader.report.content import score_words
 from grader.report.findings import Finding, Level, findings
 from grader.report.places import Base, Place
 from grader.report.plain_text import beside, core, provenance
-from grader.report.points import so_many_points
-from grader.report.words import score_words
-from grader.text import printable
+from grader.text import counted_points, printable
 
 _MOST = 10  # of a type
 _LONGEST = 4000  # characters of a message
@@ -44,7 +43,7 @@ def _annotations(level: Level, found: Sequence[Finding], room: int) -> Iterator[
 
 
 def _cost(lost: Decimal) -> str:
-    return f" ({so_many_points(lost)} lost)" if lost else ""
+    return f" ({counted_points(lost)} lost)" if lost else ""
 
 
 def _whole(report: Report) -> str:

@@ -10,8 +10,7 @@ from grader.grading.report import Report, Result
 from grader.report.findings import is_lost
 from grader.report.markdown import criterion_markdown, whole_markdown
 from grader.report.plain import exact, to_json
-from grader.report.points import so_many_points
-from grader.text import printable
+from grader.text import counted_points, printable
 
 
 def render_gradescope(report: Report) -> str:
@@ -47,7 +46,7 @@ def _test(result: Result, report: Report) -> dict[str, Any]:
         "max_score": exact(criterion.points),
         "status": "failed" if is_lost(result) or result.outcome.status == "skipped" else "passed",
     }
-    most = f" (up to {so_many_points(criterion.points)}, given by a person)" if result.is_open else ""
+    most = f" (up to {counted_points(criterion.points)}, given by a person)" if result.is_open else ""
     return {
         **({} if result.is_open else decided),
         "name": printable(criterion.title) + most,

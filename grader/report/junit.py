@@ -10,12 +10,11 @@ from typing import Any
 from lxml import etree
 
 from grader.grading.report import Report, Result
+from grader.report.content import score_words, told, untold
 from grader.report.findings import is_lost
 from grader.report.places import Base, archive_around
 from grader.report.plain_text import criterion_lines, headline, problem_line, provenance
-from grader.report.points import points_words
-from grader.report.words import score_words, told, untold
-from grader.text import printable
+from grader.text import format_points, printable
 
 
 def render_junit(report: Report, base: Base) -> str:
@@ -54,9 +53,9 @@ def _kind(result: Result) -> str:
 def _whole(report: Report) -> dict[str, str]:
     submission = report.submission
     return {
-        "score": points_words(report.score),
-        "max_score": points_words(report.max_score),
-        "pending": points_words(report.pending),
+        "score": format_points(report.score),
+        "max_score": format_points(report.max_score),
+        "pending": format_points(report.pending),
         "submission": printable(submission.id),
         "submission_sha256": submission.sha256 or "",
         "rubric": printable(report.rubric.id),
@@ -77,7 +76,7 @@ def _case(suite: Any, result: Result, report: Report, base: Base) -> None:
     if place is not None and place.path != "-" and not (base.archive or archive_around(place.path)):
         case.set("file", printable(base.folder + place.path))
         case.set("line", str(place.line))
-    _properties(case, {"points": f"{points_words(result.points)}/{points_words(criterion.points)}"})
+    _properties(case, {"points": f"{format_points(result.points)}/{format_points(criterion.points)}"})
     lines = criterion_lines(result, report)
     kind = _kind(result)
     if not kind:

@@ -5,10 +5,7 @@ from itertools import groupby
 from textwrap import indent
 
 from grader.grading.report import Report, Result
-from grader.report.markdown_text import code, escaped, fenced
-from grader.report.plain_text import problem_line, provenance, quoted_lines
-from grader.report.points import points_words
-from grader.report.words import (
+from grader.report.content import (
     advice,
     asides,
     earned,
@@ -23,7 +20,9 @@ from grader.report.words import (
     told,
     untold,
 )
-from grader.text import printable
+from grader.report.markdown_text import code, escaped, fenced
+from grader.report.plain_text import problem_line, provenance, quoted_lines
+from grader.text import format_points, printable
 
 _MARKS = {"passed": "\u2713", "failed": "\u2717", "skipped": "\u2212", "pending": "?", "errored": "!"}
 _CUT = "**The report is cut off here: it is longer than can be shown.** A report that is saved to a file is whole.\n"
@@ -91,7 +90,7 @@ def _head(report: Report) -> Iterator[str]:
 
 def _item(result: Result, report: Report, shown: set[str], *, answers: bool) -> str:
     criterion, status = result.criterion, status_of(result)
-    points = f"{points_words(result.points)}/{points_words(criterion.points)}"
+    points = f"{format_points(result.points)}/{format_points(criterion.points)}"
     head = f"- {_MARKS[status]} {points} {escaped(printable(criterion.title))}"
     if status == "passed" and result.ruling is None:
         return head

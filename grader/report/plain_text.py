@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 from grader.grading.report import Report, Result
 from grader.problems import Problem
+from grader.report.content import asides, evidence, notes, package_words, pending_words, place_words, summary, told
 from grader.report.places import excerpt
-from grader.report.words import asides, evidence, notes, package_words, pending_words, place_words, summary, told
 from grader.source import Location
 from grader.text import printable
 

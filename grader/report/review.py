@@ -7,8 +7,7 @@ from rich.text import Text
 
 from grader.classroom.gradebook.marks import Mark, Pending
 from grader.report.layout import wrapped
-from grader.report.points import points_words, so_many_points
-from grader.text import printable
+from grader.text import counted_points, format_points, printable
 
 _INDENT = 2
 
@@ -19,7 +18,7 @@ def render_pending(pending: Pending, place: str, console: Console) -> None:
     student = pending.standing.student
     who = f"{student.name} ({student.key})" if student.name else student.key
     console.print()
-    head = f"{place}  {printable(who)}: {printable(criterion.title)}  {points_words(criterion.points)} points"
+    head = f"{place}  {printable(who)}: {printable(criterion.title)}  {format_points(criterion.points)} points"
     wrapped(console, Text(head, style="bold"), 0)
     wrapped(console, Text(printable(outcome.message)), 0)
     if isinstance(outcome.measured, str):
@@ -33,9 +32,9 @@ def render_pending(pending: Pending, place: str, console: Console) -> None:
         wrapped(console, Text(printable(place), "dim"), 0)
 
 
-def mark_words(mark: Mark) -> str:
+def mark_text(mark: Mark) -> str:
     """Return a mark in one printable line: points, by whom if they gave a name, when, and the comment."""
-    what = "taken back" if mark.points is None else so_many_points(mark.points)
+    what = "taken back" if mark.points is None else counted_points(mark.points)
     words = [what, f"by {mark.by}" if mark.by else "by a person without a name", f"at {mark.at}"]
     comment = " ".join(mark.comment.split())
     return printable(f"{' '.join(words)}: {comment}" if comment else " ".join(words))

@@ -10,9 +10,8 @@ from grader.grading.rubric import Criterion, Rubric
 from grader.names import did_you_mean
 from grader.package.catalogue import PACKAGE_CATALOGUE
 from grader.problems import Kind
-from grader.report.points import points_words
 from grader.robot.catalogue import CATALOGUE
-from grader.text import printable
+from grader.text import format_points, printable
 
 _WIDTH = 80
 EVERY_KIND = (*CATALOGUE, *PACKAGE_CATALOGUE)
@@ -26,13 +25,13 @@ EFFECTS = {
 
 def rubric_text(rubric: Rubric) -> str:
     """A rubric part by part, a line for each criterion, and the model answers that it was loaded with."""
-    lines = [f"{rubric.id}: {rubric.title} ({points_words(rubric.points)} points)", f"sha256 {rubric.sha256}"]
+    lines = [f"{rubric.id}: {rubric.title} ({format_points(rubric.points)} points)", f"sha256 {rubric.sha256}"]
     for part in rubric.parts:
         rows = [each for each in rubric.criteria if each.part == part.id]
         lines += ["", f"{part.id}: {part.title}"]
         width = max((len(each.id) for each in rows), default=0)
         for each in rows:
-            lines.append(f"  {each.id:<{width}}  {points_words(each.points):>4}  {printable(each.title)}")
+            lines.append(f"  {each.id:<{width}}  {format_points(each.points):>4}  {printable(each.title)}")
             if each.answer:
                 lines.append(textwrap.indent(_filled(f"Model answer: {printable(each.answer)}"), "    "))
     return "\n".join(lines) + "\n"
@@ -75,7 +74,7 @@ def _kind_text(kind: Kind) -> str:
 
 def _criterion_text(criterion: Criterion, rubric: Rubric) -> str:
     lines = [
-        f"{criterion.id} (points: {points_words(criterion.points)}; part {criterion.part} of {rubric.id})",
+        f"{criterion.id} (points: {format_points(criterion.points)}; part {criterion.part} of {rubric.id})",
         "",
         _filled(f"Passes when: {criterion.title}."),
     ]

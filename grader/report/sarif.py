@@ -7,12 +7,12 @@ from typing import Any
 from urllib.parse import quote
 
 from grader.grading.report import Report
+from grader.report.content import explain_command
 from grader.report.findings import Finding, findings
 from grader.report.places import Base, Place
 from grader.report.plain import exact, to_json
 from grader.report.plain_text import criterion_lines, headline
 from grader.report.rubrics import EVERY_KIND
-from grader.report.words import explain_command
 from grader.text import printable
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"

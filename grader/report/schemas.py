@@ -208,6 +208,13 @@ DIFF_SCHEMA: dict[str, Any] = {
 }
 
 
+def json_schema(name: str) -> dict[str, Any]:
+    """Return the schema of a report, rubric, inspection, class or diff."""
+    if name == "rubric":
+        return rubric_schema()
+    return {"report": REPORT_SCHEMA, "inspect": INSPECT_SCHEMA, "class": CLASS_SCHEMA, "diff": DIFF_SCHEMA}[name]
+
+
 def rubric_schema() -> dict[str, Any]:
     """The schema of a rubric file, with the arguments of every check that comes with the grader."""
     checks = [describe(function) for function in CHECKS]

@@ -7,9 +7,7 @@ from rich.console import Console
 from rich.text import Text
 
 from grader.grading.report import Report, Result
-from grader.report.layout import show_excerpt, show_problems, symbol, wrapped
-from grader.report.points import points_words
-from grader.report.words import (
+from grader.report.content import (
     Told,
     advice,
     asides,
@@ -25,7 +23,8 @@ from grader.report.words import (
     told,
     untold,
 )
-from grader.text import printable
+from grader.report.layout import show_excerpt, show_problems, symbol, wrapped
+from grader.text import format_points, printable
 
 _STYLES = {"passed": "green", "failed": "bold red", "skipped": "yellow", "pending": "cyan", "errored": "bold magenta"}
 _SYMBOLS = {
@@ -133,7 +132,7 @@ def _show_alike(results: tuple[Result, ...], reason: str, console: Console) -> N
 
 def _show_result(result: Result, page: _Page) -> None:
     console, criterion, status = page.console, result.criterion, status_of(result)
-    points = f"{points_words(result.points)}/{points_words(criterion.points)}"
+    points = f"{format_points(result.points)}/{format_points(criterion.points)}"
     head = Text.assemble("  ", (symbol(console, *_SYMBOLS[status]), _STYLES[status]), f" {points:<5} ")
     title = Text(printable(criterion.title))
     if status in ("passed", "skipped") and result.ruling is None:

@@ -13,10 +13,9 @@ import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Standings
-from grader.cli.class_text import class_text
-from grader.cli.options import ClassFormat
-from grader.report.formats import Format
+from grader.report.formats import Format, OutputFormat
 from grader.report.schemas import REPORT_SCHEMA
+from grader.usecases.class_summary import class_summary
 from tests.classroom.gradebooks import ENVIRONMENT, HOSTILE, batch, grader, hand_in, lab_text, refusal, urdf
 from tests.command_line import PATIENCE
 from tests.samples import ROOT
@@ -34,7 +33,7 @@ def mark(top: Path, *arguments: object, **more: Any) -> subprocess.CompletedProc
 def student(top: Path, key: str) -> dict[str, Any]:
     """A student's grade, as `grader export json` has it, which is what the view has."""
     with Gradebook(top / "book.db") as book:
-        data = json.loads(class_text(Standings(book), ClassFormat.JSON))
+        data = json.loads(class_summary(Standings(book), OutputFormat.JSON))
         (found,) = [each for each in data["students"] if each["id"] == key]
         ((score, out_of, pending, marks),) = book.rows(
             "SELECT score, out_of, pending, marks FROM grade WHERE key = ?", key

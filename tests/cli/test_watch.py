@@ -16,7 +16,7 @@ import pytest
 
 from grader.errors import InputError
 from grader.files.folder import is_looked_at, read_folder
-from grader.usecases.file_events import Watched, _filter, _place, rounds
+from grader.usecases.file_events import Watched, _filter, _target, changes
 from tests.command_line import PATIENCE
 from tests.golden.cases import ROOT, run
 
@@ -291,7 +291,7 @@ def test_without_the_extra(robot: Path) -> None:
 def counts(path: Path, changed: Path, *own: Path, rubric: Path | None = None) -> bool:
     """Whether a change there is one of what is graded at the path."""
     watched = Watched(path, rubric, frozenset(map(os.path.realpath, own)))
-    return _filter(_place(path), watched)(watchfiles.Change.modified, str(changed))
+    return _filter(_target(path), watched)(watchfiles.Change.modified, str(changed))
 
 
 def test_which_changes_count_in_a_folder(tmp_path: Path) -> None:
@@ -327,7 +327,7 @@ def test_which_changes_count_for_a_file(tmp_path: Path) -> None:
     (tmp_path / "b" / "real.urdf").touch()
     (tmp_path / "a" / "link.urdf").symlink_to(tmp_path / "b" / "real.urdf")
     path = tmp_path / "a" / "link.urdf"
-    assert _place(path).folders == (str(tmp_path / "a"), str(tmp_path / "b"))
+    assert _target(path).folders == (str(tmp_path / "a"), str(tmp_path / "b"))
     assert counts(path, path)
     assert counts(path, tmp_path / "b" / "real.urdf")
     assert not counts(path, tmp_path / "a" / "other.urdf")
@@ -336,7 +336,7 @@ def test_which_changes_count_for_a_file(tmp_path: Path) -> None:
 
 def test_a_name_that_is_no_text_is_a_change_like_any_other(tmp_path: Path) -> None:
     """And the next one is heard all the same."""
-    heard = filter(None, rounds(Watched(tmp_path)))
+    heard = filter(None, changes(Watched(tmp_path)))
     next(heard)
     Path(os.fsdecode(os.fsencode(tmp_path) + b"/\xff.txt")).touch()
     next(heard)
@@ -353,11 +353,11 @@ def test_what_no_event_has_told_is_seen_all_the_same(tmp_path: Path, monkeypatch
             yield set()
 
     monkeypatch.setattr("grader.usecases.file_events.watch", deaf)
-    monkeypatch.setattr("grader.usecases.file_events._ONCE_MORE", 0.02)
-    folder = rounds(Watched(tmp_path))
+    monkeypatch.setattr("grader.usecases.file_events._RECHECK", 0.02)
+    folder = changes(Watched(tmp_path))
     assert [next(folder), next(folder)] == [True, False]
     robot = tmp_path / "my_robot.urdf"
-    file = rounds(Watched(robot))
+    file = changes(Watched(robot))
     assert next(file)
     for text in ("a", "b", "longer"):
         put(text, robot)
@@ -372,7 +372,7 @@ def test_nothing_is_listened_to_where_nothing_can_be(tmp_path: Path, monkeypatch
 
     monkeypatch.setattr("grader.usecases.file_events.watch", refused)
     with pytest.raises(InputError, match=r"limit reached\.; with WATCHFILES_FORCE_POLLING=1 in the"):
-        next(rounds(Watched(tmp_path)))
+        next(changes(Watched(tmp_path)))
 
 
 @pytest.mark.parametrize("name", sorted({path.name for path in (ROOT / "submissions").iterdir()})[:20])

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from grader.files.tree import PassedOver
 from grader.grading.report import HandedIn, Report, Result
-from grader.report.words import untold
+from grader.report.content import untold
 from grader.robot.reader import Verdict
 from grader.source import Location, Source
 from grader.text import printable

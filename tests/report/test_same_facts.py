@@ -9,10 +9,9 @@ from unittest.mock import patch
 import pytest
 
 from grader.grading.report import Report, Result
+from grader.report.content import untold
 from grader.report.formats import Format, render
-from grader.report.points import points_words
-from grader.report.words import untold
-from grader.text import printable
+from grader.text import format_points, printable
 from tests.report.readers import READERS, read_commands
 from tests.samples import SAMPLES
 
@@ -40,7 +39,7 @@ def facts(report: Report) -> Iterator[Fact]:
     yield from (Fact("aside", (each,)) for each in submission.left_out)
     if submission.package is not None and any(report.rubric.part(part).needs == "package" for part in report.parts):
         yield Fact("package", (submission.package.folder or submission.package.name,))
-    score, most, waits = map(points_words, (report.score, report.max_score, report.pending))
+    score, most, waits = map(format_points, (report.score, report.max_score, report.pending))
     if report.pending:
         yield Fact("waits", (f"{waits} points wait", f'"pending":{waits},'))
     keys = ('"max_score":', '"max-score":', '"maxScore":')

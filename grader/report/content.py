@@ -8,9 +8,8 @@ from typing import NamedTuple
 from grader.checks.handed_in import JUDGED_BY_A_PERSON
 from grader.grading.report import Exhibits, Report, Result
 from grader.problems import Problem
-from grader.report.points import points_words, so_many_points
 from grader.source import Location
-from grader.text import printable
+from grader.text import counted_points, format_points, printable
 
 _VERDICTS = {
     "clean": "ROS 2 loads the file",
@@ -37,7 +36,7 @@ class Told(NamedTuple):
 
 def score_words(report: Report) -> str:
     """The score of all that can be earned: 58.5 / 70 points."""
-    return f"{points_words(report.score)} / {points_words(report.max_score)} points"
+    return f"{format_points(report.score)} / {format_points(report.max_score)} points"
 
 
 def status_of(result: Result) -> str:
@@ -51,7 +50,7 @@ def earned(results: tuple[Result, ...]) -> str:
     """The points of some criteria together: 8/14."""
     got = sum((result.points for result in results), Decimal(0))
     most = sum((result.criterion.points for result in results), Decimal(0))
-    return f"{points_words(got)}/{points_words(most)}"
+    return f"{format_points(got)}/{format_points(most)}"
 
 
 def summary(report: Report) -> str:
@@ -81,7 +80,7 @@ def pending_words(report: Report) -> str:
     names = [printable(each.criterion.id) for each in undecided(report)]
     more = f" and {len(names) - _MOST_LISTED} more" if len(names) > _MOST_LISTED else ""
     left = f"; not decided: {', '.join(names[:_MOST_LISTED])}{more}" if names else ""
-    return f"{so_many_points(report.pending)} {'waits' if report.pending == 1 else 'wait'} for a person{left}"
+    return f"{counted_points(report.pending)} {'waits' if report.pending == 1 else 'wait'} for a person{left}"
 
 
 def notes(report: Report) -> list[str]:
