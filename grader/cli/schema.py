@@ -31,7 +31,7 @@ def schema(
 
       grader schema rubric > rubric.schema.json
     """
-    from grader.report.plain import to_json
+    from grader.report.json_data import to_json
     from grader.report.schemas import json_schema
 
     write_stdout(to_json(json_schema(name.value)))

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 from grader.grading.report import Exhibits, HandedIn, Report, Result
-from grader.report.plain import exact, location, problem, rounded, to_json
+from grader.report.json_data import exact, location, problem, rounded, to_json
 
 if TYPE_CHECKING:
     from grader.documents.evidence import Exhibit

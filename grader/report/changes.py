@@ -9,8 +9,8 @@ from rich.text import Text
 
 from grader.classroom.gradebook.changes import Change, Step
 from grader.classroom.gradebook.gradebook import Run
-from grader.report.layout import wrapped
-from grader.report.plain import exact, to_json
+from grader.report.console import wrapped
+from grader.report.json_data import exact, to_json
 from grader.text import format_points, printable
 
 _MOST_NAMED, _MOST_LINES = 3, 12

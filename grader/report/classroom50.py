@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 
 from grader.errors import InputError
 from grader.grading.report import Report, Result
-from grader.report.findings import is_lost
-from grader.report.plain import to_json
+from grader.report.findings import is_failure
+from grader.report.json_data import to_json
 from grader.report.plain_text import criterion_lines
 from grader.text import printable
 
@@ -95,7 +95,7 @@ def _scale(report: Report) -> int:
 def _test(result: Result, report: Report, scale: int) -> dict[str, Any]:
     return {
         "test-name": printable(f"{result.criterion.title} ({result.criterion.id})"),
-        "passed": not is_lost(result) and (result.ruling is not None or result.outcome.status == "passed"),
+        "passed": not is_failure(result) and (result.ruling is not None or result.outcome.status == "passed"),
         "score": int(Decimal(result.points) * scale),
         "max-score": int(result.criterion.points * scale),
         "message": "\n".join(criterion_lines(result, report)),

@@ -5,8 +5,8 @@ https://docs.gitlab.com/ci/testing/code_quality/#code-quality-report-format
 
 from grader.grading.report import Report
 from grader.report.findings import Level, findings
-from grader.report.places import Base
-from grader.report.plain import to_json_list
+from grader.report.json_data import to_json_list
+from grader.report.locations import Base
 from grader.text import counted_points, printable
 
 _SEVERITIES: dict[Level, str] = {"error": "major", "warning": "minor", "note": "info"}

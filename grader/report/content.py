@@ -20,7 +20,7 @@ _MOST_LISTED = 12
 _STATUSES = ("passed", "failed", "skipped", "pending", "errored", "marked by hand")
 
 
-class Told(NamedTuple):
+class Details(NamedTuple):
     """What there is to say of a criterion beside its title and points. `place` is where to look, if it failed.
 
     `found` is what was answered to a question, line by line. `model` is the model answer, empty unless the rubric was loaded
@@ -34,8 +34,8 @@ class Told(NamedTuple):
     feedback: str = ""
 
 
-def score_words(report: Report) -> str:
-    """The score of all that can be earned: 58.5 / 70 points."""
+def score_text(report: Report) -> str:
+    """The score of all that can be earned_text: 58.5 / 70 points."""
     return f"{format_points(report.score)} / {format_points(report.max_score)} points"
 
 
@@ -46,7 +46,7 @@ def status_of(result: Result) -> str:
     return "passed" if result.points >= result.criterion.points else "failed"
 
 
-def earned(results: tuple[Result, ...]) -> str:
+def earned_text(results: tuple[Result, ...]) -> str:
     """The points of some criteria together: 8/14."""
     got = sum((result.points for result in results), Decimal(0))
     most = sum((result.criterion.points for result in results), Decimal(0))
@@ -65,7 +65,7 @@ def summary(report: Report) -> str:
     return f"{graded}; {', '.join(f'{decided.count(each)} {each}' for each in _STATUSES if each in decided)}"
 
 
-def package_words(report: Report) -> str:
+def package_line(report: Report) -> str:
     """The package that is graded, and where it stands; empty where none is."""
     package = report.submission.package
     if package is None or not any(report.rubric.part(part).needs == "package" for part in report.parts):
@@ -73,7 +73,7 @@ def package_words(report: Report) -> str:
     return printable(f"package {package.name}{f' in {package.folder}' if package.folder else ''}")
 
 
-def pending_words(report: Report) -> str:
+def pending_line(report: Report) -> str:
     """How many points a person still has to give or refuse, and what no program could decide; empty where none wait."""
     if not report.pending:
         return ""
@@ -88,7 +88,7 @@ def notes(report: Report) -> list[str]:
     return [f"Note: {printable(note)}" for note in report.notes]
 
 
-def asides(report: Report) -> list[str]:
+def ignored_lines(report: Report) -> list[str]:
     """What might have been graded and was not, and what was not read: of many the first, and how many more there are."""
     every = [f"Passed over {each.path}: {each.because}" for each in report.submission.passed_over]
     every += [f"Left out: {each}" for each in report.submission.left_out]
@@ -101,25 +101,25 @@ def undecided(report: Report) -> list[Result]:
     return [each for each in report.results if each.is_open and each.criterion.check.function not in JUDGED_BY_A_PERSON]
 
 
-def told(result: Result, report: Report) -> Told:
+def result_details(result: Result, report: Report) -> Details:
     """What there is to say of one criterion, whatever became of it."""
     outcome = result.outcome
     if result.ruling is not None:
         comment = f": {_line(result.ruling.comment)}" if result.ruling.comment else ""
         by_hand = sentence(f"Marked by {result.ruling.by or 'hand'}{comment}")
         if outcome.status == "pending":
-            return Told((by_hand,), *_answers(result))
-        return Told((by_hand, sentence(f"The check: {outcome.status}. {outcome.message}")))
+            return Details((by_hand,), *_answers(result))
+        return Details((by_hand, sentence(f"The check: {outcome.status}. {outcome.message}")))
     if outcome.status == "skipped":
-        return Told((f"Skipped, because {result.because} failed.",))
+        return Details((f"Skipped, because {result.because} failed.",))
     sentences = (sentence(outcome.message),)
     if outcome.status == "pending":
-        return Told(sentences, *_answers(result))
+        return Details(sentences, *_answers(result))
     if outcome.status != "failed":
-        return Told(sentences)
+        return Details(sentences)
     is_there = report.submission.has_urdf or result.criterion.check.subject not in ("urdf", "robot")
     feedback = _line(result.criterion.feedback) if is_there else ""
-    return Told(sentences, place=outcome.location, feedback=feedback)
+    return Details(sentences, place=outcome.location, feedback=feedback)
 
 
 def _line(text: str) -> str:
@@ -136,7 +136,7 @@ def _lines(text: object) -> tuple[str, ...]:
     return tuple(printable(line) for line in text.splitlines() if line.strip()) if isinstance(text, str) else ()
 
 
-def untold(report: Report) -> Iterator[Problem]:
+def other_problems(report: Report) -> Iterator[Problem]:
     """The problems that no failed criterion has told already."""
     said = [(each.outcome.location, each.outcome.message) for each in report.results if each.outcome.status == "failed"]
     for problem in report.problems:
@@ -166,7 +166,7 @@ def sentence(message: str) -> str:
     return text if text.endswith((".", "?")) else f"{text}."
 
 
-def place_words(where: Location) -> str:
+def location_text(where: Location) -> str:
     """A place as editors take it: path:line:column."""
     return f"{printable(where.path)}:{where.line}:{where.column}"
 

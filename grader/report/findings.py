@@ -8,8 +8,8 @@ from functools import cache
 from typing import Literal, NamedTuple
 
 from grader.grading.report import Report, Result
-from grader.report.content import place_words, sentence, told, undecided, untold
-from grader.report.places import Base, Place, archive_around, placed
+from grader.report.content import location_text, other_problems, result_details, sentence, undecided
+from grader.report.locations import Base, RepositoryLocation, archive_around, in_repository
 from grader.source import Location, Source
 from grader.text import counted_points, printable
 
@@ -29,49 +29,51 @@ class Finding(NamedTuple):
     level: Level
     text: str
     lost: Decimal
-    place: Place | None
-    whole: Place
+    place: RepositoryLocation | None
+    whole: RepositoryLocation
     fingerprint: str = ""
 
 
 def findings(report: Report, base: Base) -> list[Finding]:
     """All there is to mend in a submission; `base` is where that stands in its repository."""
     source_of = cache(report.submission.source)  # a file is read once, however much there is to say of it
-    found = [_of_criterion(each, report, source_of, base) for each in report.results if is_lost(each)]
+    found = [_of_criterion(each, report, source_of, base) for each in report.results if is_failure(each)]
     found.sort(key=lambda each: -each.lost)
     found += _undecided(report, base)
-    for each in sorted(untold(report), key=lambda each: _ORDER.index(each.severity)):
+    for each in sorted(other_problems(report), key=lambda each: _ORDER.index(each.severity)):
         text = _text((printable(each.message),), each.location, base)
-        place = placed(each.location, source_of(each.location.path), base)
+        place = in_repository(each.location, source_of(each.location.path), base)
         found.append(Finding(each.code, each.severity, text, Decimal(0), place, place))
     seen: Counter[str] = Counter()
     return [each._replace(fingerprint=_fingerprint(each, seen)) for each in found]
 
 
-def is_lost(result: Result) -> bool:
+def is_failure(result: Result) -> bool:
     """Whether a criterion has cost points, or has failed: what a person has decided counts, whatever the check has found."""
     if result.ruling is not None:
         return result.points < result.criterion.points
     return result.outcome.status in ("failed", "errored")
 
 
-def _whole(report: Report, base: Base, *, of_package: bool) -> Place:
+def _whole(report: Report, base: Base, *, of_package: bool) -> RepositoryLocation:
     """What stands for a finding without a place of its own: the URDF, the package, or the folder that was handed in."""
     submission = report.submission
     path = submission.path
     if submission.package is not None and (of_package or path is None):
         path = f"{submission.package.folder}/package.xml".lstrip("/")
-    return Place(base.archive or (base.folder + path if path is not None else base.folder.rstrip("/")) or ".")
+    return RepositoryLocation(
+        base.archive or (base.folder + path if path is not None else base.folder.rstrip("/")) or "."
+    )
 
 
 def _of_criterion(result: Result, report: Report, source_of: Callable[[str], Source | None], base: Base) -> Finding:
-    criterion, what = result.criterion, told(result, report)
+    criterion, what = result.criterion, result_details(result, report)
     behind = [each.criterion.points for each in report.results if each.because == criterion.id and each.ruling is None]
     aim = f"Passes when: {sentence(criterion.title)}"
     lines = [*what.sentences, *filter(None, [what.feedback]), aim]
     if behind:
         lines.append(f"Skipped because of it: {len(behind)} more, {counted_points(sum(behind, Decimal(0)))}.")
-    place = placed(what.place, source_of(what.place.path), base) if what.place is not None else None
+    place = in_repository(what.place, source_of(what.place.path), base) if what.place is not None else None
     whole = place or _whole(report, base, of_package=criterion.check.subject == "package")
     lost = sum(behind, criterion.points - result.points)
     return Finding(criterion.id, "error", _text(tuple(lines), what.place, base), lost, place, whole)
@@ -91,7 +93,7 @@ def _undecided(report: Report, base: Base) -> Iterator[Finding]:
 def _text(lines: tuple[str, ...], where: Location | None, base: Base) -> str:
     """What is said; of a file that the repository does not hold as such also where that is."""
     is_there = where is None or not (base.archive or base.is_outside or archive_around(where.path))
-    inside = () if is_there or where is None else (f"In {place_words(where)}.",)
+    inside = () if is_there or where is None else (f"In {location_text(where)}.",)
     return "\n".join((*lines, *inside))
 
 

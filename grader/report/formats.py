@@ -11,7 +11,7 @@ from grader.text import without_commands
 
 if TYPE_CHECKING:
     from grader.grading.report import Report
-    from grader.report.places import Base
+    from grader.report.locations import Base
 
 Need = Literal["", "console", "base", "identity"]
 
@@ -76,7 +76,7 @@ def render(report: "Report", kind: Format, base: "Base | None" = None, screen: S
 def needed(kind: Format, base: "Base | None" = None) -> tuple[object, ...]:
     """Return what the function of a format takes after the report. Raises InputError if it cannot be had."""
     if kind.needs == "base":
-        from grader.report.places import Base
+        from grader.report.locations import Base
 
         return (base or Base(),)
     if kind.needs == "identity":

@@ -8,9 +8,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from decimal import Decimal
 
 from grader.grading.report import Report
-from grader.report.content import score_words
+from grader.report.content import score_text
 from grader.report.findings import Finding, Level, findings
-from grader.report.places import Base, Place
+from grader.report.locations import Base, RepositoryLocation
 from grader.report.plain_text import beside, core, provenance
 from grader.text import counted_points, printable
 
@@ -24,7 +24,7 @@ def render_github(report: Report, base: Base) -> str:
     every = findings(report, base)
     if base.is_outside:  # a file of the repository may be called the same
         every = [each._replace(place=None) for each in every]
-    lines = [command("notice", None, f"{score_words(report)}: {printable(report.rubric.title)}", _whole(report))]
+    lines = [command("notice", None, f"{score_text(report)}: {printable(report.rubric.title)}", _whole(report))]
     for level in _COMMANDS:
         some = [each for each in every if each.level == level]
         lines += _annotations(level, some, room=_MOST - (level == "note"))
@@ -60,7 +60,7 @@ def _whole(report: Report) -> str:
     return "\n".join((*lines, *beside(report)))
 
 
-def command(name: str, place: Place | None, title: str, text: str) -> str:
+def command(name: str, place: RepositoryLocation | None, title: str, text: str) -> str:
     """One annotation: `error`, `warning` or `notice` of printable text, with a line break at its end."""
     properties = [*_position(place), ("title", title)] if place is not None else [("title", title)]
     listed = ",".join(f"{key}={_property(value)}" for key, value in properties)
@@ -68,7 +68,7 @@ def command(name: str, place: Place | None, title: str, text: str) -> str:
     return f"::{name} {listed}::{_data(message)}\n"
 
 
-def _position(place: Place) -> Iterable[tuple[str, str]]:
+def _position(place: RepositoryLocation) -> Iterable[tuple[str, str]]:
     yield "file", printable(place.path)
     if place.line is not None:
         yield from (("line", str(place.line)), ("endLine", str(place.line)))

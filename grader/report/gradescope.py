@@ -7,9 +7,9 @@ https://gradescope-autograders.readthedocs.io/en/latest/specs/#output-format
 from typing import Any
 
 from grader.grading.report import Report, Result
-from grader.report.findings import is_lost
+from grader.report.findings import is_failure
+from grader.report.json_data import exact, to_json
 from grader.report.markdown import criterion_markdown, whole_markdown
-from grader.report.plain import exact, to_json
 from grader.text import counted_points, printable
 
 
@@ -44,7 +44,7 @@ def _test(result: Result, report: Report) -> dict[str, Any]:
     decided = {
         "score": exact(result.points),
         "max_score": exact(criterion.points),
-        "status": "failed" if is_lost(result) or result.outcome.status == "skipped" else "passed",
+        "status": "failed" if is_failure(result) or result.outcome.status == "skipped" else "passed",
     }
     most = f" (up to {counted_points(criterion.points)}, given by a person)" if result.is_open else ""
     return {

@@ -9,8 +9,8 @@ from rich.console import Console
 from rich.text import Text
 
 from grader.errors import MissingElement
-from grader.report.layout import show_problems, symbol, wrapped
-from grader.report.plain import problem, rounded, to_json
+from grader.report.console import show_problems, symbol, wrapped
+from grader.report.json_data import problem, rounded, to_json
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
 from grader.robot.reader import Reading

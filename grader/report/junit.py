@@ -10,9 +10,9 @@ from typing import Any
 from lxml import etree
 
 from grader.grading.report import Report, Result
-from grader.report.content import score_words, told, untold
-from grader.report.findings import is_lost
-from grader.report.places import Base, archive_around
+from grader.report.content import other_problems, result_details, score_text
+from grader.report.findings import is_failure
+from grader.report.locations import Base, archive_around
 from grader.report.plain_text import criterion_lines, headline, problem_line, provenance
 from grader.text import format_points, printable
 
@@ -21,7 +21,7 @@ def render_junit(report: Report, base: Base) -> str:
     """The whole report; paths are those in the repository, `base` is where the submission stands in it."""
     top = etree.Element("testsuites", {"name": printable(report.rubric.title), **_counts(report.results)})
     titles = {part.id: part.title for part in report.rubric.parts}
-    said = [score_words(report), *headline(report), *map(problem_line, untold(report)), provenance(report)]
+    said = [score_text(report), *headline(report), *map(problem_line, other_problems(report)), provenance(report)]
     suites = [
         (titles[part], tuple(some)) for part, some in groupby(report.results, key=lambda each: each.criterion.part)
     ]
@@ -45,7 +45,7 @@ def _counts(results: tuple[Result, ...]) -> dict[str, str]:
 
 def _kind(result: Result) -> str:
     """The element that says what became of a criterion; empty where it has all points."""
-    if is_lost(result):
+    if is_failure(result):
         return "error" if result.outcome.status == "errored" and result.ruling is None else "failure"
     return "skipped" if result.ruling is None and result.outcome.status in ("skipped", "pending") else ""
 
@@ -72,7 +72,7 @@ def _case(suite: Any, result: Result, report: Report, base: Base) -> None:
         name=printable(f"{criterion.title} ({criterion.id})"),
         classname=f"{report.rubric.id}.{criterion.part}",
     )
-    place = told(result, report).place
+    place = result_details(result, report).place
     if place is not None and place.path != "-" and not (base.archive or archive_around(place.path)):
         case.set("file", printable(base.folder + place.path))
         case.set("line", str(place.line))

@@ -7,18 +7,18 @@ from textwrap import indent
 from grader.grading.report import Report, Result
 from grader.report.content import (
     advice,
-    asides,
-    earned,
+    earned_text,
     evidence,
+    ignored_lines,
+    location_text,
     notes,
-    package_words,
-    pending_words,
-    place_words,
-    score_words,
+    other_problems,
+    package_line,
+    pending_line,
+    result_details,
+    score_text,
     status_of,
     summary,
-    told,
-    untold,
 )
 from grader.report.markdown_text import code, escaped, fenced
 from grader.report.plain_text import problem_line, provenance, quoted_lines
@@ -68,11 +68,11 @@ def _blocks(report: Report, *, answers: bool) -> Iterator[str]:
     shown: set[str] = set()
     for part, of_part in groupby(report.results, key=lambda each: each.criterion.part):
         results = tuple(of_part)
-        yield f"## {escaped(printable(titles[part]))} ({earned(results)})"
+        yield f"## {escaped(printable(titles[part]))} ({earned_text(results)})"
         for about, some in groupby(results, key=lambda each: each.criterion.about):
             group = tuple(some)
             if about and about != titles[part]:
-                yield f"### {escaped(printable(about))} ({earned(group)})"
+                yield f"### {escaped(printable(about))} ({earned_text(group)})"
             yield from (_item(each, report, shown, answers=answers) for each in group)
     yield from _evidence(report)
     yield from _problems(report)
@@ -80,12 +80,12 @@ def _blocks(report: Report, *, answers: bool) -> Iterator[str]:
 
 
 def _head(report: Report) -> Iterator[str]:
-    yield f"# {escaped(score_words(report))}: {escaped(printable(report.rubric.title))}"
-    yield from (escaped(line) for line in (summary(report), package_words(report)) if line)
+    yield f"# {escaped(score_text(report))}: {escaped(printable(report.rubric.title))}"
+    yield from (escaped(line) for line in (summary(report), package_line(report)) if line)
     if report.pending:
-        yield f"**{escaped(pending_words(report))}**"
+        yield f"**{escaped(pending_line(report))}**"
     yield escaped(provenance(report))
-    yield from map(escaped, (*notes(report), *asides(report)))
+    yield from map(escaped, (*notes(report), *ignored_lines(report)))
 
 
 def _item(result: Result, report: Report, shown: set[str], *, answers: bool) -> str:
@@ -100,10 +100,10 @@ def _item(result: Result, report: Report, shown: set[str], *, answers: bool) -> 
 
 def _details(result: Result, report: Report, shown: set[str], *, answers: bool) -> Iterator[str]:
     """What is said of a criterion, block by block. Feedback that is shown already is not shown once more."""
-    what = told(result, report)
+    what = result_details(result, report)
     yield from map(escaped, what.sentences)
     if what.place is not None:
-        yield code(place_words(what.place))
+        yield code(location_text(what.place))
         quoted = list(quoted_lines(what.place, report))
         if quoted:
             yield fenced(quoted)
@@ -125,7 +125,7 @@ def _evidence(report: Report) -> Iterator[str]:
 
 
 def _problems(report: Report) -> Iterator[str]:
-    problems = list(untold(report))
+    problems = list(other_problems(report))
     if problems:
         yield f"## What else there is to say of the {'file' if report.submission.is_single else 'files'}"
         yield from (f"- {escaped(problem_line(each))}" for each in problems)

@@ -4,8 +4,17 @@ from collections.abc import Iterator
 
 from grader.grading.report import Report, Result
 from grader.problems import Problem
-from grader.report.content import asides, evidence, notes, package_words, pending_words, place_words, summary, told
-from grader.report.places import excerpt
+from grader.report.content import (
+    evidence,
+    ignored_lines,
+    location_text,
+    notes,
+    package_line,
+    pending_line,
+    result_details,
+    summary,
+)
+from grader.report.locations import excerpt
 from grader.source import Location
 from grader.text import printable
 
@@ -14,13 +23,13 @@ _ROOM = 120  # characters of a quoted line
 
 def core(report: Report) -> list[str]:
     """What is said first: what ROS 2 makes of the URDF, the package, and what waits for a person."""
-    return [*filter(None, (summary(report), package_words(report), pending_words(report)))]
+    return [*filter(None, (summary(report), package_line(report), pending_line(report)))]
 
 
 def beside(report: Report) -> list[str]:
     """What else there is to say of the submission as a whole: how it was read, what was passed over, and its evidence."""
     shown = [f"Evidence, {part}: {words}" for part, lines in evidence(report) for words, _ in lines]
-    return [*notes(report), *asides(report), *shown]
+    return [*notes(report), *ignored_lines(report), *shown]
 
 
 def headline(report: Report) -> list[str]:
@@ -30,10 +39,10 @@ def headline(report: Report) -> list[str]:
 
 def criterion_lines(result: Result, report: Report) -> list[str]:
     """What is said of one criterion: what was found, where it stands, what was answered, how to mend it."""
-    what = told(result, report)
+    what = result_details(result, report)
     lines = list(what.sentences)
     if what.place is not None:
-        lines += [place_words(what.place), *quoted_lines(what.place, report)]
+        lines += [location_text(what.place), *quoted_lines(what.place, report)]
     if what.found:
         lines += ["Found:", *(f"  {line}" for line in what.found)]
     return [*lines, what.feedback] if what.feedback else lines
@@ -51,7 +60,7 @@ def quoted_lines(where: Location, report: Report) -> Iterator[str]:
 
 def problem_line(problem: Problem) -> str:
     """A problem with its code, its severity and its place."""
-    return f"{problem.code} {problem.severity} {place_words(problem.location)}: {printable(problem.message)}"
+    return f"{problem.code} {problem.severity} {location_text(problem.location)}: {printable(problem.message)}"
 
 
 def provenance(report: Report) -> str:

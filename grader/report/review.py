@@ -6,7 +6,7 @@ from rich.console import Console
 from rich.text import Text
 
 from grader.classroom.gradebook.marks import Mark, Pending
-from grader.report.layout import wrapped
+from grader.report.console import wrapped
 from grader.text import counted_points, format_points, printable
 
 _INDENT = 2

@@ -9,8 +9,8 @@ from urllib.parse import quote
 from grader.grading.report import Report
 from grader.report.content import explain_command
 from grader.report.findings import Finding, findings
-from grader.report.places import Base, Place
-from grader.report.plain import exact, to_json
+from grader.report.json_data import exact, to_json
+from grader.report.locations import Base, RepositoryLocation
 from grader.report.plain_text import criterion_lines, headline
 from grader.report.rubrics import EVERY_KIND
 from grader.text import printable
@@ -82,7 +82,7 @@ def _no_links(text: str) -> str:
     return text.replace("](", "] (")
 
 
-def _physical(place: Place) -> dict[str, Any]:
+def _physical(place: RepositoryLocation) -> dict[str, Any]:
     uri = quote(place.path.encode("utf-8", "surrogateescape"))
     region: dict[str, Any] = {"startLine": 1}
     if place.line is not None:

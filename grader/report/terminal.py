@@ -7,23 +7,23 @@ from rich.console import Console
 from rich.text import Text
 
 from grader.grading.report import Report, Result
+from grader.report.console import show_excerpt, show_problems, symbol, wrapped
 from grader.report.content import (
-    Told,
+    Details,
     advice,
-    asides,
-    earned,
+    earned_text,
     evidence,
+    ignored_lines,
+    location_text,
     notes,
-    package_words,
-    pending_words,
-    place_words,
-    score_words,
+    other_problems,
+    package_line,
+    pending_line,
+    result_details,
+    score_text,
     status_of,
     summary,
-    told,
-    untold,
 )
-from grader.report.layout import show_excerpt, show_problems, symbol, wrapped
 from grader.text import format_points, printable
 
 _STYLES = {"passed": "green", "failed": "bold red", "skipped": "yellow", "pending": "cyan", "errored": "bold magenta"}
@@ -55,12 +55,12 @@ def render_terminal(report: Report, console: Console) -> None:
         results = tuple(of_part)
         if len(report.parts) > 1:
             console.print()
-            heading = f"{printable(titles[part])}  {earned(results)}"
+            heading = f"{printable(titles[part])}  {earned_text(results)}"
             wrapped(console, Text(heading, style="bold underline"), 0)
         whole = None if len(report.parts) == 1 else titles[part]
         _show_groups(results, titles[part], whole, page)
     _show_evidence(report, console)
-    problems = tuple(untold(report))
+    problems = tuple(other_problems(report))
     if problems:
         console.print()
         what = "file" if report.submission.is_single else "files"
@@ -75,12 +75,12 @@ def render_terminal(report: Report, console: Console) -> None:
 def _show_head(report: Report, console: Console) -> None:
     style = "bold green" if report.score + report.pending == report.max_score else "bold"
     title = printable(report.rubric.title)
-    wrapped(console, Text.assemble((score_words(report), style), "  ", (title, "bold")), 0)
-    lines = [(summary(report), ""), (package_words(report), ""), (pending_words(report), "cyan")]
+    wrapped(console, Text.assemble((score_text(report), style), "  ", (title, "bold")), 0)
+    lines = [(summary(report), ""), (package_line(report), ""), (pending_line(report), "cyan")]
     for line, line_style in (*lines, *((note, "cyan") for note in notes(report))):
         if line:
             wrapped(console, Text(line, style=line_style), 0)
-    for line in asides(report):
+    for line in ignored_lines(report):
         wrapped(console, Text(line, style="dim"), 0)
 
 
@@ -119,13 +119,13 @@ def _reason(result: Result) -> str | None:
 
 def _show_heading(name: str, results: tuple[Result, ...], console: Console) -> None:
     console.print()
-    wrapped(console, Text.assemble((printable(name), "bold"), (f"  {earned(results)}", "dim")), 0)
+    wrapped(console, Text.assemble((printable(name), "bold"), (f"  {earned_text(results)}", "dim")), 0)
 
 
 def _show_alike(results: tuple[Result, ...], reason: str, console: Console) -> None:
     """One line for criteria that are skipped, or wait, for the same reason."""
     status = results[0].outcome.status
-    most = earned(results).partition("/")[2]
+    most = earned_text(results).partition("/")[2]
     head = Text.assemble("  ", (symbol(console, *_SYMBOLS[status]), _STYLES[status]), f" 0/{most:<3} ")
     wrapped(console, Text(printable(f"{len(results)} criteria are {reason}"), style="dim"), _INDENT, head)
 
@@ -140,7 +140,7 @@ def _show_result(result: Result, page: _Page) -> None:
         wrapped(console, title + Text(because, style="dim"), _INDENT, head)
         return
     wrapped(console, title + Text(f"  {criterion.id}", style="dim"), _INDENT, head)
-    _show_told(told(result, page.report), _sentence_styles(result), page)
+    _show_told(result_details(result, page.report), _sentence_styles(result), page)
 
 
 def _sentence_styles(result: Result) -> tuple[str, ...]:
@@ -150,7 +150,7 @@ def _sentence_styles(result: Result) -> tuple[str, ...]:
     return (_STYLES["errored"] if result.outcome.status == "errored" else "",)
 
 
-def _show_told(what: Told, styles: tuple[str, ...], page: _Page) -> None:
+def _show_told(what: Details, styles: tuple[str, ...], page: _Page) -> None:
     console = page.console
     for words, style in zip(what.sentences, styles, strict=False):
         wrapped(console, Text(words, style=style), _INDENT)
@@ -160,7 +160,7 @@ def _show_told(what: Told, styles: tuple[str, ...], page: _Page) -> None:
         for line in lines:
             wrapped(console, Text(line), _INDENT + 2)
     if what.place is not None:
-        wrapped(console, Text(place_words(what.place), style="dim"), _INDENT)
+        wrapped(console, Text(location_text(what.place), style="dim"), _INDENT)
         source = page.report.submission.source(what.place.path)
         if source is not None:
             show_excerpt(console, source, what.place, _INDENT)

@@ -42,12 +42,12 @@ def class_summary(
     found = statistics(grades.book, rubric)
     looks = grades.looks(_MAX_LISTED)
     if kind is OutputFormat.JSON:
-        from grader.report.classes_json import render_class_json
+        from grader.report.class_json import render_class_json
 
         run = None
         if done is not None:
             run = {"total": done.total, "graded": done.graded, "unchanged": done.unchanged, "errored": done.errored}
         return render_class_json(rubric, found, grades.all(), looks, run)
-    from grader.report.classes import render_class
+    from grader.report.class_summary import render_class
 
     return draw(partial(render_class, rubric.title, found, looks), screen)

@@ -11,7 +11,7 @@ from grader.usecases.targets import refuse_symlinks
 
 if TYPE_CHECKING:
     from grader.grading.report import Report
-    from grader.report.places import Base
+    from grader.report.locations import Base
 
 _MAX_SUMMARY = 1024 * 1024  # bytes: GitHub shows nothing of a longer step summary
 

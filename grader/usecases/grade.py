@@ -20,7 +20,7 @@ from grader.usecases.writing import remove_previous, save
 if TYPE_CHECKING:
     from grader.grading.report import Report
     from grader.grading.rubric import Rubric
-    from grader.report.places import Base
+    from grader.report.locations import Base
 
 _SHA256 = re.compile(r"[0-9a-fA-F]{64}")
 Saves = tuple[tuple[Format, Path], ...]

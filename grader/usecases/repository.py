@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 from grader.usecases.targets import CHECKOUTS
 
 if TYPE_CHECKING:
-    from grader.report.places import Base
+    from grader.report.locations import Base
 
 
 def base_of(path: str, *, is_single: bool) -> "Base":
     """Return where a submission is in its repository; `is_single` if it is one URDF, whose paths start in its folder."""
-    from grader.report.places import Base
+    from grader.report.locations import Base
 
     if path == "-":
         return Base(is_outside=True)

@@ -124,7 +124,7 @@ def _show(report: "Report", last: _Shown | None, terminal: Terminal, *, has_chan
 def _print_lines(lines: list[str], console: "Console") -> None:
     from rich.text import Text
 
-    from grader.report.layout import wrapped
+    from grader.report.console import wrapped
 
     console.print()
     for line in lines:

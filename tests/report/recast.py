@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from grader.files.tree import PassedOver
 from grader.grading.report import HandedIn, Report, Result
-from grader.report.content import untold
+from grader.report.content import other_problems
 from grader.robot.reader import Verdict
 from grader.source import Location, Source
 from grader.text import printable
@@ -48,7 +48,7 @@ def recast(report: Report, words: Words) -> Report:
     def path() -> str:
         return f"a{printable(words())}"
 
-    problems = tuple(replace(each, message=words(), location=Location(path(), 2, 3)) for each in untold(report))
+    problems = tuple(replace(each, message=words(), location=Location(path(), 2, 3)) for each in other_problems(report))
     return replace(
         report,
         submission=_submission(report.submission, words, path),

@@ -7,7 +7,7 @@ import pytest
 from grader.grading.report import Report
 from grader.report.codeclimate import render_codeclimate
 from grader.report.findings import findings
-from grader.report.places import Base
+from grader.report.locations import Base
 from tests.report.readers import read_by_schema
 from tests.samples import SAMPLES
 

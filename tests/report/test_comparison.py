@@ -49,7 +49,7 @@ def test_an_equal_score_hides_no_change() -> None:
 
 @pytest.mark.parametrize(
     ("status", "words"),
-    [("skipped", "now skipped"), ("pending", "now waiting for a person"), ("errored", "now errored")],
+    [("skipped", "now skipped"), ("pending", "now needs manual grading"), ("errored", "now errored")],
 )
 def test_every_status_has_its_words(status: Status, words: str) -> None:
     """Points are named only where they change."""
@@ -66,7 +66,7 @@ def test_a_failure_that_is_another_one() -> None:
 def test_only_the_rest_has_changed() -> None:
     """Notes, problems and places are no business of the criteria."""
     after = replace(SHORT, notes=("something else",))
-    assert comparison_lines(SHORT, after) == ["64 of 70 points, as before; only the rest of the report has changed"]
+    assert comparison_lines(SHORT, after) == ["64 of 70 points, as before; only other parts of the report changed"]
 
 
 def test_nothing_has_changed() -> None:
@@ -92,12 +92,12 @@ def test_another_rubric() -> None:
     assert comparison_lines(SHORT, replace(SHORT, results=(new, dearer, *others))) == [
         "64 of 70 -> 62.5 of 68.5 points (-1.5)",
         "now passed: new\\x1b (+1)",
-        f"worth something else: {second.criterion.id} (+0.5)",
-        f"no longer asked: {first.criterion.id} (-3)",
+        f"with other points: {second.criterion.id} (+0.5)",
+        f"removed: {first.criterion.id} (-3)",
     ]
     failing = next(each for each in SHORT.results if each.outcome.status == "failed")
     cheaper = {"lidar_frame": lambda each: each._replace(criterion=replace(failing.criterion, points=Decimal(5)))}
     assert comparison_lines(SHORT, changed(SHORT, **cheaper)) == [
         "64 of 70 -> 64 of 69 points",
-        "worth something else: lidar-frame",
+        "with other points: lidar-frame",
     ]

@@ -13,7 +13,7 @@ from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.problems import Problem
 from grader.report.findings import findings
-from grader.report.places import Base
+from grader.report.locations import Base
 from grader.report.sarif import render_sarif
 from grader.robot.catalogue import UNDEFINED_MATERIAL
 from grader.source import Location

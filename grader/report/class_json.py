@@ -7,7 +7,7 @@ from grader import __version__
 from grader.classroom.gradebook.grades import Looks, Standing
 from grader.classroom.gradebook.statistics import ClassStatistics, CriterionStatistics
 from grader.grading.rubric import Rubric
-from grader.report.plain import exact, rounded, to_json
+from grader.report.json_data import exact, rounded, to_json
 
 
 def render_class_json(

@@ -31,7 +31,7 @@ class Base(NamedTuple):
     is_outside: bool = False
 
 
-class Place(NamedTuple):
+class RepositoryLocation(NamedTuple):
     """A place as seen from the repository's root, counted from 1; `end` is the column behind what is meant.
 
     Without a line, the file as a whole is meant: it is an archive, or there is no better place. `text` is the line, `meant` the
@@ -71,15 +71,15 @@ def archive_around(path: str) -> str:
     return found[1] if found else ""
 
 
-def placed(where: Location, source: Source | None, base: Base) -> Place:
+def in_repository(where: Location, source: Source | None, base: Base) -> RepositoryLocation:
     """A place of a submission as seen from the repository's root."""
     around = base.archive or archive_around(where.path)
     if around:
-        return Place(around if base.archive else base.folder + around)
+        return RepositoryLocation(around if base.archive else base.folder + around)
     if source is None:
-        return Place(base.folder + where.path, where.line, where.column, where.column)
+        return RepositoryLocation(base.folder + where.path, where.line, where.column, where.column)
     line = source.line(where.line)
     start, width = where.column - 1, width_of(line, where.column)
     meant = line[start : start + width] if width <= _LONGEST else ""
     path = base.folder + where.path
-    return Place(path, where.line, where.column, where.column + width, line.strip()[:_LONGEST], meant)
+    return RepositoryLocation(path, where.line, where.column, where.column + width, line.strip()[:_LONGEST], meant)

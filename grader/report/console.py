@@ -6,7 +6,7 @@ from rich.console import Console
 from rich.text import Text
 
 from grader.problems import Problem
-from grader.report.places import excerpt
+from grader.report.locations import excerpt
 from grader.source import Location, Source
 from grader.text import printable
 

@@ -9,7 +9,7 @@ from rich.text import Text
 
 from grader.classroom.gradebook.grades import Looks
 from grader.classroom.gradebook.statistics import ClassStatistics, CriterionStatistics
-from grader.report.layout import wrapped
+from grader.report.console import wrapped
 from grader.text import format_points, printable
 
 _BAR = 40
@@ -74,7 +74,7 @@ def _show_criteria(criteria: Iterable[CriterionStatistics], console: Console) ->
             _tells(each.discrimination),
         )
     console.print(table)
-    hint = "share: of its points earned; tells: how well it goes with the rest of the mark, from -1 to 1"
+    hint = "share: of its points earned_text; tells: how well it goes with the rest of the mark, from -1 to 1"
     wrapped(console, Text(hint, style="dim"), 0)
 
 
