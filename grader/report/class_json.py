@@ -11,9 +11,9 @@ from grader.report.json_data import exact, rounded, to_json
 
 
 def render_class_json(
-    rubric: Rubric, statistics: ClassStatistics, standings: Iterable[Standing], looks: Looks, run: dict[str, int] | None
+    rubric: Rubric, statistics: ClassStatistics, grades: Iterable[Standing], looks: Looks, run: dict[str, int] | None
 ) -> str:
-    """Everyone's current grade and the statistics; `run` counts what the batch has done, if there was one just now."""
+    """Return the statistics and all current grades; `run` counts what a batch has just done."""
     return to_json(
         {
             "schema": "grader/class/v1",
@@ -22,35 +22,35 @@ def render_class_json(
             **({"run": run} if run is not None else {}),
             "statistics": statistics_data(statistics),
             "needs_a_look": looks.total,
-            "students": [standing_data(each) for each in standings],
+            "students": [grade_data(grade) for grade in grades],
         }
     )
 
 
-def standing_data(standing: Standing) -> dict[str, Any]:
-    """One student's current grade as plain data."""
-    student, has_result = standing.student, standing.result is not None
+def grade_data(grade: Standing) -> dict[str, Any]:
+    """Return a student's current grade as plain data."""
+    student, has_result = grade.student, grade.result is not None
     return {
         "id": student.key,
         "name": student.name,
         "email": student.email,
-        "status": standing.verdict,
-        "reason": standing.reason,
-        "score": exact(standing.score) if has_result else None,
-        "max_score": exact(standing.out_of) if has_result else None,
-        "pending": exact(standing.pending) if has_result else None,
-        "late": {"days": standing.late.days, "points": exact(standing.late.points), "because": standing.late.words},
-        "total": exact(standing.total) if has_result else None,
-        "is_final": not standing.why_not_final,
-        "marks_by_hand": standing.marks,
-        "paths": list(standing.origin.paths),
-        "attempt": standing.attempt,
-        "earlier": list(standing.earlier),
+        "status": grade.verdict,
+        "reason": grade.reason,
+        "score": exact(grade.score) if has_result else None,
+        "max_score": exact(grade.out_of) if has_result else None,
+        "pending": exact(grade.pending) if has_result else None,
+        "late": {"days": grade.late.days, "points": exact(grade.late.points), "because": grade.late.words},
+        "total": exact(grade.total) if has_result else None,
+        "is_final": not grade.why_not_final,
+        "marks_by_hand": grade.marks,
+        "paths": list(grade.origin.paths),
+        "attempt": grade.attempt,
+        "earlier": list(grade.earlier),
     }
 
 
 def statistics_data(statistics: ClassStatistics) -> dict[str, Any]:
-    """The statistics as plain data; shares and correlations to 1e-6."""
+    """Return the statistics as plain data, shares and correlations rounded to 1e-6."""
     return {
         "counts": dict(sorted(statistics.verdicts.items())),
         "max_score": exact(statistics.out_of),
@@ -62,24 +62,24 @@ def statistics_data(statistics: ClassStatistics) -> dict[str, Any]:
         "median": exact(statistics.median),
         "highest": exact(statistics.highest),
         "tenths": list(statistics.bins),
-        "criteria": [_criterion(each) for each in statistics.criteria],
+        "criteria": [_criterion(row) for row in statistics.criteria],
         "failures": [
-            {"criterion": each.criterion.id, "message": each.message, "count": each.count}
-            for each in statistics.failures
+            {"criterion": failure.criterion.id, "message": failure.message, "count": failure.count}
+            for failure in statistics.failures
         ],
     }
 
 
-def _criterion(each: CriterionStatistics) -> dict[str, Any]:
+def _criterion(row: CriterionStatistics) -> dict[str, Any]:
     return {
-        "id": each.criterion.id,
-        "max_points": exact(each.criterion.points),
-        "passed": each.passed,
-        "marked_by_hand": each.marked,
-        "failed": each.failed,
-        "skipped": each.skipped,
-        "pending": each.pending,
-        "errored": each.errored,
-        "share": rounded(each.share),
-        "discrimination": rounded(each.discrimination),
+        "id": row.criterion.id,
+        "max_points": exact(row.criterion.points),
+        "passed": row.passed,
+        "marked_by_hand": row.marked,
+        "failed": row.failed,
+        "skipped": row.skipped,
+        "pending": row.pending,
+        "errored": row.errored,
+        "share": rounded(row.share),
+        "discrimination": rounded(row.discrimination),
     }

@@ -13,18 +13,18 @@ _SEVERITIES: dict[Level, str] = {"error": "major", "warning": "minor", "note": "
 
 
 def render_codeclimate(report: Report, base: Base) -> str:
-    """The findings of a report; an empty list where there is nothing to mend."""
+    """Return the findings of a report; an empty list if there is nothing to fix."""
     issues = []
-    for each in findings(report, base):
-        place = each.place or each.whole
-        cost = f" ({counted_points(each.lost)} lost)" if each.lost else ""
+    for finding in findings(report, base):
+        location = finding.location or finding.fallback
+        cost = f" ({counted_points(finding.lost)} lost)" if finding.lost else ""
         issues.append(
             {
-                "description": each.text.replace("\n", " ") + cost,
-                "check_name": each.rule,
-                "fingerprint": each.fingerprint,
-                "severity": _SEVERITIES[each.level],
-                "location": {"path": printable(place.path), "lines": {"begin": place.line or 1}},
+                "description": finding.text.replace("\n", " ") + cost,
+                "check_name": finding.rule,
+                "fingerprint": finding.fingerprint,
+                "severity": _SEVERITIES[finding.level],
+                "location": {"path": printable(location.path), "lines": {"begin": location.line or 1}},
             }
         )
     return to_json_list(issues)

@@ -1,4 +1,4 @@
-"""What a report says, sentence by sentence, for every format to lay out in its own way. All of it is printable text."""
+"""The content of a report, sentence by sentence, for every format to lay out. All of it is printable text."""
 
 from collections.abc import Iterator
 from decimal import Decimal
@@ -9,64 +9,66 @@ from grader.checks.handed_in import JUDGED_BY_A_PERSON
 from grader.grading.report import Exhibits, Report, Result
 from grader.problems import Problem
 from grader.source import Location
-from grader.text import counted_points, format_points, printable
+from grader.text import counted_points, enumerated, first_lines, format_points, printable
 
 _VERDICTS = {
     "clean": "ROS 2 loads the file",
     "degraded": "ROS 2 loads the file, but drops some of it",
     "rejected": "ROS 2 rejects the file",
 }
-_MOST_LISTED = 12
-_STATUSES = ("passed", "failed", "skipped", "pending", "errored", "marked by hand")
+_MAX_LISTED = 12
+_STATUSES = ("passed", "failed", "skipped", "pending", "errored", "marked manually")
 
 
 class Details(NamedTuple):
-    """What there is to say of a criterion beside its title and points. `place` is where to look, if it failed.
+    """What there is to say of a criterion beside its id and points.
 
-    `found` is what was answered to a question, line by line. `model` is the model answer, empty unless the rubric was loaded
-    with its answers.
+    `answer` is the student's answer to a question, line by line, and `model_answer` the instructor's, if the rubric was loaded
+    with its answers. `location` is where to look and `expected` what should be, if the criterion failed.
     """
 
     sentences: tuple[str, ...]
-    found: tuple[str, ...] = ()
-    model: tuple[str, ...] = ()
-    place: Location | None = None
+    answer: tuple[str, ...] = ()
+    model_answer: tuple[str, ...] = ()
+    location: Location | None = None
     feedback: str = ""
+    expected: str = ""
 
 
 def score_text(report: Report) -> str:
-    """The score of all that can be earned_text: 58.5 / 70 points."""
+    """Return the score and the maximum: 58.5 / 70 points."""
     return f"{format_points(report.score)} / {format_points(report.max_score)} points"
 
 
 def status_of(result: Result) -> str:
-    """What became of a criterion: of one that a person has decided, whether it has all points."""
+    """Return the status of a criterion; a manual mark passes if it gives all points."""
     if result.ruling is None:
         return result.outcome.status
     return "passed" if result.points >= result.criterion.points else "failed"
 
 
 def earned_text(results: tuple[Result, ...]) -> str:
-    """The points of some criteria together: 8/14."""
-    got = sum((result.points for result in results), Decimal(0))
-    most = sum((result.criterion.points for result in results), Decimal(0))
-    return f"{format_points(got)}/{format_points(most)}"
+    """Return the points of some criteria together: 8/14."""
+    earned = sum((result.points for result in results), Decimal(0))
+    maximum = sum((result.criterion.points for result in results), Decimal(0))
+    return f"{format_points(earned)}/{format_points(maximum)}"
 
 
 def summary(report: Report) -> str:
-    """What ROS 2 makes of the URDF, and how many criteria passed, failed, and so on."""
+    """Return whether ROS 2 loads the URDF, and how many criteria passed, failed, and so on."""
     submission = report.submission
     path = printable(submission.path or "")
-    graded = f"{path}: not read" if submission.unread else "no URDF was submitted"
+    urdf = f"{path}: not read" if submission.unread else "no URDF was submitted"
     if submission.path is not None and submission.has_urdf:
-        verdict = _VERDICTS[submission.verdict] if submission.verdict else "xacro that a person has to expand"
-        graded = f"{path}: {verdict}"
-    decided = [each.outcome.status if each.ruling is None else "marked by hand" for each in report.results]
-    return f"{graded}; {', '.join(f'{decided.count(each)} {each}' for each in _STATUSES if each in decided)}"
+        verdict = _VERDICTS[submission.verdict] if submission.verdict else "xacro, which needs manual grading"
+        urdf = f"{path}: {verdict}"
+    statuses = ["marked manually" if result.ruling else result.outcome.status for result in report.results]
+    counts = (f"{statuses.count(status)} {status}" for status in _STATUSES if status in statuses)
+    return f"{urdf}; {', '.join(counts)}"
 
 
 def package_line(report: Report) -> str:
-    """The package that is graded, and where it stands; empty where none is."""
+    """Return the package that is graded and its folder; empty if none is."""
     package = report.submission.package
     if package is None or not any(report.rubric.part(part).needs == "package" for part in report.parts):
         return ""
@@ -74,61 +76,69 @@ def package_line(report: Report) -> str:
 
 
 def pending_line(report: Report) -> str:
-    """How many points a person still has to give or refuse, and what no program could decide; empty where none wait."""
+    """Return how many points need manual grading, and which automatic criteria are among them; empty if none do."""
     if not report.pending:
         return ""
-    names = [printable(each.criterion.id) for each in undecided(report)]
-    more = f" and {len(names) - _MOST_LISTED} more" if len(names) > _MOST_LISTED else ""
-    left = f"; not decided: {', '.join(names[:_MOST_LISTED])}{more}" if names else ""
-    return f"{counted_points(report.pending)} {'waits' if report.pending == 1 else 'wait'} for a person{left}"
+    names = [printable(result.criterion.id) for result in undecided(report)]
+    rest = f"; could not be decided: {enumerated(names, _MAX_LISTED)}" if names else ""
+    return f"{counted_points(report.pending)} {'needs' if report.pending == 1 else 'need'} manual grading{rest}"
 
 
 def notes(report: Report) -> list[str]:
-    """What is worth knowing of how the submission was read."""
+    """Return notes on how the submission was read."""
     return [f"Note: {printable(note)}" for note in report.notes]
 
 
 def ignored_lines(report: Report) -> list[str]:
-    """What might have been graded and was not, and what was not read: of many the first, and how many more there are."""
-    every = [f"Passed over {each.path}: {each.because}" for each in report.submission.passed_over]
-    every += [f"Left out: {each}" for each in report.submission.left_out]
-    more = [f"... and {len(every) - _MOST_LISTED} more"] if len(every) > _MOST_LISTED else []
-    return [printable(each) for each in (*every[:_MOST_LISTED], *more)]
+    """Return the other candidates for grading and the ignored files; of many the first, and how many more there are."""
+    lines = [f"Other candidate {file.path}: {file.because}" for file in report.submission.passed_over]
+    lines += [f"Ignored: {file}" for file in report.submission.left_out]
+    return [printable(line) for line in first_lines(lines, _MAX_LISTED)]
 
 
 def undecided(report: Report) -> list[Result]:
-    """Criteria that wait for a person though a program decides them as a rule: what they ask of could not be read."""
-    return [each for each in report.results if each.is_open and each.criterion.check.function not in JUDGED_BY_A_PERSON]
+    """Return the automatic criteria that need manual grading here, because their subject could not be read."""
+    return [
+        result
+        for result in report.results
+        if result.is_open and result.criterion.check.function not in JUDGED_BY_A_PERSON
+    ]
 
 
 def result_details(result: Result, report: Report) -> Details:
-    """What there is to say of one criterion, whatever became of it."""
+    """Return the details of one criterion, whatever its status."""
     outcome = result.outcome
     if result.ruling is not None:
-        comment = f": {_line(result.ruling.comment)}" if result.ruling.comment else ""
-        by_hand = sentence(f"Marked by {result.ruling.by or 'hand'}{comment}")
+        comment = f": {_one_line(result.ruling.comment)}" if result.ruling.comment else ""
+        mark = sentence(f"Marked {f'by {result.ruling.by}' if result.ruling.by else 'manually'}{comment}")
         if outcome.status == "pending":
-            return Details((by_hand,), *_answers(result))
-        return Details((by_hand, sentence(f"The check: {outcome.status}. {outcome.message}")))
+            return Details((mark,), *_answers(result))
+        expected = _expected(result) if status_of(result) == "failed" else ""
+        return Details((mark, sentence(f"The check: {outcome.status}. {outcome.message}")), expected=expected)
     if outcome.status == "skipped":
-        return Details((f"Skipped, because {result.because} failed.",))
+        return Details((f"Skipped because {result.because} failed.",))
     sentences = (sentence(outcome.message),)
     if outcome.status == "pending":
         return Details(sentences, *_answers(result))
     if outcome.status != "failed":
-        return Details(sentences)
-    is_there = report.submission.has_urdf or result.criterion.check.subject not in ("urdf", "robot")
-    feedback = _line(result.criterion.feedback) if is_there else ""
-    return Details(sentences, place=outcome.location, feedback=feedback)
+        return Details(sentences, expected=_expected(result) if outcome.status == "errored" else "")
+    has_subject = report.submission.has_urdf or result.criterion.check.subject not in ("urdf", "robot")
+    feedback = _one_line(result.criterion.feedback) if has_subject else ""
+    return Details(sentences, location=outcome.location, feedback=feedback, expected=_expected(result))
 
 
-def _line(text: str) -> str:
-    """A text of a rubric or of a person who marks in one printable line, however they have broken it."""
+def _expected(result: Result) -> str:
+    """Return what should be: the title of a criterion is never stated alone, because it would read as a fact."""
+    return f"Passes when: {sentence(result.criterion.title)}"
+
+
+def _one_line(text: str) -> str:
+    """Return a text of a rubric or a comment in one printable line."""
     return printable(" ".join(text.split()))
 
 
 def _answers(result: Result) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """What was answered, and the model answer; nothing where no question was asked."""
+    """Return the answer and the model answer; nothing for a criterion that is not a question."""
     return _lines(result.outcome.measured), _lines(result.criterion.answer)
 
 
@@ -137,18 +147,27 @@ def _lines(text: object) -> tuple[str, ...]:
 
 
 def other_problems(report: Report) -> Iterator[Problem]:
-    """The problems that no failed criterion has told already."""
-    said = [(each.outcome.location, each.outcome.message) for each in report.results if each.outcome.status == "failed"]
+    """Yield the problems that no failed criterion has reported."""
+    reported = [
+        (result.outcome.location, result.outcome.message)
+        for result in report.results
+        if result.outcome.status == "failed"
+    ]
     for problem in report.problems:
-        if not any(where == problem.location and problem.message in message for where, message in said):
+        if not any(where == problem.location and problem.message in message for where, message in reported):
             yield problem
 
 
+def other_problems_title(report: Report) -> str:
+    """Return the title of the problems that no failed criterion has reported."""
+    return f"Other problems in the {'file' if report.submission.is_single else 'files'}"
+
+
 def evidence(report: Report) -> Iterator[tuple[str, list[tuple[str, bool]]]]:
-    """Part by part each piece of evidence with the files that were found, and whether there are any; then all other files."""
+    """Yield the title of each part with its pieces of evidence, and whether files were found; then the other pictures."""
     parts = {part.id: part.title for part in report.rubric.parts}
-    for part, asked in groupby(report.exhibits, key=lambda each: each.evidence.part):
-        yield printable(parts[part]), [(_exhibits(found), bool(found.files)) for found in asked]
+    for part, exhibits in groupby(report.exhibits, key=lambda exhibit: exhibit.evidence.part):
+        yield printable(parts[part]), [(_exhibits(exhibit), bool(exhibit.files)) for exhibit in exhibits]
     if report.others:
         yield "Other pictures and documents", [(printable(exhibit.words), True) for exhibit in report.others]
 
@@ -159,31 +178,30 @@ def _exhibits(found: Exhibits) -> str:
 
 
 def sentence(message: str) -> str:
-    """A message as a printable sentence, with a capital and a full stop."""
+    """Return a message as a printable sentence, with a capital and a full stop."""
     text = printable(message)
-    if text.split(" ")[0].isalpha():  # an attribute of the file, as in xyz="0 0", stays as it is
+    if text.split(" ")[0].isalpha():  # not an attribute, such as xyz="0 0"
         text = text[:1].upper() + text[1:]
     return text if text.endswith((".", "?")) else f"{text}."
 
 
 def location_text(where: Location) -> str:
-    """A place as editors take it: path:line:column."""
+    """Return a location as editors take it: path:line:column."""
     return f"{printable(where.path)}:{where.line}:{where.column}"
 
 
 def advice(report: Report) -> str:
-    """The command that says more; empty where nothing failed."""
-    first = next((each.criterion.id for each in report.results if each.outcome.status == "failed"), None)
+    """Return the command that explains the first failed criterion; empty if none failed."""
+    first = next((result.criterion.id for result in report.results if result.outcome.status == "failed"), None)
     if first is None:
         return ""
-    whole = ", `grader inspect` shows the whole robot" if report.submission.has_urdf else ""
-    return f"`{explain_command(first, report)}` says how it is decided{whole}."
+    robot = ", `grader inspect` shows the whole robot" if report.submission.has_urdf else ""
+    return f"`{explain_command(first, report)}` explains how it is decided{robot}."
 
 
 def explain_command(name: str, report: Report) -> str:
-    """The command that explains a criterion. Of a rubric's path no more is told than where it stands below the current folder."""
+    """Return the command that explains a criterion. It shows no part of the rubric's path above the current folder."""
+    if report.rubric.is_shipped:
+        return f"grader explain {name}"
     path = report.rubric.path
-    rubric = (
-        "" if report.rubric.is_shipped else f" --rubric {printable(path.name if path.is_absolute() else str(path))}"
-    )
-    return f"grader explain {name}{rubric}"
+    return f"grader explain {name} --rubric {printable(path.name if path.is_absolute() else str(path))}"

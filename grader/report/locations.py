@@ -1,4 +1,4 @@
-"""Places in a student's files: what is meant there, the line that is quoted, and the path in the repository around it."""
+"""Locations in a submission: the source line around them, and their path in the repository."""
 
 import re
 from typing import NamedTuple
@@ -6,14 +6,14 @@ from typing import NamedTuple
 from grader.source import Location, Source
 from grader.text import printable
 
-_MEANT = re.compile(r"""[^\s=<>"'/]+\s*=\s*(?:"[^"]*"?|'[^']*'?)|<[^\s>]*[^>]*>?|[\w.]+""")
-_INSIDE = re.compile(r"(?i)(.*?\.(?:zip|tar|tgz|tar\.gz))/", re.DOTALL)  # the archives that are looked into
-_MARGIN = 4  # characters that are shown before what is meant, where the line is cut
-_LONGEST = 500  # characters of a line that tell it from others: a whole file may stand in one
+_MEANT = re.compile(r"""[^\s=<>"'/]+\s*=\s*(?:"[^"]*"?|'[^']*'?)|<[^\s>]*[^>]*>?|[\w.]+""")  # attribute, tag, word
+_ARCHIVE = re.compile(r"(?i)(.*?\.(?:zip|tar|tgz|tar\.gz))/", re.DOTALL)
+_MARGIN = 4  # characters before what is meant, if the line is cut
+_MAX_TEXT = 500  # characters of a line: a whole file may be one line
 
 
 class Excerpt(NamedTuple):
-    """A line of a file as far as there is room for it. What is meant begins at `start`, from 0, and is `width` long."""
+    """A source line, cut to the room that there is. What is meant starts at `start`, from 0, and is `width` long."""
 
     text: str
     start: int
@@ -21,9 +21,9 @@ class Excerpt(NamedTuple):
 
 
 class Base(NamedTuple):
-    """Where a submission stands in a repository: the folder of its paths, which ends in a slash, or the archive that they are in.
+    """Where a submission is in a repository: the folder of its paths, with a slash at its end, or the archive that holds them.
 
-    `is_outside` tells that it stands in none: its paths name no file there.
+    With `is_outside` it is in no repository.
     """
 
     folder: str = ""
@@ -32,10 +32,9 @@ class Base(NamedTuple):
 
 
 class RepositoryLocation(NamedTuple):
-    """A place as seen from the repository's root, counted from 1; `end` is the column behind what is meant.
+    """A location as seen from the repository's root, from 1; `end` is the column after what is meant.
 
-    Without a line, the file as a whole is meant: it is an archive, or there is no better place. `text` is the line, `meant` the
-    part of it that is meant; empty where that is too long to be quoted.
+    Without a line it is the whole file. `text` is the source line, `meant` the part of it that is meant, empty if it is too long.
     """
 
     path: str
@@ -47,13 +46,13 @@ class RepositoryLocation(NamedTuple):
 
 
 def width_of(line: str, column: int) -> int:
-    """How many characters of a line are meant by a place in it: an attribute, a tag, a word; 1 where that cannot be told."""
+    """Return the length of the attribute, tag or word at a column; 1 if there is none."""
     found = _MEANT.match(line, column - 1)
     return len(found[0].rstrip()) if found else 1
 
 
 def excerpt(source: Source, where: Location, room: int) -> Excerpt:
-    """The line of a place, cut to so many characters around what is meant."""
+    """Return the source line of a location, cut to a number of characters around what is meant."""
     line = source.line(where.line)
     start = where.column - 1
     width = width_of(line, where.column)
@@ -61,25 +60,25 @@ def excerpt(source: Source, where: Location, room: int) -> Excerpt:
     if start + width - cut > room:
         cut = max(0, min(start - _MARGIN, len(line)))
     before, meant = printable(line[cut:start]), printable(line[start : start + width])
-    shown = (before + meant + printable(line[start + width :]))[:room].rstrip()
-    return Excerpt(shown, len(before), max(1, min(len(meant), room - len(before))))
+    text = (before + meant + printable(line[start + width :]))[:room].rstrip()
+    return Excerpt(text, len(before), max(1, min(len(meant), room - len(before))))
 
 
 def archive_around(path: str) -> str:
-    """The archive that a file of a submission stands in, by its path; empty for a file that stands in none."""
-    found = _INSIDE.match(path)
+    """Return the archive in a submission that a file is in; empty if it is in none."""
+    found = _ARCHIVE.match(path)
     return found[1] if found else ""
 
 
 def in_repository(where: Location, source: Source | None, base: Base) -> RepositoryLocation:
-    """A place of a submission as seen from the repository's root."""
-    around = base.archive or archive_around(where.path)
-    if around:
-        return RepositoryLocation(around if base.archive else base.folder + around)
+    """Return a location of a submission as seen from the repository's root."""
+    archive = base.archive or archive_around(where.path)
+    if archive:
+        return RepositoryLocation(archive if base.archive else base.folder + archive)
+    path = base.folder + where.path
     if source is None:
-        return RepositoryLocation(base.folder + where.path, where.line, where.column, where.column)
+        return RepositoryLocation(path, where.line, where.column, where.column)
     line = source.line(where.line)
     start, width = where.column - 1, width_of(line, where.column)
-    meant = line[start : start + width] if width <= _LONGEST else ""
-    path = base.folder + where.path
-    return RepositoryLocation(path, where.line, where.column, where.column + width, line.strip()[:_LONGEST], meant)
+    meant = line[start : start + width] if width <= _MAX_TEXT else ""
+    return RepositoryLocation(path, where.line, where.column, where.column + width, line.strip()[:_MAX_TEXT], meant)

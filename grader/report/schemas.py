@@ -1,11 +1,11 @@
-"""The JSON Schemas (draft 2020-12) of what the grader writes, and of the rubrics that it reads."""
+"""The JSON Schemas (draft 2020-12) of the grader's output and of rubrics."""
 
 from types import UnionType
 from typing import Any, Literal, get_args, get_origin
 
 from grader.checks.registry import CHECKS, Check, describe
 
-_DIALECT = "https://json-schema.org/draft/2020-12/schema"
+_DRAFT = "https://json-schema.org/draft/2020-12/schema"
 _TEXT: dict[str, Any] = {"type": "string"}
 _NUMBER: dict[str, Any] = {"type": "number"}
 _COUNT: dict[str, Any] = {"type": "integer", "minimum": 1}
@@ -62,7 +62,7 @@ _EXHIBIT = _object(
 )
 
 REPORT_SCHEMA: dict[str, Any] = {
-    "$schema": _DIALECT,
+    "$schema": _DRAFT,
     "title": "grader report",
     **_object(
         {
@@ -97,7 +97,7 @@ _ROW = {**_array(_NUMBER), "minItems": 4, "maxItems": 4}
 _JOINT = _object({"name": _TEXT, "type": _TEXT, "parent": _TEXT, "child": _TEXT, "axis": _nullable(_VECTOR)})
 
 INSPECT_SCHEMA: dict[str, Any] = {
-    "$schema": _DIALECT,
+    "$schema": _DRAFT,
     "title": "grader inspection",
     **_object(
         {
@@ -175,7 +175,7 @@ _STUDENT = _object(
 )
 
 CLASS_SCHEMA: dict[str, Any] = {
-    "$schema": _DIALECT,
+    "$schema": _DRAFT,
     "title": "grader class",
     **_object(
         {
@@ -195,7 +195,7 @@ _RUN = _object({"run": _COUNT, "started": _TEXT, "grader": _GRADER, "rubric": _o
 _CHANGE: dict[str, Any] = {"id": _TEXT, "before": _nullable(_POINTS), "after": _nullable(_POINTS)}
 
 DIFF_SCHEMA: dict[str, Any] = {
-    "$schema": _DIALECT,
+    "$schema": _DRAFT,
     "title": "grader diff",
     **_object(
         {
@@ -259,7 +259,7 @@ def rubric_schema() -> dict[str, Any]:
         },
         optional=("reference", "urdf", "package", "points", "answers", "evidence", "late"),
     )
-    return {"$schema": _DIALECT, "title": "grader rubric", **rubric}
+    return {"$schema": _DRAFT, "title": "grader rubric", **rubric}
 
 
 def _arguments_rule(check: Check) -> dict[str, Any]:
