@@ -1,13 +1,13 @@
-"""The command line's entry: `grader` and `python -m grader`."""
+"""The entry point of `grader` and `python -m grader`."""
 
 import gc
 import sys
 
-_FAULT_OF_USE, _INTERRUPTED = 2, 130
+_NOT_GRADED, _INTERRUPTED = 2, 130  # as in grader.usecases.exit_codes, which is not imported for --version
 
 
 def main() -> None:
-    """Run the command line; exits with the code that the command gives."""
+    """Run the command line and exit with its code."""
     try:
         code = _run(sys.argv[1:])
     except KeyboardInterrupt:
@@ -18,16 +18,16 @@ def main() -> None:
 
 
 def _run(arguments: list[str]) -> int:
-    if arguments in (["--version"], ["-V"]):  # answered before anything is imported
+    if arguments in (["--version"], ["-V"]):  # needs no other import
         from grader import __version__
 
         try:
             print(f"grader {__version__}", flush=True)
         except OSError as error:
             print(f"grader: cannot write: {error.strerror}", file=sys.stderr)
-            return _FAULT_OF_USE
+            return _NOT_GRADED
         return 0
-    # One command makes little garbage and ends soon; looking for cycles while modules load costs some 7 % of a run.
+    # One command makes little garbage and ends soon; collecting it while modules load takes some 7 % of a run.
     gc.disable()
     from grader.cli.app import run
 
@@ -35,7 +35,7 @@ def _run(arguments: list[str]) -> int:
 
 
 if __name__ == "__main__":
-    # `python -m` looks for modules in the current folder first, which may be a student's: nothing there may be imported.
+    # `python -m` puts the current folder first on the path; it may be a student's, and nothing there may be imported.
     if not sys.flags.safe_path:
         del sys.path[0]
     main()

@@ -1,44 +1,42 @@
-"""Text for people: names and paths made printable, lists and counts in words."""
+"""Text for people: printable names and paths, lists, counts, points."""
 
 import os
 import re
 from collections.abc import Collection, Sequence
+from decimal import Decimal
 from pathlib import Path
 
-# The runner of GitHub Actions takes a line for a command that begins with `::`, whatever space is before it, or that holds
-# `##[` anywhere.
+# The runner of GitHub Actions takes a line for a command if it begins with `::`, after white space as well, or holds `##[`.
 _LINE_COMMAND = re.compile(r"^(\s*):(?=:)", re.MULTILINE)
-
-
 _MAX_NAME = 60  # characters of a name that are shown
 
 
 def printable(text: str) -> str:
-    """The text with everything spelt out that is no visible character or plain space.
+    """Return a text with escapes for all that is neither a visible character nor a plain space; a tab becomes a space.
 
-    That is controls and escapes, bidirectional marks, odd spaces, and bytes that are no UTF-8. A tab becomes a space.
+    These are control characters, bidirectional marks, other spaces, and bytes that are not UTF-8.
     """
     if text.isprintable():
         return text
-    return "".join(character if character.isprintable() else _spelt(character) for character in text)
+    return "".join(character if character.isprintable() else _escaped(character) for character in text)
 
 
 def without_commands(text: str) -> str:
-    """The text with a space put in wherever a CI system's runner would take a line of its log for a command."""
+    """Return a text with a space wherever the runner of a CI system would take a line for a command."""
     return _LINE_COMMAND.sub(r"\1: ", text).replace("##[", "## [")
 
 
-def _spelt(character: str) -> str:
+def _escaped(character: str) -> str:
     if character == "\t":
         return " "
     code = ord(character)
-    if 0xDC80 <= code <= 0xDCFF:  # a byte that could not be decoded
+    if 0xDC80 <= code <= 0xDCFF:  # a byte that is not UTF-8, as Python decodes it
         return f"\\x{code - 0xDC00:02x}"
     return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}"
 
 
 def printable_path(path: Path | str) -> str:
-    """Return a path for a message: bytes that are not UTF-8 are replaced, control characters spelt out."""
+    """Return a path for a message: bytes that are not UTF-8 are replaced, control characters escaped."""
     text = os.fsencode(path).decode("utf-8", "replace")
     if text.isprintable():
         return text
@@ -46,7 +44,7 @@ def printable_path(path: Path | str) -> str:
 
 
 def quoted(name: str) -> str:
-    """Return a name between quotes, cut where it is very long."""
+    """Return a name between quotes, cut if it is very long."""
     return repr(name) if len(name) <= _MAX_NAME else repr(name[: _MAX_NAME - 3] + "...")
 
 
@@ -67,3 +65,18 @@ def first_lines(lines: Sequence[str], most: int) -> list[str]:
 def counted(number: int, noun: str, plural: str = "") -> str:
     """Return a number with its noun: "1 file", "2 files", "2 entries"."""
     return f"{number} {noun}" if number == 1 else f"{number} {plural or noun + 's'}"
+
+
+def format_points(points: Decimal) -> str:
+    """Return points as they are, without trailing zeros and not rounded: 58.5, 70."""
+    return format(points.normalize(), "f") if points else "0"
+
+
+def counted_points(points: Decimal) -> str:
+    """Return points with their noun: 1 point, 58.5 points."""
+    return f"{format_points(points)} point{'' if points == 1 else 's'}"
+
+
+def signed_points(points: Decimal) -> str:
+    """Return a change of points with its sign: +6, -0.5."""
+    return f"{'+' if points >= 0 else '-'}{format_points(abs(points))}"

@@ -83,8 +83,7 @@ def test_imports_point_down(module: str) -> None:
         if top != "grader" or not there:
             continue
         if there[0] != here[0]:
-            allowed_up = here[0] == "usecases" and there[0] == "cli"  # until the use cases print nothing themselves
-            assert allowed_up or height(LAYERS, there[0]) < height(LAYERS, here[0]), f"{module} imports {imported}"
+            assert height(LAYERS, there[0]) < height(LAYERS, here[0]), f"{module} imports {imported}"
         elif here[0] in INNER and len(here) > 1 and there[1] != here[1]:
             inner = INNER[here[0]]
             assert height(inner, there[1]) < height(inner, here[1]), f"{module} imports {imported}"

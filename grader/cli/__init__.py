@@ -1,1 +1,1 @@
-"""The commands: parse arguments, call one function of a lower floor, print, exit."""
+"""The commands: parse arguments, call one use case, print, exit."""

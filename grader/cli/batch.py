@@ -1,60 +1,64 @@
-"""grader batch: a whole class against a rubric, into a gradebook."""
+"""grader batch: a class against a rubric, into a gradebook."""
 
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from grader.cli.options import (
-    DEFAULT_RUBRIC,
-    ClassFormat,
-    DueOption,
-    FormatOption,
-    GradebookOption,
-    Layout,
-    MaxSizeOption,
-    RubricOption,
-)
+from grader.cli.options import DEFAULT_RUBRIC, DueOption, FormatOption, GradebookOption, MaxSizeOption, RubricOption
+from grader.cli.output import screen, warn
 from grader.errors import GraderError
 from grader.files.reading import URDF_LIMIT
-from grader.report.formats import Format
+from grader.report.formats import Format, OutputFormat
+from grader.usecases.writing import write_stdout
+
+
+class Layout(StrEnum):
+    """How a class folder is organized."""
+
+    AUTO = "auto"
+    FOLDERS = "folders"
+    CANVAS = "canvas"
+    MOODLE = "moodle"
+    TEAMS = "teams"
+    NBGRADER = "nbgrader"
+
+
+_PATH = "A folder with an entry for each student, or the zip of an LMS."
+_ADD = "Add to the gradebook even if it has another class, assignment or rubric."
+_TIMEOUT = "Time limit for each submission."
 
 
 def batch(
-    path: Annotated[
-        Path, typer.Argument(metavar="PATH", help="A folder with a child for each student, or an LMS's zip.")
-    ],
+    path: Annotated[Path, typer.Argument(metavar="PATH", help=_PATH)],
     gradebook: GradebookOption,
     rubric: RubricOption = DEFAULT_RUBRIC,
     jobs: Annotated[
-        int | None, typer.Option(metavar="N", min=1, help="Worker processes; one a processor if not told.")
+        int | None, typer.Option(metavar="N", min=1, help="Worker processes; default: one per processor.")
     ] = None,
-    timeout: Annotated[float, typer.Option(metavar="SECONDS", min=0.1, help="The longest that one may take.")] = 60.0,
-    roster: Annotated[Path | None, typer.Option(metavar="CSV", help="Who is in the class.")] = None,
+    timeout: Annotated[float, typer.Option(metavar="SECONDS", min=0.1, help=_TIMEOUT)] = 60.0,
+    roster: Annotated[Path | None, typer.Option(metavar="CSV", help="The students of the class.")] = None,
     layout: Annotated[
-        Layout, typer.Option(metavar="LAYOUT", help=f"How PATH is laid out: {', '.join(Layout)}.")
+        Layout, typer.Option(metavar="LAYOUT", help=f"Layout of PATH: {', '.join(Layout)}.")
     ] = Layout.AUTO,
-    assignment: Annotated[str, typer.Option(metavar="NAME", help="The assignment, in nbgrader's layout.")] = "",
+    assignment: Annotated[str, typer.Option(metavar="NAME", help="The assignment in the nbgrader layout.")] = "",
     reports: Annotated[Path | None, typer.Option(metavar="DIR", help="Write a report for each student here.")] = None,
     report_format: Annotated[
-        list[Format] | None, typer.Option(metavar="FORMAT", help="The format of these; repeatable.")
+        list[Format] | None, typer.Option(metavar="FORMAT", help="Format of these reports; repeatable.")
     ] = None,
     csv: Annotated[Path | None, typer.Option(metavar="FILE", help="Also write the grades as CSV.")] = None,
     due: DueOption = None,
-    force: Annotated[bool, typer.Option("--force", help="Grade all again, also what has not changed.")] = False,
-    add: Annotated[
-        bool, typer.Option("--add", help="Add to the gradebook, even if it is of another class, assignment or rubric.")
-    ] = False,
-    cluster: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="Grade on a Dask cluster: tcp://host:8786.")
-    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Grade unchanged submissions again.")] = False,
+    add: Annotated[bool, typer.Option("--add", help=_ADD)] = False,
+    cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="A Dask cluster, as tcp://host:8786.")] = None,
     max_size: MaxSizeOption = URDF_LIMIT,
-    output_format: FormatOption = ClassFormat.TERMINAL,
+    output_format: FormatOption = OutputFormat.TERMINAL,
 ) -> int:
-    """Grade a whole class into a gradebook, many at a time.
+    """Grade a class into a gradebook, in parallel.
 
-    A second time only what is new or changed is graded. Exits 0 when every submission has a result, whatever the marks. One that cannot be read, hangs or breaks the grader costs
-    nobody else anything, and is listed.
+    Rerun the same command to resume, or to grade what is new or changed. Submissions are isolated: a crash or timeout affects only
+    its own submission. Exits 0 when every submission has a result, whatever the grades.
 
     Examples:
 
@@ -62,26 +66,15 @@ def batch(
 
       grader batch class/ --gradebook lab6.db --reports reports --csv grades.csv
     """
-    from grader.usecases.grade_class import Wanted, grade_class  # what grades a class is loaded only for one
+    from grader.cli.progress import progress_display
+    from grader.usecases.grade_class import ClassRequest, grade_class  # imports what grades a class
 
-    for kind in report_format or ():
+    formats = tuple(report_format or [Format.TERMINAL])
+    for kind in formats:
         if kind.needs == "identity":
-            raise GraderError(f"{kind} is the result of one repository: `grader grade` writes it there")
-    output = Wanted(reports, tuple(report_format or [Format.TERMINAL]), csv, output_format)
-    grade_class(
-        path,
-        gradebook,
-        rubric,
-        output,
-        jobs=jobs,
-        timeout=timeout,
-        roster=roster,
-        layout=layout.value,
-        assignment=assignment,
-        due=due,
-        force=force,
-        cluster=cluster,
-        add=add,
-        max_size=max_size,
-    )
+            raise GraderError(f"{kind} is for one repository: use `grader grade` there")
+    request = ClassRequest(
+        path, gradebook, rubric, jobs, timeout, roster, layout.value, assignment, due, force, cluster, add, max_size, reports, formats, csv
+    )  # fmt: skip
+    write_stdout(grade_class(request, output_format, screen(), progress_display(), warn))
     return 0

@@ -1,4 +1,4 @@
-"""Completion in bash, zsh and fish: typer answers the shell, and here is what is said around it."""
+"""Shell completion for bash, zsh and fish, on top of typer's."""
 
 import io
 import os
@@ -11,14 +11,13 @@ from typing import Any
 import typer
 from typer.main import get_command
 
-from grader.cli.output import emit
 from grader.cli.suggestions import SHELLS
 from grader.errors import GraderError, InputError
 from grader.text import printable_path
-from grader.usecases.writing import save
+from grader.usecases.writing import save, write_stdout
 
-_VARIABLE = "_GRADER_COMPLETE"
-# Of typer's own script for bash two things would be seen: an error of the program, and a space behind `--save json=`.
+VARIABLE = "_GRADER_COMPLETE"  # the shell sets it to ask for completions
+# typer's script for bash shows errors of the program, and adds a space after `--save json=`.
 _BASH = """\
 _grader_completion() {
     local IFS=$'\\n'
@@ -30,40 +29,40 @@ _grader_completion() {
 
 complete -o default -F _grader_completion grader
 """
-_typer: Any = import_module("typer.completion")  # which says of its functions that they are not exported
+_typer: Any = import_module("typer.completion")  # its functions are not declared as exported
 
 
 def complete(make_app: Callable[[Sequence[str]], typer.Typer], commands: Sequence[str]) -> int:
-    """Print what the word that is being typed may become: nothing where that cannot be told, and never an error."""
+    """Print the completions of the word at the cursor; nothing if there is an error."""
     answer, code = io.StringIO(), 0
     with redirect_stdout(answer), redirect_stderr(io.StringIO()), suppress(Exception):
         _typer.completion_init()
-        _join_equals()
+        _join_equals_signs()
         typed = os.environ.get("COMP_WORDS") or os.environ.get("_TYPER_COMPLETE_ARGS", "")
-        named = [each for each in typed.split()[1:2] if each in commands]  # no other command has to be loaded
+        named = [word for word in typed.split()[1:2] if word in commands]  # to import no other command
         try:
             command: Any = get_command(make_app(named or commands))
-            _tell_in_full(command)
-            _typer.shell_complete(command, {}, "grader", _VARIABLE, os.environ[_VARIABLE])
-        except SystemExit as end:  # by which fish is told whether there is anything
+            _describe_fully(command)
+            _typer.shell_complete(command, {}, "grader", VARIABLE, os.environ[VARIABLE])
+        except SystemExit as end:  # its code tells fish whether there are completions
             code = end.code if isinstance(end.code, int) else 0
     with suppress(GraderError):
-        emit(answer.getvalue())
+        write_stdout(answer.getvalue())
     return code
 
 
-def _tell_in_full(group: Any) -> None:
-    """Have each command described by the whole first line of its help, which is cut otherwise."""
+def _describe_fully(group: Any) -> None:
+    """Describe every command with the whole first line of its help, which typer would cut."""
     for command in getattr(group, "commands", {}).values():
         command.short_help = (command.help or "").partition("\n")[0]
-        _tell_in_full(command)
+        _describe_fully(command)
 
 
-def _join_equals() -> None:
-    """Make one of what bash takes for three words: `--rubric=lab` is an option and its value."""
+def _join_equals_signs() -> None:
+    """Join `--rubric=lab`, which bash splits into three words, to an option and its value."""
     words = os.environ.get("COMP_WORDS", "").split("\n")
     cursor = int(os.environ.get("COMP_CWORD", "0"))
-    signs = [  # not the one that the cursor is at: typer knows what that is
+    signs = [  # not that at the cursor, which typer handles
         index for index, word in enumerate(words[:cursor]) if word == "=" and words[index - 1].startswith("--")
     ]
     os.environ["COMP_WORDS"] = "\n".join(word for index, word in enumerate(words) if index not in signs)
@@ -71,35 +70,34 @@ def _join_equals() -> None:
 
 
 def set_up(arguments: Sequence[str]) -> int:
-    """Print the script that makes a shell complete our commands, or put it where the shell reads it. Raises GraderError."""
+    """Print the completion script of a shell, or install it. Raises GraderError."""
     option, _, value = arguments[0].partition("=")
-    named = [each for each in (value, *arguments[1:]) if each]
+    named = [word for word in (value, *arguments[1:]) if word]
     if len(named) > 1 or not set(named) <= set(SHELLS):
         raise GraderError(f"{option} takes one of {', '.join(SHELLS)}, not {' '.join(named)!r}")
     shell = named[0] if named else _detected(option)
     if option == "--show-completion":
-        emit(_script(shell))
+        write_stdout(_script(shell))
     else:
-        emit(
-            f"completion for {shell} is in {printable_path(_install(shell))}: it works in the next shell that is started\n"
-        )
+        path = printable_path(_install(shell))
+        write_stdout(f"completion for {shell} is installed in {path}; start a new shell to use it\n")
     return 0
 
 
 def _script(shell: str) -> str:
     if shell == "bash":
         return _BASH
-    script: str = _typer.get_completion_script(prog_name="grader", complete_var=_VARIABLE, shell=shell)
+    script: str = _typer.get_completion_script(prog_name="grader", complete_var=VARIABLE, shell=shell)
     return script + "\n"
 
 
 def _install(shell: str) -> Path:
     try:
-        path: Path = _typer.install(shell, "grader", _VARIABLE)[1]
+        path: Path = _typer.install(shell, "grader", VARIABLE)[1]
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else str(error)
         raise InputError(
-            f"completion cannot be installed: {reason}; grader --show-completion {shell} prints what to add"
+            f"cannot install completion: {reason}; grader --show-completion {shell} prints what to add"
         ) from None
     if shell == "bash":
         save(path, _BASH)
@@ -107,13 +105,11 @@ def _install(shell: str) -> Path:
 
 
 def _detected(option: str) -> str:
-    """The shell that has started us, or else the user's own; raises GraderError where neither is known."""
+    """Return the shell that started this process, or else the user's login shell. Raises GraderError if it is unknown."""
     try:
-        name = str(import_module("shellingham").detect_shell()[0])  # which typer comes with
-    except Exception:  # noqa: BLE001  it has many ways to fail, and there is another to ask
+        name = str(import_module("shellingham").detect_shell()[0])  # a dependency of typer
+    except Exception:  # noqa: BLE001  it fails in many ways, and $SHELL is next
         name = Path(os.environ.get("SHELL", "")).name
     if name not in SHELLS:
-        raise GraderError(
-            f"which shell this is for has to be said: grader {option} bash (or {' or '.join(SHELLS[1:])})"
-        )
+        raise GraderError(f"cannot detect the shell: use grader {option} bash (or {' or '.join(SHELLS[1:])})")
     return name

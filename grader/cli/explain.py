@@ -1,26 +1,21 @@
-"""grader explain: more about a problem's code, a check, or a criterion."""
+"""grader explain: a problem code, a check or a criterion."""
 
 from typing import Annotated
 
 import typer
 
 from grader.cli.options import DEFAULT_RUBRIC, RubricOption
-from grader.cli.output import emit
 from grader.cli.suggestions import explainable
+from grader.usecases.writing import write_stdout
+
+_NAME = "Such as URDF051, frame_at or lidar-frame."
 
 
 def explain(
-    name: Annotated[
-        str,
-        typer.Argument(
-            metavar="CODE|CHECK|CRITERION",
-            help="Such as URDF051, frame_at or lidar-frame.",
-            autocompletion=explainable,
-        ),
-    ],
+    name: Annotated[str, typer.Argument(metavar="CODE|CHECK|CRITERION", help=_NAME, autocompletion=explainable)],
     rubric: RubricOption = DEFAULT_RUBRIC,
 ) -> int:
-    """Say more about a problem's code, a check, or a criterion.
+    """Explain a problem code, a check or a criterion.
 
     Examples:
 
@@ -33,5 +28,5 @@ def explain(
     from grader.grading.rubric import load_rubric
     from grader.report.rubrics import explanation
 
-    emit(explanation(name, load_rubric(rubric)))
+    write_stdout(explanation(name, load_rubric(rubric)))
     return 0

@@ -5,56 +5,47 @@ from typing import Annotated
 import typer
 
 from grader.cli.options import DEFAULT_RUBRIC, MaxSizeOption, RubricOption
+from grader.cli.output import screen, warn, write_stderr
 from grader.cli.suggestions import part_ids, save_formats
+from grader.errors import GraderError
 from grader.files.reading import URDF_LIMIT
-from grader.report.formats import Format
-from grader.usecases.github import refusals_told
-from grader.usecases.grade import Wanted, grade_once, read_saves
+from grader.report.formats import Format, render
+from grader.usecases.github import is_github_job, publish_refusal, publish_report
+from grader.usecases.grade import GradeRequest, grade_and_save, read_saves
+from grader.usecases.writing import write_stdout
+
+_PATH = "A .urdf file, package, workspace, repository, .zip or .tar.gz, or - for standard input."
+_SAVE = "Also write a report to a file; repeatable."
+_FAIL_UNDER = "Exit 0 if the score reaches this, in points or percent."
+_EXPECT = "Refuse a rubric with another hash (see grader rubric show)."
 
 
 def grade(
-    path: Annotated[
-        str,
-        typer.Argument(
-            metavar="PATH", help="A .urdf file, a package, a workspace, a repository, a .zip or .tar.gz, or -."
-        ),
-    ],
+    path: Annotated[str, typer.Argument(metavar="PATH", help=_PATH)],
     rubric: RubricOption = DEFAULT_RUBRIC,
-    expect_rubric: Annotated[
-        str | None, typer.Option(metavar="SHA256", help="Refuse a rubric with another hash (see grader rubric show).")
-    ] = None,
+    expect_rubric: Annotated[str | None, typer.Option(metavar="SHA256", help=_EXPECT)] = None,
     part: Annotated[
-        list[str] | None,
-        typer.Option(metavar="ID", help="Grade only this part; repeatable.", autocompletion=part_ids),
+        list[str] | None, typer.Option(metavar="ID", help="Grade only this part; repeatable.", autocompletion=part_ids)
     ] = None,
     output_format: Annotated[
-        Format,
-        typer.Option("--format", metavar="FORMAT", help=f"What is printed: {', '.join(Format)}."),
+        Format, typer.Option("--format", metavar="FORMAT", help=f"Output format: {', '.join(Format)}.")
     ] = Format.TERMINAL,
-    save_as: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--save",
-            metavar="FORMAT=FILE",
-            help="Also write a report to a file; repeatable.",
-            autocompletion=save_formats,
-        ),
+    save: Annotated[
+        list[str] | None, typer.Option(metavar="FORMAT=FILE", help=_SAVE, autocompletion=save_formats)
     ] = None,
-    fail_under: Annotated[
-        str | None, typer.Option(metavar="N|N%", help="Exit 0 from this score on, in points or percent.")
-    ] = None,
+    fail_under: Annotated[str | None, typer.Option(metavar="N|N%", help=_FAIL_UNDER)] = None,
     max_size: MaxSizeOption = URDF_LIMIT,
     answers: Annotated[
-        bool, typer.Option("--answers", help="Also show model answers, in terminal, markdown and json.")
+        bool, typer.Option("--answers", help="Also show model answers (terminal, markdown, json).")
     ] = False,
-    is_watched: Annotated[
-        bool, typer.Option("--watch", help="Grade again whenever a file changes, until Ctrl-C.")
-    ] = False,
+    watch: Annotated[bool, typer.Option("--watch", help="Grade again after every change, until Ctrl-C.")] = False,
 ) -> int:
-    """Grade one submission: what is wrong, where, and how to mend it.
+    """Grade a submission against a rubric.
 
-    Exit codes: 0 every criterion that can be decided passed (or the score reaches --fail-under); 1 not so; 2 nothing was
-    graded; 3 a fault of the grader itself.
+    The report explains every lost point with file and line.
+
+    Exit codes: 0 all automatic criteria passed (or the score reaches --fail-under); 1 otherwise; 2 nothing was graded; 3 a check
+    is faulty.
 
     Examples:
 
@@ -66,20 +57,26 @@ def grade(
 
       grader grade lab6.zip --save markdown=report.md --save junit=report.xml
     """
-    with refusals_told():
-        wanted = Wanted(
-            path,
-            rubric,
-            expect_rubric,
-            tuple(part or ()),
-            output_format,
-            read_saves(save_as or ()),
-            fail_under,
-            max_size,
-            answers,
+    try:
+        saves = read_saves(save or ())
+        request = GradeRequest(
+            path, rubric, expect_rubric, tuple(part or ()), output_format, saves, fail_under, max_size, answers
         )
-        if is_watched:
-            from grader.usecases.watch import watch
+        if watch:
+            from grader.usecases.watch import Terminal
+            from grader.usecases.watch import watch as grade_on_change
 
-            return watch(wanted)
-        return grade_once(wanted)[1]
+            return grade_on_change(request, Terminal(write_stdout, warn, screen))
+        result = grade_and_save(request, warn)
+        text = render(result.report, output_format, result.base, screen())
+        write_stdout(text if output_format.needs == "console" else text.encode("utf-8", "backslashreplace"))
+        if is_github_job():
+            annotations = publish_report(result.report, result.base, warn)
+            write_stderr(annotations if output_format is not Format.GITHUB else "")
+        elif result.reason:
+            warn(result.reason)
+    except GraderError as error:
+        if is_github_job():
+            write_stderr(publish_refusal(str(error), warn))
+        raise
+    return result.exit_code

@@ -1,51 +1,33 @@
-"""grader inspect: what ROS 2 makes of a URDF."""
+"""grader inspect: a URDF as ROS 2 reads it."""
 
-from enum import StrEnum
 from functools import partial
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from grader.cli.options import MaxSizeOption
-from grader.cli.output import complain, emit, show
-from grader.errors import GraderError, InputError, MissingElement
+from grader.cli.options import FormatOption, MaxSizeOption
+from grader.cli.output import screen, warn
 from grader.files.reading import URDF_LIMIT
-from grader.text import printable_path
+from grader.report.formats import OutputFormat
+from grader.report.screen import draw
+from grader.usecases.exit_codes import ExitCode
+from grader.usecases.writing import write_stdout
 
-if TYPE_CHECKING:
-    from grader.robot.kinematics import Configuration
-    from grader.robot.motion import Position
-    from grader.robot.reader import Reading
-
-_ANY_URDF = "robot.urdf"
-
-
-class InspectFormat(StrEnum):
-    """The formats of an inspection."""
-
-    TERMINAL = "terminal"
-    JSON = "json"
+_PATH = "A .urdf file, a folder or archive with one in it, or - for standard input."
+_JOINT = "Position of a joint, in radians or metres; repeatable."
+_RELATIVE = "The frame of the poses; default: the root."
 
 
 def inspect(
-    path: Annotated[
-        str, typer.Argument(metavar="PATH", help="A .urdf file, a folder or archive with one in it, or -.")
-    ],
-    joint: Annotated[
-        list[str] | None,
-        typer.Option(metavar="NAME=VALUE", help="Put a joint at this position, in radians or metres; repeatable."),
-    ] = None,
-    relative_to: Annotated[
-        str | None, typer.Option(metavar="LINK", help="The frame that poses are given in; the root unless told.")
-    ] = None,
-    output_format: Annotated[
-        InspectFormat, typer.Option("--format", help="The format on standard output.")
-    ] = InspectFormat.TERMINAL,
+    path: Annotated[str, typer.Argument(metavar="PATH", help=_PATH)],
+    joint: Annotated[list[str] | None, typer.Option(metavar="NAME=VALUE", help=_JOINT)] = None,
+    relative_to: Annotated[str | None, typer.Option(metavar="LINK", help=_RELATIVE)] = None,
+    output_format: FormatOption = OutputFormat.TERMINAL,
     max_size: MaxSizeOption = URDF_LIMIT,
 ) -> int:
     """Show a URDF as ROS 2 reads it: problems, tree, joints, poses.
 
-    Exits 1 if ROS 2 rejects the file. A planar joint takes x,y,angle and a floating one x,y,z,roll,pitch,yaw.
+    Exits 1 if ROS 2 rejects the file. A planar joint takes x,y,angle and a floating joint x,y,z,roll,pitch,yaw.
 
     Examples:
 
@@ -55,55 +37,10 @@ def inspect(
 
       grader inspect my_robot.urdf --joint base_left_wheel_joint=1.57
     """
-    from grader.report.inspection import Inspection, inspection_json, inspection_terminal, main_root
-    from grader.submission.submission import open_submission
-    from grader.submission.urdf import Absent, Read, Unreadable
+    from grader.report.inspection import inspection_json, inspection_terminal
+    from grader.usecases.inspect import inspect as read
 
-    submission = open_submission(path, wanted=_ANY_URDF, limit=max_size)
-    match urdf := submission.urdf:
-        case Unreadable(reason=reason):
-            raise InputError(reason)
-        case Absent():
-            raise InputError(f"{printable_path(path)} holds no URDF: no file has a <robot> in it")
-    if submission.other_candidates:
-        complain(f"inspected {urdf.path}; passed over {', '.join(each.path for each in submission.other_candidates)}")
-    if isinstance(urdf, Read) and urdf.is_expanded:
-        complain(f"{urdf.path} is xacro: its properties and numbers were worked out first")
-    robot = _configure(urdf.reading, joint or [])
-    frame = relative_to
-    if robot is not None and frame is None:
-        frame = main_root(robot)
-    elif robot is not None and frame is not None and not robot.robot.has_link(frame):
-        known = ", ".join(repr(link.name) for link in robot.robot.links[:20])
-        raise GraderError(f"--relative-to: there is no link {frame!r}; the file has: {known}")
-    inspection = Inspection(urdf.path, urdf.reading, robot, frame)
-    if output_format is InspectFormat.JSON:
-        emit(inspection_json(inspection))
-    else:
-        show(partial(inspection_terminal, inspection))
-    return 1 if urdf.reading.verdict == "rejected" else 0
-
-
-def _configure(urdf: "Reading", given: list[str]) -> "Configuration | None":
-    from grader.robot.kinematics import Configuration
-
-    positions = dict(_position(each) for each in given)
-    if urdf.robot is None:
-        return None
-    try:
-        return Configuration(urdf.robot, positions)
-    except (MissingElement, ValueError) as error:
-        raise GraderError(f"--joint: {error}") from None
-
-
-def _position(text: str) -> "tuple[str, Position]":
-    from math import isfinite
-
-    name, equals, value = text.rpartition("=")
-    try:
-        values = tuple(float(each) for each in value.split(","))
-    except ValueError:
-        values = (float("nan"),)
-    if not equals or not all(map(isfinite, values)):
-        raise GraderError(f"--joint takes NAME=VALUE with a number in radians or metres, not {text!r}")
-    return name, values if len(values) > 1 else values[0]
+    inspection = read(path, joint or [], relative_to, max_size, warn)
+    is_json = output_format is OutputFormat.JSON
+    write_stdout(inspection_json(inspection) if is_json else draw(partial(inspection_terminal, inspection), screen()))
+    return ExitCode.FAILED if inspection.reading.verdict == "rejected" else ExitCode.PASSED

@@ -1,50 +1,44 @@
-"""How far a batch has come, on standard error: a bar on a terminal, a plain line now and then elsewhere."""
+"""Progress of a batch on standard error: a bar on a terminal, else a line every ten seconds."""
 
 import sys
 import time
-from types import TracebackType
-from typing import TYPE_CHECKING, Self
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
-from grader.cli.output import complain
+from grader.cli.output import warn
 
 if TYPE_CHECKING:
     from rich.progress import Progress as Bar
 
     from grader.classroom.run.batch import Progress
 
-_EVERY = 10.0  # seconds between plain lines
+_LINE_SECONDS = 10.0
 
 
-class ProgressDisplay:
-    """Shows the progress of a run from its beginning to its end."""
+@contextmanager
+def progress_display() -> Iterator[Callable[["Progress"], None]]:
+    """Show the progress of a run; yields the function that takes it."""
+    began = last_line = time.monotonic()
 
-    def __init__(self) -> None:
-        self._bar: Bar | None = None
-        self._began = self._told = time.monotonic()
+    def print_line(progress: "Progress") -> None:
+        nonlocal last_line
+        now = time.monotonic()
+        if now - last_line > _LINE_SECONDS:
+            last_line = now
+            warn(_line(progress, now - began))
 
-    def __enter__(self) -> Self:
-        if sys.stderr is not None and sys.stderr.isatty():
-            self._bar = _bar()
-            self._bar.start()
-            self._bar.add_task("grading", total=None, rate="", found="")
-        return self
+    if sys.stderr is None or not sys.stderr.isatty():
+        yield print_line
+        return
+    with _bar() as bar:
+        task = bar.add_task("grading", total=None, rate="", found="")
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        if self._bar is not None:
-            self._bar.stop()
+        def move(progress: "Progress") -> None:
+            rate = f"{progress.done / max(1e-3, time.monotonic() - began):.0f}/s"
+            bar.update(task, total=progress.total, completed=progress.done, rate=rate, found=_counts(progress))
 
-    def show(self, progress: "Progress") -> None:
-        """Show how far a run has come."""
-        if self._bar is not None:
-            rate = f"{progress.done / max(1e-3, time.monotonic() - self._began):.0f}/s"
-            self._bar.update(
-                self._bar.task_ids[0], total=progress.total, completed=progress.done, rate=rate, found=_found(progress)
-            )
-        elif time.monotonic() - self._told > _EVERY:
-            self._told = time.monotonic()
-            complain(_line(progress, self._told - self._began))
+        yield move
 
 
 def _bar() -> "Bar":
@@ -62,18 +56,14 @@ def _bar() -> "Bar":
     return progress.Progress(*columns, console=Console(stderr=True), transient=True)
 
 
-def _found(progress: "Progress") -> str:
-    """What went wrong so far."""
-    counted = [(progress.errored, "errored"), (progress.unreadable, "unreadable"), (progress.unchanged, "unchanged")]
-    return ", ".join(f"{count} {what}" for count, what in counted if count)
+def _counts(progress: "Progress") -> str:
+    counts = [(progress.errored, "errored"), (progress.unreadable, "unreadable"), (progress.unchanged, "unchanged")]
+    return ", ".join(f"{count} {status}" for count, status in counts if count)
 
 
 def _line(progress: "Progress", seconds: float) -> str:
     rate = progress.done / seconds if seconds else 0.0
     left = (progress.total - progress.done) / rate if rate else 0.0
-    found = _found(progress)
-    return f"{progress.done} of {progress.total}, {rate:.0f}/s, {_time(left)} left{f' ({found})' if found else ''}"
-
-
-def _time(seconds: float) -> str:
-    return f"{seconds:.0f} s" if seconds < 100 else f"{seconds / 60:.0f} min"
+    counts = _counts(progress)
+    time_left = f"{left:.0f} s" if left < 100 else f"{left / 60:.0f} min"
+    return f"{progress.done} of {progress.total}, {rate:.0f}/s, {time_left} left{f' ({counts})' if counts else ''}"

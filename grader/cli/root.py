@@ -1,17 +1,17 @@
-"""grader without a command: its version, its help, and how a shell comes to complete its commands."""
+"""grader without a command: version, help, completion."""
 
 from typing import Annotated
 
 import typer
 
 from grader import __version__
-from grader.cli.output import emit
 from grader.cli.suggestions import shells
+from grader.usecases.writing import write_stdout
 
 
-def _print_version(is_wanted: bool) -> None:
-    if is_wanted:
-        emit(f"grader {__version__}\n")
+def _print_version(is_given: bool) -> None:
+    if is_given:
+        write_stdout(f"grader {__version__}\n")
         raise typer.Exit
 
 
@@ -22,21 +22,17 @@ def root(
     ] = False,
     show_completion: Annotated[
         str | None,
-        typer.Option(
-            metavar="[SHELL]", help="Print what makes bash, zsh or fish complete commands.", autocompletion=shells
-        ),
+        typer.Option(metavar="[SHELL]", help="Print the completion script for a shell.", autocompletion=shells),
     ] = None,
     install_completion: Annotated[
         str | None,
-        typer.Option(
-            metavar="[SHELL]", help="Add that to what your shell reads when it starts.", autocompletion=shells
-        ),
+        typer.Option(metavar="[SHELL]", help="Install the completion script.", autocompletion=shells),
     ] = None,
 ) -> None:
-    """Grade robotics lab submissions by what the robot does.
+    """Grade robotics lab submissions: URDF, forward kinematics, ROS 2 package.
 
-    A student starts with grade, an instructor with rubric show, whoever has a class to grade with batch. What a command takes is said
-    by its own --help, with examples.
+    Students start with grade, instructors with rubric show and batch. Each command describes its arguments under --help, with
+    examples.
 
     Examples:
 

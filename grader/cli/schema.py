@@ -5,11 +5,11 @@ from typing import Annotated
 
 import typer
 
-from grader.cli.output import emit
+from grader.usecases.writing import write_stdout
 
 
 class SchemaName(StrEnum):
-    """What there is a schema of."""
+    """What has a schema."""
 
     REPORT = "report"
     RUBRIC = "rubric"
@@ -19,11 +19,11 @@ class SchemaName(StrEnum):
 
 
 def schema(
-    name: Annotated[SchemaName, typer.Argument(metavar="|".join(SchemaName), help="Which schema.")],
+    name: Annotated[SchemaName, typer.Argument(metavar="|".join(SchemaName), help="The schema to print.")],
 ) -> int:
-    """Print a JSON Schema of what the grader writes or reads.
+    """Print a JSON Schema of the grader's input or output.
 
-    That is of a report, a rubric, an inspection, a class (batch, stats, export json), or of what a diff says.
+    These are reports, rubrics, inspections, classes (batch, stats, export json) and diffs.
 
     Examples:
 
@@ -31,19 +31,8 @@ def schema(
 
       grader schema rubric > rubric.schema.json
     """
-    from grader.grading.keys import rubric_schema
-    from grader.report.plain import to_json
-    from grader.report.schemas import CLASS_SCHEMA, DIFF_SCHEMA, INSPECT_SCHEMA, REPORT_SCHEMA
+    from grader.report.json_data import to_json
+    from grader.report.schemas import json_schema
 
-    match name:
-        case SchemaName.REPORT:
-            emit(to_json(REPORT_SCHEMA))
-        case SchemaName.INSPECT:
-            emit(to_json(INSPECT_SCHEMA))
-        case SchemaName.CLASS:
-            emit(to_json(CLASS_SCHEMA))
-        case SchemaName.DIFF:
-            emit(to_json(DIFF_SCHEMA))
-        case SchemaName.RUBRIC:
-            emit(to_json(rubric_schema()))
+    write_stdout(to_json(json_schema(name.value)))
     return 0

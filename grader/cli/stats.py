@@ -1,13 +1,18 @@
-"""grader stats: what a class did and did not understand."""
+"""grader stats: statistics of a class."""
 
-from grader.cli.options import ClassFormat, DueOption, FormatOption, GradebookOption
-from grader.cli.output import emit
+from grader.cli.options import DueOption, FormatOption, GradebookOption
+from grader.cli.output import screen
+from grader.report.formats import OutputFormat
+from grader.usecases.writing import write_stdout
 
 
-def stats(gradebook: GradebookOption, due: DueOption = None, output_format: FormatOption = ClassFormat.TERMINAL) -> int:
-    """Show how a class did, and what went wrong most often.
+def stats(
+    gradebook: GradebookOption, due: DueOption = None, output_format: FormatOption = OutputFormat.TERMINAL
+) -> int:
+    """Show statistics of a class: grades, criteria, common mistakes.
 
-    That is the marks, and each criterion's difficulty and discrimination. Marks by hand are in it; what being late costs is only in the students' totals of --format json.
+    They include manual marks, but not late penalties: --format json has these in the students' totals. A criterion's difficulty is
+    the share of its points that the class earned; its discrimination is the correlation with the rest of the grade.
 
     Examples:
 
@@ -15,11 +20,7 @@ def stats(gradebook: GradebookOption, due: DueOption = None, output_format: Form
 
       grader stats --gradebook lab6.db --format json
     """
-    from grader.classroom.gradebook.gradebook import Gradebook
-    from grader.classroom.gradebook.grades import Grades
-    from grader.classroom.gradebook.lateness import read_time
-    from grader.cli.class_text import class_text
+    from grader.usecases.class_summary import class_statistics
 
-    with Gradebook(gradebook) as book:
-        emit(class_text(Grades(book, read_time(due) if due else None), output_format))
+    write_stdout(class_statistics(gradebook, due, output_format, screen()))
     return 0

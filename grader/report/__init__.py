@@ -1,1 +1,1 @@
-"""A report in one format each. Renderers lay out what was found; they never grade."""
+"""A report in each of its formats. Renderers lay it out; they never grade."""

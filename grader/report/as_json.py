@@ -3,19 +3,19 @@
 from typing import TYPE_CHECKING, Any
 
 from grader.grading.report import Exhibits, GradedSubmission, Report, Result
-from grader.report.plain import exact, location, problem, rounded, to_json
+from grader.report.json_data import exact, location, problem, rounded, to_json
 
 if TYPE_CHECKING:
     from grader.documents.evidence import Exhibit
 
 
 def render_json(report: Report) -> str:
-    """The whole report. No clock, no absolute path, no random order: same input, same bytes."""
+    """Return the report. It has no clock, absolute path or random order: the same input gives the same bytes."""
     return to_json(report_data(report))
 
 
 def report_data(report: Report) -> dict[str, Any]:
-    """The report as plain data."""
+    """Return the report as plain data."""
     submission, rubric = report.submission, report.rubric
     return {
         "schema": "grader/report/v1",
@@ -26,7 +26,7 @@ def report_data(report: Report) -> dict[str, Any]:
             "path": submission.path,
             "sha256": submission.sha256,
             "package": package_path(submission),
-            "passed_over": [{"path": each.path, "because": each.reason} for each in submission.other_candidates],
+            "passed_over": [{"path": file.path, "because": file.reason} for file in submission.other_candidates],
             "left_out": list(submission.ignored),
         },
         "notes": list(report.notes),
@@ -34,21 +34,21 @@ def report_data(report: Report) -> dict[str, Any]:
         "score": exact(report.score),
         "max_score": exact(report.max_score),
         "pending": exact(report.pending),
-        "problems": [problem(each) for each in report.problems],
+        "problems": [problem(found) for found in report.problems],
         "results": [_result(result) for result in report.results],
-        "evidence": [_exhibits(each) for each in report.exhibits],
-        "other_pictures": [_exhibit(each) for each in report.others],
+        "evidence": [_exhibits(found) for found in report.exhibits],
+        "other_pictures": [_exhibit(found) for found in report.others],
     }
 
 
 def package_path(submission: GradedSubmission) -> str | None:
-    """The folder of the package that is graded, `.` for the submission itself; None where there is none."""
+    """Return the folder of the graded package, `.` for the submission itself; None if there is none."""
     return (submission.package.folder or ".") if submission.package is not None else None
 
 
 def _exhibits(found: Exhibits) -> dict[str, Any]:
     evidence = found.evidence
-    files = [_exhibit(each) for each in found.files]
+    files = [_exhibit(exhibit) for exhibit in found.files]
     return {"id": evidence.id, "part": evidence.part, "title": evidence.title, "files": files}
 
 
@@ -57,8 +57,8 @@ def _exhibit(exhibit: "Exhibit") -> dict[str, Any]:
 
 
 def _result(result: Result) -> dict[str, Any]:
-    criterion, outcome, mark = result.criterion, result.outcome, result.manual_mark
-    by_hand = {"points": exact(mark.points), "by": mark.by, "comment": mark.comment} if mark else None
+    criterion, outcome, ruling = result.criterion, result.outcome, result.manual_mark
+    mark = {"points": exact(ruling.points), "by": ruling.by, "comment": ruling.comment} if ruling else None
     return {
         "id": criterion.id,
         "part": criterion.part,
@@ -75,5 +75,5 @@ def _result(result: Result) -> dict[str, Any]:
         "location": location(outcome.location),
         "feedback": criterion.feedback if outcome.status == "failed" else "",
         "hints": [],
-        **({"mark": by_hand} if by_hand else {}),
+        **({"mark": mark} if mark else {}),
     }

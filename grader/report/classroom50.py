@@ -1,6 +1,6 @@
 """A report as Classroom 50's result.json, schema classroom50/result/v1. Its scores are whole numbers.
 
-Where points are none, all are given in tenths, hundredths and so on, so that nothing is rounded.
+If points are fractions, all are multiplied by 10, 100 and so on, so that none is rounded.
 https://github.com/foundation50/classroom50
 """
 
@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 
 from grader.errors import InputError
 from grader.grading.report import Report, Result
-from grader.report.findings import is_lost
-from grader.report.plain import to_json
+from grader.report.findings import is_failure
+from grader.report.json_data import to_json
 from grader.report.plain_text import criterion_lines
 from grader.text import printable
 
@@ -22,7 +22,7 @@ _TAG = re.compile(r"submit/([0-9]{4}-[01][0-9]-[0-3][0-9])T([01][0-9]|2[0-3])-([
 
 
 class Identity(NamedTuple):
-    """Whose result it is: what Classroom 50's runner says in environment variables."""
+    """Whose result it is, from the environment variables of Classroom 50's runner."""
 
     classroom: str
     assignment: str
@@ -36,19 +36,19 @@ class Identity(NamedTuple):
 
 
 def identity_from(environment: Mapping[str, str]) -> Identity:
-    """The identity that the runner's environment variables give; raises InputError, which names those that are missing."""
+    """Return the identity that the runner's environment variables give. Raises InputError if some are missing."""
     missing = [name for name in _NEEDED if not environment.get(name)]
     if missing:
         raise InputError(
-            f"classroom50 takes {', '.join(missing)} from the environment, where Classroom 50's runner sets them"
+            f"classroom50 requires {', '.join(missing)} in the environment: Classroom 50's runner sets them"
         )
     tag = environment["SUBMISSION_TAG"]
     time = _TAG.fullmatch(tag)
     if time is None:
-        raise InputError(f"SUBMISSION_TAG has to be as submit/2026-09-01T10-00-00Z-ab12cd3, not {printable(tag)!r}")
+        raise InputError(f"SUBMISSION_TAG must look like submit/2026-09-01T10-00-00Z-ab12cd3, not {printable(tag)!r}")
     kind = environment.get("ASSIGNMENT_TYPE") or _KINDS[0]
     if kind not in _KINDS:
-        raise InputError(f"ASSIGNMENT_TYPE has to be one of {', '.join(_KINDS)}, not {printable(kind)!r}")
+        raise InputError(f"ASSIGNMENT_TYPE must be one of {', '.join(_KINDS)}, not {printable(kind)!r}")
     given = {name: printable(environment[name]) for name in _NEEDED}
     return Identity(
         given["CLASSROOM"],
@@ -59,12 +59,12 @@ def identity_from(environment: Mapping[str, str]) -> Identity:
         given["COMMIT_URL"],
         given["RELEASE_URL"],
         printable(environment.get("REVIEW_URL") or environment["COMMIT_URL"]),
-        f"{time[1]}T{time[2]}:{time[3]}:{time[4]}Z",  # the runner puts the commit's own time in its place
+        f"{time[1]}T{time[2]}:{time[3]}:{time[4]}Z",  # the runner replaces it by the commit's time
     )
 
 
 def render_classroom50(report: Report, who: Identity) -> str:
-    """The whole report. What a person still has to decide has not passed, and has no points yet."""
+    """Return the report. What needs manual grading has not passed and has no points."""
     scale = _scale(report)
     return to_json(
         {
@@ -80,22 +80,22 @@ def render_classroom50(report: Report, who: Identity) -> str:
             "datetime": who.datetime,
             "score": int(report.score * scale),
             "max-score": int(report.max_score * scale),
-            "tests": [_test(each, report, scale) for each in report.results],
+            "tests": [_test(result, report, scale) for result in report.results],
         }
     )
 
 
 def _scale(report: Report) -> int:
-    """By how much all points are multiplied to be whole: 1, 10, 100 and so on."""
-    points = [number for each in report.results for number in (each.points, each.criterion.points)]
-    digits = max((-int(each.normalize().as_tuple().exponent) for each in points), default=0)
+    """Return the factor that makes all points whole: 1, 10, 100 and so on."""
+    points = [number for result in report.results for number in (result.points, result.criterion.points)]
+    digits = max((-int(number.normalize().as_tuple().exponent) for number in points), default=0)
     return int(10 ** max(0, digits))
 
 
 def _test(result: Result, report: Report, scale: int) -> dict[str, Any]:
     return {
         "test-name": printable(f"{result.criterion.title} ({result.criterion.id})"),
-        "passed": not is_lost(result) and (result.manual_mark is not None or result.outcome.status == "passed"),
+        "passed": not is_failure(result) and (result.manual_mark is not None or result.outcome.status == "passed"),
         "score": int(Decimal(result.points) * scale),
         "max-score": int(result.criterion.points * scale),
         "message": "\n".join(criterion_lines(result, report)),

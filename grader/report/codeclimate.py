@@ -5,27 +5,26 @@ https://docs.gitlab.com/ci/testing/code_quality/#code-quality-report-format
 
 from grader.grading.report import Report
 from grader.report.findings import Level, findings
-from grader.report.places import Base
-from grader.report.plain import to_json_list
-from grader.report.points import so_many_points
-from grader.text import printable
+from grader.report.json_data import to_json_list
+from grader.report.locations import Base
+from grader.text import counted_points, printable
 
 _SEVERITIES: dict[Level, str] = {"error": "major", "warning": "minor", "note": "info"}
 
 
 def render_codeclimate(report: Report, base: Base) -> str:
-    """The findings of a report; an empty list where there is nothing to mend."""
+    """Return the findings of a report; an empty list if there is nothing to fix."""
     issues = []
-    for each in findings(report, base):
-        place = each.place or each.whole
-        cost = f" ({so_many_points(each.lost)} lost)" if each.lost else ""
+    for finding in findings(report, base):
+        location = finding.location or finding.fallback
+        cost = f" ({counted_points(finding.lost)} lost)" if finding.lost else ""
         issues.append(
             {
-                "description": each.text.replace("\n", " ") + cost,
-                "check_name": each.rule,
-                "fingerprint": each.fingerprint,
-                "severity": _SEVERITIES[each.level],
-                "location": {"path": printable(place.path), "lines": {"begin": place.line or 1}},
+                "description": finding.text.replace("\n", " ") + cost,
+                "check_name": finding.rule,
+                "fingerprint": finding.fingerprint,
+                "severity": _SEVERITIES[finding.level],
+                "location": {"path": printable(location.path), "lines": {"begin": location.line or 1}},
             }
         )
     return to_json_list(issues)

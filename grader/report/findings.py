@@ -1,4 +1,4 @@
-"""What has to be mended, one finding each: what costs points, the most first, then problems that no criterion has told."""
+"""The findings of a report: failed criteria, most points first, then problems that no criterion has reported."""
 
 import hashlib
 from collections import Counter
@@ -8,99 +8,104 @@ from functools import cache
 from typing import Literal, NamedTuple
 
 from grader.grading.report import Report, Result
-from grader.report.places import Base, Place, archive_around, placed
-from grader.report.points import so_many_points
-from grader.report.words import place_words, sentence, told, undecided, untold
+from grader.report.content import location_text, other_problems, result_details, sentence, undecided
+from grader.report.locations import Base, RepositoryLocation, archive_around, in_repository
 from grader.source import Location, Source
-from grader.text import printable
+from grader.text import counted_points, printable
 
 Level = Literal["error", "warning", "note"]
 _ORDER: tuple[Level, ...] = ("error", "warning", "note")
 
 
 class Finding(NamedTuple):
-    """One thing to mend. `rule` is the criterion's id or the problem's code, `text` printable, line by line.
+    """One thing to fix.
 
-    `place` is None where the submission as a whole is meant. `fingerprint` stays the same while the line stays the same,
-    wherever in its file it moves. `lost` counts what is skipped because of it as well. `place` is where to look, `whole` what
-    stands for it where that cannot be told, as far as a format has no way to leave it open.
+    `rule` is the id of the criterion or the code of the problem, `text` is printable and has several lines, `lost` includes the
+    points of criteria that are skipped because of it. `location` is None where the whole submission is meant; `fallback` is the
+    location for formats that require one. `fingerprint` does not depend on the number of the line.
     """
 
     rule: str
     level: Level
     text: str
     lost: Decimal
-    place: Place | None
-    whole: Place
+    location: RepositoryLocation | None
+    fallback: RepositoryLocation
     fingerprint: str = ""
 
 
 def findings(report: Report, base: Base) -> list[Finding]:
-    """All there is to mend in a submission; `base` is where that stands in its repository."""
-    source_of = cache(report.submission.source)  # a file is read once, however much there is to say of it
-    found = [_of_criterion(each, report, source_of, base) for each in report.results if is_lost(each)]
-    found.sort(key=lambda each: -each.lost)
+    """Return the findings of a submission; `base` is where that is in its repository."""
+    source_of = cache(report.submission.source)  # reads each file once
+    found = [_of_criterion(result, report, source_of, base) for result in report.results if is_failure(result)]
+    found.sort(key=lambda finding: -finding.lost)
     found += _undecided(report, base)
-    for each in sorted(untold(report), key=lambda each: _ORDER.index(each.severity)):
-        text = _text((printable(each.message),), each.location, base)
-        place = placed(each.location, source_of(each.location.path), base)
-        found.append(Finding(each.code, each.severity, text, Decimal(0), place, place))
+    for problem in sorted(other_problems(report), key=lambda problem: _ORDER.index(problem.severity)):
+        text = _text((printable(problem.message),), problem.location, base)
+        location = in_repository(problem.location, source_of(problem.location.path), base)
+        found.append(Finding(problem.code, problem.severity, text, Decimal(0), location, location))
     seen: Counter[str] = Counter()
-    return [each._replace(fingerprint=_fingerprint(each, seen)) for each in found]
+    return [finding._replace(fingerprint=_fingerprint(finding, seen)) for finding in found]
 
 
-def is_lost(result: Result) -> bool:
-    """Whether a criterion has cost points, or has failed: what a person has decided counts, whatever the check has found."""
+def is_failure(result: Result) -> bool:
+    """Return whether a criterion failed or lost points; a manual mark overrides the check."""
     if result.manual_mark is not None:
         return result.points < result.criterion.points
     return result.outcome.status in ("failed", "errored")
 
 
-def _whole(report: Report, base: Base, *, of_package: bool) -> Place:
-    """What stands for a finding without a place of its own: the URDF, the package, or the folder that was handed in."""
+def _fallback(report: Report, base: Base, *, of_package: bool) -> RepositoryLocation:
+    """Return the location for a finding without one: the URDF, the package.xml, or the submission's folder."""
     submission = report.submission
     path = submission.path
     if submission.package is not None and (of_package or path is None):
         path = f"{submission.package.folder}/package.xml".lstrip("/")
-    return Place(base.archive or (base.folder + path if path is not None else base.folder.rstrip("/")) or ".")
+    return RepositoryLocation(
+        base.archive or (base.folder + path if path is not None else base.folder.rstrip("/")) or "."
+    )
 
 
 def _of_criterion(result: Result, report: Report, source_of: Callable[[str], Source | None], base: Base) -> Finding:
-    criterion, what = result.criterion, told(result, report)
-    behind = [
-        each.criterion.points for each in report.results if each.because == criterion.id and each.manual_mark is None
-    ]
-    aim = f"Passes when: {sentence(criterion.title)}"
-    lines = [*what.sentences, *filter(None, [what.feedback]), aim]
-    if behind:
-        lines.append(f"Skipped because of it: {len(behind)} more, {so_many_points(sum(behind, Decimal(0)))}.")
-    place = placed(what.place, source_of(what.place.path), base) if what.place is not None else None
-    whole = place or _whole(report, base, of_package=criterion.check.subject == "package")
-    lost = sum(behind, criterion.points - result.points)
-    return Finding(criterion.id, "error", _text(tuple(lines), what.place, base), lost, place, whole)
+    criterion, details = result.criterion, result_details(result, report)
+    skipped = [
+        other.criterion.points
+        for other in report.results
+        if other.because == criterion.id and other.manual_mark is None
+    ]  # fmt: skip
+    lines = [*details.sentences, *filter(None, [details.feedback]), details.expected]
+    if skipped:
+        lines.append(f"Skipped because of it: {len(skipped)} more, {counted_points(sum(skipped, Decimal(0)))}.")
+    where = details.location
+    location = in_repository(where, source_of(where.path), base) if where is not None else None
+    fallback = location or _fallback(report, base, of_package=criterion.check.subject == "package")
+    lost = sum(skipped, criterion.points - result.points)
+    return Finding(criterion.id, "error", _text(tuple(lines), where, base), lost, location, fallback)
 
 
 def _undecided(report: Report, base: Base) -> Iterator[Finding]:
-    """What a program decides as a rule, and has to leave to a person here, with the reasons."""
-    left = undecided(report)
-    if left:
-        points = so_many_points(sum((each.criterion.points for each in left), Decimal(0)))
-        reasons = dict.fromkeys(sentence(each.outcome.message) for each in left)
-        text = "\n".join((*reasons, f"Not decided ({points}): {', '.join(each.criterion.id for each in left)}"))
-        place = _whole(report, base, of_package=all(each.criterion.check.subject == "package" for each in left))
-        yield Finding(left[0].criterion.id, "warning", text, Decimal(0), None, place)
+    """Yield one finding for all automatic criteria that need manual grading here, with the reasons."""
+    results = undecided(report)
+    if results:
+        points = counted_points(sum((result.criterion.points for result in results), Decimal(0)))
+        reasons = dict.fromkeys(sentence(result.outcome.message) for result in results)
+        names = ", ".join(result.criterion.id for result in results)
+        text = "\n".join((*reasons, f"Could not be decided ({points}): {names}"))
+        is_package = all(result.criterion.check.subject == "package" for result in results)
+        fallback = _fallback(report, base, of_package=is_package)
+        yield Finding(results[0].criterion.id, "warning", text, Decimal(0), None, fallback)
 
 
 def _text(lines: tuple[str, ...], where: Location | None, base: Base) -> str:
-    """What is said; of a file that the repository does not hold as such also where that is."""
-    is_there = where is None or not (base.archive or base.is_outside or archive_around(where.path))
-    inside = () if is_there or where is None else (f"In {place_words(where)}.",)
+    """Return the lines, and the location as well where that is not a file of the repository."""
+    is_file = where is None or not (base.archive or base.is_outside or archive_around(where.path))
+    inside = () if is_file or where is None else (f"In {location_text(where)}.",)
     return "\n".join((*lines, *inside))
 
 
 def _fingerprint(finding: Finding, seen: Counter[str]) -> str:
-    place = finding.place
-    told_by = (finding.rule, place.path, place.text) if place is not None else (finding.rule, "", "")
-    digest = hashlib.sha256("\0".join(told_by).encode("utf-8", "surrogatepass")).hexdigest()[:16]
+    location = finding.location
+    parts = (finding.rule, location.path, location.text) if location is not None else (finding.rule, "", "")
+    digest = hashlib.sha256("\0".join(parts).encode("utf-8", "surrogatepass")).hexdigest()[:16]
     seen[digest] += 1
     return f"{digest}:{seen[digest]}"

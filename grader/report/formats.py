@@ -11,7 +11,7 @@ from grader.text import without_commands
 
 if TYPE_CHECKING:
     from grader.grading.report import Report
-    from grader.report.places import Base
+    from grader.report.locations import Base
 
 Need = Literal["", "console", "base", "identity"]
 
@@ -46,6 +46,13 @@ class Format(StrEnum):
         return member
 
 
+class OutputFormat(StrEnum):
+    """The formats of an inspection, of a class, and of the changes between two runs."""
+
+    TERMINAL = "terminal"
+    JSON = "json"
+
+
 def render(report: "Report", kind: Format, base: "Base | None" = None, screen: Screen | None = None) -> str:
     """Return a report in a format; only that format's module is imported.
 
@@ -69,7 +76,7 @@ def render(report: "Report", kind: Format, base: "Base | None" = None, screen: S
 def needed(kind: Format, base: "Base | None" = None) -> tuple[object, ...]:
     """Return what the function of a format takes after the report. Raises InputError if it cannot be had."""
     if kind.needs == "base":
-        from grader.report.places import Base
+        from grader.report.locations import Base
 
         return (base or Base(),)
     if kind.needs == "identity":

@@ -1,25 +1,24 @@
 """A report as Gradescope's results.json: a test for each criterion, with the points that it earns.
 
-What a person still has to decide has no points here, because Gradescope would show them as lost; they are given there by hand.
+What needs manual grading has no points here, because Gradescope would show them as lost; give them in Gradescope.
 https://gradescope-autograders.readthedocs.io/en/latest/specs/#output-format
 """
 
 from typing import Any
 
 from grader.grading.report import Report, Result
-from grader.report.findings import is_lost
-from grader.report.markdown import criterion_markdown, whole_markdown
-from grader.report.plain import exact, to_json
-from grader.report.points import so_many_points
-from grader.text import printable
+from grader.report.findings import is_failure
+from grader.report.json_data import exact, to_json
+from grader.report.markdown import criterion_markdown, overview_markdown
+from grader.text import counted_points, printable
 
 
 def render_gradescope(report: Report) -> str:
-    """The whole report. It is visible to the student at once, unless the assignment's settings hide it."""
+    """Return the report. Students see it at once, unless the assignment's settings hide it."""
     return to_json(
         {
             "score": exact(report.score),
-            "output": whole_markdown(report),
+            "output": overview_markdown(report),
             "output_format": "md",
             "test_output_format": "md",
             "test_name_format": "text",
@@ -32,7 +31,7 @@ def render_gradescope(report: Report) -> str:
                 "submission_sha256": report.submission.sha256,
                 "pending": exact(report.pending),
             },
-            "tests": [_test(each, report) for each in report.results],
+            "tests": [_test(result, report) for result in report.results],
         }
     )
 
@@ -40,14 +39,14 @@ def render_gradescope(report: Report) -> str:
 def _test(result: Result, report: Report) -> dict[str, Any]:
     criterion = result.criterion
     parts = [part.id for part in report.rubric.parts]
-    of_part = [each.id for each in report.rubric.criteria if each.part == criterion.part]
+    of_part = [other.id for other in report.rubric.criteria if other.part == criterion.part]
     number = f"{parts.index(criterion.part) + 1}.{of_part.index(criterion.id) + 1}"
     decided = {
         "score": exact(result.points),
         "max_score": exact(criterion.points),
-        "status": "failed" if is_lost(result) or result.outcome.status == "skipped" else "passed",
+        "status": "failed" if is_failure(result) or result.outcome.status == "skipped" else "passed",
     }
-    most = f" (up to {so_many_points(criterion.points)}, given by a person)" if result.is_open else ""
+    most = f" (up to {counted_points(criterion.points)}, manual grading)" if result.is_open else ""
     return {
         **({} if result.is_open else decided),
         "name": printable(criterion.title) + most,

@@ -9,8 +9,8 @@ from rich.console import Console
 from rich.text import Text
 
 from grader.errors import MissingElement
-from grader.report.layout import show_problems, symbol, wrapped
-from grader.report.plain import problem, rounded, to_json
+from grader.report.console import show_problems, symbol, wrapped
+from grader.report.json_data import problem, rounded, to_json
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint
 from grader.robot.reader import Reading
@@ -19,7 +19,7 @@ from grader.text import printable
 
 _MAX_LISTED = 500  # links in the terminal
 _VERDICTS = {"clean": "green", "degraded": "yellow", "rejected": "bold red"}
-_SAYS = {
+_EFFECTS = {
     "clean": "ROS 2 loads it",
     "degraded": "ROS 2 loads it, but drops some of it",
     "rejected": "ROS 2 rejects it",
@@ -28,7 +28,7 @@ _SAYS = {
 
 @dataclass(frozen=True, slots=True)
 class Inspection:
-    """A URDF as read, with its joints at the positions that were asked for; `robot` is None where nothing could be read."""
+    """A URDF as read, with its joints at given positions; `robot` is None if ROS 2 reads nothing."""
 
     path: str
     reading: Reading
@@ -36,7 +36,7 @@ class Inspection:
     relative_to: str | None
 
     def poses(self) -> Iterator[tuple[str, Transform | str]]:
-        """Every link's pose in the frame that was asked for, in file order, or the reason why it has none."""
+        """Yield the pose of every link in the frame `relative_to`, in file order, or the reason why it has none."""
         if self.robot is None or self.relative_to is None:
             return
         for link in self.robot.robot.links:
@@ -47,7 +47,7 @@ class Inspection:
 
 
 def main_root(robot: Configuration) -> str | None:
-    """The root of the largest tree; None where every link hangs on a loop."""
+    """Return the root of the largest tree; None if every link is in a loop."""
     sizes = dict.fromkeys(robot.roots, 0)
     for link in robot.robot.links:
         try:
@@ -58,14 +58,14 @@ def main_root(robot: Configuration) -> str | None:
 
 
 def inspection_json(inspection: Inspection) -> str:
-    """The inspection as JSON, schema grader/inspect/v1. A pose that is undefined is null."""
+    """Return the inspection as JSON, schema grader/inspect/v1. An undefined pose is null."""
     poses = {name: rounded_matrix(pose) if isinstance(pose, Transform) else None for name, pose in inspection.poses()}
     return to_json(
         {
             "schema": "grader/inspect/v1",
             "path": inspection.path,
             "verdict": inspection.reading.verdict,
-            "problems": [problem(each) for each in inspection.reading.problems],
+            "problems": [problem(found) for found in inspection.reading.problems],
             "robot": _robot(inspection.robot) if inspection.robot is not None else None,
             "relative_to": inspection.relative_to,
             "poses": poses,
@@ -74,16 +74,16 @@ def inspection_json(inspection: Inspection) -> str:
 
 
 def rounded_matrix(pose: Transform) -> list[list[float]]:
-    """A pose as rows of numbers, rounded to 1e-12: beyond that, machines differ."""
+    """Return a pose as rows of numbers, rounded to 1e-12, because machines differ beyond that."""
     return [[round(value, 12) + 0.0 for value in row] for row in pose.matrix]
 
 
 def inspection_terminal(inspection: Inspection, console: Console) -> None:
-    """Print the inspection for a person."""
+    """Print the inspection."""
     reading, robot = inspection.reading, inspection.robot
     name = f"robot {robot.robot.name!r}" if robot is not None else "no robot"
-    says = (_SAYS[reading.verdict], _VERDICTS[reading.verdict])
-    console.print(Text.assemble((printable(inspection.path), "bold"), ": ", says, f", {printable(name)}"))
+    effect = (_EFFECTS[reading.verdict], _VERDICTS[reading.verdict])
+    console.print(Text.assemble((printable(inspection.path), "bold"), ": ", effect, f", {printable(name)}"))
     if reading.problems:
         console.print()
         console.print(Text("Problems", style="bold"))

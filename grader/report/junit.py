@@ -1,7 +1,7 @@
 """A report as JUnit XML: a suite for each part, a test case for each criterion. Jenkins, GitLab and others show it.
 
-A failure is the student's, an error the grader's own; what a person still has to decide is skipped. Times are left out: the
-same submission gives the same report.
+A failure is the student's, an error the grader's; what needs manual grading is skipped. There are no times: the same submission
+gives the same report.
 """
 
 from itertools import groupby
@@ -10,26 +10,30 @@ from typing import Any
 from lxml import etree
 
 from grader.grading.report import Report, Result
-from grader.report.findings import is_lost
-from grader.report.places import Base, archive_around
-from grader.report.plain_text import criterion_lines, headline, problem_line, provenance
-from grader.report.points import points_words
-from grader.report.words import score_words, told, untold
-from grader.text import printable
+from grader.report.content import other_problems, result_details, score_text
+from grader.report.findings import is_failure
+from grader.report.locations import Base, archive_around
+from grader.report.plain_text import criterion_lines, problem_line, provenance, submission_lines
+from grader.text import format_points, printable
 
 
 def render_junit(report: Report, base: Base) -> str:
-    """The whole report; paths are those in the repository, `base` is where the submission stands in it."""
+    """Return the report; its paths are those in the repository, where the submission is at `base`."""
     top = etree.Element("testsuites", {"name": printable(report.rubric.title), **_counts(report.results)})
     titles = {part.id: part.title for part in report.rubric.parts}
-    said = [score_words(report), *headline(report), *map(problem_line, untold(report)), provenance(report)]
+    said = [
+        score_text(report),
+        *submission_lines(report),
+        *map(problem_line, other_problems(report)),
+        provenance(report),
+    ]
     suites = [
-        (titles[part], tuple(some)) for part, some in groupby(report.results, key=lambda each: each.criterion.part)
+        (titles[part], tuple(some)) for part, some in groupby(report.results, key=lambda result: result.criterion.part)
     ]
     for number, (title, results) in enumerate(suites or [(report.rubric.title, ())]):
         suite = etree.SubElement(top, "testsuite", {"name": printable(title), **_counts(results)})
-        if number == 0:  # what is said of the submission as a whole has no place of its own that every reader shows
-            _properties(suite, _whole(report))
+        if number == 0:  # the format has no other place for it that every reader shows
+            _properties(suite, _submission_properties(report))
         for result in results:
             _case(suite, result, report, base)
         if number == 0:
@@ -39,24 +43,24 @@ def render_junit(report: Report, base: Base) -> str:
 
 
 def _counts(results: tuple[Result, ...]) -> dict[str, str]:
-    kinds = [_kind(each) for each in results]
+    kinds = [_kind(result) for result in results]
     named = {"failures": "failure", "errors": "error", "skipped": "skipped"}
     return {"tests": str(len(kinds)), **{key: str(kinds.count(kind)) for key, kind in named.items()}}
 
 
 def _kind(result: Result) -> str:
-    """The element that says what became of a criterion; empty where it has all points."""
-    if is_lost(result):
+    """Return the element for the status of a criterion; empty if it has all points."""
+    if is_failure(result):
         return "error" if result.outcome.status == "errored" and result.manual_mark is None else "failure"
     return "skipped" if result.manual_mark is None and result.outcome.status in ("skipped", "pending") else ""
 
 
-def _whole(report: Report) -> dict[str, str]:
+def _submission_properties(report: Report) -> dict[str, str]:
     submission = report.submission
     return {
-        "score": points_words(report.score),
-        "max_score": points_words(report.max_score),
-        "pending": points_words(report.pending),
+        "score": format_points(report.score),
+        "max_score": format_points(report.max_score),
+        "pending": format_points(report.pending),
         "submission": printable(submission.id),
         "submission_sha256": submission.sha256 or "",
         "rubric": printable(report.rubric.id),
@@ -73,18 +77,18 @@ def _case(suite: Any, result: Result, report: Report, base: Base) -> None:
         name=printable(f"{criterion.title} ({criterion.id})"),
         classname=f"{report.rubric.id}.{criterion.part}",
     )
-    place = told(result, report).place
-    if place is not None and place.path != "-" and not (base.archive or archive_around(place.path)):
-        case.set("file", printable(base.folder + place.path))
-        case.set("line", str(place.line))
-    _properties(case, {"points": f"{points_words(result.points)}/{points_words(criterion.points)}"})
+    where = result_details(result, report).location
+    if where is not None and where.path != "-" and not (base.archive or archive_around(where.path)):
+        case.set("file", printable(base.folder + where.path))
+        case.set("line", str(where.line))
+    _properties(case, {"points": f"{format_points(result.points)}/{format_points(criterion.points)}"})
     lines = criterion_lines(result, report)
     kind = _kind(result)
     if not kind:
         etree.SubElement(case, "system-out").text = "\n".join(lines) + "\n"
         return
     found = etree.SubElement(
-        case, kind, type="marked by hand" if result.manual_mark else result.outcome.status, message=lines[0]
+        case, kind, type="marked manually" if result.manual_mark else result.outcome.status, message=lines[0]
     )
     found.text = "\n".join(lines) + "\n"
 

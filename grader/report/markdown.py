@@ -1,43 +1,44 @@
-"""A report as Markdown (CommonMark, without extensions): for job summaries, comments and the pages of an LMS."""
+"""A report as Markdown (CommonMark without extensions): for job summaries, comments and pages of an LMS."""
 
 from collections.abc import Iterator
 from itertools import groupby
 from textwrap import indent
 
 from grader.grading.report import Report, Result
-from grader.report.markdown_text import code, escaped, fenced
-from grader.report.plain_text import problem_line, provenance, quoted_lines
-from grader.report.points import points_words
-from grader.report.words import (
+from grader.report.content import (
+    Details,
     advice,
-    asides,
-    earned,
+    earned_text,
     evidence,
+    ignored_lines,
+    location_text,
     notes,
-    package_words,
-    pending_words,
-    place_words,
-    score_words,
+    other_problems,
+    other_problems_title,
+    package_line,
+    pending_line,
+    result_details,
+    score_text,
     status_of,
     summary,
-    told,
-    untold,
 )
-from grader.text import printable
+from grader.report.markdown_text import code, escaped, fenced
+from grader.report.plain_text import excerpt_lines, problem_line, provenance
+from grader.text import format_points, printable
 
 _MARKS = {"passed": "\u2713", "failed": "\u2717", "skipped": "\u2212", "pending": "?", "errored": "!"}
-_CUT = "**The report is cut off here: it is longer than can be shown.** A report that is saved to a file is whole.\n"
+_CUT = "**The report is cut off here, because it is too long.** A report that is saved to a file is complete.\n"
 
 
 def render_markdown(report: Report, *, answers: bool = True) -> str:
-    """Return the whole report, with the model answers that its rubric was loaded with or without."""
+    """Return the report, with or without the model answers that its rubric was loaded with."""
     return "\n".join(f"{block}\n" for block in _blocks(report, answers=answers))
 
 
 def cut_markdown(report: Report, most: int) -> str:
-    """The report in no more than so many bytes of UTF-8: whole blocks from its beginning, and a notice if some are missing.
+    """Return the first blocks of a report that fit into a number of bytes of UTF-8, and a notice if some are missing.
 
-    Job summaries are made of it, which students read: no model answers are in it.
+    It is for job summaries, which students read, so it has no model answers.
     """
     text = render_markdown(report, answers=False)
     if len(text.encode()) <= most:
@@ -52,69 +53,72 @@ def cut_markdown(report: Report, most: int) -> str:
     return "\n".join((*kept, _CUT)) if len(_CUT.encode()) <= most else ""
 
 
-def whole_markdown(report: Report) -> str:
-    """What is said of the submission as a whole: the report without its criteria."""
+def overview_markdown(report: Report) -> str:
+    """Return the report without its criteria."""
     return "\n\n".join((*_head(report), *_evidence(report), *_problems(report)))
 
 
 def criterion_markdown(result: Result, report: Report) -> str:
-    """What is said of one criterion, beside its title and points."""
-    return "\n\n".join(_details(result, report, set(), answers=False))
+    """Return what is said of one criterion, beside its title and points."""
+    return "\n\n".join(_details(result_details(result, report), report, set(), answers=False))
 
 
 def _blocks(report: Report, *, answers: bool) -> Iterator[str]:
-    """The report piece by piece; each stands for itself."""
+    """Yield the report block by block."""
     yield from _head(report)
     titles = {part.id: part.title for part in report.rubric.parts}
     shown: set[str] = set()
-    for part, of_part in groupby(report.results, key=lambda each: each.criterion.part):
+    for part, of_part in groupby(report.results, key=lambda result: result.criterion.part):
         results = tuple(of_part)
-        yield f"## {escaped(printable(titles[part]))} ({earned(results)})"
-        for about, some in groupby(results, key=lambda each: each.criterion.about):
-            group = tuple(some)
+        yield f"## {escaped(printable(titles[part]))} ({earned_text(results)})"
+        for about, of_group in groupby(results, key=lambda result: result.criterion.about):
+            group = tuple(of_group)
             if about and about != titles[part]:
-                yield f"### {escaped(printable(about))} ({earned(group)})"
-            yield from (_item(each, report, shown, answers=answers) for each in group)
+                yield f"### {escaped(printable(about))} ({earned_text(group)})"
+            yield from (_item(result, report, shown, answers=answers) for result in group)
     yield from _evidence(report)
     yield from _problems(report)
     yield from filter(None, (advice(report),))
 
 
 def _head(report: Report) -> Iterator[str]:
-    yield f"# {escaped(score_words(report))}: {escaped(printable(report.rubric.title))}"
-    yield from (escaped(line) for line in (summary(report), package_words(report)) if line)
+    yield f"# {escaped(score_text(report))}: {escaped(printable(report.rubric.title))}"
+    yield from (escaped(line) for line in (summary(report), package_line(report)) if line)
     if report.pending:
-        yield f"**{escaped(pending_words(report))}**"
+        yield f"**{escaped(pending_line(report))}**"
     yield escaped(provenance(report))
-    yield from map(escaped, (*notes(report), *asides(report)))
+    yield from map(escaped, (*notes(report), *ignored_lines(report)))
 
 
 def _item(result: Result, report: Report, shown: set[str], *, answers: bool) -> str:
     criterion, status = result.criterion, status_of(result)
-    points = f"{points_words(result.points)}/{points_words(criterion.points)}"
-    head = f"- {_MARKS[status]} {points} {escaped(printable(criterion.title))}"
+    start = f"- {_MARKS[status]} {format_points(result.points)}/{format_points(criterion.points)}"
+    title, name = escaped(printable(criterion.title)), code(criterion.id)
     if status == "passed" and result.manual_mark is None:
-        return head
-    details = (indent(block, "  ") for block in _details(result, report, shown, answers=answers))
-    return "\n\n".join((f"{head} ({code(criterion.id)})", *details))
+        return f"{start} {title}"
+    details = result_details(result, report)
+    is_title = not details.expected and status != "skipped"
+    blocks = (indent(block, "  ") for block in _details(details, report, shown, answers=answers))
+    return "\n\n".join((f"{start} {title} ({name})" if is_title else f"{start} {name}", *blocks))
 
 
-def _details(result: Result, report: Report, shown: set[str], *, answers: bool) -> Iterator[str]:
-    """What is said of a criterion, block by block. Feedback that is shown already is not shown once more."""
-    what = told(result, report)
-    yield from map(escaped, what.sentences)
-    if what.place is not None:
-        yield code(place_words(what.place))
-        quoted = list(quoted_lines(what.place, report))
-        if quoted:
-            yield fenced(quoted)
-    for name, lines in (("Found", what.found), ("Model answer", what.model if answers else ())):
+def _details(details: Details, report: Report, shown: set[str], *, answers: bool) -> Iterator[str]:
+    """Yield what is said of a criterion, block by block, without feedback that is shown already."""
+    yield from map(escaped, details.sentences)
+    if details.expected:
+        yield escaped(details.expected)
+    if details.location is not None:
+        yield code(location_text(details.location))
+        lines = list(excerpt_lines(details.location, report))
         if lines:
-            yield f"{name}:"
-            yield fenced(list(lines))
-    if what.feedback and what.feedback not in shown:
-        shown.add(what.feedback)
-        yield f"*{escaped(what.feedback)}*"
+            yield fenced(lines)
+    for title, lines in (("Found", list(details.answer)), ("Model answer", list(details.model_answer) * answers)):
+        if lines:
+            yield f"{title}:"
+            yield fenced(lines)
+    if details.feedback and details.feedback not in shown:
+        shown.add(details.feedback)
+        yield f"*{escaped(details.feedback)}*"
 
 
 def _evidence(report: Report) -> Iterator[str]:
@@ -122,11 +126,11 @@ def _evidence(report: Report) -> Iterator[str]:
         if number == 0:
             yield "## Evidence"
         yield f"{escaped(part)}:"
-        yield "\n".join(f"- {escaped(words)}" for words, _ in lines)
+        yield "\n".join(f"- {escaped(text)}" for text, _ in lines)
 
 
 def _problems(report: Report) -> Iterator[str]:
-    problems = list(untold(report))
+    problems = list(other_problems(report))
     if problems:
-        yield f"## What else there is to say of the {'file' if report.submission.is_single else 'files'}"
-        yield from (f"- {escaped(problem_line(each))}" for each in problems)
+        yield f"## {other_problems_title(report)}"
+        yield from (f"- {escaped(problem_line(problem))}" for problem in problems)

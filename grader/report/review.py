@@ -1,4 +1,4 @@
-"""What a person has to see to decide a criterion: the answer that was found, the model answer, where the pictures are."""
+"""What `grader review` shows of a criterion: the answer, the model answer, where the pictures are."""
 
 from pathlib import Path
 
@@ -6,52 +6,51 @@ from rich.console import Console
 from rich.text import Text
 
 from grader.classroom.gradebook.marks import Mark, PendingCriterion
-from grader.report.layout import wrapped
-from grader.report.points import points_words, so_many_points
-from grader.text import printable
+from grader.report.console import wrapped
+from grader.text import counted_points, format_points, printable
 
 _INDENT = 2
 
 
-def render_pending(pending: PendingCriterion, place: str, console: Console) -> None:
-    """Print a question of a student, `place` of all that wait. Nothing of the submission is taken for markup or control codes."""
+def render_pending(pending: PendingCriterion, position: str, console: Console) -> None:
+    """Print a criterion of a student, at `position` in the review. Text of the submission is never interpreted as markup."""
     criterion, outcome = pending.result.criterion, pending.result.outcome
     student = pending.grade.student
     who = f"{student.name} ({student.key})" if student.name else student.key
     console.print()
-    head = f"{place}  {printable(who)}: {printable(criterion.title)}  {points_words(criterion.points)} points"
+    head = f"{position}  {printable(who)}: {printable(criterion.title)}  {format_points(criterion.points)} points"
     wrapped(console, Text(head, style="bold"), 0)
     wrapped(console, Text(printable(outcome.message)), 0)
     if isinstance(outcome.measured, str):
-        _show("Found", outcome.measured, console)
+        _print_block("Found", outcome.measured, console)
     elif isinstance(outcome.measured, tuple | list):
-        _show("Look at", "\n".join(_where(pending, str(each)) for each in outcome.measured), console)
+        _print_block("Look at", "\n".join(_where(pending, str(file)) for file in outcome.measured), console)
     if criterion.answer:
-        _show("Model answer", criterion.answer, console)
+        _print_block("Model answer", criterion.answer, console)
     if outcome.location is not None:
         place = f"in {_where(pending, outcome.location.path)}, line {outcome.location.line}"
         wrapped(console, Text(printable(place), "dim"), 0)
 
 
-def mark_words(mark: Mark) -> str:
-    """Return a mark in one printable line: points, by whom if they gave a name, when, and the comment."""
-    what = "taken back" if mark.points is None else so_many_points(mark.points)
-    words = [what, f"by {mark.by}" if mark.by else "by a person without a name", f"at {mark.at}"]
+def mark_text(mark: Mark) -> str:
+    """Return a mark in one printable line: points, name, time, comment."""
+    points = "withdrawn" if mark.points is None else counted_points(mark.points)
+    parts = [points, f"by {mark.by}" if mark.by else "by an unnamed person", f"at {mark.at}"]
     comment = " ".join(mark.comment.split())
-    return printable(f"{' '.join(words)}: {comment}" if comment else " ".join(words))
+    return printable(f"{' '.join(parts)}: {comment}" if comment else " ".join(parts))
 
 
-def _show(what: str, text: str, console: Console) -> None:
-    wrapped(console, Text(f"{what}:", style="bold"), 0)
+def _print_block(title: str, text: str, console: Console) -> None:
+    wrapped(console, Text(f"{title}:", style="bold"), 0)
     for line in filter(str.strip, text.splitlines()):
         wrapped(console, Text(printable(line)), _INDENT)
 
 
 def _where(pending: PendingCriterion, path: str) -> str:
-    """A file of the submission as a person may open it."""
+    """Return the path of a file of the submission on this machine."""
     origin = pending.grade.files
     if len(origin.paths) == 1:
         return str(Path(origin.root, origin.paths[0], path))
-    called = dict(zip(origin.names or [each.rpartition("/")[2] for each in origin.paths], origin.paths, strict=True))
-    file = next((name for name in called if path == name or path.startswith(f"{name}/")), path)
-    return str(Path(origin.root, called.get(file, file) + path.removeprefix(file)))
+    named = dict(zip(origin.names or [name.rpartition("/")[2] for name in origin.paths], origin.paths, strict=True))
+    file = next((name for name in named if path == name or path.startswith(f"{name}/")), path)
+    return str(Path(origin.root, named.get(file, file) + path.removeprefix(file)))

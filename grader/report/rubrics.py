@@ -1,4 +1,4 @@
-"""Rubrics, checks and problems in plain text, for those who write rubrics and those who are graded by them."""
+"""Rubrics, checks and problem codes in plain text."""
 
 import inspect
 import textwrap
@@ -9,9 +9,8 @@ from grader.grading.rubric import Criterion, Rubric
 from grader.names import did_you_mean
 from grader.package.catalogue import PACKAGE_CATALOGUE
 from grader.problems import Kind
-from grader.report.points import points_words
 from grader.robot.catalogue import CATALOGUE
-from grader.text import printable
+from grader.text import format_points, printable
 
 _WIDTH = 80
 EVERY_KIND = (*CATALOGUE, *PACKAGE_CATALOGUE)
@@ -24,34 +23,35 @@ EFFECTS = {
 
 
 def rubric_text(rubric: Rubric) -> str:
-    """A rubric part by part, a line for each criterion, and the model answers that it was loaded with."""
-    lines = [f"{rubric.id}: {rubric.title} ({points_words(rubric.points)} points)", f"sha256 {rubric.sha256}"]
+    """Return the parts and criteria of a rubric, with the model answers that it was loaded with."""
+    lines = [f"{rubric.id}: {rubric.title} ({format_points(rubric.points)} points)", f"sha256 {rubric.sha256}"]
     for part in rubric.parts:
-        rows = [each for each in rubric.criteria if each.part == part.id]
+        criteria = [criterion for criterion in rubric.criteria if criterion.part == part.id]
         lines += ["", f"{part.id}: {part.title}"]
-        width = max((len(each.id) for each in rows), default=0)
-        for each in rows:
-            lines.append(f"  {each.id:<{width}}  {points_words(each.points):>4}  {printable(each.title)}")
-            if each.answer:
-                lines.append(textwrap.indent(_filled(f"Model answer: {printable(each.answer)}"), "    "))
+        width = max((len(criterion.id) for criterion in criteria), default=0)
+        for criterion in criteria:
+            points = format_points(criterion.points)
+            lines.append(f"  {criterion.id:<{width}}  {points:>4}  {printable(criterion.title)}")
+            if criterion.answer:
+                lines.append(textwrap.indent(_filled(f"Model answer: {printable(criterion.answer)}"), "    "))
     return "\n".join(lines) + "\n"
 
 
 def checks_text() -> str:
-    """Every check with the fact that it states and the arguments that it takes."""
+    """Return every check with the fact that it tests and its arguments."""
     return "\n".join(map(_listed, check_names()))
 
 
 def _listed(name: str) -> str:
     try:
         check = find_check(name)
-    except InputError as error:  # another package's fault must not hide the other checks
+    except InputError as error:  # a broken plug-in must not hide the other checks
         return f"{name}\n  {error}\n"
     return _check_lines(check) if check is not None else ""
 
 
 def explanation(name: str, rubric: Rubric) -> str:
-    """What is to say about a code, a criterion or a check; raises InputError for a name that is none of them."""
+    """Return the explanation of a code, a criterion or a check. Raises InputError for another name."""
     for kind in EVERY_KIND:
         if kind.code == name.upper():
             return _kind_text(kind)
@@ -61,10 +61,10 @@ def explanation(name: str, rubric: Rubric) -> str:
     check = find_check(name)
     if check is not None:
         return _check_text(check)
-    known = [kind.code for kind in EVERY_KIND] + [each.id for each in rubric.criteria] + check_names()
-    lists = f"; {rubric.shown_by} lists the criteria, grader rubric checks the checks, and reports name the codes"
+    known = [kind.code for kind in EVERY_KIND] + [criterion.id for criterion in rubric.criteria] + check_names()
+    lists = f"; {rubric.shown_by} lists the criteria, grader rubric checks lists the checks, and reports show the codes"
     guess = did_you_mean(name, known) or lists
-    raise InputError(f"there is nothing to explain under {name!r}{guess}")
+    raise InputError(f"there is no problem code, criterion or check {name!r}{guess}")
 
 
 def _kind_text(kind: Kind) -> str:
@@ -74,14 +74,14 @@ def _kind_text(kind: Kind) -> str:
 
 def _criterion_text(criterion: Criterion, rubric: Rubric) -> str:
     lines = [
-        f"{criterion.id} (points: {points_words(criterion.points)}; part {criterion.part} of {rubric.id})",
+        f"{criterion.id} (points: {format_points(criterion.points)}; part {criterion.part} of {rubric.id})",
         "",
         _filled(f"Passes when: {criterion.title}."),
     ]
     if criterion.feedback:
         lines += ["", _filled(criterion.feedback)]
     if criterion.requires:
-        lines += ["", _filled(f"Decided only if these passed: {', '.join(criterion.requires)}.")]
+        lines += ["", _filled(f"Skipped unless these passed: {', '.join(criterion.requires)}.")]
     given = ", ".join(f"{key} = {_toml(value)}" for key, value in criterion.arguments.items())
     lines += ["", _filled(f"How it is decided: {criterion.check.name}. {criterion.check.fact}")]
     if given:
@@ -90,8 +90,8 @@ def _criterion_text(criterion: Criterion, rubric: Rubric) -> str:
 
 
 def _check_text(check: Check) -> str:
-    text = "\n\n".join(_filled(each) for each in (inspect.getdoc(check.function) or "").split("\n\n"))
-    return f"{check.name}: a check that a rubric can name\n\n{text}\n{_arguments(check)}"
+    text = "\n\n".join(_filled(paragraph) for paragraph in (inspect.getdoc(check.function) or "").split("\n\n"))
+    return f"{check.name}: a check for rubrics\n\n{text}\n{_arguments(check)}"
 
 
 def _check_lines(check: Check) -> str:
@@ -100,9 +100,9 @@ def _check_lines(check: Check) -> str:
 
 def _arguments(check: Check) -> str:
     lines = []
-    for each in check.parameters.values():
-        default = "" if each.required else f", {_toml(each.default)} unless told"
-        lines.append(f"    {each.name}: {each.type.name}{default}\n")
+    for parameter in check.parameters.values():
+        default = "" if parameter.required else f", default: {_toml(parameter.default)}"
+        lines.append(f"    {parameter.name}: {parameter.type.name}{default}\n")
     return "".join(lines)
 
 
@@ -117,7 +117,7 @@ def _toml(value: object) -> str:
         case list() | tuple():
             return f"[{', '.join(map(_toml, value))}]"
         case dict():
-            return "{ " + ", ".join(f"{key} = {_toml(each)}" for key, each in value.items()) + " }"
+            return "{ " + ", ".join(f"{key} = {_toml(item)}" for key, item in value.items()) + " }"
         case _:
             return str(value)
 

@@ -1,4 +1,4 @@
-"""A report as SARIF 2.1.0, the subset that GitHub's code scanning reads: a result for each finding, a rule for each kind of it.
+"""A report as SARIF 2.1.0, the subset that GitHub's code scanning reads: a result for each finding, a rule for each criterion or code.
 
 https://docs.github.com/code-security/reference/code-scanning/sarif-files/sarif-support
 """
@@ -7,22 +7,22 @@ from typing import Any
 from urllib.parse import quote
 
 from grader.grading.report import Report
+from grader.report.content import explain_command
 from grader.report.findings import Finding, findings
-from grader.report.places import Base, Place
-from grader.report.plain import exact, to_json
-from grader.report.plain_text import criterion_lines, headline
+from grader.report.json_data import exact, to_json
+from grader.report.locations import Base, RepositoryLocation
+from grader.report.plain_text import criterion_lines, submission_lines
 from grader.report.rubrics import EVERY_KIND
-from grader.report.words import explain_command
 from grader.text import printable
 
 _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sarif-schema-2.1.0.json"
-_MOST = 5000  # results of a run that GitHub shows
+_MAX_RESULTS = 5000  # results of a run that GitHub shows
 
 
 def render_sarif(report: Report, base: Base) -> str:
-    """The whole report: findings as results, everything else in the run's properties."""
+    """Return the report: findings as results, everything else in the run's properties."""
     found = findings(report, base)
-    rules = list(dict.fromkeys(each.rule for each in found))
+    rules = list(dict.fromkeys(finding.rule for finding in found))
     run: dict[str, Any] = {
         "tool": {
             "driver": {
@@ -33,14 +33,14 @@ def render_sarif(report: Report, base: Base) -> str:
         },
         "columnKind": "unicodeCodePoints",
         "automationDetails": {"id": f"grader/{printable(report.rubric.id)}/"},
-        "results": [_result(each, rules.index(each.rule)) for each in found[:_MOST]],
+        "results": [_result(finding, rules.index(finding.rule)) for finding in found[:_MAX_RESULTS]],
         "properties": _properties(report, len(found)),
     }
     return to_json({"$schema": _SCHEMA, "version": "2.1.0", "runs": [run]})
 
 
 def _rule(name: str, report: Report) -> dict[str, Any]:
-    """A criterion, or a kind of problem. GitHub wants each of the texts, and none of them empty."""
+    """Return the rule of a criterion or a problem code. GitHub requires each of the texts, not empty."""
     for criterion in report.rubric.criteria:
         if criterion.id == name:
             title, command = printable(criterion.title), explain_command(name, report)
@@ -58,7 +58,7 @@ def _described(name: str, title: str, text: str, advice: str, level: str, comman
         "id": name,
         "shortDescription": {"text": title},
         "fullDescription": {"text": text},
-        "help": {"text": f"{advice}\n\n`{command}` says more."},
+        "help": {"text": f"{advice}\n\n`{command}` explains it."},
         "defaultConfiguration": {"level": level},
         "properties": {"tags": ["grading"]},
     }
@@ -71,50 +71,50 @@ def _result(finding: Finding, index: int) -> dict[str, Any]:
         "ruleIndex": index,
         "level": finding.level,
         "message": {"text": _no_links(finding.text)},
-        "locations": [{"physicalLocation": _physical(finding.place or finding.whole)}],
+        "locations": [{"physicalLocation": _physical(finding.location or finding.fallback)}],
         "partialFingerprints": {"primaryLocationLineHash": finding.fingerprint},
         **cost,
     }
 
 
 def _no_links(text: str) -> str:
-    """Text in which no viewer finds SARIF's way to write a link."""
+    """Return a text without SARIF's syntax for links."""
     return text.replace("](", "] (")
 
 
-def _physical(place: Place) -> dict[str, Any]:
-    uri = quote(place.path.encode("utf-8", "surrogateescape"))
+def _physical(location: RepositoryLocation) -> dict[str, Any]:
+    uri = quote(location.path.encode("utf-8", "surrogateescape"))
     region: dict[str, Any] = {"startLine": 1}
-    if place.line is not None:
+    if location.line is not None:
         region = {
-            "startLine": place.line,
-            "startColumn": place.column,
-            "endLine": place.line,
-            "endColumn": max(place.end, place.column),
-            **({"snippet": {"text": printable(place.meant)}} if place.meant else {}),
+            "startLine": location.line,
+            "startColumn": location.column,
+            "endLine": location.line,
+            "endColumn": max(location.end, location.column),
+            **({"snippet": {"text": printable(location.meant)}} if location.meant else {}),
         }
     return {"artifactLocation": {"uri": uri, "uriBaseId": "%SRCROOT%"}, "region": region}
 
 
 def _properties(report: Report, count: int) -> dict[str, Any]:
-    """What code scanning has no place for: the points, what was not decided, and where all this comes from."""
+    """Return what code scanning has no field for: points, criteria, provenance."""
     return {
         "score": exact(report.score),
         "maxScore": exact(report.max_score),
         "pending": exact(report.pending),
         "rubric": {"id": printable(report.rubric.id), "sha256": report.rubric.sha256},
         "submission": {"id": printable(report.submission.id), "sha256": report.submission.sha256},
-        "said": headline(report),
-        "leftOut": max(0, count - _MOST),
+        "said": submission_lines(report),
+        "leftOut": max(0, count - _MAX_RESULTS),
         "criteria": [
             {
-                "id": each.criterion.id,
-                "title": printable(each.criterion.title),
-                "status": each.outcome.status,
-                "points": exact(each.points),
-                "maxPoints": exact(each.criterion.points),
-                "said": criterion_lines(each, report),
+                "id": result.criterion.id,
+                "title": printable(result.criterion.title),
+                "status": result.outcome.status,
+                "points": exact(result.points),
+                "maxPoints": exact(result.criterion.points),
+                "said": criterion_lines(result, report),
             }
-            for each in report.results
+            for result in report.results
         ],
     }

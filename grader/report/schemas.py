@@ -1,8 +1,11 @@
-"""The JSON Schemas (draft 2020-12) of what the grader writes."""
+"""The JSON Schemas (draft 2020-12) of the grader's output and of rubrics."""
 
-from typing import Any
+from types import UnionType
+from typing import Any, Literal, get_args, get_origin
 
-_DIALECT = "https://json-schema.org/draft/2020-12/schema"
+from grader.checks.registry import CHECKS, Check, describe
+
+_DRAFT = "https://json-schema.org/draft/2020-12/schema"
 _TEXT: dict[str, Any] = {"type": "string"}
 _NUMBER: dict[str, Any] = {"type": "number"}
 _COUNT: dict[str, Any] = {"type": "integer", "minimum": 1}
@@ -59,7 +62,7 @@ _EXHIBIT = _object(
 )
 
 REPORT_SCHEMA: dict[str, Any] = {
-    "$schema": _DIALECT,
+    "$schema": _DRAFT,
     "title": "grader report",
     **_object(
         {
@@ -94,7 +97,7 @@ _ROW = {**_array(_NUMBER), "minItems": 4, "maxItems": 4}
 _JOINT = _object({"name": _TEXT, "type": _TEXT, "parent": _TEXT, "child": _TEXT, "axis": _nullable(_VECTOR)})
 
 INSPECT_SCHEMA: dict[str, Any] = {
-    "$schema": _DIALECT,
+    "$schema": _DRAFT,
     "title": "grader inspection",
     **_object(
         {
@@ -172,7 +175,7 @@ _STUDENT = _object(
 )
 
 CLASS_SCHEMA: dict[str, Any] = {
-    "$schema": _DIALECT,
+    "$schema": _DRAFT,
     "title": "grader class",
     **_object(
         {
@@ -192,7 +195,7 @@ _RUN = _object({"run": _COUNT, "started": _TEXT, "grader": _GRADER, "rubric": _o
 _CHANGE: dict[str, Any] = {"id": _TEXT, "before": _nullable(_POINTS), "after": _nullable(_POINTS)}
 
 DIFF_SCHEMA: dict[str, Any] = {
-    "$schema": _DIALECT,
+    "$schema": _DRAFT,
     "title": "grader diff",
     **_object(
         {
@@ -203,3 +206,85 @@ DIFF_SCHEMA: dict[str, Any] = {
         }
     ),
 }
+
+
+def json_schema(name: str) -> dict[str, Any]:
+    """Return the schema of a report, rubric, inspection, class or diff."""
+    if name == "rubric":
+        return rubric_schema()
+    return {"report": REPORT_SCHEMA, "inspect": INSPECT_SCHEMA, "class": CLASS_SCHEMA, "diff": DIFF_SCHEMA}[name]
+
+
+def rubric_schema() -> dict[str, Any]:
+    """The schema of a rubric file, with the arguments of every check that comes with the grader."""
+    checks = [describe(function) for function in CHECKS]
+    criterion = _object(
+        {
+            "id": _TEXT,
+            "part": _TEXT,
+            "about": _TEXT,
+            "title": _TEXT,
+            "points": _POINTS,
+            "check": _TEXT,
+            "with": {"type": "object"},
+            "requires": _array(_TEXT),
+            "feedback": _TEXT,
+        },
+        optional=("about", "with", "requires", "feedback"),
+    )
+    criterion["allOf"] = [_arguments_rule(check) for check in checks]
+    part = _object(
+        {"id": _TEXT, "title": _TEXT, "needs": {"enum": ["urdf", "package", "files"]}, "points": _POINTS},
+        ("needs", "points"),
+    )
+    evidence = _object({"id": _TEXT, "part": _TEXT, "title": _TEXT, "names": {**_array(_TEXT), "minItems": 1}})
+    percent = {"type": "number", "minimum": 0, "maximum": 100}
+    late = _object(
+        {"due": _TEXT, "grace_minutes": _POINTS, "percent_per_day": percent, "floor_percent": percent},
+        optional=("due", "grace_minutes", "floor_percent"),
+    )
+    rubric = _object(
+        {
+            "id": _TEXT,
+            "title": _TEXT,
+            "reference": _TEXT,
+            "urdf": _TEXT,
+            "package": _TEXT,
+            "points": _POINTS,
+            "answers": {"type": "string", "pattern": r"\.toml$"},
+            "part": {**_array(part), "minItems": 1},
+            "criterion": {**_array(criterion), "minItems": 1},
+            "evidence": {**_array(evidence), "minItems": 1},
+            "late": late,
+        },
+        optional=("reference", "urdf", "package", "points", "answers", "evidence", "late"),
+    )
+    return {"$schema": _DRAFT, "title": "grader rubric", **rubric}
+
+
+def _arguments_rule(check: Check) -> dict[str, Any]:
+    optional = tuple(each.name for each in check.parameters.values() if not each.required)
+    arguments = _object({each.name: type_schema(each.type) for each in check.parameters.values()}, optional)
+    condition = {"properties": {"check": {"const": check.name}}, "required": ["check"]}
+    then: dict[str, Any] = {"properties": {"with": arguments}}
+    if arguments["required"]:
+        then["required"] = ["with"]
+    return {"if": condition, "then": then}
+
+
+def type_schema(annotation: Any) -> dict[str, Any]:
+    """The schema of a check's argument, from its annotation."""
+    simple = {float: _NUMBER, int: {"type": "integer"}, str: _TEXT, bool: {"type": "boolean"}}
+    if annotation in simple:
+        return simple[annotation]
+    inner = get_args(annotation)
+    if get_origin(annotation) is Literal:
+        return {"enum": list(inner)}
+    if get_origin(annotation) is UnionType:
+        return {"anyOf": [type_schema(each) for each in inner]}
+    if get_origin(annotation) in (list, tuple):
+        schema = {**_array(type_schema(inner[0])), "minItems": 1}
+        if get_origin(annotation) is tuple and Ellipsis not in inner:
+            schema |= {"minItems": len(inner), "maxItems": len(inner)}
+        return schema
+    return {"type": "object", "additionalProperties": type_schema(inner[1]), "minProperties": 1}

@@ -1,4 +1,4 @@
-"""A report for each student of a class, from the gradebook, in files of their own."""
+"""Write a report for each student of a class, from the gradebook, in a file of their own."""
 
 import hashlib
 import re
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from grader.classroom.lms.spreadsheet import neutral, rows_of_table, write_table
 from grader.errors import InputError
 from grader.report.formats import Format, render
+from grader.text import format_points
 from grader.usecases.writing import save
 
 if TYPE_CHECKING:
@@ -22,18 +23,18 @@ if TYPE_CHECKING:
     from grader.classroom.gradebook.student_grade import StudentGrade
     from grader.grading.report import Report
 
-_TOGETHER = 50
+_TASK_SIZE = 50  # reports
 _UNSAFE = re.compile(r'[\x00-\x1f\x7f<>:"/\\|?*\s]+')
-_RESERVED = re.compile(r"(?i)(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?")  # names that Windows keeps for devices
+_RESERVED = re.compile(r"(?i)(con|prn|aux|nul|com[0-9]|lpt[0-9])(\..*)?")  # device names of Windows
 _DIGEST = re.compile(r"-[0-9a-fA-F]{64}$")
-INDEX = "index.csv"  # whose each report is
-_LONGEST = 140  # bytes: with a digest, an ending and what `save` puts around it a file system takes 255
+INDEX = "index.csv"  # the student of each report
+_MAX_BYTES = 140  # of a name: with a digest, an ending and a temporary name it stays below the 255 of a file system
 
 
 def write_reports(
     executor: Executor, book: Path, folder: Path, formats: Sequence[Format], due: "datetime | None" = None
 ) -> int:
-    """Write a report of every student who has a result; how many. Raises InputError where one cannot be written."""
+    """Write a report for every student who has a result and return their number. Raises InputError."""
     from grader.classroom.gradebook.gradebook import Gradebook
 
     try:
@@ -43,14 +44,13 @@ def write_reports(
     with Gradebook(book) as opened:
         keys = [str(row[0]) for row in opened.rows("SELECT key FROM grade WHERE result IS NOT NULL ORDER BY key")]
     names = file_names(keys)
-    _record_names(folder / INDEX, names)
-    some = [keys[start : start + _TOGETHER] for start in range(0, len(keys), _TOGETHER)]
-    waiting = [
-        executor.submit(_write_some, str(book), str(folder), tuple(formats), {key: names[key] for key in each}, due)
-        for each in some
+    _update_index(folder / INDEX, names)
+    tasks = [
+        executor.submit(_write_some, str(book), str(folder), tuple(formats), {key: names[key] for key in some}, due)
+        for some in (keys[start : start + _TASK_SIZE] for start in range(0, len(keys), _TASK_SIZE))
     ]
-    for each in waiting:
-        each.result()
+    for task in tasks:
+        task.result()
     return len(keys)
 
 
@@ -61,35 +61,30 @@ def _write_some(
     from grader.classroom.gradebook.grades import Grades
 
     with Gradebook(Path(book)) as opened:
-        standings = Grades(opened, due)
-        for standing in list(standings.between(min(names), max(names))):
-            name = names.get(standing.student.key)
-            if name is None:
-                continue
-            report = report_of(standings, standing)
-            for kind in formats:
-                save(Path(folder, f"{name}.{kind.ending}"), render(report, kind))
+        grades = Grades(opened, due)
+        for grade in list(grades.between(min(names), max(names))):
+            name = names.get(grade.student.key)
+            if name is not None:
+                report = report_of(grades, grade)
+                for kind in formats:
+                    save(Path(folder, f"{name}.{kind.ending}"), render(report, kind))
 
 
-def report_of(standings: "Grades", standing: "StudentGrade") -> "Report":
-    """The report on a student's newest hand-in; what being late costs is a note of its own."""
-    report = standings.report(standing)
-    if not standing.late.reason:
+def report_of(grades: "Grades", grade: "StudentGrade") -> "Report":
+    """Return the report on a student's newest submission; the late penalty is a note of its own."""
+    report = grades.report(grade)
+    if not grade.late.reason:
         return report
-    from grader.report.points import points_words
-
-    note = standing.late.reason
-    if standing.late.points:
-        note += (
-            f": {points_words(-standing.late.points)} points are taken off, which leaves {points_words(standing.total)}"
-        )
+    note = grade.late.reason
+    if grade.late.points:
+        note += f": the late penalty is {format_points(-grade.late.points)} points, the total is {format_points(grade.total)}"
     return replace(report, notes=(*report.notes, note))
 
 
 def file_names(keys: Sequence[str]) -> dict[str, str]:
-    """A file name, without its ending, for each key: safe on every system, and no two alike, in upper or lower case.
+    """Return a file name without ending for each key: valid on every system, and unique without regard to case.
 
-    A key that is no such name, or looks like one with a digest, has its digest behind it.
+    A key that is not a valid name, or that ends like one with a digest, gets its digest appended.
     """
     plain = {key: _plain(key) for key in keys}
     counts = Counter(map(_folded, plain.values()))
@@ -104,18 +99,18 @@ def file_names(keys: Sequence[str]) -> dict[str, str]:
     return names
 
 
-def _record_names(index: Path, names: dict[str, str]) -> None:
-    """Write down whose each report is; raises InputError where a report of another student would be written over."""
+def _update_index(index: Path, names: dict[str, str]) -> None:
+    """Record the student of each report. Raises InputError if the report of another student would be overwritten."""
     try:
         before = {row[0]: row[1] for row in rows_of_table(index.read_text(encoding="utf-8"))} if index.exists() else {}
     except (OSError, ValueError, IndexError):
         raise InputError(
-            f"cannot read {index}, which says whose each report is: remove it, or name another folder"
+            f"cannot read {index}, the list of the students of the reports: remove it, or choose another folder"
         ) from None
     rows = {neutral(name): neutral(key) for key, name in names.items()}
     other = next((name for name, key in rows.items() if before.get(name, key) != key), None)
     if other is not None:
-        raise InputError(f"{index.parent} has a report of {before[other]} named {other}: name another folder")
+        raise InputError(f"{index.parent} has a report of {before[other]} named {other}: choose another folder")
     save(index, write_table(("report", "id"), sorted({**before, **rows}.items())))
 
 
@@ -125,7 +120,7 @@ def _folded(name: str) -> str:
 
 def _plain(key: str) -> str:
     data = _UNSAFE.sub("_", unicodedata.normalize("NFC", key)).encode("utf-8", "replace")
-    name = data[:_LONGEST].decode("utf-8", "ignore").strip(" .") or "_"
+    name = data[:_MAX_BYTES].decode("utf-8", "ignore").strip(" .") or "_"
     return f"_{name}" if _RESERVED.fullmatch(name) or name.startswith("-") else name
 
 

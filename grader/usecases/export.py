@@ -1,11 +1,12 @@
-"""Everyone's current grades as other programs take them: plain CSV, Canvas' gradebook, Moodle's worksheet."""
+"""Export the current grades: as CSV, JSON, or into a file of Canvas or Moodle."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from decimal import Decimal
 from pathlib import Path
 from typing import NamedTuple
 
+from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.lms.canvas import fill_gradebook
@@ -15,120 +16,194 @@ from grader.classroom.lms.moodle import fill_worksheet
 from grader.classroom.lms.preflight import Filled, Preflight, RowNote
 from grader.classroom.lms.spreadsheet import write_table
 from grader.classroom.lms.tables import SIZE_LIMIT
+from grader.errors import GraderError
 from grader.files.reading import read_capped
 from grader.grading.rubric import Rubric
+from grader.report.formats import OutputFormat
 from grader.text import printable, printable_path
+from grader.usecases import Warn
+from grader.usecases.class_summary import class_summary, read_deadline
+from grader.usecases.exit_codes import ExitCode
+from grader.usecases.targets import is_same_file, is_stdout, refuse_gradebook, refuse_symlinks
+from grader.usecases.writing import save_bytes
 
-_ABOUT = ("id", "name", "email", "login", "sis", "status", "score", "max_score", "pending", "late_days", "late_points")
-_MOST_NAMED, _MOST_LINES = 3, 50
+_STUDENT_COLUMNS = (
+    "id", "name", "email", "login", "sis", "status", "score", "max_score", "pending", "late_days", "late_points",
+)  # fmt: skip
+_MAX_NAMED, _MAX_LINES = 3, 50
 Cell = str | int | Decimal | None
 
 
-def grades_csv(standings: Grades) -> str:
-    """A row for everyone: the grade, what being late costs, and the points of each criterion, empty where nobody has decided."""
-    rubric = standings.newest_rubric()
-    header = [*_ABOUT, "total", "not_final_because", *(criterion.id for criterion in rubric.criteria)]
-    return write_table(header, (_row(standings, each, rubric) for each in standings.all()))
+@dataclass(frozen=True, slots=True)
+class ExportRequest:
+    """What to export, and for an LMS the file to fill in and how."""
 
-
-def _row(standings: Grades, standing: StudentGrade, rubric: Rubric) -> list[Cell]:
-    student = standing.student
-    about: list[Cell] = [student.key, student.name, student.email, student.login, student.sis, standing.verdict]
-    if standing.result is None:
-        return [*about, *[None] * 6, standing.why_not_final, *[None] * len(rubric.criteria)]
-    grade: list[Cell] = [standing.score, standing.out_of, standing.pending, standing.late.days, standing.late.points]
-    points = standings.points(standing)
-    return [*about, *grade, standing.total, standing.why_not_final, *(points.get(each.id) for each in rubric.criteria)]
-
-
-def lms_grades(standings: Grades, *, feedback: bool, pending_as_zero: bool) -> Iterator[LmsGrade]:
-    """Everyone's grade for an LMS. One that is not final has no total, unless what still waits counts as nothing."""
-    for standing in standings.all():
-        reason = standing.why_not_final
-        waits_only = (
-            standing.verdict in ("graded", "errored") and not replace(standing, pending=Decimal(0)).why_not_final
-        )
-        if reason and not (waits_only and pending_as_zero):
-            yield LmsGrade(standing.student, None, "", reason, standing.is_on_roster is not False)
-            continue
-        text = _feedback(standings, standing) if feedback else ""
-        yield LmsGrade(standing.student, standing.total, text, is_on_roster=standing.is_on_roster is not False)
-
-
-class Filling(NamedTuple):
-    """An LMS's file, and how it is to be filled."""
-
-    file: Path
+    target: str
+    gradebook: Path
+    into: Path | None
+    output: Path | None
+    strict: bool
+    due: str | None
     column: str
     feedback_column: str
     pending_as_zero: bool
     any_maximum: bool
 
+    @property
+    def is_lms(self) -> bool:
+        """Whether the target is a file of an LMS that is filled in."""
+        return self.target in ("canvas", "moodle")
 
-def fill(is_moodle: bool, standings: Grades, filling: Filling) -> Filled:
-    """Fill Moodle's worksheet, or Canvas' gradebook; raises InputError."""
-    data = read_capped(filling.file, SIZE_LIMIT, advice="")
-    shown, rubric = printable_path(filling.file), standings.newest_rubric()
-    grades = list(lms_grades(standings, feedback=is_moodle, pending_as_zero=filling.pending_as_zero))
-    out_of, column, any_maximum = rubric.points, filling.column, filling.any_maximum
+
+class Exported(NamedTuple):
+    """What to print, and the exit code."""
+
+    data: bytes
+    exit_code: ExitCode
+
+
+def export(request: ExportRequest, warn: Warn) -> Exported:
+    """Export the grades to the output file or for standard output. Raises GraderError."""
+    _refuse_files(request)
+    with Gradebook(request.gradebook) as book:
+        classes = tuple({run.source for run in book.runs()})
+        if request.output is not None:
+            refuse_symlinks(request.output, classes)
+        grades = Grades(book, read_deadline(request.due))
+        if request.into is not None:
+            filled = _fill(request, request.into, grades)
+            for line in preflight_lines(filled.preflight):
+                warn(line)
+            if request.strict and not filled.preflight.matches:
+                warn("nothing was written, because of --strict: some rows or grades are unmatched")
+                return Exported(b"", ExitCode.FAILED)
+            data = filled.data
+        elif request.target == "csv":
+            data = grades_csv(grades).encode()
+        else:
+            data = class_summary(grades, OutputFormat.JSON).encode()
+    if request.output is None:
+        return Exported(data, ExitCode.PASSED)
+    save_bytes(request.output, data, classes)
+    return Exported(b"", ExitCode.PASSED)
+
+
+def _refuse_files(request: ExportRequest) -> None:
+    into, output = request.into, request.output
+    if (into is None) == request.is_lms:
+        raise GraderError(
+            f"export {request.target} fills in a file that the LMS exported: give it with --into"
+            if into is None
+            else f"export {request.target} does not take --into"
+        )
+    if output is not None:
+        refuse_gradebook(output, request.gradebook)
+    if into is not None and (is_stdout(into) if output is None else is_same_file(output, into)):
+        raise GraderError(
+            f"cannot write {printable_path(into)}: --into reads it, and rows without a grade would be lost; choose another file"
+        )
+
+
+def grades_csv(grades: Grades) -> str:
+    """Return a row for each student: the grade, the late penalty, and the points of each criterion that is decided."""
+    rubric = grades.newest_rubric()
+    header = [*_STUDENT_COLUMNS, "total", "not_final_because", *(criterion.id for criterion in rubric.criteria)]
+    return write_table(header, (_row(grades, grade, rubric) for grade in grades.all()))
+
+
+def _row(grades: Grades, grade: StudentGrade, rubric: Rubric) -> list[Cell]:
+    student = grade.student
+    about: list[Cell] = [student.key, student.name, student.email, student.login, student.sis, grade.verdict]
+    if grade.result is None:
+        return [*about, *[None] * 6, grade.why_not_final, *[None] * len(rubric.criteria)]
+    numbers: list[Cell] = [grade.score, grade.out_of, grade.pending, grade.late.days, grade.late.points, grade.total]
+    points = grades.points(grade)
+    return [*about, *numbers, grade.why_not_final, *(points.get(criterion.id) for criterion in rubric.criteria)]
+
+
+def lms_grades(grades: Grades, *, feedback: bool, pending_as_zero: bool) -> Iterator[LmsGrade]:
+    """Yield each student's grade for an LMS. One that is not final has no total, unless pending points count as zero."""
+    for grade in grades.all():
+        reason = grade.why_not_final
+        is_only_pending = (
+            grade.verdict in ("graded", "errored") and not replace(grade, pending=Decimal(0)).why_not_final
+        )
+        if reason and not (is_only_pending and pending_as_zero):
+            yield LmsGrade(grade.student, None, "", reason, grade.is_on_roster is not False)
+            continue
+        text = _feedback(grades, grade) if feedback else ""
+        yield LmsGrade(grade.student, grade.total, text, is_on_roster=grade.is_on_roster is not False)
+
+
+def _fill(request: ExportRequest, file: Path, grades: Grades) -> Filled:
+    """Fill in Moodle's worksheet or Canvas' gradebook. Raises InputError."""
+    data = read_capped(file, SIZE_LIMIT, advice="")
+    shown, rubric, is_moodle = printable_path(file), grades.newest_rubric(), request.target == "moodle"
+    rows = list(lms_grades(grades, feedback=is_moodle, pending_as_zero=request.pending_as_zero))
     if is_moodle:
         return fill_worksheet(
             data,
-            grades,
-            out_of=out_of,
-            column=column,
-            feedback_column=filling.feedback_column,
-            any_maximum=any_maximum,
+            rows,
+            out_of=rubric.points,
+            column=request.column,
+            feedback_column=request.feedback_column,
+            any_maximum=request.any_maximum,
             shown=shown,
         )
-    wanted = (rubric.id, rubric.title)
     return fill_gradebook(
-        data, grades, out_of=out_of, rubric_names=wanted, column=column, any_maximum=any_maximum, shown=shown
+        data,
+        rows,
+        out_of=rubric.points,
+        rubric_names=(rubric.id, rubric.title),
+        column=request.column,
+        any_maximum=request.any_maximum,
+        shown=shown,
     )
 
 
-def _feedback(standings: Grades, standing: StudentGrade) -> str:
-    report = standings.report(standing)
+def _feedback(grades: Grades, grade: StudentGrade) -> str:
+    report = grades.report(grade)
     remarks = list(feedback_items(report.results))
-    if standing.late.points:
-        remarks.append(FeedbackItem("Handed in late", standing.late.points, Decimal(0), standing.late.reason))
-    return feedback_html(standing.total, report.max_score, remarks)
+    if grade.late.points:
+        remarks.append(FeedbackItem("Late penalty", grade.late.points, Decimal(0), grade.late.reason))
+    return feedback_html(grade.total, report.max_score, remarks)
 
 
 def preflight_lines(found: Preflight) -> Iterator[str]:
-    """What filling an LMS file does, in lines for a person; no kind of them floods the screen."""
-    yield f"column {found.column!r}: {found.filled} filled, {found.unchanged} the same already"
+    """Yield what filling in an LMS file changes, line by line, at most 50 lines of each kind."""
+    yield f"column {found.column!r}: {found.filled} filled in, {found.unchanged} already the same"
     yield from _capped(
-        "grades that were others",
-        [f"row {each.row}, {each.who}: was {each.was}, becomes {each.becomes}" for each in found.conflicts],
+        "grades that change",
+        [f"row {row.row}, {row.who}: was {row.was}, becomes {row.becomes}" for row in found.conflicts],
     )
     yield from _capped("without a grade", _by_reason("without a grade", found.ungraded))
-    for what, left in (
+    for kind, rows in (
         ("in the file, but not in the gradebook", found.unknown),
         ("in the gradebook, but not in the file", found.missing),
-        ("could be several", found.ambiguous),
-        ("comment of a person, kept", found.kept_feedback),
+        ("ambiguous", found.ambiguous),
+        ("kept the comment that a person wrote", found.kept_feedback),
     ):
-        rows = [f"row {each.row}, " if each.row else "" for each in left]
-        yield from _capped(what, [f"{what}: {row}{each.who}: {each.why}" for row, each in zip(rows, left, strict=True)])
+        yield from _capped(
+            kind, [f"{kind}: {f'row {row.row}, ' if row.row else ''}{row.who}: {row.why}" for row in rows]
+        )
     yield from map(printable, found.warnings)
 
 
-def _by_reason(what: str, left: Sequence[RowNote]) -> list[str]:
-    """A line for each reason, in the order of the rows, with how many it holds for and the first of them."""
+def _by_reason(kind: str, rows: Sequence[RowNote]) -> list[str]:
+    """Return a line for each reason, in the order of the rows: how many have it, and the first of them."""
     names: dict[str, list[str]] = {}
-    for each in left:
-        names.setdefault(each.why, []).append(each.who)
-    return [f"{what}, {why}: {len(whose)} ({_listed(whose)})" for why, whose in names.items()]
+    for row in rows:
+        names.setdefault(row.why, []).append(row.who)
+    return [f"{kind}, {reason}: {len(students)} ({_listed(students)})" for reason, students in names.items()]
 
 
 def _listed(names: Sequence[str]) -> str:
-    shown = list(names[:_MOST_NAMED])
+    shown = list(names[:_MAX_NAMED])
     more = [f"... and {len(names) - len(shown)} more"] if len(names) > len(shown) else []
     return ("; " if any("," in name for name in shown) else ", ").join([*shown, *more])
 
 
-def _capped(what: str, lines: Sequence[str]) -> Iterator[str]:
-    yield from map(printable, lines[:_MOST_LINES])
-    if len(lines) > _MOST_LINES:
-        yield f"{what}: and {len(lines) - _MOST_LINES} more"
+def _capped(kind: str, lines: Sequence[str]) -> Iterator[str]:
+    yield from map(printable, lines[:_MAX_LINES])
+    if len(lines) > _MAX_LINES:
+        yield f"{kind}: and {len(lines) - _MAX_LINES} more"

@@ -1,4 +1,4 @@
-"""When to grade again: whenever something has changed that a grading would read."""
+"""Watch a submission and its rubric for changes that a grading would read."""
 
 import os
 import time
@@ -13,126 +13,130 @@ from grader.errors import InputError
 from grader.files.folder import is_looked_at
 from grader.text import printable_path
 
-_NAP = 100  # milliseconds between two looks at what no event tells of
-_QUIET, _LONGEST = 50, 400  # changes that follow each other this closely, in milliseconds, are one; but not for longer
-_ONCE_MORE = 1.5  # seconds: where there are no events, the second change in one second is not seen
-_Mark = tuple[int, ...] | None
+_POLL = 100  # milliseconds between two checks for changes that cause no event
+_STEP, _DEBOUNCE = (
+    50,
+    400,
+)  # milliseconds: changes that follow each other within a step are one, up to the debounce time
+_RECHECK = 1.5  # seconds: without events, watchfiles misses the second change within one second
+_Stamp = tuple[int, ...] | None
 
 
 class Watched(NamedTuple):
-    """What is graded, the rubric where it is a file, and the real paths of what the grader writes itself."""
+    """A submission, its rubric if that is a file, and the real paths of the reports that are written."""
 
     path: Path
     rubric: Path | None = None
     own: frozenset[str] = frozenset()
 
 
-class _Place(NamedTuple):
-    """Where to listen: in a folder to all that is graded, for a file in its folder, as editors put a new file in its place.
+class _Target(NamedTuple):
+    """The folders to watch, and the files in them if the submission is a file: editors replace a file by a new one.
 
-    `marks` tell a folder from another one that is put in its place, of which no event tells.
+    `stamps` tell a folder from another one of its name, because no event reports the exchange.
     """
 
     folders: tuple[str, ...]
     files: frozenset[str]
-    marks: tuple[_Mark, ...]
+    stamps: tuple[_Stamp, ...]
 
-    def lasts(self, change: tuple[Change, str]) -> bool:
-        """Whether after a change there is still something to be heard: not where the folder itself was taken away."""
+    def remains(self, change: tuple[Change, str]) -> bool:
+        """Return whether the watched folders exist after a change."""
         return change[0] is not Change.deleted or change[1] not in self.folders
 
-    def counts(self, path: str) -> bool:
-        """Whether what is graded may change with this path."""
+    def contains(self, path: str) -> bool:
+        """Return whether a grading reads this path."""
         if self.files:
             return path in self.files
         inside = os.path.relpath(path, self.folders[0]).replace(os.sep, "/")
         return is_looked_at(Path(self.folders[0]), inside)
 
 
-def rounds(watched: Watched) -> Iterator[bool]:
-    """Once at once, and then each time that it is to be graded, without end: whether something has changed for sure.
+def changes(watched: Watched) -> Iterator[bool]:
+    """Yield at once and after every change, without end: True if a file changed for certain.
 
-    Raises InputError where nothing can be watched.
+    Raises:
+        InputError: The submission cannot be watched.
     """
     seen: object = None
     before: object = None
-    was_there = True
-    again = inf
-    for has_changed in _wakes(watched):
-        place = _place(watched.path)
-        # A file is looked at, too, and of the rubric's folder this one file is all that is of interest.
-        now = place, _file_mark(watched.path if place.files else None), _file_mark(watched.rubric)
-        if now not in (seen, before) and not has_changed:  # it may be half written: look once more
+    existed = True
+    recheck_at = inf
+    for has_changed in _wake_ups(watched):
+        target = _target(watched.path)
+        # Stamps of the files as well; of the rubric's folder only this file matters.
+        now = target, _file_stamp(watched.path if target.files else None), _file_stamp(watched.rubric)
+        if now not in (seen, before) and not has_changed:  # it may be half written: check once more
             before = now
             continue
-        is_there = os.path.lexists(watched.path)
-        is_sure = now != seen or (has_changed and not place.files)
-        if (is_sure and (is_there or was_there)) or time.monotonic() > again:  # what is still missing is no news
-            again = inf if place.files or not is_sure else time.monotonic() + _ONCE_MORE
-            yield is_sure
-        seen, was_there = now, is_there
+        exists = os.path.lexists(watched.path)
+        is_certain = now != seen or (has_changed and not target.files)
+        if (is_certain and (exists or existed)) or time.monotonic() > recheck_at:  # not if it is still missing
+            recheck_at = inf if target.files or not is_certain else time.monotonic() + _RECHECK
+            yield is_certain
+        seen, existed = now, exists
 
 
-def _wakes(watched: Watched) -> Iterator[bool]:
-    """Several times a second: whether something may have changed, which is so each time that listening begins anew."""
+def _wake_ups(watched: Watched) -> Iterator[bool]:
+    """Yield several times a second whether something may have changed; True whenever watching starts anew."""
     while True:
-        place = _place(watched.path)
+        target = _target(watched.path)
         is_new = True
         try:
-            for has_changed in _events(place, watched):
-                if _place(watched.path) != place:
+            for has_changed in _events(target, watched):
+                if _target(watched.path) != target:
                     break
                 yield has_changed or is_new
                 is_new = False
-        except FileNotFoundError:  # the folder is not there, or was taken away this moment
-            time.sleep(_NAP / 1000)
+        except FileNotFoundError:  # the folder does not exist, or was deleted this moment
+            time.sleep(_POLL / 1000)
             yield False
 
 
-def _events(place: _Place, watched: Watched) -> Iterator[bool]:
-    """Listen in a place until there is no more to be heard; raises FileNotFoundError where it is not there."""
-    is_listening = False
+def _events(target: _Target, watched: Watched) -> Iterator[bool]:
+    """Watch a target until its folders are gone. Raises FileNotFoundError if they do not exist."""
+    is_watching = False
     try:
-        for changes in watch(
-            *place.folders,
-            watch_filter=_filter(place, watched),
-            recursive=not place.files,
-            debounce=_LONGEST,
-            step=_QUIET,
-            rust_timeout=_NAP,
+        for found in watch(
+            *target.folders,
+            watch_filter=_filter(target, watched),
+            recursive=not target.files,
+            debounce=_DEBOUNCE,
+            step=_STEP,
+            rust_timeout=_POLL,
             yield_on_timeout=True,
             ignore_permission_denied=True,
         ):
-            if not all(map(place.lasts, changes)):
+            if not all(map(target.remains, found)):
                 return
-            is_listening = True
-            yield bool(changes)
+            is_watching = True
+            yield bool(found)
     except RuntimeError as error:
-        if not is_listening:
+        if not is_watching:
             shown = printable_path(watched.path)
-            advice = "with WATCHFILES_FORCE_POLLING=1 in the environment it is looked at instead"
+            advice = "set WATCHFILES_FORCE_POLLING=1 in the environment to poll instead"
             raise InputError(f"cannot watch {shown}: {error}; {advice}") from None
-        # There was a file with a name that is no UTF-8.
+        # watchfiles fails so on a file name that is not UTF-8.
 
 
-def _filter(place: _Place, watched: Watched) -> Callable[[Change, str], bool]:
-    apart = watched.own | ({os.path.realpath(watched.rubric)} if watched.rubric is not None else set())
+def _filter(target: _Target, watched: Watched) -> Callable[[Change, str], bool]:
+    excluded = watched.own | ({os.path.realpath(watched.rubric)} if watched.rubric is not None else set())
     return lambda change, path: (
-        not place.lasts((change, path)) or (place.counts(path) and os.path.realpath(path) not in apart)
+        not target.remains((change, path)) or (target.contains(path) and os.path.realpath(path) not in excluded)
     )
 
 
-def _place(path: Path) -> _Place:
+def _target(path: Path) -> _Target:
     real = Path(os.path.realpath(path))
     if real.is_dir():
-        return _Place((str(real),), frozenset(), (_mark(real),))
-    files = {real, Path(os.path.realpath(path.parent), path.name)}  # a link, and what it leads to
-    folders = sorted({each.parent for each in files})
-    return _Place(tuple(map(str, folders)), frozenset(map(str, files)), tuple(map(_mark, folders)))
+        return _Target((str(real),), frozenset(), (_stamp(real),))
+    files = {real, Path(os.path.realpath(path.parent), path.name)}  # a symlink and its target
+    folders = sorted({file.parent for file in files})
+    return _Target(tuple(map(str, folders)), frozenset(map(str, files)), tuple(map(_stamp, folders)))
 
 
-def _mark(folder: Path) -> _Mark:
-    """What tells a folder from others, and whether it may be read."""
+def _stamp(folder: Path) -> _Stamp:
+    """Return what identifies a folder and its permissions."""
     try:
         status = folder.stat()
     except OSError:
@@ -140,8 +144,8 @@ def _mark(folder: Path) -> _Mark:
     return status.st_dev, status.st_ino, status.st_mode
 
 
-def _file_mark(file: Path | None) -> _Mark:
-    """What a file changes with each time that it is written."""
+def _file_stamp(file: Path | None) -> _Stamp:
+    """Return what changes whenever a file is written."""
     try:
         status = file.stat() if file is not None else None
     except OSError:

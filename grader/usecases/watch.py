@@ -1,120 +1,130 @@
-"""grader grade --watch: grade again whenever something has changed, and say first what has become of it."""
+"""grader grade --watch: grade again whenever a file changes, and show first what changed in the report."""
 
 import gc
 import os
-from collections.abc import Iterator
-from functools import partial
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from grader.cli.output import complain, emit, screen
 from grader.errors import GraderError, InputError, RubricError
+from grader.report.comparison import comparison_lines, unchanged_line
 from grader.report.formats import Format, render
-from grader.report.screen import draw
-from grader.report.since import lines_since, nothing_since
+from grader.report.screen import Screen, draw
 from grader.text import printable_path
-from grader.usecases.grade import Wanted, graded, make_room, save_reports, wanted_rubric
+from grader.usecases import Warn
+from grader.usecases.exit_codes import ExitCode
+from grader.usecases.grade import GradeRequest, grade_submission, remove_reports, requested_rubric, save_reports
 
 if TYPE_CHECKING:
     from rich.console import Console
 
     from grader.grading.report import Report
 
-_NOTHING_GRADED = 2
+
+class Terminal(NamedTuple):
+    """Where a watch shows its reports and warnings; the screen is asked for each time, because it can be resized."""
+
+    show: Callable[[str], None]
+    warn: Warn
+    screen: Callable[[], Screen]
 
 
-class _Told(NamedTuple):
-    """A report that was shown, and its text at a width that does not change with the terminal's."""
+class _Shown(NamedTuple):
+    """The report that was shown last, and its text for a file, which does not depend on the terminal's width."""
 
     report: "Report"
     text: str
 
 
-def watch(wanted: Wanted) -> int:
-    """Grade now and whenever something has changed, until Ctrl-C: the exit code of the last time.
+def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
+    """Grade now and after every change, until Ctrl-C; return the exit code of the last grading.
 
-    What cannot be read is told and waited out. Raises GraderError for what no change of a file would mend: wrong usage, a rubric
-    that there is not, standard output that is closed, a report that cannot be saved.
+    A submission or rubric that cannot be read is reported, and graded again after the next change.
+
+    Raises:
+        GraderError: What no change of a file corrects: wrong usage, an unknown rubric, standard output that is closed, a report
+            that cannot be saved.
     """
-    rounds = _rounds(wanted)
-    modes = make_room(wanted)
-    _ = wanted.threshold  # which no change of a file would correct
-    gc.enable()  # unlike other commands this one may run for hours
-    code: int | None = None
-    last: _Told | None = None
-    said = ""
-    complain(f"watching {printable_path(wanted.path)}; Ctrl-C ends it")
+    changes = _changes(request, terminal.warn)
+    modes = remove_reports(request)
+    _ = request.threshold  # refuse a wrong one at once
+    gc.enable()  # unlike other commands, this one may run for hours
+    code: ExitCode | None = None
+    last: _Shown | None = None
+    last_error = ""
+    terminal.warn(f"watching {printable_path(request.path)}; stop with Ctrl-C")
     try:
-        for is_news in rounds:
+        for has_changed in changes:
             try:
-                done = graded(wanted)
+                result = grade_submission(request, terminal.warn)
             except (InputError, RubricError) as error:
-                code = _NOTHING_GRADED
-                if is_news or str(error) != said:
-                    _explain(wanted.path, error)
-                said = str(error)
+                code = ExitCode.NOT_GRADED
+                if has_changed or str(error) != last_error:
+                    _show_error(request.path, error, terminal.warn)
+                last_error = str(error)
                 continue
-            code, said = done.code, ""
-            save_reports(wanted, done, modes)
-            last = _show(done.report, last, is_news=is_news)
+            code, last_error = result.exit_code, ""
+            save_reports(request, result, modes)
+            last = _show(result.report, last, terminal, has_changed=has_changed)
     except KeyboardInterrupt:
-        if code is None:  # in the midst of the first time
+        if code is None:  # during the first grading
             raise
-    return _NOTHING_GRADED if code is None else code
+    return ExitCode.NOT_GRADED if code is None else code
 
 
-def _rounds(wanted: Wanted) -> Iterator[bool]:
-    """Each time that it is to be graded, and whether something has changed; raises GraderError where it cannot be watched."""
-    if wanted.path in ("", "-"):
+def _changes(request: GradeRequest, warn: Warn) -> Iterator[bool]:
+    """Return an iterator that yields before each grading, whether a file has changed. Raises GraderError."""
+    if request.path in ("", "-"):
         raise GraderError("--watch takes a file or folder: standard input is read only once")
-    if wanted.format is not Format.TERMINAL:
+    if request.format is not Format.TERMINAL:
         raise GraderError(
-            f"--watch prints reports for a person: leave --format out, --save {wanted.format.value}=FILE writes one each time"
+            f"--watch prints in the format terminal only: use --save {request.format.value}=FILE instead of --format"
         )
-    rubric = _rubric_file(wanted)
+    rubric = _rubric_file(request, warn)
     try:
-        from grader.usecases.file_events import Watched, rounds
+        from grader.usecases.file_events import Watched, changes
     except ImportError:
         raise InputError("--watch needs watchfiles: pip install 'urdf-grader[watch]'") from None
-    return rounds(Watched(Path(wanted.path), rubric, frozenset(os.path.realpath(file) for _, file in wanted.saves)))
+    return changes(Watched(Path(request.path), rubric, frozenset(os.path.realpath(file) for _, file in request.saves)))
 
 
-def _rubric_file(wanted: Wanted) -> Path | None:
-    """The rubric's file, if it is one that may change; raises GraderError for a rubric or parts that there are not."""
+def _rubric_file(request: GradeRequest, warn: Warn) -> Path | None:
+    """Return the rubric's file, None for a shipped rubric. Raises GraderError for an unknown rubric or part."""
     from grader.grading.rubric import find_rubric, shipped_rubrics
 
-    file = find_rubric(wanted.rubric)
+    file = find_rubric(request.rubric)
     if file not in shipped_rubrics().values():
         return file
-    wanted_rubric(wanted)
+    requested_rubric(request, warn)
     return None
 
 
-def _explain(path: str, error: GraderError) -> None:
-    """Say why nothing was graded this time."""
+def _show_error(path: str, error: GraderError, warn: Warn) -> None:
     if not os.path.lexists(path):
-        complain(f"{printable_path(path)} does not exist: it is graded as soon as it does")
+        warn(f"{printable_path(path)} does not exist: waiting until it does")
         return
     for line in str(error).split("\n"):
-        complain(line)
+        warn(line)
 
 
-def _show(report: "Report", last: _Told | None, *, is_news: bool) -> _Told:
-    """Print what has changed, and then the whole report; where that is nothing, one line at most."""
-    told = _Told(report, render(report, Format.TERMINAL))
-    if last is not None and told.text == last.text:
-        if is_news:
-            emit(f"{nothing_since(report)}\n")
-        return told
-    news = draw(partial(_news, lines_since(last.report, report)), screen()) if last is not None else ""
-    emit(news + render(report, Format.TERMINAL, screen=screen()))
-    return told
+def _show(report: "Report", last: _Shown | None, terminal: Terminal, *, has_changed: bool) -> _Shown:
+    """Show what changed, then the whole report; of a report that is the same, one line at most."""
+    shown = _Shown(report, render(report, Format.TERMINAL))
+    if last is not None and shown.text == last.text:
+        if has_changed:
+            terminal.show(f"{unchanged_line(report)}\n")
+        return shown
+    screen = terminal.screen()
+    lines = comparison_lines(last.report, report) if last is not None else []
+    changes = draw(lambda console: _print_lines(lines, console), screen) if lines else ""
+    terminal.show(changes + render(report, Format.TERMINAL, screen=screen))
+    return shown
 
 
-def _news(lines: list[str], console: "Console") -> None:
+def _print_lines(lines: list[str], console: "Console") -> None:
     from rich.text import Text
 
-    from grader.report.layout import wrapped
+    from grader.report.console import wrapped
 
     console.print()
     for line in lines:

@@ -1,37 +1,56 @@
-"""Files that a command writes: each whole or not at all, and none through a symlink that a student has made."""
+"""Write files and standard output: a file is replaced as a whole or not at all."""
 
 import os
 import stat
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from grader.cli.output import emit
 from grader.errors import InputError
-from grader.text import printable
+from grader.usecases.targets import is_stdout, missing_folder, refuse_symlinks
 
-CHECKOUTS = ("GITHUB_WORKSPACE", "CI_PROJECT_DIR")  # where GitHub and GitLab say that the repository is checked out
-ROBOTS = (".urdf", ".xacro")
-_BESIDE = ("-wal", "-shm", "-journal")  # what has been written, but is not in the gradebook's own file yet
-_MAX_LINKS = 40  # on the way to one file, as Linux has it
+
+def write_stdout(text: str | bytes) -> None:
+    """Write to standard output; bytes as they are, text in its encoding. Raises InputError if it is closed."""
+    stream = sys.stdout
+    if stream is None:
+        raise InputError("cannot write the report: standard output is closed")
+    try:
+        if hasattr(stream, "buffer"):
+            stream.flush()
+            encoding = stream.encoding or "utf-8"
+            stream.buffer.write(text if isinstance(text, bytes) else text.encode(encoding, "backslashreplace"))
+        else:
+            stream.write(text if isinstance(text, str) else text.decode())
+        stream.flush()
+    except OSError as error:
+        # The interpreter flushes the stream once more at exit, and would fail again.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
+        raise InputError(f"cannot write the report: standard output: {error.strerror}") from None
 
 
 def save(path: Path, text: str, submissions: Sequence[Path | str] = (), mode: int | None = None) -> None:
-    """Write a file so that it is there whole or not at all; raises InputError.
-
-    A symlink is followed unless it is in one of the submissions. What is no regular file, such as a pipe or device, is written
-    to as it is. `mode` are the permissions of a new file, unless they are those of a file that is replaced.
-    """
+    """Write a text file in UTF-8, as `save_bytes` does."""
     save_bytes(path, text.encode("utf-8", "backslashreplace"), submissions, mode)
 
 
 def save_bytes(path: Path, data: bytes, submissions: Sequence[Path | str] = (), mode: int | None = None) -> None:
-    """As `save`, for what is no text."""
-    refuse_links(path, submissions)
+    """Write a file atomically. A path that is not a regular file, such as a pipe or a device, is written to directly.
+
+    Args:
+        path: The file. A symlink is followed unless it is in one of the submissions.
+        data: Its content.
+        submissions: Folders and files that students made.
+        mode: Permissions of a new file; a file that is replaced keeps its own.
+
+    Raises:
+        InputError: The file cannot be written.
+    """
+    refuse_symlinks(path, submissions)
     try:
-        if is_output(path):  # also where that leads to a file: what is printed goes there as well
-            emit(data)
+        if is_stdout(path):  # also if that is redirected to a file: printed text goes there as well
+            write_stdout(data)
         elif path.exists() and not path.is_file():
             with path.open("wb") as file:
                 file.write(data)
@@ -39,17 +58,17 @@ def save_bytes(path: Path, data: bytes, submissions: Sequence[Path | str] = (), 
             _replace(Path(os.path.realpath(path)), data, mode)
     except (OSError, ValueError) as error:
         if isinstance(error, FileNotFoundError) and not path.parent.exists():
-            raise no_folder(path) from None
+            raise missing_folder(path) from None
         reason = error.strerror if isinstance(error, OSError) else str(error)
         raise InputError(f"cannot write {path}: {reason}") from None
 
 
-def clear(path: Path) -> int | None:
-    """Remove the regular file that an earlier run has left in a place to write to, if there is one; return its permissions.
+def remove_previous(path: Path) -> int | None:
+    """Remove the regular file of an earlier run and return its permissions; None if there is none.
 
-    What refuses the next run then leaves no report in its place. Raises InputError where it cannot be removed.
+    A run that fails later then leaves no old report behind. Raises InputError if the file cannot be removed.
     """
-    if is_output(path):
+    if is_stdout(path):
         return None
     target = Path(os.path.realpath(path))
     try:
@@ -57,88 +76,15 @@ def clear(path: Path) -> int | None:
         if not stat.S_ISREG(mode):
             return None
         target.unlink()
-    except (FileNotFoundError, NotADirectoryError, ValueError):  # what keeps it from being written is told then
+    except (FileNotFoundError, NotADirectoryError, ValueError):  # `save` reports why it cannot be written
         return None
     except OSError as error:
         raise InputError(f"cannot write {path}: {error.strerror}") from None
     return stat.S_IMODE(mode)
 
 
-def refuse_links(path: Path, submissions: Sequence[Path | str] = ()) -> None:
-    """Raise InputError where a path leads over a symlink that a student may have made.
-
-    Those are the ones in a submission: in its folder, or in the folder of a URDF on its own, or in the repository that a CI job
-    has checked out.
-    """
-    folders = set(_folders(submissions))
-    for link in _links(path):
-        if not folders.isdisjoint(link.parents):
-            shown = printable(str(path))
-            raise InputError(
-                f"cannot write {shown}: {printable(str(link))} is a symlink in the submission (name a file outside of it)"
-            )
-
-
-def _folders(submissions: Sequence[Path | str]) -> Iterator[Path]:
-    """The real folders whose content is a student's."""
-    checkouts = [Path(os.environ[name]) for name in CHECKOUTS if os.environ.get(name)]
-    for each in (*map(Path, submissions), *checkouts):
-        real = Path(os.path.realpath(each))
-        folder = real.parent if each.suffix.lower() in ROBOTS and not real.is_dir() else real
-        if folder != Path(folder.anchor):
-            yield folder
-
-
-def _links(path: Path) -> Iterator[Path]:
-    """Each symlink on the way to a file, the file itself included, as a path with no symlink before its last name."""
-    way = path.absolute()
-    here, rest, count = Path(way.anchor), list(reversed(way.parts[1:])), 0
-    while rest and count <= _MAX_LINKS:
-        name = rest.pop()
-        there = here.parent if name == ".." else here / name
-        try:
-            target = there.readlink()
-        except (OSError, ValueError):  # no symlink, or not there
-            here = there
-            continue
-        yield there
-        count += 1
-        here = Path(target.anchor) if target.anchor else here
-        rest += reversed(target.parts[1:] if target.anchor else target.parts)
-
-
-def not_over(path: Path, gradebook: Path) -> None:
-    """Raises InputError where a file that is to be written is the gradebook, or one that SQLite keeps beside it."""
-    book = Path(os.path.realpath(gradebook))
-    for each in (book, *(book.with_name(book.name + ending) for ending in _BESIDE)):
-        if is_same(path, each):
-            raise InputError(f"cannot write {path}: it would replace the gradebook, and all marks by hand in it")
-
-
-def is_same(path: Path, other: Path) -> bool:
-    """Whether two paths lead to one file, also by symlinks or hard links, or to one that is not there yet."""
-    try:
-        return os.path.realpath(path) == os.path.realpath(other) or path.samefile(other)
-    except (OSError, ValueError):  # one of them is not there
-        return False
-
-
-def no_folder(path: Path) -> InputError:
-    """What to say of a file that cannot be written, because the folder that it names is not there."""
-    folder = printable(str(path.parent))
-    return InputError(f"cannot write {printable(str(path))}: there is no folder {folder} (mkdir -p {folder} makes it)")
-
-
-def is_output(path: Path) -> bool:
-    """Whether a path is standard output, as /dev/stdout is."""
-    try:
-        return sys.stdout is not None and os.path.samestat(path.stat(), os.fstat(sys.stdout.fileno()))
-    except (OSError, ValueError):
-        return False
-
-
 def _replace(target: Path, data: bytes, mode: int | None) -> None:
-    # A name that nobody can foretell, and no symlink is followed: nothing can be there to be written through.
+    # An unpredictable name, created exclusively: no student can prepare a file or symlink there.
     temporary = target.with_name(f".{os.urandom(8).hex()}.tmp")
     flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_BINARY", 0)
     try:

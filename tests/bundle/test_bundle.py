@@ -19,12 +19,12 @@ from grader.bundle.gradescope import autograder_zip
 from grader.bundle.installed import package_files, requirements
 from grader.checks.outcome import Outcome
 from grader.checks.registry import describe
-from grader.cli import bundle as command
 from grader.errors import InputError
 from grader.files.reading import sha256_of
 from grader.grading.grade import grade
 from grader.grading.rubric import load_rubric, shipped_rubrics
 from grader.robot.kinematics import Configuration
+from grader.usecases import bundle as command
 from tests.bundle.platform import Autograder, environment_for, unpacked
 from tests.classroom.gradebooks import grader, hand_in, lab_text, refusal
 from tests.samples import LAB6, ROOT, opened
@@ -245,9 +245,9 @@ def test_what_the_command_says_a_person_gives_is_what_the_reference_lacks() -> N
     """The checks that are said to be a person's are those that are always pending."""
     report = grade(LAB6, opened("submissions/reference"))
     pending = [each.criterion for each in report.results if each.outcome.status == "pending"]
-    said = command._next_step(LAB6, Path("out.zip"))
+    said = command._next_step(LAB6)
     assert (
-        f"{sum(each.points for each in pending)} for {', '.join(f'{each.id} ({each.points})' for each in pending)}\n"
+        f"{sum(each.points for each in pending)} for {', '.join(f'{each.id} ({each.points})' for each in pending)}"
         in said
     )
 

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from typer.main import get_command
 
-from grader.cli.app import COMMANDS, _app
+from grader.cli.app import COMMANDS, make_app
 from tests.golden.cases import ROOT, run
 
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
@@ -21,7 +21,7 @@ def walk(command: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, 
         yield from walk(each, (*path, name))
 
 
-PATHS = [path for path, _ in walk(get_command(_app(COMMANDS)))]
+PATHS = [path for path, _ in walk(get_command(make_app(COMMANDS)))]
 
 
 def parse(line: str) -> None:
@@ -30,7 +30,7 @@ def parse(line: str) -> None:
     assert words[0] == "grader"
     for sign in (">", "|"):
         words = words[: words.index(sign)] if sign in words else words
-    grader: Any = get_command(_app(COMMANDS))
+    grader: Any = get_command(make_app(COMMANDS))
     for _, command in walk(grader):
         if not hasattr(command, "commands"):
             command.callback = lambda **_: None
@@ -58,7 +58,7 @@ def test_help_at_eighty_columns(path: tuple[str, ...]) -> None:
 def test_the_summary_is_one_line(path: tuple[str, ...]) -> None:
     """In the list of commands the whole first sentence stands beside the name."""
     listed = run((*path[:-1], "--help")).stdout.decode().partition("\nCommands:\n")[2]
-    command = dict(walk(get_command(_app(COMMANDS))))[path]
+    command = dict(walk(get_command(make_app(COMMANDS))))[path]
     summary = command.help.partition("\n")[0]
     assert re.search(rf"^  {path[-1]} +{re.escape(summary)}$", listed, re.MULTILINE)
     assert summary.endswith(".")

@@ -16,7 +16,7 @@ import pytest
 
 from grader.errors import InputError
 from grader.files.folder import is_looked_at, read_folder
-from grader.usecases.file_events import Watched, _filter, _place, rounds
+from grader.usecases.file_events import Watched, _filter, _target, changes
 from tests.command_line import PATIENCE
 from tests.golden.cases import ROOT, run
 
@@ -84,7 +84,7 @@ class Watch:
         return self._out
 
     def __enter__(self) -> Self:
-        self.err.until("Ctrl-C ends it\n")
+        self.err.until("stop with Ctrl-C\n")
         return self
 
     def __exit__(
@@ -131,7 +131,7 @@ def test_each_round_says_first_what_has_changed(robot: Path) -> None:
         assert watch.out.until("points\n") == "nothing has changed: 64 of 70 points\n"
         put(b"\n" + SHORT.read_bytes(), robot)
         assert watch.out.until("\n64 / 70").startswith(
-            "\n64 of 70 points, as before; only the rest of the report has changed\n\n64 / 70"
+            "\n64 of 70 points, as before; only other parts of the report changed\n\n64 / 70"
         )
 
 
@@ -161,7 +161,7 @@ def test_what_cannot_be_read_is_waited_out(robot: Path) -> None:
     with Watch(robot) as watch:
         watch.out.until(END)
         robot.unlink()
-        assert watch.err.until("\n") == f"grader: {robot} does not exist: it is graded as soon as it does\n"
+        assert watch.err.until("\n") == f"grader: {robot} does not exist: waiting until it does\n"
         shutil.rmtree(robot.parent)
         robot.parent.mkdir()
         put(b" " * 2_000_000, robot)
@@ -177,7 +177,7 @@ def test_it_starts_before_there_is_anything(tmp_path: Path) -> None:
     """Neither the file nor its folder has to be there."""
     robot = tmp_path / "later" / "my_robot.urdf"
     with Watch(robot) as watch:
-        watch.err.until("does not exist: it is graded as soon as it does\n")
+        watch.err.until("does not exist: waiting until it does\n")
         robot.parent.mkdir()
         put(SHORT, robot)
         assert watch.out.until("64 / 70 points").startswith("64 / 70 points")
@@ -235,7 +235,7 @@ def test_a_rubric_in_a_file_is_watched(robot: Path, tmp_path: Path) -> None:
         watch.err.until("not readable as TOML")
         put(text.replace('id = "lidar-frame"', 'id = "lidar-place"'), rubric)
         said = watch.out.until("64 / 70 points")
-        assert "now failed: lidar-place\nno longer asked: lidar-frame\n" in said
+        assert "now failed: lidar-place\nremoved: lidar-frame\n" in said
 
 
 def test_closed_standard_output(robot: Path) -> None:
@@ -265,7 +265,7 @@ def test_what_cannot_be_watched_is_refused(robot: Path, tmp_path: Path) -> None:
     """Standard input, reports for programs, and what no change of a file would mend."""
     refuse("--watch takes a file or folder", "-")
     refuse("--watch takes a file or folder", "")
-    refuse("leave --format out, --save json=FILE writes one each time", robot, "--format", "json")
+    refuse("use --save json=FILE instead of --format", robot, "--format", "json")
     refuse("did you mean 'lab6'?", robot, "--rubric", "lab66")
     refuse("has no part 'task9'", robot, "--part", "task9")
     refuse("--fail-under takes", robot, "--fail-under", "all")
@@ -291,7 +291,7 @@ def test_without_the_extra(robot: Path) -> None:
 def counts(path: Path, changed: Path, *own: Path, rubric: Path | None = None) -> bool:
     """Whether a change there is one of what is graded at the path."""
     watched = Watched(path, rubric, frozenset(map(os.path.realpath, own)))
-    return _filter(_place(path), watched)(watchfiles.Change.modified, str(changed))
+    return _filter(_target(path), watched)(watchfiles.Change.modified, str(changed))
 
 
 def test_which_changes_count_in_a_folder(tmp_path: Path) -> None:
@@ -327,7 +327,7 @@ def test_which_changes_count_for_a_file(tmp_path: Path) -> None:
     (tmp_path / "b" / "real.urdf").touch()
     (tmp_path / "a" / "link.urdf").symlink_to(tmp_path / "b" / "real.urdf")
     path = tmp_path / "a" / "link.urdf"
-    assert _place(path).folders == (str(tmp_path / "a"), str(tmp_path / "b"))
+    assert _target(path).folders == (str(tmp_path / "a"), str(tmp_path / "b"))
     assert counts(path, path)
     assert counts(path, tmp_path / "b" / "real.urdf")
     assert not counts(path, tmp_path / "a" / "other.urdf")
@@ -336,7 +336,7 @@ def test_which_changes_count_for_a_file(tmp_path: Path) -> None:
 
 def test_a_name_that_is_no_text_is_a_change_like_any_other(tmp_path: Path) -> None:
     """And the next one is heard all the same."""
-    heard = filter(None, rounds(Watched(tmp_path)))
+    heard = filter(None, changes(Watched(tmp_path)))
     next(heard)
     Path(os.fsdecode(os.fsencode(tmp_path) + b"/\xff.txt")).touch()
     next(heard)
@@ -353,11 +353,11 @@ def test_what_no_event_has_told_is_seen_all_the_same(tmp_path: Path, monkeypatch
             yield set()
 
     monkeypatch.setattr("grader.usecases.file_events.watch", deaf)
-    monkeypatch.setattr("grader.usecases.file_events._ONCE_MORE", 0.02)
-    folder = rounds(Watched(tmp_path))
+    monkeypatch.setattr("grader.usecases.file_events._RECHECK", 0.02)
+    folder = changes(Watched(tmp_path))
     assert [next(folder), next(folder)] == [True, False]
     robot = tmp_path / "my_robot.urdf"
-    file = rounds(Watched(robot))
+    file = changes(Watched(robot))
     assert next(file)
     for text in ("a", "b", "longer"):
         put(text, robot)
@@ -371,8 +371,8 @@ def test_nothing_is_listened_to_where_nothing_can_be(tmp_path: Path, monkeypatch
         raise RuntimeError("OS file watch limit reached.")
 
     monkeypatch.setattr("grader.usecases.file_events.watch", refused)
-    with pytest.raises(InputError, match=r"limit reached\.; with WATCHFILES_FORCE_POLLING=1 in the"):
-        next(rounds(Watched(tmp_path)))
+    with pytest.raises(InputError, match=r"limit reached\.; set WATCHFILES_FORCE_POLLING=1 in the"):
+        next(changes(Watched(tmp_path)))
 
 
 @pytest.mark.parametrize("name", sorted({path.name for path in (ROOT / "submissions").iterdir()})[:20])

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from grader.grading.report import GradedSubmission, Report, Result
-from grader.report.words import untold
+from grader.report.content import other_problems
 from grader.robot.reader import Verdict
 from grader.source import Location, Source
 from grader.submission.urdf import OtherCandidate
@@ -48,7 +48,7 @@ def recast(report: Report, words: Words) -> Report:
     def path() -> str:
         return f"a{printable(words())}"
 
-    problems = tuple(replace(each, message=words(), location=Location(path(), 2, 3)) for each in untold(report))
+    problems = tuple(replace(each, message=words(), location=Location(path(), 2, 3)) for each in other_problems(report))
     return replace(
         report,
         submission=_submission(report.submission, words, path),

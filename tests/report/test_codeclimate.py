@@ -7,7 +7,7 @@ import pytest
 from grader.grading.report import Report
 from grader.report.codeclimate import render_codeclimate
 from grader.report.findings import findings
-from grader.report.places import Base
+from grader.report.locations import Base
 from tests.report.readers import read_by_schema
 from tests.samples import SAMPLES
 
@@ -31,8 +31,8 @@ def test_every_finding_is_an_issue(name: str) -> None:
         assert (issue["check_name"], issue["severity"]) == (each.rule, SEVERITIES[each.level])
         assert each.text.replace("\n", " ") in issue["description"]
         assert issue["location"]["path"].startswith("lab")
-        if each.place is not None:
-            assert issue["location"] == {"path": each.place.path, "lines": {"begin": each.place.line}}
+        if each.location is not None:
+            assert issue["location"] == {"path": each.location.path, "lines": {"begin": each.location.line}}
         if each.lost:
             assert f"({each.lost} point{'' if each.lost == 1 else 's'} lost)" in issue["description"]
 

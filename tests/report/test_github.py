@@ -11,7 +11,7 @@ from grader.grading.report import Report
 from grader.problems import Problem
 from grader.report.findings import findings
 from grader.report.github import command, render_github
-from grader.report.places import Base, Place
+from grader.report.locations import Base, RepositoryLocation
 from grader.robot.catalogue import UNDEFINED_MATERIAL
 from grader.source import Location
 from grader.text import printable
@@ -133,7 +133,7 @@ TEXT = st.text().map(printable).filter(lambda text: text == text.strip() and tex
 @given(st.sampled_from(list(NAMES.values())), TEXT, TEXT, st.lists(TEXT, min_size=1).map("\n".join))
 def test_whatever_is_said_comes_back(name: str, path: str, title: str, text: str) -> None:
     """Colons, commas, percent signs and line breaks reach the reader as they are, in every part of a command."""
-    (told,) = read_commands(command(name, Place(path, 3, 4, 9), title, text))
+    (told,) = read_commands(command(name, RepositoryLocation(path, 3, 4, 9), title, text))
     expected = (("file", path), ("line", "3"), ("endLine", "3"), ("col", "4"), ("endColumn", "8"), ("title", title))
     assert told == Command(name, expected, text)
 

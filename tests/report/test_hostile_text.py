@@ -19,7 +19,7 @@ from grader.cli.app import run
 from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.report.formats import Format, render
-from grader.report.places import Base
+from grader.report.locations import Base
 from grader.submission.submission import read_submission
 from tests.report.hostile import BREAKING, PIECES, SLOTS, TEXT, UNASKED, hand_in, name_of
 from tests.report.readers import reader

@@ -9,10 +9,9 @@ from unittest.mock import patch
 import pytest
 
 from grader.grading.report import Report, Result
+from grader.report.content import other_problems
 from grader.report.formats import Format, render
-from grader.report.points import points_words
-from grader.report.words import untold
-from grader.text import printable
+from grader.text import format_points, printable
 from tests.report.readers import READERS, read_commands
 from tests.samples import SAMPLES
 
@@ -29,7 +28,7 @@ def facts(report: Report) -> Iterator[Fact]:
     """All that a report tells."""
     for result in report.results:
         yield from _of_criterion(result, report)
-    for problem in untold(report):
+    for problem in other_problems(report):
         message, line = printable(problem.message), problem.location.line
         places = f"{problem.location.path}:{line}", f"line {line}: {message}"
         for spellings in ((problem.code,), (message,), places):
@@ -40,7 +39,7 @@ def facts(report: Report) -> Iterator[Fact]:
     yield from (Fact("aside", (each,)) for each in submission.ignored)
     if submission.package is not None and any(report.rubric.part(part).needs == "package" for part in report.parts):
         yield Fact("package", (submission.package.folder or submission.package.name,))
-    score, most, waits = map(points_words, (report.score, report.max_score, report.pending))
+    score, most, waits = map(format_points, (report.score, report.max_score, report.pending))
     if report.pending:
         yield Fact("waits", (f"{waits} points wait", f'"pending":{waits},'))
     keys = ('"max_score":', '"max-score":', '"maxScore":')
@@ -76,7 +75,7 @@ def _plain(text: str) -> str:
     return re.sub(r"[\s\u2060]+|\.$", "", text).casefold()
 
 
-def untold_by(kind: Format, report: Report) -> Iterator[Fact]:
+def missing_from(kind: Format, report: Report) -> Iterator[Fact]:
     """What a format leaves out. Of more than ten annotations of a type GitHub shows none: the last one names the others."""
     with patch.dict(os.environ, {"COLUMNS": "500"}):
         text = render(report, kind)
@@ -94,7 +93,7 @@ def untold_by(kind: Format, report: Report) -> Iterator[Fact]:
 def test_all_formats_tell_the_same(name: str) -> None:
     """Of each criterion its title, its message, its place and its feedback; of the submission all that is said of it."""
     report = SAMPLES[name].grade()
-    left_out = {(kind.value, fact) for kind in READERS for fact in untold_by(kind, report)}
+    left_out = {(kind.value, fact) for kind in READERS for fact in missing_from(kind, report)}
     assert not {(kind, fact) for kind, fact in left_out if fact.kind not in READERS[Format(kind)].excused}
 
 
@@ -102,4 +101,4 @@ def test_every_excuse_is_needed() -> None:
     """What a format tells after all is excused no longer."""
     reports = [sample.grade() for sample in SAMPLES.values()]
     for kind, read in READERS.items():
-        assert set(read.excused) == {fact.kind for report in reports for fact in untold_by(kind, report)}
+        assert set(read.excused) == {fact.kind for report in reports for fact in missing_from(kind, report)}

@@ -13,7 +13,7 @@ from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.problems import Problem
 from grader.report.findings import findings
-from grader.report.places import Base
+from grader.report.locations import Base
 from grader.report.sarif import render_sarif
 from grader.robot.catalogue import UNDEFINED_MATERIAL
 from grader.source import Location
@@ -83,9 +83,9 @@ def test_every_finding_is_a_result(name: str) -> None:
         place = told["locations"][0]["physicalLocation"]
         assert told["level"] == each.level
         assert unquote(place["artifactLocation"]["uri"]).startswith(FOLDER.rstrip("/"))
-        if each.place is not None:
-            assert unquote(place["artifactLocation"]["uri"]) == each.place.path
-            assert place["region"]["startLine"] == each.place.line
+        if each.location is not None:
+            assert unquote(place["artifactLocation"]["uri"]) == each.location.path
+            assert place["region"]["startLine"] == each.location.line
     lost = sum(Decimal(str(each.get("properties", {}).get("points", 0))) for each in run["results"])
     assert report.score + lost + report.pending == report.max_score  # what is skipped counts for what it is due to
 

@@ -10,8 +10,8 @@ from rich.console import Console
 
 from grader.grading.grade import grade
 from grader.grading.rubric import load_rubric
+from grader.report.console import show_excerpt
 from grader.report.inspection import Inspection, inspection_terminal, main_root
-from grader.report.layout import show_excerpt
 from grader.report.terminal import render_terminal
 from grader.robot.kinematics import Configuration
 from grader.source import Location, Source

@@ -8,7 +8,7 @@ import pytest
 
 from grader.checks.outcome import Status
 from grader.grading.report import Report, Result
-from grader.report.since import lines_since, nothing_since
+from grader.report.comparison import comparison_lines, unchanged_line
 from tests.samples import SAMPLES
 
 SHORT = SAMPLES["lidar-offset-in-visual"].grade()  # 64 of 70: lidar-frame fails
@@ -30,7 +30,7 @@ def changed(report: Report, **changes: Change) -> Report:
 def test_the_score_and_who_passes_and_fails() -> None:
     """What passes now comes before what fails now, each with what it brings or costs."""
     after = changed(SHORT, lidar_frame=turned("passed"), base_green=turned("failed"), base_box=turned("failed"))
-    assert lines_since(SHORT, after) == [
+    assert comparison_lines(SHORT, after) == [
         "64 -> 62 of 70 points (-2)",
         "now passed: lidar-frame (+6)",
         "now failed: base-box (-2), base-green (-6)",
@@ -40,7 +40,7 @@ def test_the_score_and_who_passes_and_fails() -> None:
 def test_an_equal_score_hides_no_change() -> None:
     """One criterion won and one lost for as many points."""
     after = changed(SHORT, lidar_frame=turned("passed"), base_green=turned("failed"))
-    assert lines_since(SHORT, after) == [
+    assert comparison_lines(SHORT, after) == [
         "64 of 70 points, as before",
         "now passed: lidar-frame (+6)",
         "now failed: base-green (-6)",
@@ -49,35 +49,35 @@ def test_an_equal_score_hides_no_change() -> None:
 
 @pytest.mark.parametrize(
     ("status", "words"),
-    [("skipped", "now skipped"), ("pending", "now waiting for a person"), ("errored", "now errored")],
+    [("skipped", "now skipped"), ("pending", "now needs manual grading"), ("errored", "now errored")],
 )
 def test_every_status_has_its_words(status: Status, words: str) -> None:
     """Points are named only where they change."""
     after = changed(SHORT, lidar_frame=turned(status))
-    assert lines_since(SHORT, after) == ["64 of 70 points, as before", f"{words}: lidar-frame"]
+    assert comparison_lines(SHORT, after) == ["64 of 70 points, as before", f"{words}: lidar-frame"]
 
 
 def test_a_failure_that_is_another_one() -> None:
     """Nearer, but not there yet: the points are the same, and the message is not. What passes has nothing to say."""
     after = changed(SHORT, lidar_frame=turned("failed", "it is 2 mm off"), base_box=turned("passed", "it is 1 m wide"))
-    assert lines_since(SHORT, after) == ["64 of 70 points, as before", "with another message: lidar-frame"]
+    assert comparison_lines(SHORT, after) == ["64 of 70 points, as before", "with another message: lidar-frame"]
 
 
 def test_only_the_rest_has_changed() -> None:
     """Notes, problems and places are no business of the criteria."""
     after = replace(SHORT, notes=("something else",))
-    assert lines_since(SHORT, after) == ["64 of 70 points, as before; only the rest of the report has changed"]
+    assert comparison_lines(SHORT, after) == ["64 of 70 points, as before; only other parts of the report changed"]
 
 
 def test_nothing_has_changed() -> None:
     """One line with the score."""
-    assert nothing_since(SHORT) == "nothing has changed: 64 of 70 points"
+    assert unchanged_line(SHORT) == "nothing has changed: 64 of 70 points"
 
 
 def test_many_are_counted() -> None:
     """Of many criteria the first eight are named."""
     after = replace(SHORT, results=tuple(turned("skipped")(each) for each in SHORT.results))
-    score, line = lines_since(SHORT, after)
+    score, line = comparison_lines(SHORT, after)
     assert score == "64 -> 0 of 70 points (-64)"
     assert line.startswith("now skipped: urdf-loads (-3), base-box (-2), ")
     assert line.endswith(", and 24 more (-44)")
@@ -89,15 +89,15 @@ def test_another_rubric() -> None:
     first, second, *others = SHORT.results
     dearer = second._replace(criterion=replace(second.criterion, points=Decimal("2.5")))
     new = first._replace(criterion=replace(first.criterion, id="new\x1b", points=Decimal(1)))
-    assert lines_since(SHORT, replace(SHORT, results=(new, dearer, *others))) == [
+    assert comparison_lines(SHORT, replace(SHORT, results=(new, dearer, *others))) == [
         "64 of 70 -> 62.5 of 68.5 points (-1.5)",
         "now passed: new\\x1b (+1)",
-        f"worth something else: {second.criterion.id} (+0.5)",
-        f"no longer asked: {first.criterion.id} (-3)",
+        f"with other points: {second.criterion.id} (+0.5)",
+        f"removed: {first.criterion.id} (-3)",
     ]
     failing = next(each for each in SHORT.results if each.outcome.status == "failed")
     cheaper = {"lidar_frame": lambda each: each._replace(criterion=replace(failing.criterion, points=Decimal(5)))}
-    assert lines_since(SHORT, changed(SHORT, **cheaper)) == [
+    assert comparison_lines(SHORT, changed(SHORT, **cheaper)) == [
         "64 of 70 -> 64 of 69 points",
-        "worth something else: lidar-frame",
+        "with other points: lidar-frame",
     ]

@@ -1,4 +1,4 @@
-"""Values as plain JSON data, the same bytes on every machine."""
+"""JSON text and values that are the same bytes on every machine."""
 
 import json
 import re
@@ -14,28 +14,28 @@ _UNUSUAL = re.compile(r"[^\n -~]+")  # all but ASCII
 
 
 def to_json(data: Mapping[str, Any]) -> str:
-    """Data as JSON text: a line for each key, and for each entry of a list of objects. What cannot be seen is escaped.
+    """Return data as JSON text: a line for each key, and for each entry of a list of objects.
 
-    `indent` of the standard library would leave its C encoder aside and take three times as long.
+    `indent` of the standard library takes three times as long, because it does not use the C encoder.
     """
     lines = ",\n".join(f" {_ENCODER.encode(key)}: {_lines(value)}" for key, value in data.items())
     return _harmless(f"{{\n{lines}\n}}\n")
 
 
 def to_json_list(data: Sequence[Mapping[str, Any]]) -> str:
-    """A list of objects as JSON text, a line for each."""
-    lines = ",\n".join(f" {_ENCODER.encode(each)}" for each in data)
+    """Return a list of objects as JSON text, a line for each."""
+    lines = ",\n".join(f" {_ENCODER.encode(item)}" for item in data)
     return _harmless(f"[\n{lines}\n]\n" if lines else "[]\n")
 
 
 def _harmless(text: str) -> str:
-    """The same JSON with all escaped that no terminal should get, that is no Unicode, or that GitHub's runner takes for a command."""
+    """Return JSON with escapes for unprintable characters, and for what GitHub's runner takes for a command."""
     if not text.isascii() or "\x7f" in text:
-        text = _UNUSUAL.sub(lambda found: "".join(map(_visible, found[0])), text)
+        text = _UNUSUAL.sub(lambda found: "".join(map(_escaped, found[0])), text)
     return text.replace("##[", "##\\u005b")
 
 
-def _visible(character: str) -> str:
+def _escaped(character: str) -> str:
     return character if character.isprintable() else json.dumps(character)[1:-1]
 
 
@@ -43,32 +43,32 @@ def _lines(value: Any) -> str:
     text = _ENCODER.encode(value)
     if not isinstance(value, list) or not value or not isinstance(value[0], dict):
         return text
-    # Inside a JSON string a quote has a backslash before it, so this can only be where one entry ends and another begins.
+    # In a JSON string every quote is escaped, so this matches only between two entries.
     first = _ENCODER.encode(next(iter(value[0])))
     return "[\n  " + text[1:-1].replace("}, {" + first, "},\n  {" + first) + "\n ]"
 
 
 def exact(points: Decimal) -> int | float:
-    """Points as a JSON number: 58.5, and 70 rather than 70.0."""
+    """Return points as a JSON number: 58.5, and 70 rather than 70.0."""
     return int(points) if points == points.to_integral_value() else float(points)
 
 
 def rounded(value: Any) -> Any:
-    """A measured value to 1e-6, so that no machine's last digit shows; never -0, null where it is not finite."""
+    """Return a value rounded to 1e-6, because machines differ in the last digits; never -0, None if it is not finite."""
     if isinstance(value, float):
         return round(value, 6) + 0.0 if value - value == 0 else None
     if isinstance(value, tuple | list):
-        return [rounded(each) for each in value]
+        return [rounded(item) for item in value]
     return dict(value) if isinstance(value, Mapping) else value
 
 
 def location(where: Location | None) -> dict[str, Any] | None:
-    """A place, or null."""
+    """Return a location as plain data."""
     return None if where is None else {"path": where.path, "line": where.line, "column": where.column}
 
 
 def problem(found: Problem) -> dict[str, Any]:
-    """A problem of a URDF."""
+    """Return a problem as plain data."""
     return {
         "code": found.code,
         "severity": found.severity,

@@ -1,0 +1,90 @@
+"""A class as JSON, schema grader/class/v1."""
+
+from collections.abc import Iterable
+from typing import Any
+
+from grader import __version__
+from grader.classroom.gradebook.grades import AttentionList
+from grader.classroom.gradebook.statistics import ClassStatistics, CriterionStatistics
+from grader.classroom.gradebook.student_grade import StudentGrade
+from grader.grading.rubric import Rubric
+from grader.report.json_data import exact, rounded, to_json
+
+
+def render_class_json(
+    rubric: Rubric,
+    statistics: ClassStatistics,
+    grades: Iterable[StudentGrade],
+    looks: AttentionList,
+    run: dict[str, int] | None,
+) -> str:
+    """Return the statistics and all current grades; `run` counts what a batch has just done."""
+    return to_json(
+        {
+            "schema": "grader/class/v1",
+            "grader": {"version": __version__},
+            "rubric": {"id": rubric.id, "title": rubric.title, "sha256": rubric.sha256},
+            **({"run": run} if run is not None else {}),
+            "statistics": statistics_data(statistics),
+            "needs_a_look": looks.total,
+            "students": [grade_data(grade) for grade in grades],
+        }
+    )
+
+
+def grade_data(grade: StudentGrade) -> dict[str, Any]:
+    """Return a student's current grade as plain data."""
+    student, has_result = grade.student, grade.result is not None
+    return {
+        "id": student.key,
+        "name": student.name,
+        "email": student.email,
+        "status": grade.verdict,
+        "reason": grade.reason,
+        "score": exact(grade.score) if has_result else None,
+        "max_score": exact(grade.out_of) if has_result else None,
+        "pending": exact(grade.pending) if has_result else None,
+        "late": {"days": grade.late.days, "points": exact(grade.late.points), "because": grade.late.reason},
+        "total": exact(grade.total) if has_result else None,
+        "is_final": not grade.why_not_final,
+        "marks_by_hand": grade.marks,
+        "paths": list(grade.files.paths),
+        "attempt": grade.attempt,
+        "earlier": list(grade.earlier),
+    }
+
+
+def statistics_data(statistics: ClassStatistics) -> dict[str, Any]:
+    """Return the statistics as plain data, shares and correlations rounded to 1e-6."""
+    return {
+        "counts": dict(sorted(statistics.verdicts.items())),
+        "max_score": exact(statistics.out_of),
+        "graded": statistics.graded,
+        "pending": statistics.pending,
+        "mean": rounded(statistics.mean),
+        "deviation": rounded(statistics.deviation),
+        "lowest": exact(statistics.lowest),
+        "median": exact(statistics.median),
+        "highest": exact(statistics.highest),
+        "tenths": list(statistics.bins),
+        "criteria": [_criterion(row) for row in statistics.criteria],
+        "failures": [
+            {"criterion": failure.criterion.id, "message": failure.message, "count": failure.count}
+            for failure in statistics.failures
+        ],
+    }
+
+
+def _criterion(row: CriterionStatistics) -> dict[str, Any]:
+    return {
+        "id": row.criterion.id,
+        "max_points": exact(row.criterion.points),
+        "passed": row.passed,
+        "marked_by_hand": row.marked,
+        "failed": row.failed,
+        "skipped": row.skipped,
+        "pending": row.pending,
+        "errored": row.errored,
+        "share": rounded(row.share),
+        "discrimination": rounded(row.discrimination),
+    }

@@ -1,0 +1,68 @@
+"""Read a URDF as ROS 2 does, with its joints at given positions."""
+
+from collections.abc import Sequence
+from math import isfinite
+from typing import TYPE_CHECKING
+
+from grader.errors import GraderError, InputError, MissingElement
+from grader.text import printable_path
+from grader.usecases import Warn
+
+if TYPE_CHECKING:
+    from grader.report.inspection import Inspection
+    from grader.robot.kinematics import Configuration
+    from grader.robot.motion import Position
+    from grader.robot.reader import Reading
+
+_ANY_URDF = "robot.urdf"
+_MAX_NAMED = 20
+
+
+def inspect(path: str, joints: Sequence[str], relative_to: str | None, max_size: int, warn: Warn) -> "Inspection":
+    """Return the inspection of the URDF at a path. Raises GraderError."""
+    from grader.report.inspection import Inspection, main_root
+    from grader.submission.submission import open_submission
+    from grader.submission.urdf import Absent, Read, Unreadable
+
+    submission = open_submission(path, wanted=_ANY_URDF, limit=max_size)
+    match urdf := submission.urdf:
+        case Unreadable(reason=reason):
+            raise InputError(reason)
+        case Absent():
+            raise InputError(f"{printable_path(path)} has no URDF: no file in it has a <robot>")
+    if submission.other_candidates:
+        others = ", ".join(file.path for file in submission.other_candidates)
+        warn(f"inspecting {urdf.path}; other candidates: {others}")
+    if isinstance(urdf, Read) and urdf.is_expanded:
+        warn(f"{urdf.path} is xacro: its properties and numbers are expanded")
+    robot = _configuration(urdf.reading, joints)
+    if robot is not None and relative_to is None:
+        relative_to = main_root(robot)
+    elif robot is not None and relative_to is not None and not robot.robot.has_link(relative_to):
+        known = ", ".join(repr(link.name) for link in robot.robot.links[:_MAX_NAMED])
+        raise GraderError(f"--relative-to: there is no link {relative_to!r}; the file has: {known}")
+    return Inspection(urdf.path, urdf.reading, robot, relative_to)
+
+
+def _configuration(urdf: "Reading", joints: Sequence[str]) -> "Configuration | None":
+    from grader.robot.kinematics import Configuration
+
+    positions = dict(map(_read_position, joints))
+    if urdf.robot is None:
+        return None
+    try:
+        return Configuration(urdf.robot, positions)
+    except (MissingElement, ValueError) as error:
+        raise GraderError(f"--joint: {error}") from None
+
+
+def _read_position(text: str) -> "tuple[str, Position]":
+    """Return the joint and its position in radians or metres that `--joint` gives. Raises GraderError."""
+    name, equals, value = text.rpartition("=")
+    try:
+        values = tuple(map(float, value.split(",")))
+    except ValueError:
+        values = (float("nan"),)
+    if not equals or not all(map(isfinite, values)):
+        raise GraderError(f"--joint takes NAME=VALUE with a number in radians or metres, not {text!r}")
+    return name, values if len(values) > 1 else values[0]

@@ -1,0 +1,57 @@
+"""Load, list and check rubrics."""
+
+from typing import TYPE_CHECKING
+
+from grader.errors import RubricError
+from grader.text import counted, printable
+from grader.usecases import Warn
+
+if TYPE_CHECKING:
+    from grader.grading.rubric import Rubric
+
+
+def load(name: str, warn: Warn, *, answers: bool = True) -> "Rubric":
+    """Return a rubric with or without its model answers; warn if their file is missing."""
+    from grader.grading.answers import load_with_answers, missing_answers
+    from grader.grading.rubric import load_rubric
+
+    if not answers:
+        return load_rubric(name)
+    rubric = load_with_answers(name)
+    if missing_answers(rubric):
+        warn(missing_answers(rubric))
+    return rubric
+
+
+def listed() -> str:
+    """Return a line for each rubric that comes with the grader."""
+    from grader.grading.rubric import load_rubric, shipped_rubrics
+
+    return "".join(f"{rubric.id}  {summary(rubric)}\n" for rubric in map(load_rubric, shipped_rubrics()))
+
+
+def summary(rubric: "Rubric") -> str:
+    """Return a rubric's title and size: Lab 6 (56 criteria, 100 points)."""
+    from grader.text import counted_points
+
+    return f"{rubric.title} ({counted(len(rubric.criteria), 'criterion', 'criteria')}, {counted_points(rubric.points)})"
+
+
+def check(name: str, warn: Warn) -> str:
+    """Check a rubric and return a summary. Raises RubricError if its reference solution does not get full marks."""
+    from grader.grading.grade import grade_reference
+    from grader.text import counted_points
+
+    rubric = load(name, warn)
+    found = f"{rubric.id}: {len(rubric.criteria)} criteria, {counted_points(rubric.points)}, no mistakes found"
+    if not rubric.reference:
+        return found
+    lost = [result for result in grade_reference(rubric).results if result.outcome.status not in ("passed", "pending")]
+    if lost:
+        raise RubricError(
+            tuple(
+                printable(f"the reference does not get {result.criterion.id}: {result.outcome.message}")
+                for result in lost
+            )
+        )
+    return f"{found}; its reference gets full marks"
