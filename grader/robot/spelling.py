@@ -45,7 +45,18 @@ _CHILDREN: dict[str, tuple[str, ...]] = {
 }
 # Correct names that urdfdom does not read: they are not misspellings.
 _EXTENSIONS = frozenset(
-    ["gazebo", "transmission", "ros2_control", "sensor", "plugin", "drake", "mujoco", "capsule", "verbose", "hardwareInterface"]
+    [
+        "gazebo",
+        "transmission",
+        "ros2_control",
+        "sensor",
+        "plugin",
+        "drake",
+        "mujoco",
+        "capsule",
+        "verbose",
+        "hardwareInterface",
+    ]
 )
 _SINGLE = frozenset(
     {"origin", "geometry", "parent", "child", "axis", "limit", "inertial", "mass", "inertia", "mimic", "dynamics"}

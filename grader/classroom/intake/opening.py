@@ -13,7 +13,7 @@ from grader.files.class_zip import ClassZip
 from grader.files.folder import file_at
 from grader.files.ignore_rules import ignored_part, is_generated
 from grader.files.opening import outer_tree, tree_name, with_inner, without_endings
-from grader.files.reading import URDF_LIMIT, capped, open_regular, read_start
+from grader.files.reading import URDF_LIMIT, open_regular, read_capped
 from grader.files.tree import Tree, make_tree
 from grader.grading.rubric import Rubric
 from grader.submission.submission import Submission, read_submission, submission_of
@@ -83,7 +83,7 @@ def _on_disk(root: str, path: str, limit: int) -> Opened:
     last = path.rpartition("/")[2]
     if last.lower().endswith(_ROBOTS):
         shown = printable_path(last)
-        data = capped(read_start(path, limit + 1, shown, root), limit, shown)
+        data = read_capped(path, limit, shown=shown, top=root)
         return Opened(shown.rpartition(".")[0], shown, _digest_of_urdf(shown, data, limit), data, None)
     place = Path(path)
     tree = outer_tree(place, root)
