@@ -52,7 +52,7 @@ class NeedsExpansion:
 
 @dataclass(frozen=True, slots=True)
 class Read:
-    """The URDF was read, whatever ROS 2 makes of it; `reading` is of the expanded text if it is xacro."""
+    """The URDF was read, even if ROS 2 rejects it; `reading` is of the expanded text if it is xacro."""
 
     path: str
     data: bytes = field(repr=False)
