@@ -10,7 +10,7 @@ from pathlib import Path
 from grader.errors import FileError, InputError
 from grader.files import limits
 from grader.files.ignore_rules import BUILD_FOLDERS, IGNORED_FOLDERS, ignored_part, is_generated
-from grader.files.reading import advice_for, capped, read_start, shown_below
+from grader.files.reading import advice_for, read_capped, read_start, shown_below
 from grader.files.tree import File, IgnoredFile, Tree, make_tree, parents
 from grader.text import printable_path
 
@@ -89,7 +89,7 @@ class _Walk:
         except OSError:  # such as a symlink to itself
             real, is_folder, is_file = "", False, False
         if real and real != self._top and not real.startswith(self._top.rstrip(os.sep) + os.sep):
-            self._ignore(shown, "is a link that leads out of the submission, and was not followed")
+            self._ignore(shown, "is a symlink that leads out of the submission, and was not followed")
         elif is_folder:
             in_itself = real and f"{self._top}/{path}".startswith(real + "/")
             if in_itself or os.path.lexists(entry.path + "/pyvenv.cfg"):
@@ -101,7 +101,7 @@ class _Walk:
             place = real or f"{real_folder}/{entry.name}"
             self.files.append(File(shown, _size(entry), partial(_read, place, shown, self._trusted)))
         elif entry.is_symlink() and not Path(entry.path).exists():
-            self._ignore(shown, "is a link that leads nowhere, and was not followed")
+            self._ignore(shown, "is a symlink that leads nowhere, and was not followed")
         else:
             self._ignore(shown, "is not a regular file, and was not read")
         return False
@@ -162,8 +162,9 @@ def _generated(folder: Path, path: str) -> list[str]:
 
 def _read(path: str, shown: str, top: str, limit: int, *, first: bool = False) -> bytes:
     """Return the bytes of a file; messages use its name in the submission, so they are the same on every machine."""
-    start = read_start(path, limit if first else limit + 1, shown, top)
-    return start if first else capped(start, limit, shown, advice_for(shown))
+    if first:
+        return read_start(path, limit, shown, top)
+    return read_capped(path, limit, shown=shown, top=top, advice=advice_for(shown))
 
 
 def _size(entry: "os.DirEntry[str]") -> int:

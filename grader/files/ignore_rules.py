@@ -1,4 +1,4 @@
-"""Which parts of a submission are ignored in silence: no student wrote what is in them."""
+"""The parts of a submission that are silently ignored, because no student wrote them."""
 
 BUILD_FOLDERS = frozenset({"build", "install", "log"})
 IGNORED_FOLDERS = BUILD_FOLDERS | {

@@ -13,7 +13,7 @@ HARMLESS_SIZE = 32 * 1024 * 1024  # bytes that an archive may hold whatever the 
 
 
 class Allowance:
-    """How many bytes an archive may unpack to, together with the archives in it.
+    """The number of bytes that an archive may unpack to, together with the archives in it.
 
     `streamed` counts what is decompressed: a compressed tar has to be, files that are ignored included.
     """

@@ -1,4 +1,4 @@
-"""What the symlinks and hard links of an archive lead to: nothing outside of it."""
+"""The targets of symlinks and hard links in an archive: nothing outside of it."""
 
 from bisect import bisect_left
 from collections.abc import Mapping

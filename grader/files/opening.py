@@ -14,7 +14,7 @@ from grader.files.tree import File, IgnoredFile, Tree, make_tree
 from grader.text import printable_path
 
 ARCHIVES = (".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar")
-NOT_AN_ARCHIVE = "is no archive, although it is named as one: it is damaged or empty"
+NOT_AN_ARCHIVE = "is not a readable archive: it is damaged or empty"
 _PACKAGE_FILES = ("package.xml", "setup.py")
 _SIGNATURES = {
     b"PK\x03\x04": "zip",

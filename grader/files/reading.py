@@ -19,20 +19,20 @@ _MAX_SIBLINGS = 1000  # names in a folder that are compared with a missing one
 _ADVICE = " for a URDF (--max-size raises it)"
 
 
-def read_capped(path: Path | str, limit: int = URDF_LIMIT, *, advice: str = _ADVICE) -> bytes:
+def read_capped(
+    path: Path | str, limit: int = URDF_LIMIT, *, shown: str = "", top: str = "", advice: str = _ADVICE
+) -> bytes:
     """Return the bytes of a regular file of at most `limit` bytes; raises InputError, with one sentence, for anything else.
 
-    `advice` is what the message about a file that is too large ends with.
+    `shown` is its name in messages (default: the path), and `advice` ends the one about a file that is too large. Below the
+    folder `top` no symlink is followed.
     """
-    data = read_start(path, limit + 1)
-    return data if len(data) <= limit else capped(data, limit, printable_path(path), advice)
+    data = read_start(path, limit + 1, shown, top)
+    return data if len(data) <= limit else capped(data, limit, shown or shown_below(path, top), advice)
 
 
 def read_start(path: Path | str, count: int, shown: str = "", top: str = "") -> bytes:
-    """Return the first bytes of a regular file; raises InputError, with one sentence, for anything else.
-
-    `shown` is what messages call it (default: the path, below `top` relative to it). Below the folder `top` no symlink is followed.
-    """
+    """Return the first bytes of a regular file; the other arguments and errors are those of `read_capped`."""
     handle = open_regular(path, shown, top)
     try:
         return _read(handle, count)

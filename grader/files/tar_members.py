@@ -74,7 +74,7 @@ def _open(archive: tarfile.TarFile, info: tarfile.TarInfo) -> IO[bytes]:
 
 
 class _Stream:
-    """What a compressed tar is decompressed to, up to a limit; it is read from its beginning to its end, once."""
+    """The decompressed bytes of a tar, up to a limit; they are read once, from beginning to end."""
 
     def __init__(self, source: IO[bytes], name: str, limit: int, allowance: limits.Allowance) -> None:
         self._source, self._name, self._limit, self._allowance = source, name, limit, allowance

@@ -6,7 +6,7 @@ from grader.xml import catalogue as xml_catalogue
 NO_ROBOT = rejects(
     "URDF013",
     "No <robot> at the top level",
-    'A URDF is one <robot name="..."> that contains the links and joints. ROS 2 rejects a file without it.',
+    'A URDF is one <robot name="..."> that contains the links and joints.',
 )
 RAW_XACRO = warns(
     "URDF014",
@@ -31,18 +31,17 @@ LINK_WITHOUT_NAME = drops(
 DUPLICATE_LINK = rejects(
     "URDF031",
     "Two links with the same name",
-    "Link names must be unique; otherwise ROS 2 rejects the file. The usual cause is copy and paste: rename the copy.",
+    "Link names must be unique. The usual cause is copy and paste: rename the copy.",
 )
 DUPLICATE_JOINT = rejects(
     "URDF032",
     "Two joints with the same name",
-    "Joint names must be unique; otherwise ROS 2 rejects the file. The usual cause is copy and paste: rename the copy.",
+    "Joint names must be unique. The usual cause is copy and paste: rename the copy.",
 )
 DUPLICATE_MATERIAL = rejects(
     "URDF033",
     "Two materials with the same name directly under <robot>",
-    "Each material name may be defined under <robot> only once; otherwise ROS 2 rejects the file. Materials without a name "
-    "count as materials with the same name.",
+    "A material name may be defined under <robot> only once. Materials without a name count as having the same name.",
 )
 JOINT_WITHOUT_NAME = rejects("URDF034", "A joint without a name", 'ROS 2 requires <joint name="..." type="...">.')
 BAD_INERTIAL = drops(
@@ -107,20 +106,17 @@ TYPE_MISSING = rejects(
 TYPE_UNKNOWN = rejects(
     "URDF061",
     "An unknown joint type",
-    "The types are fixed, continuous, revolute, prismatic, floating and planar, in lower case without spaces. ROS 2 rejects a "
-    "file with any other.",
+    "The types are fixed, continuous, revolute, prismatic, floating and planar, in lower case without spaces.",
 )
 BAD_JOINT_ORIGIN = rejects(
     "URDF062",
     "An invalid joint origin",
-    'xyz and rpy take three numbers each, separated by spaces: <origin xyz="0.15 0 0.225" rpy="0 0 0"/>. ROS 2 rejects a file '
-    "with any other value.",
+    'xyz and rpy take three numbers each, separated by spaces: <origin xyz="0.15 0 0.225" rpy="0 0 0"/>.',
 )
 BAD_AXIS = rejects(
     "URDF063",
     "An invalid joint axis",
-    'An axis takes three numbers, separated by spaces: <axis xyz="0 0 1"/>. ROS 2 rejects a file with any other value, but '
-    "ignores the axis of fixed and floating joints.",
+    'An axis takes three numbers: <axis xyz="0 0 1"/>. ROS 2 ignores the axis of fixed and floating joints.',
 )
 LIMIT_MISSING = rejects(
     "URDF064",
@@ -130,38 +126,37 @@ LIMIT_MISSING = rejects(
 BAD_LIMIT = rejects(
     "URDF065",
     "An incomplete or invalid joint limit",
-    "Every <limit>, even of a fixed or continuous joint, needs effort and velocity, and only plain numbers. Otherwise ROS 2 "
-    "rejects the file.",
+    "Every <limit>, even of a fixed or continuous joint, needs effort and velocity, and only plain numbers.",
 )
 BAD_DYNAMICS = rejects(
     "URDF066",
     "An empty or invalid <dynamics>",
-    "<dynamics> needs damping, friction or both, as plain numbers. Otherwise ROS 2 rejects the file.",
+    "<dynamics> needs damping, friction or both, as plain numbers.",
 )
 BAD_MIMIC = rejects(
     "URDF067",
     "A <mimic> without a joint, or with an invalid number",
-    "<mimic> needs the name of a joint; multiplier and offset are plain numbers. Otherwise ROS 2 rejects the file.",
+    "<mimic> needs the name of a joint; multiplier and offset are plain numbers.",
 )
 BAD_SAFETY = rejects(
     "URDF068",
     "An incomplete or invalid <safety_controller>",
-    "<safety_controller> needs k_velocity; all its values are plain numbers. Otherwise ROS 2 rejects the file.",
+    "<safety_controller> needs k_velocity; all its values are plain numbers.",
 )
 BAD_CALIBRATION = rejects(
     "URDF069",
     "An invalid <calibration>",
-    "rising and falling are plain numbers. Otherwise ROS 2 rejects the file.",
+    "rising and falling are plain numbers.",
 )
 NO_PARENT_OR_CHILD = rejects(
     "URDF070",
     "A joint without parent or child",
-    'A joint connects two links: it needs <parent link="..."/> and <child link="..."/>. Otherwise ROS 2 rejects the file.',
+    'A joint connects two links: it needs <parent link="..."/> and <child link="..."/>.',
 )
 UNKNOWN_LINK = rejects(
     "URDF071",
     "A joint with a link that does not exist",
-    "Names must match exactly, including upper and lower case. Otherwise ROS 2 rejects the file.",
+    "Names must match exactly, including upper and lower case.",
 )
 DEFAULT_AXIS = notes(
     "URDF072",
@@ -204,15 +199,14 @@ NEGATIVE_SIZE = warns(
 TWO_ROOTS = rejects(
     "URDF080",
     "Links that are not connected to the robot",
-    "All links must form one tree: every link but one is the child of a joint. ROS 2 rejects a file with several roots. Add "
-    "the missing joint, or fix the link names in the joints.",
+    "All links must form one tree: every link but one is the child of a joint. Add the missing joint, or fix the link names "
+    "in the joints.",
     is_consequence=True,
 )
 NO_ROOT = rejects(
     "URDF081",
     "A tree without a root",
-    "Every link is the child of a joint, so the links form a loop, and ROS 2 rejects the file. One link, the root, must not be "
-    "the child of any joint.",
+    "Every link is the child of a joint, so the links form a loop. One link, the root, must not be a child.",
     is_consequence=True,
 )
 CYCLE = rejects(

@@ -2,7 +2,6 @@
 
 from typing import Literal, get_args
 
-from grader.problems import Kind
 from grader.robot import catalogue
 from grader.robot.diagnostics import Problems, first_children
 from grader.robot.element_reader import ElementReader
@@ -18,6 +17,11 @@ _WITHOUT_AXIS = ("fixed", "floating")
 _WITH_LIMIT = ("revolute", "prismatic")
 _REJECTED = "ROS 2 rejects the file"
 _X_AXIS = (1.0, 0.0, 0.0)
+_EXTRAS = {
+    "dynamics": (catalogue.BAD_DYNAMICS, ("damping", "friction")),
+    "safety_controller": (catalogue.BAD_SAFETY, ("soft_lower_limit", "soft_upper_limit", "k_position")),
+    "calibration": (catalogue.BAD_CALIBRATION, ("rising", "falling")),
+}
 
 
 def read_joint(element: Element, problems: Problems) -> Joint:
@@ -121,21 +125,13 @@ def _read_mimic(element: Element, problems: Problems) -> Mimic | None:
 
 def _check_extras(inside: dict[str, Element], problems: Problems) -> None:
     """Check the elements that the model does not keep, but that ROS 2 rejects a file for."""
-    if "dynamics" in inside:
-        dynamics = inside["dynamics"]
-        reader = _check_numbers(dynamics, ("damping", "friction"), catalogue.BAD_DYNAMICS, problems)
-        if dynamics.get("damping") is None and dynamics.get("friction") is None:
-            reader.fail("<dynamics> has neither damping nor friction", dynamics)
-    if "safety_controller" in inside:
-        safety = inside["safety_controller"]
-        optional = ("soft_lower_limit", "soft_upper_limit", "k_position")
-        _check_numbers(safety, optional, catalogue.BAD_SAFETY, problems).required(safety, "k_velocity")
-    if "calibration" in inside:
-        _check_numbers(inside["calibration"], ("rising", "falling"), catalogue.BAD_CALIBRATION, problems)
-
-
-def _check_numbers(element: Element, attributes: tuple[str, ...], kind: Kind, problems: Problems) -> ElementReader:
-    reader = ElementReader(problems, kind)
-    for attribute in attributes:
-        reader.number(element, attribute, 0.0)
-    return reader
+    for tag, (kind, attributes) in _EXTRAS.items():
+        if tag not in inside:
+            continue
+        element, reader = inside[tag], ElementReader(problems, kind)
+        for attribute in attributes:
+            reader.number(element, attribute, 0.0)
+        if tag == "safety_controller":
+            reader.required(element, "k_velocity")
+        elif tag == "dynamics" and not any(attribute in element.attrib for attribute in attributes):
+            reader.fail("<dynamics> has neither damping nor friction", element)

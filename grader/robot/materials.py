@@ -65,7 +65,7 @@ class Materials:
             try:
                 channels = rgba(text)
                 if channels is None:
-                    message = f"rgba={shown(text)} has not exactly four numbers; ROS 2 silently shows black"
+                    message = f"rgba={shown(text)} needs exactly four numbers; ROS 2 silently shows black"
                     self._problems.add(catalogue.COLOUR_COUNT, message, colour, "rgba")
                     channels = _BLACK
             except NumberError as error:

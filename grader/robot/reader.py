@@ -28,7 +28,7 @@ _XACRO = re.compile(r"<xacro:|\$\{|\$\(")
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """What ROS 2 makes of a URDF. `robot` holds what could be read, also of a rejected file; None if nothing could."""
+    """ROS 2's verdict on a URDF. `robot` is as much as could be read, also of a rejected file; None if nothing could."""
 
     verdict: Verdict
     robot: Robot | None

@@ -45,18 +45,8 @@ _CHILDREN: dict[str, tuple[str, ...]] = {
 }
 # Correct names that urdfdom does not read: they are not misspellings.
 _EXTENSIONS = frozenset(
-    {
-        "gazebo",
-        "transmission",
-        "ros2_control",
-        "sensor",
-        "plugin",
-        "drake",
-        "mujoco",
-        "capsule",
-        "verbose",
-        "hardwareInterface",
-    }
+    {"gazebo", "transmission", "hardwareInterface", "ros2_control", "sensor", "plugin"}
+    | {"drake", "mujoco", "capsule", "verbose"}
 )
 _SINGLE = frozenset(
     {"origin", "geometry", "parent", "child", "axis", "limit", "inertial", "mass", "inertia", "mimic", "dynamics"}

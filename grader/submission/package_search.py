@@ -1,4 +1,4 @@
-"""Which package of a submission is graded, and why the others are not."""
+"""The search for the package that is graded, and the reasons against the others."""
 
 from grader.errors import InputError
 from grader.files.tree import Tree

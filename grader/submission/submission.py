@@ -30,7 +30,7 @@ _WANTED = "give a .urdf file, or the folder or archive that was submitted"
 
 @dataclass(frozen=True)
 class Submission:
-    """What a student submitted. `packages` begins with the one that is graded.
+    """The work that a student submitted. `packages` begins with the one that is graded.
 
     `is_single` is whether it is a URDF on its own, not a folder or archive. `no_documents` says why no document is read, where
     grading ran out of memory with them.
@@ -70,17 +70,17 @@ class Submission:
 
     @property
     def has_urdf(self) -> bool:
-        """Whether there is a URDF that could be read, whatever ROS 2 makes of it."""
+        """Whether there is a URDF that could be read, even if ROS 2 rejects it."""
         return isinstance(self.urdf, Read | NeedsExpansion)
 
     @property
     def unread(self) -> str:
-        """Why the URDF could not be read; empty where it was, or where there is none."""
+        """The reason why the URDF could not be read; empty if it was, or if there is none."""
         return self.urdf.reason if isinstance(self.urdf, Unreadable) else ""
 
     @property
     def verdict(self) -> Verdict | None:
-        """What ROS 2 makes of the URDF; None where it was not read, or not expanded."""
+        """ROS 2's verdict on the URDF; None if it was not read, or not expanded."""
         return self.urdf.reading.verdict if isinstance(self.urdf, Read) else None
 
     @property

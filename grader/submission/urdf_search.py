@@ -1,4 +1,4 @@
-"""Which file of a submission is the URDF that is graded, and why the other candidates are not."""
+"""The search for the URDF that is graded, and the reasons against the other candidates."""
 
 import re
 from typing import NamedTuple
@@ -35,7 +35,7 @@ class UrdfChoice(NamedTuple):
 
 
 class _Candidate(NamedTuple):
-    """How well a file matches; the best one sorts first."""
+    """A file that may be the URDF; the best match sorts first."""
 
     in_other_package: bool  # in another package with the name of the graded one: that of a team mate
     tier: int

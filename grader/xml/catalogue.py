@@ -7,31 +7,29 @@ MALFORMED_TAG = rejects(
     "A malformed tag",
     'ROS 2 stops at a tag that is not of the form <name attribute="value" ...>. Usual causes: a missing attribute name '
     '(<parent="base_link"/> instead of <parent link="base_link"/>), a comma between attributes, a missing or typographic '
-    "quote, a duplicate attribute. ROS 2 rejects the file until the tag is fixed.",
+    "quote, a duplicate attribute.",
 )
 MISMATCHED_TAG = rejects(
     "URDF002",
     "A tag without its own closing tag",
-    "Every <tag> needs its </tag>, and the tag opened last is closed first; <tag/> closes itself. ROS 2 rejects a file in "
-    "which they do not match, or that ends too early.",
+    "Every <tag> needs its </tag>, and the tag opened last is closed first; <tag/> closes itself. The file may end too early.",
 )
 EMPTY_DOCUMENT = rejects("URDF003", "An empty file", "The file contains no XML, so ROS 2 has nothing to load.")
 UNTERMINATED = rejects(
     "URDF004",
     "A comment, CDATA section or declaration without an end",
-    "A comment ends at -->, a CDATA section at ]]>, a declaration at ?>. Without its end it extends to the end of the file, "
-    "and ROS 2 rejects the file.",
+    "A comment ends at -->, a CDATA section at ]]>, a declaration at ?>. Without it the rest of the file is part of it.",
 )
 MISPLACED_DECLARATION = rejects(
     "URDF005",
     "An XML declaration that is not at the top",
-    "<?xml ...?> must be at the very top of the file, before comments and tags; otherwise ROS 2 rejects the file. The usual "
-    "cause is a second file that was pasted in. The same is true of processing instructions (<? ... ?>).",
+    "<?xml ...?> must be at the very top of the file, before comments and tags, and so must processing instructions "
+    "(<? ... ?>). The usual cause is a second file that was pasted in.",
 )
 STRAY_TEXT = rejects(
     "URDF006",
     "Text after the robot",
-    "Only white space and comments may follow </robot>. ROS 2 rejects a file that ends in text.",
+    "Only white space and comments may follow </robot>.",
 )
 TOO_DEEP = rejects(
     "URDF007",

@@ -175,7 +175,7 @@ def test_a_symlink_in_a_submission_stays_in_it(tmp_path: Path, target: str) -> N
     batch(tmp_path, "--reports", tmp_path / "reports")
     assert students(tmp_path)["mallory"]["score"] == 0
     assert students(tmp_path)["ann"]["score"] == students(tmp_path)["bob"]["score"] == 90
-    assert "src is a link that leads out of the submission" in (tmp_path / "reports/mallory.txt").read_text()
+    assert "src is a symlink that leads out of the submission" in (tmp_path / "reports/mallory.txt").read_text()
 
 
 @pytest.mark.parametrize("roster", ["", "id\nann\nbea\ncal\ndee\n"])

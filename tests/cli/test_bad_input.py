@@ -85,7 +85,7 @@ class TestPaths:
         folder = tmp_path / "submission"
         folder.mkdir()
         (folder / "my_robot.urdf").symlink_to(REFERENCE)
-        refuse(command, str(folder), words="is a link that leads out of the submission")
+        refuse(command, str(folder), words="is a symlink that leads out of the submission")
 
     def test_name_with_nul_or_too_long(self, command: str, tmp_path: Path) -> None:
         """A name that no file can have."""

@@ -12,7 +12,7 @@ from grader.files.class_zip import ClassZip
 from grader.files.folder import file_at
 from grader.files.ignore_rules import ignored_part, is_generated
 from grader.files.opening import outer_tree, tree_name, with_inner, without_endings
-from grader.files.reading import URDF_LIMIT, capped, open_regular, read_start
+from grader.files.reading import URDF_LIMIT, open_regular, read_capped
 from grader.files.tree import Tree, make_tree
 from grader.grading.rubric import Rubric
 from grader.submission.submission import Submission, read_submission, submission_of
@@ -73,7 +73,7 @@ def _open_on_disk(root: str, path: str, limit: int) -> OpenedSubmission:
     last = path.rpartition("/")[2]
     if last.lower().endswith(_URDF_ENDINGS):
         shown = printable_path(last)
-        return _lone_urdf(shown, capped(read_start(f"{root}/{path}", limit + 1, shown, root), limit, shown), limit)
+        return _lone_urdf(shown, read_capped(f"{root}/{path}", limit, shown=shown, top=root), limit)
     place = Path(root, path)
     tree = outer_tree(place, root)
     if tree is None:

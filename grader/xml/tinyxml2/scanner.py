@@ -187,7 +187,9 @@ class Scanner:
             self._writer.close(written)
         if opened.name != tag.name and not self._errors:
             line = self._text.count("\n", 0, opened.offset) + 1
-            message = f"</{short(tag.name)}> closes <{short(opened.name)}> of line {line}; ROS 2 rejects the file"
+            message = (
+                f"</{short(tag.name)}> does not match <{short(opened.name)}> in line {line}; ROS 2 rejects the file"
+            )
             self._refuse(catalogue.MISMATCHED_TAG, message, tag.offset)
         return end
 

@@ -57,9 +57,8 @@ class _References:
     def __init__(self, source: bytes) -> None:
         self._source = source
         self._semicolon = -1
-        self._hexadecimal: tuple[int, int] | None = (
-            None  # the offset of the digits before the semicolon, and their value
-        )
+        # The offset of the digits before the semicolon, and their value.
+        self._hexadecimal: tuple[int, int] | None = None
         self._decimal: tuple[int, int] | None = None
 
     def at(self, offset: int) -> tuple[bytes, int]:

@@ -33,7 +33,7 @@ class RobotWriter:
 
     @property
     def xml(self) -> bytes:
-        """What was written; empty without a robot."""
+        """The robot as XML; empty without a robot."""
         return "".join(self._out).encode()
 
 
