@@ -7,7 +7,8 @@ from grader.static_python.control_flow import EvaluationStopped, ExitFlow
 from grader.static_python.evaluation import FunctionTable
 from grader.static_python.expressions import ExpressionEvaluator
 from grader.static_python.parse import SyntaxFault, parse
-from grader.static_python.values import START, Unknown, Value
+from grader.static_python.positions import START
+from grader.static_python.values import Unknown, Value
 
 _MAX_LENGTH = 1_000
 
