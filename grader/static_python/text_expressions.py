@@ -17,7 +17,7 @@ def evaluate_text(text: str, functions: FunctionTable, names: Mapping[str, Value
     """Return the value of an expression with these functions and names; Unknown if it has an error. Never raises."""
     if len(text) > _MAX_LENGTH:
         return Unknown("the expression is too long", START)
-    code = parse(f"({text}\n)".encode("utf-8", "replace"), "")
+    code = parse(text.strip().encode("utf-8", "replace"), "")
     if isinstance(code, SyntaxFault):
         return Unknown(code.message, START)
     match code.tree.body:
