@@ -53,13 +53,8 @@ def find_evidence(proofs: Sequence[Proof], names: Sequence[str]) -> tuple[Exhibi
 
 def describe(proofs: Sequence[Proof]) -> tuple[Exhibit, ...]:
     """Describe files of evidence; of many files, only the first with their dimensions."""
-    opened = [_described(proof.file) for proof in proofs[:_MAX_OPENED]]
+    opened = [_exhibit(proof.file) for proof in proofs[:_MAX_OPENED]]
     return (*opened, *(Exhibit(proof.file.path, proof.file.size) for proof in proofs[_MAX_OPENED:]))
-
-
-def _described(file: File) -> Exhibit:
-    dimensions = _dimensions(file) if file.suffix in _PICTURES else None
-    return Exhibit(file.path, file.size, *(dimensions or (None, None)))
 
 
 def stem(path: str) -> str:
@@ -68,8 +63,9 @@ def stem(path: str) -> str:
     return folder + slash + (name.rpartition(".")[0] or name)
 
 
-def _dimensions(file: File) -> tuple[int, int] | None:
+def _exhibit(file: File) -> Exhibit:
     try:
-        return image_size(file.read(_MAX_HEADER, first=True))
+        size = image_size(file.read(_MAX_HEADER, first=True)) if file.suffix in _PICTURES else None
     except InputError:
-        return None
+        size = None
+    return Exhibit(file.path, file.size, *(size or (None, None)))

@@ -1,12 +1,12 @@
 """package.xml: name, build type and problems of a package (REP 127, 140 and 149)."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from grader.package import catalogue
+from grader.package.xml_file import XmlFault, XmlFile
 from grader.problems import Problem
 from grader.source import Location, Source
-from grader.xml.parsing import Element, XMLSyntaxError, parse_xml
 
 _REQUIRED = ("name", "version", "description", "maintainer", "license")
 _FORMATS = ("2", "3")
@@ -30,57 +30,42 @@ def read_manifest(data: bytes, path: str) -> Manifest:
     source = Source(path, data.decode("utf-8", "replace"))
     start = Location(path, 1, 1)
     try:
-        root = parse_xml(data)
-    except (XMLSyntaxError, ValueError) as error:
-        line, column = getattr(error, "position", (1, 1))
-        reason = " ".join(str(getattr(error, "msg", error)).split(", line ")[0].split())
-        message, location = (
-            f"package.xml is not readable as XML: {reason}",
-            Location(path, max(line, 1), max(column, 1)),
-        )
-    else:
-        if root.tag == "package":
-            return _manifest(root, source)
-        message, location = f"the root of package.xml is <{root.tag}>, not <package>", start
-    return Manifest(source, None, "", (Problem(catalogue.BAD_MANIFEST, message, location),), start, start)
-
-
-def _manifest(root: Element, source: Source) -> Manifest:
-    indices = {element: index for index, element in enumerate(root.iter("*"))}
-
-    def locate(element: Element) -> Location:
-        try:
-            return source.tag(indices[element])
-        except IndexError:  # the text is in an encoding in which its tags are not found
-            return Location(source.path, 1, 1)
-
+        file = XmlFile(data, source)
+    except XmlFault as fault:
+        problem = Problem(catalogue.BAD_MANIFEST, f"package.xml is not readable as XML: {fault}", fault.location)
+        return Manifest(source, None, "", (problem,), start, start)
+    root = file.root
+    if root.tag != "package":
+        problem = Problem(catalogue.BAD_MANIFEST, f"the root of package.xml is <{root.tag}>, not <package>", start)
+        return Manifest(source, None, "", (problem,), start, start)
     name = root.find("name")
     kind = next((element for element in root.findall("export/build_type") if not element.get("condition")), None)
     return Manifest(
         source,
         (name.text or "").strip() or None if name is not None else None,
         (kind.text or "").strip() if kind is not None else "catkin",
-        tuple(_problems(root, locate)),
-        locate(name if name is not None else root),
-        locate(kind if kind is not None else root),
+        tuple(_problems(file)),
+        file.location(name if name is not None else root),
+        file.location(kind if kind is not None else root),
     )
 
 
-def _problems(root: Element, locate: Callable[[Element], Location]) -> Iterator[Problem]:
+def _problems(file: XmlFile) -> Iterator[Problem]:
+    root = file.root
     for tag in _REQUIRED:
         found = root.findall(tag)
         if not any((element.text or "").strip() for element in found):
             message = f"<{tag}> of package.xml is empty" if found else f"package.xml has no <{tag}>"
-            yield Problem(catalogue.INCOMPLETE_MANIFEST, message, locate(found[0] if found else root))
+            yield Problem(catalogue.INCOMPLETE_MANIFEST, message, file.location(found[0] if found else root))
         for element in found:
             email = element.get("email") or ""
             if tag == "maintainer" and not email.strip():
                 message = "<maintainer> of package.xml has no email"
-                yield Problem(catalogue.INCOMPLETE_MANIFEST, message, locate(element))
+                yield Problem(catalogue.INCOMPLETE_MANIFEST, message, file.location(element))
             is_text = tag in ("license", "maintainer", "description")
             if is_text and "todo" in f"{element.text or ''} {email}".lower():
-                yield Problem(catalogue.STILL_TO_DO, f"<{tag}> of package.xml is still TODO", locate(element))
+                yield Problem(catalogue.STILL_TO_DO, f"<{tag}> of package.xml is still TODO", file.location(element))
     version = root.get("format", "1")
     if version not in _FORMATS:
         message = f"package.xml has format {version[:20]}; ROS 2 packages use format 3"
-        yield Problem(catalogue.OLD_FORMAT, message, locate(root))
+        yield Problem(catalogue.OLD_FORMAT, message, file.location(root))

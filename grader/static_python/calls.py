@@ -6,7 +6,8 @@ from grader.static_python.evaluation import Evaluation
 from grader.static_python.imports import attribute_error
 from grader.static_python.methods import call_method, path_attribute
 from grader.static_python.operators import type_name
-from grader.static_python.values import BoundMethod, Call, Function, Position, QualifiedName, Unknown, Value
+from grader.static_python.positions import Position
+from grader.static_python.values import BoundMethod, Call, Function, QualifiedName, Unknown, Value
 
 _EXITS = ("sys.exit", "os._exit", "builtins.exit", "builtins.quit")
 _BINDS_NAMES = ("builtins.exec", "builtins.globals", "builtins.locals", "builtins.vars")

@@ -2,7 +2,8 @@
 
 from typing import NamedTuple
 
-from grader.static_python.values import Position, Value
+from grader.static_python.positions import Position
+from grader.static_python.values import Value
 
 
 class PythonError(NamedTuple):

@@ -13,17 +13,8 @@ from typing import Any
 from grader.static_python.control_flow import EvaluationStopped, ExitFlow, LoopFlow, PythonError, RaisedFlow
 from grader.static_python.imports import USUAL_NAMES
 from grader.static_python.inspection import MAX_ITEMS
-from grader.static_python.values import (
-    UNKNOWN_KEYS,
-    Call,
-    Function,
-    Position,
-    QualifiedName,
-    Scope,
-    Unknown,
-    Value,
-    position_of,
-)
+from grader.static_python.positions import Position, position_of
+from grader.static_python.values import UNKNOWN_KEYS, Call, Function, QualifiedName, Scope, Unknown, Value
 
 # The functions that are evaluated, by their full names: each takes its call, with the arguments, and returns its value.
 FunctionTable = Mapping[str, Callable[["Evaluation", Call], Value]]

@@ -5,17 +5,9 @@ from collections.abc import Callable, Iterator
 
 from grader.static_python.inspection import MAX_ITEMS, distinct, items_of, truth
 from grader.static_python.operators import store
+from grader.static_python.positions import Position, position_of
 from grader.static_python.simple_expressions import SimpleEvaluator
-from grader.static_python.values import (
-    BoundMethod,
-    Function,
-    Position,
-    QualifiedName,
-    Scope,
-    Unknown,
-    Value,
-    position_of,
-)
+from grader.static_python.values import BoundMethod, Function, QualifiedName, Scope, Unknown, Value
 
 Comprehension = ast.ListComp | ast.GeneratorExp | ast.SetComp | ast.DictComp
 

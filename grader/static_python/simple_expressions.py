@@ -8,17 +8,8 @@ from grader.static_python.calls import attribute, call_value
 from grader.static_python.evaluation import Evaluation
 from grader.static_python.inspection import MAX_TEXT, as_text, distinct, size, truth
 from grader.static_python.operators import compare, extend, operate, subscript
-from grader.static_python.values import (
-    UNKNOWN_KEYS,
-    Call,
-    Function,
-    Position,
-    Scope,
-    Unknown,
-    Value,
-    position_of,
-    unknown_in,
-)
+from grader.static_python.positions import Position, position_of
+from grader.static_python.values import UNKNOWN_KEYS, Call, Function, Scope, Unknown, Value, unknown_in
 
 _RUN_TIME = "its value is known only at run time"
 

@@ -8,7 +8,8 @@ from grader.static_python.expressions import ExpressionEvaluator
 from grader.static_python.imports import import_error, imported_names, is_always_installed
 from grader.static_python.inspection import truth
 from grader.static_python.operators import extend, operate, remove
-from grader.static_python.values import Scope, Unknown, position_of
+from grader.static_python.positions import position_of
+from grader.static_python.values import Scope, Unknown
 
 
 class StatementEvaluator(ExpressionEvaluator):

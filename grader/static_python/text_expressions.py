@@ -7,7 +7,8 @@ from grader.static_python.control_flow import EvaluationStopped, ExitFlow
 from grader.static_python.evaluation import FunctionTable
 from grader.static_python.expressions import ExpressionEvaluator
 from grader.static_python.parse import SyntaxFault, parse
-from grader.static_python.values import START, Unknown, Value
+from grader.static_python.positions import START
+from grader.static_python.values import Unknown, Value
 
 _MAX_LENGTH = 1_000
 
@@ -16,7 +17,7 @@ def evaluate_text(text: str, functions: FunctionTable, names: Mapping[str, Value
     """Return the value of an expression with these functions and names; Unknown if it has an error. Never raises."""
     if len(text) > _MAX_LENGTH:
         return Unknown("the expression is too long", START)
-    code = parse(f"({text}\n)".encode("utf-8", "replace"), "")
+    code = parse(text.strip().encode("utf-8", "replace"), "")
     if isinstance(code, SyntaxFault):
         return Unknown(code.message, START)
     match code.tree.body:

@@ -52,10 +52,10 @@ class Told:
 
 def told(sample: str) -> Told:
     """What the reader tells of a sample, which is installed in my_robot's folder launch."""
-    return in_short(follow(SAMPLES[sample].read_bytes(), sample))
+    return in_short(read(SAMPLES[sample].read_bytes(), sample))
 
 
-def follow(data: bytes, name: str, others: dict[str, bytes] = INNER) -> Launch:
+def read(data: bytes, name: str, others: dict[str, bytes] = INNER) -> Launch:
     """What the reader tells of a launch file of this name; `others` are installed, too."""
 
     def installed(path: str) -> tuple[bytes, str] | None:

@@ -205,7 +205,7 @@ def test_what_leads_out_of_the_tree_is_not_told(pattern: str) -> None:
     ],
 )
 def test_many_searches_through_many_files_end_soon(expression: str) -> None:
-    """A submission of thousands of files, searched again and again, is followed only so far."""
+    """A submission of thousands of files, searched again and again, is evaluated only so far."""
     files = [File(f"f{n % 10}/{'g/' * (n % 20)}h{n}", 0, read_nothing) for n in range(4000)]
     tree = make_tree("", files, [])
     with processor_time(1.5):

@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grader.package.launch.model import Launch
-from tests.package.launching import FOLDER, INNER, SAMPLES, Told, follow, in_short, told
+from tests.package.launching import FOLDER, INNER, SAMPLES, Told, in_short, read, told
 from tests.patience import processor_time
 
 NO_FILE = (
@@ -594,7 +594,7 @@ def is_well_formed(launch: Launch) -> bool:
 def test_hostile_files(name: str, data: bytes) -> None:
     """Nothing raises or takes long, whatever a launch file is made of."""
     with processor_time(2):
-        launch = follow(data, name)
+        launch = read(data, name)
         assert is_well_formed(launch)
         in_short(launch)
 
@@ -611,16 +611,16 @@ TWO = """\
 def test_two_files_that_include_each_other() -> None:
     """A circle of files ends, and is a fault."""
     others = {f"{FOLDER}/{one}.launch.xml": TWO.format(two, two).encode() for one, two in ("ab", "ba")}
-    launch = follow(others[f"{FOLDER}/a.launch.xml"], "a.launch.xml", others)
+    launch = read(others[f"{FOLDER}/a.launch.xml"], "a.launch.xml", others)
     assert {fault.message for fault in launch.faults} == {"it includes itself"}
     assert len(launch.nodes) == 3
 
 
 def test_many_includes() -> None:
-    """Files that include the next one twice are followed to some bound, and that is said."""
+    """Files that include the next one twice are evaluated to some bound, and that is said."""
     others = {f"{FOLDER}/f{n}.launch.xml": TWO.format(f"f{n + 1}", f"f{n + 1}").encode() for n in range(40)}
     with processor_time(2):
-        launch = follow(others[f"{FOLDER}/f0.launch.xml"], "f0.launch.xml", others)
+        launch = read(others[f"{FOLDER}/f0.launch.xml"], "f0.launch.xml", others)
     assert "it includes more than 10 launch files" in {each.message for each in launch.unknown}
     assert len(launch.nodes) < 50
 
@@ -637,7 +637,7 @@ def test_arguments_are_shared_with_what_follows_an_include() -> None:
   <node pkg="rviz2" exec="rviz2" args="-d $(var config)"/>
 </launch>
 """
-    launch = follow(text.encode(), "x.launch.xml")
+    launch = read(text.encode(), "x.launch.xml")
     assert [each.path for each in launch.named("rviz")] == ["/opt/given.rviz", "/opt/own.rviz"]
 
 
@@ -655,13 +655,13 @@ PIECES = st.sampled_from(
     ),
 )
 def test_changed_files(sample: str, changes: list[tuple[int, int, bytes]]) -> None:
-    """A sample with something cut out of it and something put in its place is followed without an error."""
+    """A sample with something cut out of it and something put in its place is evaluated without an exception."""
     data = SAMPLES[sample].read_bytes()
     for place, length, piece in changes:
         at = place % (len(data) + 1)
         data = data[:at] + piece + data[at + length :]
     with processor_time(2):
-        assert is_well_formed(follow(data, sample, {**INNER, f"{FOLDER}/{sample}": data}))
+        assert is_well_formed(read(data, sample, {**INNER, f"{FOLDER}/{sample}": data}))
 
 
 @settings(max_examples=100)
@@ -670,6 +670,6 @@ def test_changed_files(sample: str, changes: list[tuple[int, int, bytes]]) -> No
     st.sampled_from([".py", ".xml", ".yaml", ""]),
 )
 def test_random_files(data: bytes, ending: str) -> None:
-    """Anything at all is followed without an error."""
+    """Anything at all is evaluated without an exception."""
     with processor_time(2):
-        assert is_well_formed(follow(data, f"x.launch{ending}"))
+        assert is_well_formed(read(data, f"x.launch{ending}"))

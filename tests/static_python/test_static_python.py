@@ -1,4 +1,4 @@
-"""A Python file is followed without an error and in moderate time, whatever is in it; what would stop Python is a fault."""
+"""Any Python file is evaluated without an exception and in little time; what would stop Python is a fault."""
 
 import ast
 import random
@@ -24,7 +24,7 @@ _TREE = make_tree("my_robot", [File(path, 0, read_nothing) for path in FILES], [
 _TEXTS = [path.read_text(encoding="utf-8") for path in SAMPLES.values()]
 
 
-def followed(text: str | bytes) -> Setup:
+def evaluated(text: str | bytes) -> Setup:
     """What a setup.py comes to; it takes no longer than a moment."""
     with processor_time(2):
         return read_setup(parse(text.encode() if isinstance(text, str) else text, "setup.py"), _TREE)
@@ -132,14 +132,14 @@ _START = "import os\nfrom glob import glob\nfrom pathlib import Path\nfrom setup
 
 @settings(max_examples=250)
 @given(program=_PROGRAMS)
-def test_any_program_is_followed(program: str) -> None:
-    """No program raises an error in the one who follows it."""
-    followed(_START + program)
+def test_any_program_is_evaluated(program: str) -> None:
+    """No program raises an exception in the evaluation."""
+    evaluated(_START + program)
 
 
 @settings(max_examples=200)
 @given(text=st.sampled_from(_TEXTS), seed=st.integers(0, 10**6), count=st.integers(1, 4), of_lines=st.booleans())
-def test_a_damaged_sample_is_followed(text: str, seed: int, count: int, of_lines: bool) -> None:
+def test_a_damaged_sample_is_evaluated(text: str, seed: int, count: int, of_lines: bool) -> None:
     """Neither does a file whose lines or characters were lost, doubled or swapped."""
     chance = random.Random(seed)
     parts = text.splitlines(keepends=True) if of_lines else list(text)
@@ -149,14 +149,14 @@ def test_a_damaged_sample_is_followed(text: str, seed: int, count: int, of_lines
         if change:
             parts.insert(other, lost_or_kept)
         parts = parts or [text]
-    followed("".join(parts))
+    evaluated("".join(parts))
 
 
 @settings(max_examples=200)
 @given(data=st.binary(max_size=200) | st.text(max_size=200).map(lambda text: text.encode("utf-8", "replace")))
-def test_any_bytes_are_followed(data: bytes) -> None:
+def test_any_bytes_are_evaluated(data: bytes) -> None:
     """Nor do bytes that are no program."""
-    followed(data)
+    evaluated(data)
 
 
 # --- Too much ---------------------------------------------------------------------------------------------------------
@@ -191,7 +191,7 @@ REFUSED: dict[str, str | bytes] = {
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_python_refuses_is_a_fault(name: str) -> None:
     """A file that Python cannot read is one that nothing else is said of."""
-    setup = followed(REFUSED[name])
+    setup = evaluated(REFUSED[name])
     assert setup.fault is not None
     assert not setup.copies
 
@@ -236,9 +236,9 @@ TOO_MUCH = {
 
 
 @pytest.mark.parametrize("name", TOO_MUCH)
-def test_what_takes_too_much_is_not_followed_to_its_end(name: str) -> None:
+def test_what_takes_too_much_is_not_evaluated_to_its_end(name: str) -> None:
     """What would take long, or a lot of memory, is given up, and that is said."""
-    setup = followed(_SETUP + TOO_MUCH[name])
+    setup = evaluated(_SETUP + TOO_MUCH[name])
     assert setup.fault is None
     assert setup.unknown or setup.faults or setup.stops
 
@@ -267,8 +267,8 @@ SLOW = {
 
 @pytest.mark.parametrize("name", SLOW)
 def test_what_takes_its_time_ends_soon(name: str) -> None:
-    """A large value is followed only so often."""
-    followed(SLOW[name])
+    """A large value is evaluated only so often."""
+    evaluated(SLOW[name])
 
 
 # --- Faults -----------------------------------------------------------------------------------------------------------
@@ -311,7 +311,7 @@ FAULTS = [
 @pytest.mark.parametrize(("text", "line", "column", "message"), FAULTS, ids=range(len(FAULTS)))
 def test_what_stops_python_is_a_fault_at_its_place(text: str, line: int, column: int, message: str | None) -> None:
     """A fault has its message, and its place as an editor counts it; what only looks like a mistake has none."""
-    setup = followed(text)
+    setup = evaluated(text)
     if message is None:
         assert not setup.faults
         return
@@ -351,7 +351,7 @@ def test_what_stops_python_is_a_fault_at_its_place(text: str, line: int, column:
 )
 def test_what_is_no_mistake_is_no_fault(code: str) -> None:
     """Names of comprehensions, functions and lambdas, and those that are never asked for, are fine."""
-    setup = followed(_IMPORTS + code + "\n" + end("[('share/my_robot', ['package.xml'])]"))
+    setup = evaluated(_IMPORTS + code + "\n" + end("[('share/my_robot', ['package.xml'])]"))
     assert not setup.fault
     assert not setup.faults
     assert not setup.stops
@@ -364,7 +364,7 @@ def test_what_is_no_mistake_is_no_fault(code: str) -> None:
 def test_the_bytes_of_a_file(start: str, ending: str) -> None:
     """Any ends of lines, a byte-order mark and a declared encoding are read as Python reads them."""
     text = start + _IMPORTS + end("[('share/my_robot/ä', ['package.xml'])]")
-    setup = followed(text.replace("\n", ending).encode())
+    setup = evaluated(text.replace("\n", ending).encode())
     assert is_told(setup)
     assert setup.installed() == {"share/my_robot/ä/package.xml": "package.xml"}
 
@@ -372,7 +372,7 @@ def test_the_bytes_of_a_file(start: str, ending: str) -> None:
 def test_a_declared_encoding_is_used() -> None:
     """Bytes are no UTF-8 where the file says so."""
     text = "# coding: latin-1\n" + _IMPORTS + end("[('share/ä', ['package.xml'])]")
-    assert followed(text.encode("latin-1")).installed() == {"share/ä/package.xml": "package.xml"}
+    assert evaluated(text.encode("latin-1")).installed() == {"share/ä/package.xml": "package.xml"}
 
 
 def test_a_miscount_of_cpython_costs_nobody_anything(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -393,5 +393,5 @@ def test_a_miscount_of_cpython_costs_nobody_anything(monkeypatch: pytest.MonkeyP
 
 def test_folders_of_a_walk_are_a_list() -> None:
     """The list of folders that os.walk yields has its own type; a message names it as Python does."""
-    setup = followed("import os\nfor _, folders, _ in os.walk('.'):\n    folders + 'a'\n")
+    setup = evaluated("import os\nfor _, folders, _ in os.walk('.'):\n    folders + 'a'\n")
     assert [fault.message for fault in setup.faults] == ["Python cannot add a string to a list"]

@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass, field
 
-from grader.static_python.values import Position, Unknown, Value
+from grader.static_python.positions import Position
+from grader.static_python.values import Unknown, Value
 
 _MAX_STEPS = 50_000
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 from grader.package.launch.context import Context
 from grader.package.launch.model import LaunchFault, Purpose, Reference, StartedNode
 from grader.source import Location
-from grader.static_python.values import Call, Position, Unknown, Value
+from grader.static_python.positions import Position
+from grader.static_python.values import Call, Unknown, Value
 
 
 @dataclass(slots=True)

@@ -6,10 +6,11 @@ import yaml
 
 from grader.package.launch.model import LaunchFault
 from grader.package.launch.substitution_grammar import Errors
+from grader.package.xml_file import XmlFault, XmlFile
 from grader.package.yaml_nodes import Node, YamlFault, read_yaml
 from grader.source import Location, Source
-from grader.static_python.values import START, Position
-from grader.xml.parsing import Element, XMLSyntaxError, parse_xml
+from grader.static_python.positions import START, Position
+from grader.xml.parsing import Element
 
 _MAX_DEPTH = 40
 _MAX_ENTITIES = 5_000
@@ -54,10 +55,8 @@ def read_frontend(data: bytes, path: str, *, is_yaml: bool) -> Frontend:
     except YamlFault as fault:
         frontend.syntax = LaunchFault(f"not readable as YAML: {fault}", fault.location)
         return frontend
-    except (XMLSyntaxError, ValueError) as error:
-        line, column = getattr(error, "position", (1, 1))
-        reason = " ".join(str(getattr(error, "msg", error)).split(", line ")[0].split())
-        frontend.syntax = LaunchFault(f"not readable as XML: {reason}", Location(path, max(line, 1), max(column, 1)))
+    except XmlFault as fault:
+        frontend.syntax = LaunchFault(f"not readable as XML: {fault}", fault.location)
         return frontend
     if root is not None and root.kind == "launch":
         frontend.root = root
@@ -68,21 +67,20 @@ def read_frontend(data: bytes, path: str, *, is_yaml: bool) -> Frontend:
 
 
 def _xml_root(data: bytes, source: Source) -> Entity:
-    root = parse_xml(data)
-    indices = {element: index for index, element in enumerate(root.iter("*"))}
+    file = XmlFile(data, source)
 
     def entity(element: Element, depth: int) -> Entity:
-        try:
-            location = source.tag(indices[element])
-        except IndexError:  # the text is in an encoding in which its tags are not found
-            location = Location(source.path, 1, 1)
+        location = file.location(element)
         attributes = dict(element.attrib.items())
-        read = Entity(str(element.tag), Position(location.line, location.column), attributes)  # type: ignore[arg-type]
-        if depth < _MAX_DEPTH:
-            read.children = [entity(child, depth + 1) for child in element.iterchildren("*")]
-        return read
+        children = element.iterchildren("*") if depth < _MAX_DEPTH else ()
+        return Entity(
+            str(element.tag),
+            Position(location.line, location.column),
+            attributes,  # type: ignore[arg-type]
+            [entity(child, depth + 1) for child in children],
+        )
 
-    return entity(root, 0)
+    return entity(file.root, 0)
 
 
 class _YamlReader:

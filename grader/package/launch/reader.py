@@ -17,7 +17,8 @@ from grader.package.setup_py import location_in
 from grader.source import Location, Source
 from grader.static_python.interpreter import Interpreter
 from grader.static_python.parse import SyntaxFault, parse
-from grader.static_python.values import START, Call, Function, QualifiedName, Unknown, Value
+from grader.static_python.positions import START
+from grader.static_python.values import Call, Function, QualifiedName, Unknown, Value
 
 _ENTRY = "generate_launch_description"
 _MODULE = "python_launch_file"  # the __name__ of a launch file
@@ -55,12 +56,13 @@ class _LaunchReader:
         else:
             own = _python(data, path, installed, context, include)
         self.open.pop()
+        launches = (own, *included)
         return replace(
             own,
-            nodes=(*own.nodes, *(node for launch in included for node in launch.nodes)),
-            references=(*own.references, *(reference for launch in included for reference in launch.references)),
-            faults=(*own.faults, *(fault for launch in included for fault in launch.faults)),
-            unknown=(*own.unknown, *(unknown for launch in included for unknown in launch.unknown)),
+            nodes=tuple(node for launch in launches for node in launch.nodes),
+            references=tuple(reference for launch in launches for reference in launch.references),
+            faults=tuple(fault for launch in launches for fault in launch.faults),
+            unknown=tuple(unknown for launch in launches for unknown in launch.unknown),
         )
 
     def include(self, target: str, arguments: Context, included: list[Launch]) -> str:
