@@ -36,6 +36,12 @@ def _parse_number(value: Any) -> Decimal:
     raise WrongValue("a number")
 
 
+def _parse_title(value: Any) -> str:
+    if isinstance(value, str) and value.strip():
+        return " ".join(value.split())  # one line, however it is broken in the file
+    raise WrongValue("a text that is not empty" if isinstance(value, str) else "a text")
+
+
 def _parse_table(value: Any) -> dict[str, Any]:
     if isinstance(value, dict):
         return value
@@ -87,7 +93,7 @@ _MINUTES = limited(_NUMBER, _range(0, MAX_POINTS))
 _ID = limited(
     _TEXT, Limit("one printable word", lambda text: text.isprintable() and len(text.split(" ")) == 1 and text != "")
 )
-_TITLE = limited(_TEXT, Limit("a text that is not empty", lambda text: text.strip() != ""))
+_TITLE = TomlType("a text", {"type": "string"}, _parse_title)
 _FILE = limited(
     _TEXT, Limit("the path of a file", lambda path: path.strip().rstrip("/").split("/")[-1] not in ("", ".", ".."))
 )

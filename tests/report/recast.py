@@ -1,15 +1,14 @@
 """The same report with other words wherever a student's may stand, and what every format makes of it but the words."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import groupby
 from typing import Any
 
 from grader.cli.formats import Format
 from grader.files.tree import PassedOver
-from grader.grading.report import GradedSubmission, Report, Result
+from grader.grading.report import GradedPackage, GradedSubmission, Report, Result
 from grader.report.words import untold
-from grader.robot.reader import Verdict
 from grader.source import Location, Source
 from grader.text import printable
 from tests.report.readers import read_as_github, read_commands, read_json, read_junit, read_markdown
@@ -17,35 +16,6 @@ from tests.report.readers import read_as_github, read_commands, read_json, read_
 Words = Callable[[], str]
 # Words with very many backticks stand in Markdown as text instead of code, or as a block that is indented instead of fenced.
 _ALIKE = {"code_inline": "text", "code_block": "fence"}
-
-
-@dataclass(frozen=True)
-class Package:
-    """A package by name."""
-
-    folder: str
-    name: str
-
-
-@dataclass(frozen=True)
-class Recast:
-    """A submission of other words. Its paths are printable, as all paths in a submission are."""
-
-    id: str
-    path: str | None
-    sha256: str | None
-    package: Package | None
-    passed_over: tuple[PassedOver, ...]
-    left_out: tuple[str, ...]
-    has_urdf: bool
-    verdict: Verdict | None
-    is_single: bool
-    unread: str
-    text: str | None
-
-    def source(self, path: str) -> Source | None:
-        """The same text whatever the path is."""
-        return Source(path, self.text) if self.text is not None else None
 
 
 def recast(report: Report, words: Words) -> Report:
@@ -69,18 +39,19 @@ def recast(report: Report, words: Words) -> Report:
 
 
 def _submission(old: GradedSubmission, words: Words, path: Words) -> GradedSubmission:
-    return Recast(
+    text = "\n".join(f"<a b='{words()}'/>{words()}" for _ in range(3))
+    return GradedSubmission(
         words(),
         path() if old.path is not None else None,
         old.sha256,
-        Package(path() if old.package.folder else "", words()) if old.package is not None else None,
+        GradedPackage(path() if old.package.folder else "", words()) if old.package is not None else None,
         tuple(PassedOver(path(), words()) for _ in old.passed_over),
         tuple(words() for _ in old.left_out),
         old.has_urdf,
         old.verdict,
         old.is_single,
         "unread" if old.unread else "",
-        "\n".join(f"<a b='{words()}'/>{words()}" for _ in range(3)),
+        lambda path: Source(path, text),
     )
 
 
