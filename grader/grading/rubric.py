@@ -14,7 +14,7 @@ from grader.errors import InputError, RubricError
 from grader.files.reading import read_capped, sha256_of
 from grader.grading.toml_lines import Path as TomlPath
 from grader.grading.toml_lines import key_lines, line_of
-from grader.grading.validation import Row, Validation
+from grader.grading.validation import TomlRow, Validation
 from grader.names import did_you_mean
 from grader.text import printable_path
 
@@ -200,7 +200,7 @@ def complain_of(complaints: Sequence[tuple[TomlPath, str]], text: str, path: Pat
         raise RubricError((*listed, f"{shown}: {more} more mistakes are not listed") if more > 0 else listed)
 
 
-def _criterion(position: int, row: Row, check: Check, arguments: Row, *, answers: bool) -> Criterion:
+def _criterion(position: int, row: TomlRow, check: Check, arguments: TomlRow, *, answers: bool) -> Criterion:
     # Nothing that lists or passes on a criterion's arguments may see the model answer.
     answer = arguments.pop("answer", "") if check.function is answered else ""
     return Criterion(
