@@ -91,7 +91,7 @@ def python(project: Path, *arguments: str) -> None:
         capture_output=True,
         text=True,
         check=False,
-        timeout=PATIENCE,
+        timeout=3 * PATIENCE,  # it runs some hundred tests
     )
     assert done.returncode == 0, done.stdout[-5000:] + done.stderr[-5000:]
 
@@ -119,8 +119,9 @@ def test_a_new_rubric(project: Path) -> None:
     (project / "rubrics/lab0").mkdir()
     (project / "rubrics/lab0/robot.urdf").write_text(REFERENCE, encoding="utf-8")
     python(project, "-m", "grader", "rubric", "check", "lab0")
-    passes(project, "tests/test_submissions.py", "tests/grading/test_rubric.py", "tests/cli/test_completion.py",
-           "tests/cli/test_answers.py", "tests/bundle/test_bundle.py")  # fmt: skip
+    passes(project, "tests/test_submissions.py::test_a_reference_gets_full_marks", "tests/grading/test_rubric.py",
+           "tests/cli/test_completion.py", "tests/cli/test_answers.py", "tests/bundle/test_bundle.py::test_the_files",
+           "tests/bundle/test_bundle.py::test_files_that_are_not_ours")  # fmt: skip
 
 
 @pytest.mark.skipif(not (ROOT / "grader/report/formats.py").exists(), reason="the registry of formats is not there yet")
@@ -130,5 +131,5 @@ def test_a_new_format(project: Path) -> None:
     row = '    JSON = "json", "json", "as_json:render_json"\n'
     replace(project / "grader/report/formats.py", row, f'{row}    LINE = "line", "line", "line:render_line"\n')
     python(project, "-m", "grader", "grade", "submissions/reference", "--format", "line")
-    passes(project, "tests/report", "tests/cli/test_save.py", "tests/cli/test_completion.py",
-           "tests/submission/test_own_reports.py", "tests/test_architecture.py")  # fmt: skip
+    passes(project, "-m", "not slow", "tests/report/test_hostile_text.py", "tests/cli/test_save.py",
+           "tests/cli/test_completion.py", "tests/submission/test_own_reports.py", "tests/test_architecture.py")  # fmt: skip

@@ -29,7 +29,7 @@ def shows_box(robot: Configuration, *, link: str, size: Size, tolerance: NonNega
         return failed(f"the box of {link!r} is turned: its edges should be along the axes of {link!r}", at)
     fine = _all_within(actual, size, tolerance)
     message = f"{link!r} shows a box {point(actual)} m{'' if fine else f'; it should be {point(size)} m (x, y, z)'}"
-    return judged(fine, message, actual=actual, expected=size, tolerance=tolerance, unit="m", at=at)
+    return judged(fine, message, actual, size, tolerance, "m", at=at)
 
 
 def shows_cylinder(
@@ -47,7 +47,7 @@ def shows_cylinder(
     if not fine:
         message += f"; it should have radius {point((radius,))} m and length {point((length,))} m"
     at = place(best.location, "length" if within(actual[0], radius, tolerance) else "radius")
-    return judged(fine, message, actual=actual, expected=expected, tolerance=tolerance, unit="m", at=at)
+    return judged(fine, message, actual, expected, tolerance, "m", at=at)
 
 
 def shows_sphere(robot: Configuration, *, link: str, radius: NonNegative, tolerance: NonNegative) -> Outcome:
@@ -58,7 +58,7 @@ def shows_sphere(robot: Configuration, *, link: str, radius: NonNegative, tolera
     best = min(found, key=lambda shape: abs(abs(shape.radius) - radius))
     what = f"the radius of the sphere that {link!r} shows is"
     at = place(best.location, "radius")
-    return measured(what, actual=abs(best.radius), expected=radius, tolerance=tolerance, unit="m", at=at)
+    return measured(what, abs(best.radius), radius, tolerance, "m", at=at)
 
 
 def shows_colour(
@@ -77,7 +77,7 @@ def shows_colour(
     if not fine:
         message += f"; it should be {point(colour)}"
     at = place(visual.material.location, "rgba")
-    return judged(fine, message, actual=actual, expected=colour, tolerance=tolerance, at=at)
+    return judged(fine, message, actual, colour, tolerance, at=at)
 
 
 def shows_grey(robot: Configuration, *, link: str, at_least: float, tolerance: NonNegative) -> Outcome:
@@ -94,7 +94,7 @@ def shows_grey(robot: Configuration, *, link: str, at_least: float, tolerance: N
     elif not is_light:
         message += f"; it should be at least {at_least:g}"
     at = place(visual.material.location, "rgba")
-    return judged(is_grey and is_light, message, actual=actual, expected=at_least, tolerance=tolerance, at=at)
+    return judged(is_grey and is_light, message, actual, at_least, tolerance, at=at)
 
 
 def shows_nothing(robot: Configuration, *, link: str) -> Outcome:

@@ -49,7 +49,7 @@ def stands_on(robot: Configuration, *, link: str, on: str, tolerance: NonNegativ
     elif not fine:
         message = f"{link!r} reaches {size(beyond, 'm')} beyond the edge of the top of {on!r}"
     at = origin_place(robot, link) if touches else None  # either of the two may be wrong
-    return judged(fine, message, actual=bottom, expected=top, tolerance=tolerance, unit="m", at=at)
+    return judged(fine, message, bottom, top, tolerance, "m", at=at)
 
 
 def clear_of(robot: Configuration, *, link: str, of: str, tolerance: NonNegative) -> Outcome:
@@ -72,7 +72,7 @@ def clear_of(robot: Configuration, *, link: str, of: str, tolerance: NonNegative
         raise UnknownShape(unknown)
     message = f"{link!r} does not cut into {of!r}" if fine else f"{link!r} cuts {size(deepest, 'm')} deep into {of!r}"
     at = place(culprit.origin.location, "xyz") or place(culprit.location)
-    return judged(fine, message, actual=round(deepest, 4), expected=0.0, tolerance=tolerance, unit="m", at=at)
+    return judged(fine, message, round(deepest, 4), 0.0, tolerance, "m", at=at)
 
 
 def _overhang(placed: list[tuple[Geometry, Transform]], support: Geometry, T_on_support: Transform) -> float:

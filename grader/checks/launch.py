@@ -56,7 +56,7 @@ def launch_starts(package: Package, *, name: str, nodes: list[str]) -> Outcome:
         message = f"the launch file does not start {listed}; it starts {', '.join(running) or 'nothing'}"
         reason, at = _why_missing(launch, {node for choice in missing for node in choice})
         message += reason
-    return judged(not missing, message, actual=running, expected=tuple(nodes), at=at)
+    return judged(not missing, message, running, tuple(nodes), at=at)
 
 
 def _why_missing(launch: "Launch", missing: set[str]) -> "tuple[str, Location | None]":

@@ -47,11 +47,11 @@ def rolls_forward(
     if travel is None or rolled < _ROLLING * _SMALL_ANGLE * dot(minus(high, low), upward):
         how = "its lowest point does not move" if travel is None else "it swivels about an upright axis"
         message = f"{link!r} does not roll when its joint turns: {how}"
-        return judged(False, message, expected=ahead, tolerance=tolerance, unit="deg", at=at, detail=detail)
+        return judged(False, message, None, ahead, tolerance, "deg", at=at, detail=detail)
     off = _angle(travel, ahead)
     fine = off <= tolerance + SLACK
     message = f"a small positive turn of {link!r} {_heading(off, travel, base)}{'' if fine else '; it should drive it forward'}"
-    return judged(fine, message, actual=travel, expected=ahead, tolerance=tolerance, unit="deg", at=at, detail=detail)
+    return judged(fine, message, travel, ahead, tolerance, "deg", at=at, detail=detail)
 
 
 def axis_along(
@@ -67,7 +67,7 @@ def axis_along(
         message += f"; it should point along {point(expected)} ({quantity(off, 'deg')} off)"
     joint = robot.parent_joints.get(link)
     at = place(joint.origin.location if joint and joint.origin else None, "rpy") or place(robot.link(link).location)
-    return judged(fine, message, actual=actual, expected=expected, tolerance=tolerance, unit="deg", at=at)
+    return judged(fine, message, actual, expected, tolerance, "deg", at=at)
 
 
 def turns_about_itself(
@@ -88,14 +88,14 @@ def turns_about_itself(
     detail = f" (joint {joint.name!r})"
     if tilt > angle + SLACK:
         message = f"{link!r} wobbles: its joint axis is {quantity(tilt, 'deg')} off the cylinder's axis; it should be along it"
-        return judged(False, message, actual=tilt, expected=0.0, tolerance=angle, unit="deg", at=at, detail=detail)
+        return judged(False, message, tilt, 0.0, angle, "deg", at=at, detail=detail)
     at = place(visual.origin.location, "xyz") or at
     if away <= tolerance + SLACK:
         message, detail = f"{link!r} turns about its own axis", ""
     else:
         message = f"{link!r} turns off centre: its joint axis is {size(away, 'm')} beside the cylinder's axis; it should be on it"
     fine = not detail
-    return judged(fine, message, actual=away, expected=0.0, tolerance=tolerance, unit="m", at=at, detail=detail)
+    return judged(fine, message, away, 0.0, tolerance, "m", at=at, detail=detail)
 
 
 def _axis_place(joint: Joint) -> LazyLocation | None:

@@ -10,7 +10,7 @@ from grader.source import LazyLocation, Location
 
 Status = Literal["passed", "failed", "skipped", "pending", "errored"]
 Value = bool | float | str | tuple[float, ...] | tuple[str, ...] | Mapping[str, str] | None
-Place = Location | LazyLocation | None
+AnyPlace = Location | LazyLocation | None
 
 # A tolerance includes its end: 0.152 is within 0.002 of 0.15, although the floats differ by slightly more.
 SLACK = 1e-9
@@ -41,8 +41,10 @@ def fault_of(returned: object) -> str:
         return f"it returned {type(returned).__name__}, not an Outcome"
     if returned.status not in ("passed", "failed", "pending"):
         return f"it returned the status {returned.status!r}; a check returns passed, failed or pending"
-    wrong = [name for name, is_valid in _VALID.items() if not is_valid(getattr(returned, name))]
-    return f"it returned an Outcome whose {wrong[0]} no report can hold" if wrong else ""
+    for name, is_valid in _VALID.items():
+        if not is_valid(getattr(returned, name)):
+            return f"it returned an Outcome whose {name} no report can hold"
+    return ""
 
 
 def _is_text(value: object) -> bool:
@@ -54,15 +56,11 @@ def _is_number(value: object) -> bool:
 
 
 def _is_value(value: object) -> bool:
-    match value:
-        case None | str():
-            return True
-        case tuple():
-            return all(map(_is_number, value)) or all(map(_is_text, value))
-        case Mapping():
-            return all(map(_is_text, (*value, *value.values())))
-        case _:
-            return _is_number(value)
+    if isinstance(value, tuple):
+        return all(map(_is_number, value)) or all(map(_is_text, value))
+    if isinstance(value, Mapping):
+        return all(map(_is_text, (*value, *value.values())))
+    return value is None or _is_text(value) or _is_number(value)
 
 
 _VALID: Mapping[str, Callable[[object], bool]] = {
@@ -86,22 +84,15 @@ def pending(message: str, at: Location | None = None) -> Outcome:
     return Outcome("pending", message, location=at)
 
 
-def failed(message: str, at: Place = None, *, detail: str = "") -> Outcome:
+def failed(message: str, at: AnyPlace = None, *, detail: str = "") -> Outcome:
     """Return the outcome for a fact that is not true; `detail` ends the message with what differs between students."""
     return judged(False, message, at=at, detail=detail)
 
 
 def judged(
-    fine: bool,
-    message: str,
-    *,
-    actual: Value = None,
-    expected: Value = None,
-    tolerance: float | None = None,
-    unit: str | None = None,
-    at: Place = None,
-    detail: str = "",
-) -> Outcome:
+    fine: bool, message: str, actual: Value = None, expected: Value = None, tolerance: float | None = None,
+    unit: str | None = None, *, at: AnyPlace = None, detail: str = "",
+) -> Outcome:  # fmt: skip
     """Return a measurement that passes or fails; only a failure has a place to look at."""
     location = None if fine else location_of(at)
     mistake = message if detail and not fine else ""
@@ -109,7 +100,7 @@ def judged(
     return Outcome(status, message + detail, actual, expected, tolerance, unit, location, mistake)
 
 
-def location_of(at: Place) -> Location | None:
+def location_of(at: AnyPlace) -> Location | None:
     """Return the place in the file, worked out only now: most places are never looked at."""
     return at.resolve() if isinstance(at, LazyLocation) else at
 
@@ -120,25 +111,19 @@ def within(actual: float, expected: float, tolerance: float) -> bool:
 
 
 def measured(
-    what: str,
-    *,
-    actual: float,
-    expected: float,
-    tolerance: float,
-    unit: str,
-    sides: tuple[str, str] = ("too large", "too small"),
-    at: LazyLocation | None = None,
-) -> Outcome:
+    what: str, actual: float, expected: float, tolerance: float, unit: str, *,
+    sides: tuple[str, str] = ("too large", "too small"), at: LazyLocation | None = None,
+) -> Outcome:  # fmt: skip
     """Compare one number: "the radius of 'wheel' is 0.2 m; it should be 0.1 m (100 mm too large)"."""
     fine = within(actual, expected, tolerance)
     message = f"{what} {quantity(actual, unit)}"
     if not fine:
         message += f"; it should be {quantity(expected, unit)} ({difference(actual - expected, unit, *sides)})"
-    return judged(fine, message, actual=actual, expected=expected, tolerance=tolerance, unit=unit, at=at)
+    return judged(fine, message, actual, expected, tolerance, unit, at=at)
 
 
 def measured_point(
-    what: str, *, actual: Vector, expected: Vector, tolerance: float, frame: str, at: LazyLocation | None = None
+    what: str, actual: Vector, expected: Vector, tolerance: float, frame: str, *, at: LazyLocation | None = None
 ) -> Outcome:
     """Compare a point in a frame, in metres; each coordinate must be within the tolerance."""
     off = [
@@ -149,7 +134,7 @@ def measured_point(
     message = f"{what} is at {point(actual)} m in {frame!r}"
     if off:
         message += f"; it should be at {point(expected)} m ({', '.join(off)})"
-    return judged(not off, message, actual=actual, expected=expected, tolerance=tolerance, unit="m", at=at)
+    return judged(not off, message, actual, expected, tolerance, "m", at=at)
 
 
 def difference(off: float, unit: str, over: str = "too large", under: str = "too small") -> str:

@@ -17,10 +17,10 @@ if TYPE_CHECKING:
     from grader.package.manifest import Manifest
     from grader.package.setup_py import Setup
 
-Kind = Literal["urdf", "launch", "rviz"]
+FileKind = Literal["urdf", "launch", "rviz"]
 
-_WORDS: dict[Kind, str] = {"urdf": "URDF", "launch": "launch file", "rviz": "RViz file"}
-_ENDINGS: dict[Kind, tuple[str, ...]] = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",)}
+_WORDS: dict[FileKind, str] = {"urdf": "URDF", "launch": "launch file", "rviz": "RViz file"}
+_ENDINGS: dict[FileKind, tuple[str, ...]] = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",)}
 
 
 def package_found(submission: Submission, *, name: str) -> Outcome:
@@ -32,7 +32,7 @@ def package_found(submission: Submission, *, name: str) -> Outcome:
         return failed(problem.message, problem.location)
     fine = manifest.name == name
     message = f"the package is named {manifest.name!r}{'' if fine else f'; it should be named {name!r}'}"
-    return judged(fine, message, actual=manifest.name, expected=name, at=manifest.name_location)
+    return judged(fine, message, manifest.name, name, at=manifest.name_location)
 
 
 def package_type(package: Package, *, build_type: str) -> Outcome:
@@ -45,10 +45,10 @@ def package_type(package: Package, *, build_type: str) -> Outcome:
         # REP 149: a package.xml without build_type means catkin.
         message += " (ROS 1; also the default without <build_type>)" if actual == "catkin" else ""
         message += f"; it should be {build_type!r}"
-    return judged(fine, message, actual=actual, expected=build_type, at=manifest.type_location)
+    return judged(fine, message, actual, build_type, at=manifest.type_location)
 
 
-def build_installs(package: Package, *, kind: Kind, name: str) -> Outcome:
+def build_installs(package: Package, *, kind: FileKind, name: str) -> Outcome:
     """A build of the package installs its URDF, launch file or RViz file, below share/<package>.
 
     `name` is the file that is meant if there are several of the kind. setup.py is evaluated statically; what cannot be
@@ -83,7 +83,7 @@ def setup_imports(package: Package) -> Outcome:
     return failed("; ".join(first_lines(messages, 3)), setup.location(setup.faults[0].at))
 
 
-def files_of(package: Package, kind: Kind, name: str) -> Sequence[str]:
+def files_of(package: Package, kind: FileKind, name: str) -> Sequence[str]:
     """Return the file of a package that has this name, else all of the kind."""
     if kind == "launch":
         chosen = package.launch_file(name)
@@ -130,7 +130,7 @@ def _readable_manifest(package: Package) -> "Manifest":
     return manifest
 
 
-def _installed(package: Package, files: Sequence[str], kind: Kind | None) -> Outcome:
+def _installed(package: Package, files: Sequence[str], kind: FileKind | None) -> Outcome:
     setup = _readable_setup(package)
     if isinstance(setup, Outcome):
         return setup
@@ -171,7 +171,7 @@ def _installed(package: Package, files: Sequence[str], kind: Kind | None) -> Out
     raise MissingElement(what, package.folder, message=message, detail=detail, location=at)
 
 
-def _meant(empty: "Sequence[EmptyGlob]", files: Sequence[str], kind: Kind | None) -> "EmptyGlob | None":
+def _meant(empty: "Sequence[EmptyGlob]", files: Sequence[str], kind: FileKind | None) -> "EmptyGlob | None":
     """Return the pattern without a match that is meant for one of these files, by its folder, ending or kind."""
     folders = {posixpath.dirname(path) for path in files}
     endings = tuple({posixpath.splitext(path)[1] for path in files} - {""})
@@ -182,7 +182,7 @@ def _meant(empty: "Sequence[EmptyGlob]", files: Sequence[str], kind: Kind | None
     return next((glob for glob in empty if kind is not None and kind in glob.pattern.lower()), None)
 
 
-def _owner(path: str, package: Package) -> Kind | None:
+def _owner(path: str, package: Package) -> FileKind | None:
     """Return the kind of file that an entry is about, by its ending or by the other files of its folder."""
     if ".launch." in path or path.endswith("_launch.py"):
         return "launch"

@@ -36,12 +36,7 @@ def frame_at(robot: Configuration, *, link: str, relative_to: str, xyz: Vector, 
     """The origin of a link's frame is at a point in another link's frame, in metres."""
     pose = robot.pose(link, relative_to=relative_to)
     return measured_point(
-        f"the frame {link!r}",
-        actual=pose.translation,
-        expected=xyz,
-        tolerance=tolerance,
-        frame=relative_to,
-        at=origin_place(robot, link),
+        f"the frame {link!r}", pose.translation, xyz, tolerance, relative_to, at=origin_place(robot, link)
     )
 
 
@@ -69,10 +64,10 @@ def centre_at(
     at = _moved_by(robot, link, visual, relative_to, minus(pose.translation, xyz))
     return measured_point(
         f"the centre of what {link!r} shows",
-        actual=pose.translation,
-        expected=xyz,
-        tolerance=tolerance,
-        frame=relative_to,
+        pose.translation,
+        xyz,
+        tolerance,
+        relative_to,
         at=at or place(visual.location),
     )
 
@@ -97,10 +92,10 @@ def bottom_at_height(
         lowest, _ = extent(visual.geometry, visual_pose(robot, link, visual, relative_to), _UP)
     return measured(
         f"the bottom of {link!r} in the frame {relative_to!r} is at z =",
-        actual=lowest,
-        expected=height,
-        tolerance=tolerance,
-        unit="m",
+        lowest,
+        height,
+        tolerance,
+        "m",
         sides=("too high", "too low"),
         at=place(visual.origin.location, "xyz") or place(visual.location),
     )
@@ -123,7 +118,7 @@ def bottoms_at_height(
         off = [f"{link!r} {difference(value - height, 'm', 'too high', 'too low')}" for link, value in wrong.items()]
         message += f"; they should be at {height:g} m ({', '.join(off)})"
     at = _common_place(robot, wrong, lowest, relative_to, tolerance) if wrong else None
-    return judged(not wrong, message, actual=actual, expected=height, tolerance=tolerance, unit="m", at=at)
+    return judged(not wrong, message, actual, height, tolerance, "m", at=at)
 
 
 def under_the_base(
@@ -157,7 +152,7 @@ def under_the_base(
     at = origin_place(robot, base)
     if len(off) == len(faults) < len(lowest):  # the frame is where it should be, and some wheel is not
         at = origin_place(robot, next(iter(off), base))
-    return judged(not faults, message, actual=actual, expected=0.0, tolerance=tolerance, unit="m", at=at)
+    return judged(not faults, message, actual, 0.0, tolerance, "m", at=at)
 
 
 def _loose_joint(robot: Configuration, link: str, relative_to: str) -> Outcome | None:

@@ -47,7 +47,7 @@ def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: s
             detail = f"; the robot has no link {actual!r}{did_you_mean(actual, links)}"
     elif links and frame not in links:
         message += ", which the robot does not have"
-    return judged(actual == frame, message, actual=actual, expected=frame, at=rviz.frame_location, detail=detail)
+    return judged(actual == frame, message, actual, frame, at=rviz.frame_location, detail=detail)
 
 
 def rviz_shows_robot(package: Package, *, name: str, topic: str = "/robot_description", launch: str = "") -> Outcome:

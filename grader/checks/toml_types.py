@@ -13,7 +13,7 @@ from grader.robot.transforms import Vector
 
 
 class WrongValue(ValueError):
-    """A value of another type or outside the limits; the text says what it must be."""
+    """A value of another type or outside the constraints; the text says what it must be."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +26,7 @@ class TomlType:
 
 
 @dataclass(frozen=True, slots=True)
-class Limit:
+class Constraint:
     """What a value must be beyond its type, for `Annotated`: `must_be` ends the message "... must be", `schema` adds to it."""
 
     must_be: str
@@ -34,10 +34,10 @@ class Limit:
     schema: Mapping[str, Any] = field(default_factory=dict, hash=False)
 
 
-AtLeastZero = Limit("at least 0", lambda value: value >= 0)
-EachAtLeastZero = Limit("at least 0 in each number", lambda values: min(values) >= 0)
-EachFromZeroToOne = Limit("from 0 to 1 in each number", lambda values: min(values) >= 0 and max(values) <= 1)
-NotZero = Limit("a direction: not 0 in each number", any)
+AtLeastZero = Constraint("at least 0", lambda value: value >= 0)
+EachAtLeastZero = Constraint("at least 0 in each number", lambda values: min(values) >= 0)
+EachFromZeroToOne = Constraint("from 0 to 1 in each number", lambda values: min(values) >= 0 and max(values) <= 1)
+NotZero = Constraint("a direction: not 0 in each number", any)
 
 NonNegative = Annotated[float, AtLeastZero]
 Size = Annotated[Vector, EachAtLeastZero]
@@ -74,13 +74,13 @@ _PLURALS = {float: "numbers", str: "texts"}
 
 @lru_cache(maxsize=256)
 def toml_type(annotation: Any) -> TomlType:
-    """Return the type of an annotation: str, float, int, bool, Literal, a union, list, tuple, Mapping, or Annotated."""
+    """Return the type for an annotation: str, float, int, bool, Literal, a union, list, tuple, Mapping, or Annotated."""
     inner = get_args(annotation)
     origin = get_origin(annotation)
     if annotation in _SIMPLE:
         return _SIMPLE[annotation]
     if origin is Annotated:
-        return limited(toml_type(inner[0]), *inner[1:])
+        return constrained(toml_type(inner[0]), *(item for item in inner[1:] if isinstance(item, Constraint)))
     if origin is Literal:
         return _choice(inner)
     if origin is UnionType:
@@ -91,19 +91,19 @@ def toml_type(annotation: Any) -> TomlType:
     return _mapping(toml_type(inner[1]) if len(inner) == 2 else _SIMPLE[str])
 
 
-def limited(base: TomlType, *limits: Limit) -> TomlType:
-    """Return a type with limits."""
+def constrained(base: TomlType, *constraints: Constraint) -> TomlType:
+    """Return a type whose values also meet constraints."""
 
     def parse(value: Any) -> Any:
         parsed = base.parse(value)
-        for limit in limits:
-            if not limit.holds(parsed):
-                raise WrongValue(limit.must_be)
+        for constraint in constraints:
+            if not constraint.holds(parsed):
+                raise WrongValue(constraint.must_be)
         return parsed
 
     schema = dict(base.schema)
-    for limit in limits:
-        schema |= limit.schema
+    for constraint in constraints:
+        schema |= constraint.schema
     return TomlType(base.name, schema, parse)
 
 

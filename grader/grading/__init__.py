@@ -1,1 +1,1 @@
-"""Points: the rubric, the grade, the report. The only floor that knows what a thing is worth."""
+"""Points: the rubric, the grade, the report. The only layer that knows what a fact is worth."""

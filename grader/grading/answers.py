@@ -1,4 +1,4 @@
-"""Model answers: those in a rubric, and those that it keeps in a file of its own so that students can have the rubric."""
+"""Model answers: those in a rubric, and those in a file of their own, so that students can have the rubric."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -15,9 +15,9 @@ from grader.text import printable_path
 
 
 def load_with_answers(name: str) -> Rubric:
-    """Load a rubric by its id or path, with all model answers that are there; raises RubricError and InputError.
+    """Load a rubric by its id or path with its model answers; raise RubricError or InputError.
 
-    Without its file of answers a rubric is complete otherwise: `missing_answers` says so.
+    A rubric without its file of answers loads, too: see `missing_answers`.
     """
     path = find_rubric(name)
     rubric = read_rubric(read_capped(path, advice=""), path, answers=True)
@@ -32,15 +32,15 @@ def load_with_answers(name: str) -> Rubric:
 
 
 def missing_answers(rubric: Rubric) -> str:
-    """Return what to say of a rubric whose file of model answers is not there; empty where it is, or where it names none."""
+    """Return a warning if the rubric's file of model answers does not exist; empty otherwise."""
     if not rubric.answers or _file(rubric).exists():
         return ""
-    return f"{rubric.id}: the file of the model answers, {printable_path(_file(rubric))}, is not there: none are shown"
+    return f"{rubric.id}: the file of the model answers, {printable_path(_file(rubric))}, does not exist: no model answers are shown"
 
 
 def with_answers(rubric: Rubric, answers: Mapping[str, str]) -> Rubric:
-    """Return the rubric with these model answers, by the ids of their criteria, beside those that it has."""
-    criteria = (replace(each, answer=answers.get(each.id, each.answer)) for each in rubric.criteria)
+    """Return the rubric with these model answers, by the ids of their criteria, in addition to its own."""
+    criteria = (replace(row, answer=answers.get(row.id, row.answer)) for row in rubric.criteria)
     return replace(rubric, criteria=tuple(criteria))
 
 
@@ -49,16 +49,14 @@ def _file(rubric: Rubric) -> Path:
 
 
 def _complaints(rubric: Rubric, table: Mapping[str, Any]) -> list[tuple[TomlPath, str]]:
-    questions = {each.id: each for each in rubric.criteria if each.check.function is answered}
+    questions = {row.id: row for row in rubric.criteria if row.check.function is answered}
     complaints: list[tuple[TomlPath, str]] = []
     for name, value in table.items():
         if name not in questions:
             guess = did_you_mean(name, questions) or f"; there are: {', '.join(questions) or 'none'}"
-            complaints.append(
-                ((name,), f"the rubric {rubric.id} has no criterion {name!r} that asks a question{guess}")
-            )
+            complaints.append(((name,), f"the rubric {rubric.id} has no question {name!r}{guess}"))
         elif not isinstance(value, str):
             complaints.append(((name,), f"the answer to {name} must be a text"))
         elif questions[name].answer:
-            complaints.append(((name,), f"the answer to {name} is in the rubric already: keep one of the two"))
+            complaints.append(((name,), f"the answer to {name} is already in the rubric: remove one of the two"))
     return complaints

@@ -5,19 +5,11 @@ from collections.abc import Sequence
 from grader.checks.outcome import Outcome, fault_of, location_of, pending
 from grader.checks.registry import Check, Subject
 from grader.errors import MissingElement, NotDecided
-from grader.grading.report import Report, Result
+from grader.grading.report import GradedSubmission, Report, Result
 from grader.grading.rubric import Criterion, Rubric
 from grader.grading.scope import chosen_parts, exhibits_of
 from grader.problems import Problem
-from grader.robot.catalogue import (
-    BAD_COLOUR,
-    BAD_INERTIAL,
-    BAD_VISUAL,
-    COLOUR_COUNT,
-    DEFAULT_AXIS,
-    DEGREES,
-    UNDEFINED_MATERIAL,
-)
+from grader.robot import catalogue
 from grader.robot.kinematics import Configuration
 from grader.robot.shapes import UnknownShape
 from grader.source import LazyLocation, Location
@@ -25,7 +17,7 @@ from grader.submission.submission import Submission, open_submission
 from grader.submission.urdf import NeedsExpansion, Read
 
 # Problems that explain a measurement at the same place.
-_EXPLAINING = (BAD_COLOUR, COLOUR_COUNT, DEGREES, UNDEFINED_MATERIAL)
+_EXPLAINING = (catalogue.BAD_COLOUR, catalogue.COLOUR_COUNT, catalogue.DEGREES, catalogue.UNDEFINED_MATERIAL)
 
 
 def grade(rubric: Rubric, submission: Submission, parts: Sequence[str] = ()) -> Report:
@@ -41,7 +33,8 @@ def grade(rubric: Rubric, submission: Submission, parts: Sequence[str] = ()) -> 
 
         problems += package_problems(submission.package)
     exhibits, others = exhibits_of(rubric, submission, chosen)
-    return Report(submission, rubric, chosen, tuple(grading.results.values()), problems, exhibits, others, notes)
+    results = tuple(grading.results.values())
+    return Report(GradedSubmission.of(submission), rubric, chosen, results, problems, exhibits, others, notes)
 
 
 def grade_reference(rubric: Rubric) -> Report:
@@ -133,11 +126,11 @@ class _Grading:
         mistake = outcome.mistake or outcome.message
         for problem in self._problems:
             if link is not None:
-                if problem.kind in (BAD_VISUAL, BAD_INERTIAL) and problem.subject == link:
+                if problem.kind in (catalogue.BAD_VISUAL, catalogue.BAD_INERTIAL) and problem.subject == link:
                     message = f"{outcome.message}: {problem.message}"
                     return outcome._replace(message=message, location=problem.location, mistake=mistake)
             elif problem.location == outcome.location and (
-                problem.kind in _EXPLAINING or (problem.kind is DEFAULT_AXIS and outcome.unit == "deg")
+                problem.kind in _EXPLAINING or (problem.kind is catalogue.DEFAULT_AXIS and outcome.unit == "deg")
             ):
                 message = f"{outcome.message} ({problem.code}: {problem.message})"
                 return outcome._replace(message=message, mistake=mistake)

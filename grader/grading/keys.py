@@ -6,13 +6,13 @@ from decimal import Decimal
 from typing import Any, Literal, NamedTuple
 
 from grader.checks.registry import CHECKS, Check, describe
-from grader.checks.toml_types import Limit, TomlType, WrongValue, limited, toml_type
+from grader.checks.toml_types import Constraint, TomlType, WrongValue, constrained, toml_type
 
 MAX_POINTS = 1_000_000
 _DECIMALS = 4  # of points: gradebooks store them as whole numbers of ten-thousandths
 
 
-class Table(NamedTuple):
+class KeyTable(NamedTuple):
     """A table of the rubric: what one is called, and its keys."""
 
     name: str
@@ -34,6 +34,12 @@ def _parse_number(value: Any) -> Decimal:
     if isinstance(value, int | Decimal) and not isinstance(value, bool) and Decimal(value).is_finite():
         return Decimal(value)
     raise WrongValue("a number")
+
+
+def _parse_title(value: Any) -> str:
+    if isinstance(value, str) and value.strip():
+        return " ".join(value.split())  # one line, however it is broken in the file
+    raise WrongValue("a text that is not empty" if isinstance(value, str) else "a text")
 
 
 def _parse_table(value: Any) -> dict[str, Any]:
@@ -59,12 +65,12 @@ def _is_below(path: str) -> bool:
     return path.endswith(".toml") and not set(path) & set("\\:\0") and ".." not in path.split("/") and path[0] != "/"
 
 
-def _range(least: int, most: int) -> Limit:
+def _range(least: int, most: int) -> Constraint:
     schema = {"minimum": least, "maximum": most} if most < MAX_POINTS else {"minimum": least}
-    return Limit(f"a number from {least} to {most}", lambda value: least <= value <= most, schema)
+    return Constraint(f"a number from {least} to {most}", lambda value: least <= value <= most, schema)
 
 
-def _rows(table: Table) -> TomlType:
+def _rows(table: KeyTable) -> TomlType:
     name = f"one or more [[{table.name}]] tables"
 
     def parse(value: Any) -> list[dict[str, Any]]:
@@ -77,28 +83,29 @@ def _rows(table: Table) -> TomlType:
 
 _TEXT = toml_type(str)
 _NUMBER = TomlType("a number", {"type": "number"}, _parse_number)
-_POINTS = limited(
+_POINTS = constrained(
     _NUMBER,
     _range(0, MAX_POINTS),
-    Limit(f"a number with at most {_DECIMALS} decimals", lambda points: not points.scaleb(_DECIMALS) % 1),
+    Constraint(f"a number with at most {_DECIMALS} decimals", lambda points: not points.scaleb(_DECIMALS) % 1),
 )
-_PERCENT = limited(_NUMBER, _range(0, 100))
-_MINUTES = limited(_NUMBER, _range(0, MAX_POINTS))
-_ID = limited(
-    _TEXT, Limit("one printable word", lambda text: text.isprintable() and len(text.split(" ")) == 1 and text != "")
+_PERCENT = constrained(_NUMBER, _range(0, 100))
+_MINUTES = constrained(_NUMBER, _range(0, MAX_POINTS))
+_ID = constrained(
+    _TEXT,
+    Constraint("one printable word", lambda text: text.isprintable() and len(text.split(" ")) == 1 and text != ""),
 )
-_TITLE = limited(_TEXT, Limit("a text that is not empty", lambda text: text.strip() != ""))
-_FILE = limited(
-    _TEXT, Limit("the path of a file", lambda path: path.strip().rstrip("/").split("/")[-1] not in ("", ".", ".."))
+_TITLE = TomlType("a text", {"type": "string"}, _parse_title)
+_FILE = constrained(
+    _TEXT, Constraint("the path of a file", lambda path: path.strip().rstrip("/").split("/")[-1] not in ("", ".", ".."))
 )
-_ANSWERS = limited(_TEXT, Limit("a .toml file in the rubric's folder", _is_below, {"pattern": r"\.toml$"}))
+_ANSWERS = constrained(_TEXT, Constraint("a .toml file in the rubric's folder", _is_below, {"pattern": r"\.toml$"}))
 
-PART = Table(
+PART = KeyTable(
     "part",
     {"id": _ID, "title": _TITLE, "needs": toml_type(Literal["urdf", "package", "files"]), "points": _POINTS},
     optional=("needs", "points"),
 )
-CRITERION = Table(
+CRITERION = KeyTable(
     "criterion",
     {
         "id": _ID,
@@ -113,8 +120,8 @@ CRITERION = Table(
     },
     optional=("about", "with", "requires", "feedback"),
 )
-EVIDENCE = Table("evidence", {"id": _ID, "part": _TEXT, "title": _TITLE, "names": toml_type(tuple[str, ...])})
-LATE = Table(
+EVIDENCE = KeyTable("evidence", {"id": _ID, "part": _TEXT, "title": _TITLE, "names": toml_type(tuple[str, ...])})
+LATE = KeyTable(
     "late policy",
     {
         "due": TomlType("a time", {"type": "string"}, _parse_time),
@@ -124,7 +131,7 @@ LATE = Table(
     },
     optional=("due", "grace_minutes", "floor_percent"),
 )
-RUBRIC = Table(
+RUBRIC = KeyTable(
     "rubric",
     {
         "id": _ID,
@@ -154,7 +161,7 @@ def rubric_schema() -> dict[str, Any]:
 
 def _arguments_rule(check: Check) -> dict[str, Any]:
     optional = tuple(name for name, parameter in check.parameters.items() if not parameter.required)
-    arguments = Table(check.name, {name: parameter.type for name, parameter in check.parameters.items()}, optional)
+    arguments = KeyTable(check.name, {name: parameter.type for name, parameter in check.parameters.items()}, optional)
     then: dict[str, Any] = {"properties": {"with": arguments.schema}}
     if arguments.schema["required"]:
         then["required"] = ["with"]

@@ -1,51 +1,19 @@
 """Reports as JSON text, which a gradebook stores, and back."""
 
 import json
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from typing import Any
 
 from grader.checks.manual import answered
 from grader.checks.outcome import Outcome
 from grader.documents.evidence import Exhibit
-from grader.grading.report import Exhibits, Report, Result
+from grader.grading.report import Exhibits, GradedPackage, GradedSubmission, Quote, Report, Result
 from grader.grading.rubric import Rubric
 from grader.problems import Kind, Problem
-from grader.robot.reader import Verdict
-from grader.source import Location, Source
+from grader.source import Location
 from grader.submission.urdf import OtherCandidate
 
-Quote = Callable[[str], Source | None]  # returns the text of one file of a submission; None where it cannot be read
-
 _STORED_FIELDS = 7  # of an outcome: its mistake is in a column of its own
-
-
-class StoredPackage(NamedTuple):
-    """The graded package: its folder in the submission, and its name."""
-
-    folder: str
-    name: str
-
-
-@dataclass(frozen=True, slots=True)
-class StoredSubmission:
-    """What a gradebook stores of a submission. Its files are not stored: `quote` returns their text where they are there."""
-
-    id: str
-    path: str | None = None
-    sha256: str | None = None
-    package: StoredPackage | None = None
-    other_candidates: tuple[OtherCandidate, ...] = ()
-    ignored: tuple[str, ...] = ()
-    has_urdf: bool = False
-    verdict: Verdict | None = None
-    is_single: bool = False
-    unread: str = ""
-    quote: Quote | None = field(default=None, repr=False, compare=False)
-
-    def source(self, path: str) -> Source | None:
-        """Return the text of one of its files, where `quote` has it."""
-        return self.quote(path) if self.quote is not None else None
 
 
 class Template:
@@ -65,12 +33,11 @@ class Template:
 def to_record(report: Report, template: Template | None = None) -> str:
     """Return a report as JSON text without what the rubric and the template hold: `from_record` needs the same ones."""
     same = template.outcomes if template is not None else {}
-    submission, package = report.submission, report.submission.package
+    submission = report.submission
     data = {
         "version": report.version,
         "submission": [
-            submission.id, submission.path, submission.sha256,
-            (package.folder, package.name) if package is not None else None,
+            submission.id, submission.path, submission.sha256, submission.package,
             submission.other_candidates, submission.ignored, submission.has_urdf, submission.verdict, submission.is_single,
             submission.unread,
         ],
@@ -92,18 +59,10 @@ def from_record(text: str, rubric: Rubric, quote: Quote | None = None, template:
     identity, path, sha256, package, other_candidates, ignored, has_urdf, verdict, is_single, unread = data[
         "submission"
     ]
-    submission = StoredSubmission(
-        identity,
-        path,
-        sha256,
-        StoredPackage(*package) if package is not None else None,
-        tuple(OtherCandidate(*file) for file in other_candidates),
-        tuple(ignored),
-        has_urdf,
-        verdict,
-        is_single,
-        unread,
-        quote,
+    package = GradedPackage(*package) if package is not None else None
+    others = tuple(OtherCandidate(*file) for file in other_candidates)
+    submission = GradedSubmission(
+        identity, path, sha256, package, others, tuple(ignored), has_urdf, verdict, is_single, unread, quote
     )
     evidence = {proof.id: proof for proof in rubric.evidence}
     return Report(

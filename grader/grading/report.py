@@ -1,9 +1,9 @@
-"""The report: every criterion with what was found and what it is worth. Renderers only lay it out."""
+"""The report: the outcome and the points of every criterion. Renderers only lay it out."""
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
 from decimal import Decimal
-from typing import TYPE_CHECKING, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple
 
 from grader import __version__
 from grader.checks.outcome import Outcome
@@ -11,6 +11,7 @@ from grader.grading.rubric import Criterion, Evidence, Rubric
 from grader.problems import Problem
 from grader.robot.reader import Verdict
 from grader.source import Source
+from grader.submission.submission import Submission
 from grader.submission.urdf import OtherCandidate
 
 if TYPE_CHECKING:
@@ -18,9 +19,11 @@ if TYPE_CHECKING:
 
 _NOTHING = Decimal(0)
 
+Quote = Callable[[str], Source | None]  # returns the text of one file of a submission; None where it cannot be read
+
 
 class ManualMark(NamedTuple):
-    """What a person has decided of a criterion: its points, whatever the check has found; who says so, if they gave a name, and why."""
+    """A manual mark or override: the points of a criterion, the name of the grader if given, and a comment."""
 
     points: Decimal
     by: str
@@ -28,7 +31,7 @@ class ManualMark(NamedTuple):
 
 
 class Result(NamedTuple):
-    """One criterion's outcome. `because` is the criterion that a skip is due to; `traceback` is for the maintainers."""
+    """The outcome of a criterion. `because` is the criterion that a skip is due to; `traceback` is for the maintainers."""
 
     criterion: Criterion
     outcome: Outcome
@@ -38,89 +41,80 @@ class Result(NamedTuple):
 
     @property
     def points(self) -> Decimal:
-        """What the criterion earns: all or nothing, unless a person has said what."""
+        """The points earned: all or none, or those of a manual mark."""
         if self.manual_mark is not None:
             return self.manual_mark.points
         return self.criterion.points if self.outcome.status == "passed" else _NOTHING
 
     @property
     def is_open(self) -> bool:
-        """Whether a person still has to decide."""
+        """Whether the criterion still needs manual grading."""
         return self.outcome.status == "pending" and self.manual_mark is None
 
 
 class Exhibits(NamedTuple):
-    """The files that were found for a piece of evidence, if any."""
+    """A piece of evidence and the files that were found for it."""
 
     evidence: Evidence
     files: "tuple[Exhibit, ...]"
 
 
-class Named(Protocol):
-    """The package that is graded: the folder that it stands in, empty for the submission itself, and its name."""
+class GradedPackage(NamedTuple):
+    """The graded package: its folder in the submission, empty for the submission itself, and its name."""
 
-    @property
-    def folder(self) -> str:
-        """Its folder."""
-
-    @property
-    def name(self) -> str:
-        """Its name."""
+    folder: str
+    name: str
 
 
-class GradedSubmission(Protocol):
-    """What a report says of the submission itself: a Submission, or what has been kept of one."""
+@dataclass(frozen=True, slots=True)
+class GradedSubmission:
+    """What a report says of the submission itself. `path`, `sha256` and `verdict` are those of the URDF.
 
-    @property
-    def id(self) -> str:
-        """What it is called."""
+    `is_single` tells a URDF on its own from a folder or archive; `unread` says why the URDF could not be read. `quote` returns
+    the text of one of the files, or None where it cannot be read.
+    """
 
-    @property
-    def path(self) -> str | None:
-        """The path of the URDF in it."""
+    id: str
+    path: str | None = None
+    sha256: str | None = None
+    package: GradedPackage | None = None
+    other_candidates: tuple[OtherCandidate, ...] = ()
+    ignored: tuple[str, ...] = ()
+    has_urdf: bool = False
+    verdict: Verdict | None = None
+    is_single: bool = False
+    unread: str = ""
+    quote: Quote | None = field(default=None, repr=False, compare=False)
 
-    @property
-    def sha256(self) -> str | None:
-        """The hash of the URDF's bytes."""
-
-    @property
-    def package(self) -> Named | None:
-        """The package that is graded."""
-
-    @property
-    def other_candidates(self) -> tuple[OtherCandidate, ...]:
-        """Files that might have been graded."""
-
-    @property
-    def ignored(self) -> tuple[str, ...]:
-        """What was not taken in, and why."""
-
-    @property
-    def has_urdf(self) -> bool:
-        """Whether there is a URDF that could be read."""
-
-    @property
-    def verdict(self) -> Verdict | None:
-        """What ROS 2 makes of it."""
-
-    @property
-    def is_single(self) -> bool:
-        """Whether it is a URDF on its own."""
-
-    @property
-    def unread(self) -> str:
-        """Why the URDF could not be read."""
+    @classmethod
+    def of(cls, submission: Submission) -> "GradedSubmission":
+        """Return what a report says of a submission."""
+        package = submission.package
+        return cls(
+            submission.id,
+            submission.path,
+            submission.sha256,
+            GradedPackage(package.folder, package.name) if package is not None else None,
+            submission.other_candidates,
+            submission.ignored,
+            submission.has_urdf,
+            submission.verdict,
+            submission.is_single,
+            submission.unread,
+            submission.source,
+        )
 
     def source(self, path: str) -> Source | None:
-        """The text of one of its files, for quoting; None where it cannot be read."""
+        """Return the text of one of the files, where `quote` has it."""
+        return self.quote(path) if self.quote is not None else None
 
 
 @dataclass(frozen=True, slots=True)
 class Report:
-    """What one submission earns under one rubric, part by part.
+    """The points of one submission under one rubric.
 
     `problems` are those of the URDF and, where a package is graded, of its files. `others` are pictures that no piece of
-    evidence asks for. `notes` say in a sentence each what is worth knowing of how the submission was read.
+    evidence asks for. `notes` are sentences on how the submission was read.
     """
 
     submission: GradedSubmission
@@ -131,25 +125,25 @@ class Report:
     exhibits: tuple[Exhibits, ...] = ()
     others: "tuple[Exhibit, ...]" = ()
     notes: tuple[str, ...] = ()
-    version: str = __version__  # of the grader that has decided
+    version: str = __version__  # of the grader
 
     @property
     def score(self) -> Decimal:
-        """The points earned; what a person still has to decide is not in it."""
+        """The points earned so far, without those that need manual grading."""
         return _sum(result.points for result in self.results)
 
     @property
     def max_score(self) -> Decimal:
-        """The points that can be earned in the graded parts."""
+        """The maximum of the graded parts."""
         return _sum(result.criterion.points for result in self.results)
 
     @property
     def pending(self) -> Decimal:
-        """The points that a person still has to give or refuse."""
+        """The points that still need manual grading."""
         return _sum(result.criterion.points for result in self.results if result.is_open)
 
     def counts(self, *statuses: str) -> int:
-        """How many criteria have one of these statuses."""
+        """Return the number of criteria with one of these statuses."""
         return sum(result.outcome.status in statuses for result in self.results)
 
 

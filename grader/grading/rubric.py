@@ -1,4 +1,4 @@
-"""A rubric: which facts are asked of a submission, and what each is worth. Loaded strictly, all mistakes at once."""
+"""A rubric: the facts that are checked, and their points. It is loaded strictly: all mistakes are reported at once."""
 
 import tomllib
 from collections.abc import Mapping, Sequence
@@ -14,17 +14,18 @@ from grader.errors import InputError, RubricError
 from grader.files.reading import read_capped, sha256_of
 from grader.grading.toml_lines import Path as TomlPath
 from grader.grading.toml_lines import key_lines, line_of
-from grader.grading.validation import Row, Validation
+from grader.grading.validation import TomlRow, Validation
 from grader.names import did_you_mean
 from grader.text import printable_path
 
 _MAX_COMPLAINTS = 1000  # lines about one rubric
-_ANSWERS = ".answers.toml"  # how the files of model answers end that stand beside the shipped rubrics
+_ANSWERS = ".answers.toml"  # the ending of files with model answers beside the shipped rubrics
+_LIST = "(`grader rubric list` lists the rubrics that come with the grader)"
 
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A task of the lab; `needs` says what it is graded on: a urdf alone, a package, or all files that were handed in."""
+    """A task of the lab. `needs` is what it is graded on: a urdf, a package, or all files of the submission."""
 
     id: str
     title: str
@@ -33,7 +34,7 @@ class Part:
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """A proof that the lab asks for. `names` says how its file is named, however it is spelt: task 1 step 8."""
+    """Evidence that the lab asks for. `names` are labels in the name of its file, in any spelling: "task 1 step 8"."""
 
     id: str
     part: str
@@ -43,9 +44,9 @@ class Evidence:
 
 @dataclass(frozen=True, slots=True)
 class Criterion:
-    """One row of a rubric: a check with its arguments, and the exact points for passing it. `position` counts from 0.
+    """A row of a rubric: a check with its arguments, and the exact points for passing it. `position` counts from 0.
 
-    `answer` is the model answer. It is empty unless the rubric was loaded with its answers.
+    `answer` is the model answer; empty unless the rubric was loaded with its answers.
     """
 
     id: str
@@ -63,20 +64,20 @@ class Criterion:
 
 @dataclass(frozen=True, slots=True)
 class Late:
-    """What a late hand-in costs: of all points that can be earned, so many percent for each day begun after the grace.
+    """The late penalty, in percent of the maximum for each day begun after the deadline and the grace period.
 
-    No mark is taken below `floor_percent` of them, and none that is below already is changed. `due` has a time zone.
+    The penalty takes no mark below `floor_percent` of the maximum, and leaves lower marks as they are. `due` has a time zone.
     """
 
-    due: datetime | None
-    grace_minutes: Decimal
     percent_per_day: Decimal
-    floor_percent: Decimal
+    due: datetime | None = None
+    grace_minutes: Decimal = Decimal(0)
+    floor_percent: Decimal = Decimal(0)
 
 
 @dataclass(frozen=True, slots=True)
 class Rubric:
-    """A lab as data. Criteria run in file order. `answers` is the path of the file with the model answers, if it has one."""
+    """A lab as data. Criteria run in file order. `answers` is the path of the file with the model answers, if there is one."""
 
     id: str
     title: str
@@ -98,12 +99,12 @@ class Rubric:
 
     @property
     def points(self) -> Decimal:
-        """All that can be earned."""
+        """The maximum."""
         return sum((criterion.points for criterion in self.criteria), Decimal(0))
 
     @property
     def is_shipped(self) -> bool:
-        """Whether it comes with the grader, so that its id names it."""
+        """Whether it comes with the grader and is named by its id."""
         return shipped_rubrics().get(self.id) == self.path
 
     @property
@@ -112,19 +113,19 @@ class Rubric:
         return f"grader rubric show {self.id if self.is_shipped else printable_path(self.path)}"
 
     def part(self, name: str) -> Part:
-        """The part of this id; raises InputError, which names those that there are."""
+        """Return the part with this id; raise InputError, which lists the parts."""
         for part in self.parts:
             if part.id == name:
                 return part
         known = [part.id for part in self.parts]
         guess = did_you_mean(name, known) or f"; it has: {', '.join(known)}"
-        raise InputError(f"the rubric {self.id} has no part {name!r}{guess} ({self.shown_by} says more)")
+        raise InputError(f"the rubric {self.id} has no part {name!r}{guess} (see `{self.shown_by}`)")
 
 
 def shipped_rubrics() -> dict[str, Path]:
-    """The rubrics that come with the package, by id."""
+    """Return the rubrics that come with the grader, by id."""
     package = Path(__file__).resolve().parent.parent
-    # A wheel carries them inside the package; in a checkout they stand beside it.
+    # In a wheel they are inside the package, in a checkout beside it.
     for folder in (package / "rubrics", package.parent / "rubrics"):
         if folder.is_dir():
             return {path.stem: path for path in sorted(folder.glob("*.toml")) if not path.name.endswith(_ANSWERS)}
@@ -132,32 +133,30 @@ def shipped_rubrics() -> dict[str, Path]:
 
 
 def find_rubric(name: str) -> Path:
-    """The file of a rubric that is named by its id or by its path; raises RubricError."""
+    """Return the file of a rubric that is named by its id or path; raise RubricError."""
     shipped = shipped_rubrics()
     if name in shipped:
         return shipped[name]
-    path = Path(name)
     if not name:
-        raise RubricError(("the name of the rubric is empty (grader rubric list shows those that there are)",))
-    if (
-        path.suffix == ".toml" or path.name != name
-    ):  # a bare word is an id: no file of a submission's may take its place
+        raise RubricError((f"the name of the rubric is empty {_LIST}",))
+    path = Path(name)
+    if path.suffix == ".toml" or path.name != name:  # a bare word is an id, never a file of the submission
         return path
-    guess = did_you_mean(name, shipped) or f"; a file is named as ./{printable_path(name)} or ends in .toml"
-    raise RubricError((f"there is no rubric {name!r}{guess} (grader rubric list shows those that there are)",))
+    guess = did_you_mean(name, shipped) or f"; write ./{printable_path(name)} for a file"
+    raise RubricError((f"there is no rubric {name!r}{guess} {_LIST}",))
 
 
 def load_rubric(name: str) -> Rubric:
-    """Load a rubric by its id or path; raises RubricError with one line for each mistake in it, InputError if unreadable.
+    """Load a rubric by its id or path, without model answers (see `grader.grading.answers`).
 
-    Its criteria have no model answers: `grader.grading.answers` loads a rubric with them.
+    Raises RubricError with one line for each mistake in it, InputError if it cannot be read.
     """
     path = find_rubric(name)
     return read_rubric(read_capped(path, advice=""), path)
 
 
 def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
-    """Return the rubric in the bytes of a file, with the model answers that are in it or without; raises RubricError."""
+    """Return the rubric in the bytes of a file, with or without the model answers in it; raise RubricError."""
     text, table = read_toml(data, path)
     valid = Validation(table)
     complain_of(valid.complaints, text, path)
@@ -165,22 +164,22 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
     criteria = zip(valid.criteria, valid.bound, strict=True)
     return Rubric(
         rubric["id"],
-        _line(rubric["title"]),
-        tuple(Part(row["id"], _line(row["title"]), row.get("needs", "urdf")) for row in valid.parts),
+        rubric["title"],
+        tuple(Part(row["id"], row["title"], row.get("needs", "urdf")) for row in valid.parts),
         tuple(_criterion(index, row, *bound, answers=answers) for index, (row, bound) in enumerate(criteria)),
         rubric.get("urdf", "robot.urdf"),
         rubric.get("reference", ""),
         data,
         path,
         rubric.get("package", ""),
-        tuple(Evidence(row["id"], row["part"], _line(row["title"]), row["names"]) for row in valid.evidence),
-        _late(valid.late) if valid.late is not None else None,
+        tuple(Evidence(**row) for row in valid.evidence),
+        Late(**valid.late) if valid.late is not None else None,
         rubric.get("answers", ""),
     )
 
 
 def read_toml(data: bytes, path: Path) -> tuple[str, dict[str, Any]]:
-    """Return the text and the table of a TOML file; raises RubricError."""
+    """Return the text and the table of a TOML file; raise RubricError."""
     shown = printable_path(path)
     try:
         text = data.decode().removeprefix("\ufeff")
@@ -192,7 +191,7 @@ def read_toml(data: bytes, path: Path) -> tuple[str, dict[str, Any]]:
 
 
 def complain_of(complaints: Sequence[tuple[TomlPath, str]], text: str, path: Path) -> None:
-    """Raise RubricError with a line for each complaint, in the order of the file; do nothing where there is none."""
+    """Raise RubricError with a line for each complaint, in the order of the file, if there are any."""
     if complaints:
         lines = key_lines(text)
         found = sorted((line_of(lines, where), order, what) for order, (where, what) in enumerate(complaints))
@@ -201,22 +200,12 @@ def complain_of(complaints: Sequence[tuple[TomlPath, str]], text: str, path: Pat
         raise RubricError((*listed, f"{shown}: {more} more mistakes are not listed") if more > 0 else listed)
 
 
-def _line(title: str) -> str:
-    """Return a title in one line, however it is broken in the file."""
-    return " ".join(title.split())
-
-
-def _late(row: Row) -> Late:
-    kept = {key: row.get(key, Decimal(0)) for key in ("grace_minutes", "percent_per_day", "floor_percent")}
-    return Late(row.get("due"), **kept)
-
-
-def _criterion(position: int, row: Row, check: Check, arguments: Row, *, answers: bool) -> Criterion:
+def _criterion(position: int, row: TomlRow, check: Check, arguments: TomlRow, *, answers: bool) -> Criterion:
     # Nothing that lists or passes on a criterion's arguments may see the model answer.
     answer = arguments.pop("answer", "") if check.function is answered else ""
     return Criterion(
         row["id"],
-        _line(row["title"]),
+        row["title"],
         row["part"],
         row["points"],
         check,

@@ -1,4 +1,4 @@
-"""On which line a key of a TOML file stands; tomllib does not say."""
+"""The line of every key of a TOML file, which tomllib does not report."""
 
 import re
 import tomllib
@@ -14,7 +14,7 @@ _TOKEN = re.compile(
 
 
 def key_lines(text: str) -> dict[Path, int]:
-    """The line of every table header and key of a valid TOML text, by its path; arrays of tables are counted from 0."""
+    """Return the line of every table header and key of a valid TOML text, by its path; arrays count from 0."""
     lines: dict[Path, int] = {(): 1}
     counts: dict[Path, int] = {}
     table: Path = ()
@@ -31,7 +31,7 @@ def key_lines(text: str) -> dict[Path, int]:
 
 
 def _table(names: list[str], counts: dict[Path, int], *, is_array: bool) -> Path:
-    """The path of a header's table: in each array of tables on the way, the last one so far."""
+    """Return the path of a header's table; in an array of tables it is in the last table so far."""
     path: Path = ()
     for index, name in enumerate(names):
         path = (*path, name)
@@ -43,14 +43,14 @@ def _table(names: list[str], counts: dict[Path, int], *, is_array: bool) -> Path
 
 
 def line_of(lines: dict[Path, int], path: Path) -> int:
-    """The line of a path, or of the innermost table around it that has one."""
+    """Return the line of a path, or of the innermost table around it that has one."""
     while path not in lines:
         path = path[:-1]
     return lines[path]
 
 
 def _statements(text: str) -> list[tuple[int, list[str]]]:
-    """Each header and key with its value as tokens, and the line on which it begins."""
+    """Return each header and key with its value as tokens, and the line on which it begins."""
     statements: list[tuple[int, list[str]]] = []
     line, depth = 1, 0
     current: list[str] = []

@@ -8,7 +8,7 @@ from typing import Any
 from grader.checks.registry import Check, check_names, find_check
 from grader.checks.toml_types import WrongValue
 from grader.errors import InputError
-from grader.grading.keys import CRITERION, EVIDENCE, LATE, PART, RUBRIC, Table
+from grader.grading.keys import CRITERION, EVIDENCE, LATE, PART, RUBRIC, KeyTable
 from grader.grading.toml_lines import Path
 from grader.names import did_you_mean
 from grader.text import enumerated
@@ -18,7 +18,7 @@ _MAX_LISTED = 20  # names in one message
 _MAX_SHOWN = 40  # characters of a value
 _MAX_BITS = 1000  # of a whole number that is written out
 
-Row = dict[str, Any]
+TomlRow = dict[str, Any]
 
 
 class Validation:
@@ -27,9 +27,9 @@ class Validation:
     `bound` holds the check of each criterion with its arguments, in the order of the rows.
     """
 
-    def __init__(self, table: Row) -> None:
+    def __init__(self, table: TomlRow) -> None:
         self.complaints: list[tuple[Path, str]] = []
-        self.bound: list[tuple[Check, Row]] = []
+        self.bound: list[tuple[Check, TomlRow]] = []
         self._guesses = _MAX_GUESSES
         self._find_check, self._check_names = cache(find_check), cache(check_names)
         self.rubric = self._row((), table, RUBRIC)
@@ -46,12 +46,12 @@ class Validation:
             self._belongs(("evidence", index), row, part_ids)
         self._totals()
 
-    def _rows(self, key: str, table: Table) -> list[Row]:
+    def _rows(self, key: str, table: KeyTable) -> list[TomlRow]:
         return [self._row((key, index), row, table) for index, row in enumerate(self.rubric.get(key, ()))]
 
-    def _row(self, where: Path, row: Row, table: Table) -> Row:
+    def _row(self, where: Path, row: TomlRow, table: KeyTable) -> TomlRow:
         """Return the valid values of a table, converted; complain of the others and of missing ones."""
-        parsed: Row = {}
+        parsed: TomlRow = {}
         for key, value in row.items():
             if key not in table.keys:
                 hint = self._guess(key, table.keys) or f"; it has: {', '.join(table.keys)}"
@@ -75,13 +75,13 @@ class Validation:
                 self._complain((key, index, "id"), f"there is a {key} {name!r} already")
         return positions
 
-    def _belongs(self, where: Path, row: Row, parts: Collection[str]) -> None:
+    def _belongs(self, where: Path, row: TomlRow, parts: Collection[str]) -> None:
         part = row.get("part")
         if part is not None and part not in parts:
             hint = self._guess(part, parts) or f"; there are: {enumerated(parts, _MAX_LISTED) or 'none'}"
             self._complain((*where, "part"), f"there is no part {part!r}{hint}")
 
-    def _requires(self, index: int, row: Row, positions: Mapping[str, int]) -> None:
+    def _requires(self, index: int, row: TomlRow, positions: Mapping[str, int]) -> None:
         given = self.rubric["criterion"][index].get("requires")  # also of a list with other mistakes in it
         for name in given if isinstance(given, list) else ():
             if not isinstance(name, str) or positions.get(name, index) < index:
@@ -94,13 +94,13 @@ class Validation:
                 message = f"requires {name!r}, which does not exist{self._guess(name, positions)}"
             self._complain(("criterion", index, "requires"), message)
 
-    def _arguments(self, index: int, row: Row) -> None:
+    def _arguments(self, index: int, row: TomlRow) -> None:
         where: Path = ("criterion", index)
         name, given = row.get("check"), row.get("with", {})
         check = self._check((*where, "check"), name) if name is not None else None
         if check is None:
             return
-        arguments: Row = {}
+        arguments: TomlRow = {}
         for key, value in given.items():
             parameter = check.parameters.get(key)
             if parameter is None:
@@ -132,10 +132,10 @@ class Validation:
         """Compare declared totals with the sums, where all points are valid."""
         if any("points" not in row for row in self.criteria):
             return
-        by_part: dict[str, list[Row]] = {}
+        by_part: dict[str, list[TomlRow]] = {}
         for row in self.criteria:
             by_part.setdefault(row.get("part", ""), []).append(row)
-        declared: list[tuple[Path, Row, str, list[Row]]] = [((), self.rubric, "the rubric", self.criteria)]
+        declared: list[tuple[Path, TomlRow, str, list[TomlRow]]] = [((), self.rubric, "the rubric", self.criteria)]
         for index, part in enumerate(self.parts):
             name = part.get("id", "")
             declared.append((("part", index), part, f"part {name!r}", by_part.get(name, [])))

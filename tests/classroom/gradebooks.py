@@ -59,9 +59,9 @@ def came_out(rubric: Rubric, key: str, signs: str, digest: str = "a", reason: st
         if sign != NOT_GRADED
     )
     verdict: Verdict = "unreadable" if reason else "errored" if "!" in signs else "graded"
-    from grader.grading.record import StoredSubmission
+    from grader.grading.report import GradedSubmission
 
-    report = Report(StoredSubmission(key), rubric, tuple(part.id for part in rubric.parts), results)
+    report = Report(GradedSubmission(key), rubric, tuple(part.id for part in rubric.parts), results)
     return result_of(report, Task(key, (key,)), verdict, reason, sha256_of(digest.encode()), "")
 
 

@@ -104,7 +104,7 @@ def test_without_the_file_the_rubric_works(top: Path) -> None:
     assert grader("rubric", "show", rubric).stdout == shown.stdout
     anna = ("grade", top / "class" / "anna", "--rubric", rubric, "--format", "json")
     assert grader(*anna).stdout == graded.stdout == grader(*anna, "--answers").stdout
-    note = f"grader: small: the file of the model answers, {top}/small.answers.toml, is not there: none are shown\n"
+    note = f"grader: small: the file of the model answers, {top}/small.answers.toml, does not exist: no model answers are shown\n"
     for arguments in (("rubric", "check", rubric), ("rubric", "show", rubric, "--answers"), (*anna, "--answers")):
         assert grader(*arguments).stderr == note
     assert batch(top, "--force").returncode == 0
@@ -117,9 +117,9 @@ def test_without_the_file_the_rubric_works(top: Path) -> None:
     [
         (
             "a = 1\n\nesay = ''",
-            "3: the rubric small has no criterion 'esay' that asks a question; did you mean 'essay'?",
+            "3: the rubric small has no question 'esay'; did you mean 'essay'?",
         ),
-        ("\nbox = ''", "2: the rubric small has no criterion 'box' that asks a question; there are: essay"),
+        ("\nbox = ''", "2: the rubric small has no question 'box'; there are: essay"),
         ("essay = 3", "1: the answer to essay must be a text"),
         ("essay = ", " not readable as TOML: Invalid value (at end of document)"),
     ],
@@ -137,7 +137,7 @@ def test_an_answer_has_one_place(tmp_path: Path) -> None:
     """One in the rubric and in the file is refused."""
     rubric = apart(tmp_path)
     rubric.write_text(rubric.read_text().replace('question = "Why?"', f'question = "Why?"{INLINE}'), encoding="utf-8")
-    why = f"{tmp_path}/small.answers.toml:1: the answer to essay is in the rubric already: keep one of the two"
+    why = f"{tmp_path}/small.answers.toml:1: the answer to essay is already in the rubric: remove one of the two"
     assert refusal(grader("rubric", "check", rubric)) == why
 
 

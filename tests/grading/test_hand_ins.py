@@ -365,7 +365,7 @@ def test_a_single_urdf_is_graded_on_its_own_part() -> None:
 def test_a_single_urdf_has_no_package(part: str) -> None:
     """To ask for a part that needs more than a URDF is wrong usage."""
     single = read_submission(REFERENCE.data(URDF), identity="one", path="my_robot.urdf")
-    message = f"{part} needs more than a URDF: name the folder or archive that was handed in"
+    message = f"{part} needs more than a URDF: give the folder or archive that was submitted"
     with pytest.raises(InputError, match=message):
         grade(LAB, single, [part])
     with pytest.raises(InputError, match=message):

@@ -1,45 +1,15 @@
 """The same report with other words wherever a student's may stand."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
-from grader.grading.report import GradedSubmission, Report, Result
+from grader.grading.report import GradedPackage, GradedSubmission, Report, Result
 from grader.report.content import other_problems
-from grader.robot.reader import Verdict
 from grader.source import Location, Source
 from grader.submission.urdf import OtherCandidate
 from grader.text import printable
 
 Words = Callable[[], str]
-
-
-@dataclass(frozen=True)
-class Package:
-    """A package by name."""
-
-    folder: str
-    name: str
-
-
-@dataclass(frozen=True)
-class Recast:
-    """A submission of other words. Its paths are printable, as all paths in a submission are."""
-
-    id: str
-    path: str | None
-    sha256: str | None
-    package: Package | None
-    other_candidates: tuple[OtherCandidate, ...]
-    ignored: tuple[str, ...]
-    has_urdf: bool
-    verdict: Verdict | None
-    is_single: bool
-    unread: str
-    text: str | None
-
-    def source(self, path: str) -> Source | None:
-        """The same text whatever the path is."""
-        return Source(path, self.text) if self.text is not None else None
 
 
 def recast(report: Report, words: Words) -> Report:
@@ -63,18 +33,19 @@ def recast(report: Report, words: Words) -> Report:
 
 
 def _submission(old: GradedSubmission, words: Words, path: Words) -> GradedSubmission:
-    return Recast(
+    text = "\n".join(f"<a b='{words()}'/>{words()}" for _ in range(3))
+    return GradedSubmission(
         words(),
         path() if old.path is not None else None,
         old.sha256,
-        Package(path() if old.package.folder else "", words()) if old.package is not None else None,
+        GradedPackage(path() if old.package.folder else "", words()) if old.package is not None else None,
         tuple(OtherCandidate(path(), words()) for _ in old.other_candidates),
         tuple(words() for _ in old.ignored),
         old.has_urdf,
         old.verdict,
         old.is_single,
         "unread" if old.unread else "",
-        "\n".join(f"<a b='{words()}'/>{words()}" for _ in range(3)),
+        lambda path: Source(path, text),
     )
 
 

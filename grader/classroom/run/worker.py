@@ -19,8 +19,8 @@ from grader.errors import InputError
 from grader.files.opening import ARCHIVES
 from grader.files.reading import URDF_LIMIT
 from grader.grading.grade import grade
-from grader.grading.record import StoredSubmission, Template, to_record
-from grader.grading.report import Report, Result
+from grader.grading.record import Template, to_record
+from grader.grading.report import GradedSubmission, Report, Result
 from grader.grading.rubric import Rubric, read_rubric
 from grader.submission.submission import Submission
 from grader.submission.urdf import Absent, Unreadable
@@ -134,7 +134,7 @@ def failed(
     message = reason if status == "errored" else f"{reason}; needs manual grading"
     results = tuple(Result(criterion, Outcome(status, message)) for criterion in rubric.criteria)
     name = Path(task.paths[0]).name if len(task.paths) == 1 else task.key
-    report = Report(StoredSubmission(name), rubric, tuple(part.id for part in rubric.parts), results)
+    report = Report(GradedSubmission(name), rubric, tuple(part.id for part in rubric.parts), results)
     return result_of(report, task, verdict, reason, digest, seen)
 
 
