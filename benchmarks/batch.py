@@ -1,7 +1,7 @@
-"""What the claims about whole classes rest on: `python benchmarks/batch.py`. Quote the ratios; absolute figures are the machine's.
+"""Measure how whole classes are graded: `python benchmarks/batch.py`. Quote the ratios; absolute figures depend on the machine.
 
-Classes are made up (class_generator.py); no file in them is like another. Whatever is compared is timed in turn, A B A B. A figure
-by its name is run alone: `python benchmarks/batch.py speed memory`.
+Classes are generated (class_generator.py), and all their files differ. Alternatives are timed in turn, A B A B. Name figures to run
+only these: `python benchmarks/batch.py speed memory`.
 """
 
 import argparse
@@ -28,15 +28,15 @@ from grader.classroom.run.pool import Processes, processors
 from grader.classroom.run.worker import PRELOAD, ClassContext, Task, grade_all, prepare
 from grader.grading.rubric import load_rubric
 
-_TIMEOUT = 60.0  # seconds for one hand-in
-_WARMING = 50  # hand-ins that each worker grades before the clock starts
-_REPEATED = 10_000  # hand-ins of the largest class that is graded more than once
+_TIMEOUT = 60.0  # seconds for one submission
+_WARMING = 50  # submissions that each worker grades before the clock starts
+_REPEATED = 10_000  # submissions of the largest class that is graded more than once
 _SAMPLED = 0.05  # seconds between two looks at the memory
 _PATIENCE = 60.0  # seconds in which all workers have to show up
 
 
 class Bench(NamedTuple):
-    """Where classes are kept, how large they are, and how often each figure is measured."""
+    """The folder of the classes, their sizes, and how often each figure is measured."""
 
     top: Path
     sizes: Sequence[int]
@@ -64,7 +64,7 @@ def main() -> None:
         "figures", nargs="*", metavar="figure", help=f"any of: {', '.join(FIGURES)}; all of them if left out"
     )
     parser.add_argument(
-        "--sizes", type=int, nargs="+", default=[100, 1_000, 10_000], help="how many hand-ins a class has"
+        "--sizes", type=int, nargs="+", default=[100, 1_000, 10_000], help="how many submissions a class has"
     )
     parser.add_argument("--all", action="store_true", help="a class of 100,000 as well")
     parser.add_argument("--jobs", type=int, default=processors())
@@ -93,17 +93,17 @@ def speed(bench: Bench) -> None:
     base = bench.sizes[0] / statistics.median(times[str(bench.sizes[0])])
     for size in bench.sizes:
         rate, best = size / statistics.median(times[str(size)]), size / min(times[str(size)])
-        print(f"  {size:>7} hand-ins  median {rate:9.0f} /s  {rate / base:6.2f} x   best {best:9.0f} /s")
+        print(f"  {size:>7} submissions  median {rate:9.0f} /s  {rate / base:6.2f} x   best {best:9.0f} /s")
 
 
 def parallel(bench: Bench) -> None:
-    """How much of a second worker's time is gained."""
+    """Measure how much a second worker gains."""
     size = bench.usual
     with workers(bench, 1) as one, workers(bench, 2) as two:
         pools = {1: one, 2: two}
         times = in_turn({str(jobs): _fresh(bench, size, jobs, pool) for jobs, pool in pools.items()}, bench.runs)
     rates = {name: size / statistics.median(values) for name, values in times.items()}
-    print(f"\nTwo workers against one, {size} hand-ins, warm, {processors()} processors")
+    print(f"\nTwo workers against one, {size} submissions, warm, {processors()} processors")
     for name, rate in rates.items():
         print(f"  {name} worker{'s' if name == '2' else ' '}   median {rate:9.0f} /s")
     print(f"  parallel efficiency, rate(2) / (2 rate(1)): {rates['2'] / (2 * rates['1']):.2f}")
@@ -130,7 +130,7 @@ def against_check_urdf(bench: Bench) -> None:
             runs["pip's command"] = loop(installed)
         runs["grader"] = lambda: fresh_run(bench, size, bench.jobs, executor) / size
         times = in_turn(runs, bench.runs)
-    print(f"\nA class against `for f in *.urdf; do check_urdf $f; done` ({size} hand-ins, {few} in the loop)")
+    print(f"\nA class against `for f in *.urdf; do check_urdf $f; done` ({size} submissions, {few} in the loop)")
     _ratios(times, "bare program")
 
 
@@ -139,13 +139,13 @@ def again(bench: Bench) -> None:
     size = bench.usual
     with workers(bench, bench.jobs) as executor:
         _compare_runs(
-            f"First run against second, warm workers, {size} unchanged hand-ins",
+            f"First run against second, warm workers, {size} unchanged submissions",
             lambda book: once(lambda: grade_class(bench.folder(size), size, bench.jobs, executor, book)),
             bench,
         )
     if _has_command():
         _compare_runs(
-            f"First run against second, whole processes, {size} unchanged hand-ins",
+            f"First run against second, whole processes, {size} unchanged submissions",
             lambda book: once(lambda: subprocess.run(_command(bench, size, book), capture_output=True, check=True)),
             bench,
         )
@@ -161,7 +161,7 @@ def memory(bench: Bench) -> None:
     for size in dict.fromkeys((bench.usual, bench.sizes[-1])):
         peak = peak_memory(_command(bench, size, bench.top / f"memory-{size}.db"))
         base = base or peak
-        print(f"  {size:>7} hand-ins  {peak / 2**20:8.1f} MiB  {peak / base:6.2f} x")
+        print(f"  {size:>7} submissions  {peak / 2**20:8.1f} MiB  {peak / base:6.2f} x")
 
 
 FIGURES: dict[str, Callable[[Bench], None]] = {
@@ -178,7 +178,7 @@ FIGURES: dict[str, Callable[[Bench], None]] = {
 
 @contextmanager
 def workers(bench: Bench, jobs: int) -> Iterator[Executor]:
-    """Workers, each of which has graded a few dozen hand-ins that are in no class."""
+    """Workers, each of which has graded a few dozen submissions that are in no class."""
     executor = Processes(jobs, _TIMEOUT, prepare, preload=PRELOAD)
     folder, rubric = bench.folder(_WARMING), load_rubric("lab6")
     common = ClassContext(str(folder), rubric.data, str(rubric.path))
@@ -211,7 +211,7 @@ def _fresh(bench: Bench, count: int, jobs: int, executor: Executor) -> Callable[
 
 
 def grade_class(folder: Path, count: int, jobs: int, executor: Executor, book: Path) -> Progress:
-    """Grade a class into a gradebook; every hand-in gets a mark or has been marked before."""
+    """Grade a class into a gradebook; every submission gets a mark or has been marked before."""
     root, rubric = str(folder), load_rubric("lab6")
     with Gradebook(book, create=True) as opened:
         progress = Batch(opened, rubric, RunSettings(root, "folders", count, jobs), executor).grade(read_class(folder))
@@ -220,7 +220,7 @@ def grade_class(folder: Path, count: int, jobs: int, executor: Executor, book: P
 
 
 def names_in(folder: Path) -> list[str]:
-    """What is in a folder, in the order of the alphabet."""
+    """Return the names in a folder, sorted."""
     with os.scandir(folder) as entries:
         return sorted(entry.name for entry in entries)
 
@@ -249,7 +249,7 @@ def _compare_runs(title: str, run: Callable[[Path], float], bench: Bench) -> Non
     _ratios(times, "first", "a run")
 
 
-def _ratios(times: dict[str, list[float]], base: str, what: str = "a hand-in") -> None:
+def _ratios(times: dict[str, list[float]], base: str, what: str = "a submission") -> None:
     """Print medians, and how many times as fast as the base each is."""
     middle = statistics.median(times[base])
     for name, values in times.items():

@@ -392,12 +392,12 @@ class Person(NamedTuple):
 
     @property
     def is_awkward(self) -> bool:
-        """Whether the name is more than plain letters."""
+        """Return whether the name is more than plain letters."""
         return not (self.first + self.last).isascii() or not (self.first + self.last).isalpha()
 
     @property
     def key(self) -> str:
-        """What the hand-in is called in a class folder: the login, or the whole of an awkward name."""
+        """Return the name of the submission in a class folder: the login, or the whole of an awkward name."""
         return self.name if self.is_awkward else self.login
 
 
@@ -509,11 +509,11 @@ def picture(dice: Dice) -> bytes:
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", size) + chunk(b"IDAT", packed) + chunk(b"IEND", b"")
 
 
-# --- What is handed in ------------------------------------------------------------------------------------------------
+# --- What is submitted ------------------------------------------------------------------------------------------------
 
 
 class Desk:
-    """What one student has at hand: chance, and URDFs. `made` is the URDF that counts; None where it is not certain which does."""
+    """A source of random choices and URDFs for one student. `made` is the URDF that counts; None if it is uncertain."""
 
     def __init__(self, dice: Dice, author: str) -> None:
         self.dice, self._author = dice, author
@@ -625,7 +625,7 @@ def _folder(data: Callable[[Desk], list[Item]]) -> Kind:
     return build
 
 
-# How many of each there are in a hundred or so students, in a class of all kinds. An empty list is no hand-in at all.
+# How many of each there are in a hundred or so students, in a class of all kinds. An empty list is no submission at all.
 KINDS: dict[str, tuple[int, Kind]] = {
     "nothing": (4, lambda _: []),
     "urdf": (22, _once(single)),
@@ -668,7 +668,7 @@ KINDS: dict[str, tuple[int, Kind]] = {
 
 
 class ClassSubmission(NamedTuple):
-    """What one student has handed in, and of what kind. The last of the `attempts` counts; there may be none."""
+    """The attempts of one student, and their kind. The last of the `attempts` counts; there may be none."""
 
     person: Person
     kind: str
@@ -688,7 +688,7 @@ def hand_ins(count: int, seed: int, kind: str) -> Iterator[ClassSubmission]:
 
 
 def card(seed: int, index: int) -> str:
-    """The kind of a student's hand-in, dealt from decks in which there are as many cards of each kind as it should have."""
+    """The kind of a student's submission, dealt from decks in which there are as many cards of each kind as it should have."""
     size = sum(weight for weight, _ in KINDS.values())
     return _deck(seed, index // size)[index % size]
 
@@ -763,7 +763,7 @@ def moodle_name(who: Person) -> str:
 
 
 def _only_ending(items: Sequence[Item]) -> str:
-    """The ending of the one file that was handed in; empty where it is something else."""
+    """The ending of the one file that was submitted; empty where it is something else."""
     if len(items) != 1 or items[0].data is None or "/" in items[0].path:
         return ""
     return next((ending for ending in ENDINGS if items[0].path.endswith(ending)), "")
@@ -799,7 +799,7 @@ def write(root: str, item: Item) -> None:
 
 
 class Written(NamedTuple):
-    """A hand-in that was written: who, what kind, where (the last attempt's top names), and what it surely loses, if that is certain."""
+    """A submission that was written: who, what kind, where (the last attempt's top names), and what it surely loses, if that is certain."""
 
     person: Person
     kind: str
@@ -810,7 +810,7 @@ class Written(NamedTuple):
 def make_class(
     folder: Path, count: int, seed: int = 1, kind: str = "urdf", layout: str = "folders"
 ) -> Iterator[Written]:
-    """Write a class into a folder, one hand-in after the other."""
+    """Write a class into a folder, one submission after the other."""
     folder.mkdir(parents=True, exist_ok=True)
     root, place = str(folder), _PLACING[layout]
     for hand_in in hand_ins(count, seed, kind):
@@ -873,7 +873,7 @@ def _csv(header: list[str], rows: Iterable[Sequence[Any]], end: str) -> str:
 
 
 def expectation(written: Written) -> dict[str, Any]:
-    """What is known of a hand-in; `lost` are all criteria of the URDF that it loses, null where that is not certain."""
+    """Return the known data of a submission; `lost` are all criteria of the URDF that it loses, null if uncertain."""
     made = written.made
     return {
         "kind": written.kind,
@@ -892,17 +892,17 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--kind", choices=("urdf", "mixed"), default="urdf")
     parser.add_argument("--layout", choices=LAYOUTS, default="folders")
-    parser.add_argument("--expected", type=Path, help="a JSON file of what each hand-in surely loses")
+    parser.add_argument("--expected", type=Path, help="a JSON file of what each submission surely loses")
     parser.add_argument("--roster", type=Path, help="a CSV file of the students")
     parser.add_argument("--lms", type=Path, help="a CSV file: Canvas' gradebook, or Moodle's grading worksheet")
     given = parser.parse_args()
     made = make_class(given.folder, given.count, given.seed, given.kind, given.layout)
     if not (given.expected or given.roster or given.lms):
-        print(sum(1 for _ in made), "hand-ins")
+        print(sum(1 for _ in made), "submissions")
         return
     written = list(made)
     write_beside(written, given.count, given.layout, given.expected, given.roster, given.lms)
-    print(len(written), "hand-ins")
+    print(len(written), "submissions")
 
 
 def write_beside(

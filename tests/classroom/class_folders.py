@@ -1,4 +1,4 @@
-"""Class folders and zips made for tests, and what is taken in of them in short."""
+"""Make class folders and zips for tests."""
 
 import zipfile
 from collections.abc import Iterable
@@ -29,5 +29,5 @@ def pack(place: Path, names: Iterable[str]) -> Path:
 
 
 def taken(intake: Intake) -> dict[str, tuple[str, ...]]:
-    """The paths of each hand-in by its student's key, in their order."""
+    """Return the paths of each submission by its student's key, in order."""
     return {each.student.key: each.paths for each in intake.submissions()}

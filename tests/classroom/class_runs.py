@@ -85,7 +85,7 @@ def session_of(process: "subprocess.Popen[str]") -> list[int]:
 
 
 def eventually(condition: Callable[[], Any]) -> bool:
-    """Whether a condition comes true before everything counts as hanging."""
+    """Return whether a condition comes true before the timeout."""
     end = time.monotonic() + PATIENCE
     while not condition():
         if time.monotonic() > end:
@@ -103,7 +103,7 @@ def shell_code(code: int) -> int:
 
 
 def rows(gradebook: Path, query: str, *values: Any) -> list[tuple[Any, ...]]:
-    """What a query of a gradebook gives; nothing as long as there is no such table."""
+    """Return the rows of a query in a gradebook; none as long as there is no such table."""
     try:
         with closing(sqlite3.connect(f"file:{gradebook}?mode=ro", uri=True, timeout=30)) as connection:
             return connection.execute(query, values).fetchall()
@@ -129,14 +129,14 @@ def doubled(gradebook: Path) -> list[tuple[Any, ...]]:
 
 
 def is_sound(gradebook: Path) -> bool:
-    """Whether SQLite finds nothing wrong with a gradebook."""
+    """Return whether SQLite's integrity check of a gradebook passes."""
     with closing(sqlite3.connect(gradebook)) as connection:
         sound: bool = connection.execute("PRAGMA integrity_check").fetchone()[0] == "ok"
         return sound and not connection.execute("PRAGMA foreign_key_check").fetchall()
 
 
 def counted(done: Done) -> str:
-    """What a run said of how many it has graded."""
+    """Return the line in which a run reports how many submissions it has graded."""
     (line,) = (line for line in done.stderr.splitlines() if " unchanged since they were" in line)
     return line.removeprefix("grader: ").removesuffix(" since they were")
 
@@ -147,7 +147,7 @@ def contents(folder: Path) -> dict[str, bytes]:
 
 
 def report_here(path: Path, to: Path) -> tuple[int, bytes | str]:
-    """What `grader grade PATH --format json` exits with and reports, run in this process; what it complains of if there is no report."""
+    """Return the exit code and report of `grader grade PATH --format json`, run in this process; its error if there is no report."""
     said = io.StringIO()
     to.unlink(missing_ok=True)
     with redirect_stdout(io.StringIO()), redirect_stderr(said):
@@ -173,7 +173,7 @@ def mixed_class(folder: Path, count: int, layout: str = "folders", seed: int = 1
 
 
 def class_with_roster(folder: Path, roster: Path, count: int) -> tuple[list[str], int]:
-    """A class of all kinds, and its roster: the keys of those who are not in it, and how many of it have handed in nothing."""
+    """A class of all kinds, and its roster: the keys of those who are not in it, and how many of it have submitted nothing."""
     written = list(made_up.make_class(folder, count, 1, "mixed"))
     made_up.write_beside(written, count, "folders", None, roster, None)
     return [each.person.key for each in written[count:]], sum(not each.paths for each in written[:count])

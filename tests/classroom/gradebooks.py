@@ -1,4 +1,4 @@
-"""A small lab, gradebooks in which its hand-ins came out as asked, and a class of it on the disk."""
+"""A small lab, gradebooks in which its submissions came out as asked, and a class of it on the disk."""
 
 import subprocess
 from collections.abc import Iterable
@@ -52,7 +52,7 @@ def lab(late: str = "", **points: str) -> Rubric:
 
 
 def came_out(rubric: Rubric, key: str, signs: str, digest: str = "a", reason: str = "") -> GradingResult:
-    """A hand-in whose criteria came out as these signs say; one that has a reason could not be read."""
+    """A submission whose criteria came out as these signs say; one that has a reason could not be read."""
     results = tuple(
         Result(criterion, Outcome(_STATUSES[sign], f"what was found of {criterion.id}"))
         for criterion, sign in zip(rubric.criteria, signs, strict=True)
@@ -117,7 +117,7 @@ PNG = bytes.fromhex(
 
 
 def hand_in(folder: Path, size: str = "1 1 1", answer: str = "The roots.") -> None:
-    """A hand-in with all that the lab asks for."""
+    """A submission with all that the lab asks for."""
     folder.mkdir(parents=True)
     (folder / "robot.urdf").write_text(urdf(size))
     (folder / "answers.md").write_text(f"# Step 1\n\n{answer}\n")

@@ -6,7 +6,7 @@ from decimal import Decimal
 from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook, Run
-from grader.classroom.gradebook.result import UNITS_PER_POINT
+from grader.classroom.gradebook.result import UNITS_PER_POINT, criterion_points
 from grader.errors import InputError
 from grader.grading.rubric import Rubric
 
@@ -64,7 +64,7 @@ class _StudentState(NamedTuple):
     rubric: str
     version: str
     points: Mapping[str, Decimal | None]
-    marks: Mapping[str, int]
+    marks: Mapping[str, Decimal]
 
     @property
     def score(self) -> Decimal:
@@ -104,27 +104,18 @@ def changes(before: Snapshot, after: Snapshot) -> list[Change]:
 
 
 def _states(snapshot: Snapshot) -> dict[str, _StudentState]:
-    marks: dict[int, dict[str, int]] = {}
+    marks: dict[int, dict[str, Decimal]] = {}
     for student, criterion, units in snapshot.book.rows(_MARKS, snapshot.last_mark):
-        marks.setdefault(student, {})[criterion] = units
+        marks.setdefault(student, {})[criterion] = Decimal(units) / UNITS_PER_POINT
     rubrics: dict[str, Rubric] = {}
     states: dict[str, _StudentState] = {}
     for student, key, statuses, verdict, digest, rubric, version in snapshot.book.rows(_STATES, snapshot.run):
         if rubric not in rubrics:
             rubrics[rubric] = snapshot.book.rubric(rubric)
         own = marks.get(student, {})
-        points = _points(rubrics[rubric], statuses, own)
+        points = criterion_points(rubrics[rubric], statuses, own)
         states[key] = _StudentState(verdict, digest, rubric, version, points, own)
     return states
-
-
-def _points(rubric: Rubric, statuses: str, marks: Mapping[str, int]) -> dict[str, Decimal | None]:
-    points: dict[str, Decimal | None] = {}
-    for criterion, status in zip(rubric.criteria, statuses, strict=True):
-        automatic = {"p": criterion.points, "f": Decimal(0), "s": Decimal(0)}.get(status)
-        mark = marks.get(criterion.id)
-        points[criterion.id] = automatic if mark is None else Decimal(mark) / UNITS_PER_POINT
-    return points
 
 
 def _change(key: str, old: _StudentState | None, new: _StudentState | None) -> Change | None:

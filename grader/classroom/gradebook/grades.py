@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from grader.checks.outcome import Outcome
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.lateness import Lateness, SubmissionTimes, lateness, read_time
-from grader.classroom.gradebook.result import UNITS_PER_POINT
+from grader.classroom.gradebook.result import UNITS_PER_POINT, criterion_points
 from grader.classroom.gradebook.sources import SubmissionSources
 from grader.classroom.gradebook.stored import storable
 from grader.classroom.gradebook.student_grade import COLUMNS, StudentGrade, grade_from_row
@@ -67,14 +67,9 @@ class Grades:
         """Return the points of each criterion that has a result or a manual mark."""
         if not grade.rubric:
             return {}
-        criteria = self.rubric(grade.rubric).criteria
-        automatic = {
-            criterion.id: criterion.points if status == "p" else Decimal(0)
-            for criterion, status in zip(criteria, grade.statuses, strict=True)
-            if status in "pfs"
-        }
-        marks = self._manual_marks(grade)
-        return automatic | {criterion.id: marks[criterion.id].points for criterion in criteria if criterion.id in marks}
+        marks = {name: mark.points for name, mark in self._manual_marks(grade).items()}
+        points = criterion_points(self.rubric(grade.rubric), grade.statuses, marks)
+        return {name: value for name, value in points.items() if value is not None}
 
     def all(self) -> Iterator[StudentGrade]:
         """Yield all grades, in the order of the keys."""

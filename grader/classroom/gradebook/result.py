@@ -1,8 +1,11 @@
 """The result of grading one submission, as plain data that fits a process boundary and a row of the gradebook."""
 
+from collections.abc import Mapping
+from decimal import Decimal
 from typing import Literal, NamedTuple
 
 from grader.checks.outcome import Status
+from grader.grading.rubric import Rubric
 
 Verdict = Literal["graded", "unreadable", "errored", "unchanged"]
 UNITS_PER_POINT = 10_000  # the gradebook stores points as integers, so that SQL adds them exactly
@@ -24,3 +27,11 @@ class GradingResult(NamedTuple):
     failures: str = "[]"
     record: bytes = b""
     reason: str = ""
+
+
+def criterion_points(rubric: Rubric, statuses: str, marks: Mapping[str, Decimal]) -> dict[str, Decimal | None]:
+    """Return the points of each criterion: the manual mark, else the automatic points, else None."""
+    return {
+        criterion.id: marks.get(criterion.id, {"p": criterion.points, "f": Decimal(0), "s": Decimal(0)}.get(status))
+        for criterion, status in zip(rubric.criteria, statuses, strict=True)
+    }

@@ -1,6 +1,7 @@
 """Write the results of one run into a gradebook."""
 
 from datetime import UTC, datetime
+from functools import cache
 from typing import Any
 
 from grader import __version__
@@ -126,8 +127,12 @@ def _save_rubric(book: Gradebook, rubric: Rubric) -> None:
 
 def _insert(book: Gradebook, table: str, values: dict[str, Any]) -> int:
     """Insert a row and return its id."""
-    query = f"INSERT INTO {table} ({', '.join(values)}) VALUES ({', '.join('?' * len(values))})"
-    return int(book.connection.execute(query, tuple(values.values())).lastrowid or 0)
+    return int(book.connection.execute(_insert_query(table, tuple(values)), tuple(values.values())).lastrowid or 0)
+
+
+@cache
+def _insert_query(table: str, columns: tuple[str, ...]) -> str:
+    return f"INSERT INTO {table} ({', '.join(columns)}) VALUES ({', '.join('?' * len(columns))})"
 
 
 def _now() -> str:

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Sequence
+from operator import attrgetter
 from typing import Any, NamedTuple
 
 from grader.classroom.students import ClassSubmission, Student
@@ -21,6 +22,7 @@ NO_ROSTER = Enrolment(None)
 STUDENT_COLUMNS = ("key", "name", "email", "login", "sis", "canvas", "moodle")
 PROFILE_COLUMNS = (*STUDENT_COLUMNS, *Enrolment._fields)
 _COUNT = len(STUDENT_COLUMNS)
+_VALUES = attrgetter(*STUDENT_COLUMNS)
 STORED_SUBMISSIONS = f"""
 SELECT student.id, result.id, result.rubric, result.version, result.digest, result.verdict, submission.fingerprint,
     submission.files, submission.is_late, submission.submitted, submission.is_gone, run.source,
@@ -50,9 +52,12 @@ class Profile(NamedTuple):
 
     def updated(self, student: Student, enrolment: Enrolment | None) -> "Profile":
         """Return the profile with new data: empty fields of `student`, and an `enrolment` of None, keep the old values."""
-        pairs = zip(_student_columns(student), _student_columns(self.student), strict=True)
-        values: tuple[Any, ...] = tuple(new or old for new, old in pairs)
-        return Profile(Student(*values), self.enrolment if enrolment is None else enrolment)
+        enrolment = self.enrolment if enrolment is None else enrolment
+        new, old = _student_columns(student), _VALUES(self.student)
+        if new == old:  # a shortcut for most students
+            return Profile(self.student, enrolment)
+        values: tuple[Any, ...] = tuple(value or before for value, before in zip(new, old, strict=True))
+        return Profile(Student(*values), enrolment)
 
 
 class StoredSubmission(NamedTuple):
@@ -114,5 +119,5 @@ def files_json(submission: ClassSubmission) -> str:
 
 
 def _student_columns(student: Student) -> tuple[str, ...]:
-    values = tuple(getattr(student, name) for name in STUDENT_COLUMNS)
+    values: tuple[str, ...] = _VALUES(student)
     return values if "".join(values).isascii() else tuple(map(storable, values))

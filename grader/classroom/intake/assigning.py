@@ -35,13 +35,6 @@ class Assigned:
     uncertain: Collection[int] = ()
     notes: tuple[str, ...] = ()
 
-    def key(self, roster: Roster | None, position: int, student: Student) -> str:
-        """Return the final key of the submission at a position, given the student that its name tells."""
-        owner = self.owners[position] if roster is not None else _UNMATCHED
-        if roster is not None and owner != _UNMATCHED:
-            return roster.entries[owner].student.key
-        return self.renamed.get(self.order[position]) or student.key
-
     def final(self, roster: Roster | None, position: int, submission: ClassSubmission) -> ClassSubmission:
         """Return the submission at a position with its final student."""
         if roster is None:

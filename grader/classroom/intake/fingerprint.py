@@ -29,8 +29,6 @@ def fingerprint(root: str, paths: tuple[str, ...], now: int, limit: int = URDF_L
 
 
 def _fingerprint(root: str, paths: tuple[str, ...], settled: int) -> str:
-    digest = sha256()
-    newest = 0
     try:
         if is_zip(root):
             status = os.stat(root)  # noqa: PTH116
@@ -39,6 +37,7 @@ def _fingerprint(root: str, paths: tuple[str, ...], settled: int) -> str:
             status = os.lstat(f"{root}/{paths[0]}")
             if stat.S_ISREG(status.st_mode):  # a shortcut for most submissions of a large class
                 return _shown(status) if status.st_ctime_ns < settled else ""
+        digest, newest = sha256(), 0
         for path in paths:
             for entry, status in _walk(f"{root}/{path}"):
                 newest = max(newest, status.st_ctime_ns)

@@ -46,7 +46,8 @@ class Intake:
     def keys(self) -> Iterator[str]:
         """Yield the keys of the submissions, in order."""
         for position, index in enumerate(self._assigned.order):
-            yield self._assigned.key(self._roster, position, self._submissions.student(index))
+            submission = ClassSubmission(self._submissions.student(index), ())
+            yield self._assigned.final(self._roster, position, submission).student.key
 
     def named_students(self) -> Iterator[Student]:
         """Yield the students as the names of the submissions tell."""

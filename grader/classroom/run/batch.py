@@ -80,6 +80,7 @@ class Batch:
         listener: Callable[[Progress], None] = lambda _: None,
     ) -> None:
         self._book, self._rubric, self._settings, self._listener = book, rubric, settings, listener
+        self._sha256 = rubric.sha256  # which is computed
         self._queue = Queue(executor, settings.workers, self._context, rubric)
         self._at_work: dict[str, tuple[ClassSubmission, StoredSubmission | None]] = {}
         self._writer: RunWriter | None = None
@@ -143,7 +144,7 @@ class Batch:
 
     def _is_valid(self, stored: StoredSubmission) -> bool:
         """Return whether a result may be kept: it is of the same rubric and grader, and not errored."""
-        is_same = (stored.rubric, stored.version) == (self._rubric.sha256, __version__)
+        is_same = (stored.rubric, stored.version) == (self._sha256, __version__)
         return is_same and stored.verdict != "errored" and not self._settings.force
 
     def _is_unchanged(self, submission: ClassSubmission, stored: StoredSubmission) -> bool:

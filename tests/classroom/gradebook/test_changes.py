@@ -28,12 +28,12 @@ def book(tmp_path: Path) -> Any:
 
 
 def run(book: Gradebook, rubric: Any = LAB, digest: str = "a", **signs: str) -> int:
-    """Grade hand-ins that came out like this."""
+    """Grade submissions that came out like this."""
     return graded_into(book, rubric, [came_out(rubric, key, each, digest) for key, each in signs.items()])
 
 
 def put(book: Gradebook, key: str, name: str, points: str | None) -> None:
-    """Mark by hand."""
+    """Mark manually."""
     given = None if points is None else Decimal(points)
     mark(book, Grades(book).find(key), criterion_of(LAB, name), given, "me", "")
 
@@ -133,7 +133,7 @@ def test_several_reasons(book: Gradebook) -> None:
 
 
 def test_who_came_and_who_went(tmp_path: Path) -> None:
-    """Of two gradebooks, and of one in which somebody hands in later."""
+    """Of two gradebooks, and of one in which somebody submits later."""
     with Gradebook(tmp_path / "a.db", create=True) as one, Gradebook(tmp_path / "b.db", create=True) as two:
         run(one, anna="ppppp", ben="ppppp")
         run(two, anna="ppppp", cleo="fffff")

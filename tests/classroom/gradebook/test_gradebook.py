@@ -29,7 +29,7 @@ NAMES = ("loads", "box", "tall", "essay", "picture", "extra")
 
 @pytest.fixture
 def book(tmp_path: Path) -> Iterator[Gradebook]:
-    """A gradebook with one hand-in and one mark."""
+    """A gradebook with one submission and one mark."""
     with Gradebook(tmp_path / "book.db", create=True) as opened:
         graded_into(opened, LABS[0], [came_out(LABS[0], "anna", "pps??")])
         put(opened, "anna", "essay", Decimal(3), "good")
@@ -37,7 +37,7 @@ def book(tmp_path: Path) -> Iterator[Gradebook]:
 
 
 def put(book: Gradebook, key: str, name: str, points: Decimal | None, why: str = "") -> None:
-    """Mark a criterion by hand."""
+    """Mark a criterion manually."""
     standings = Grades(book)
     standing = standings.find(key)
     criterion = next(each for each in standings.rubric(standing.rubric).criteria if each.id == name)
@@ -131,7 +131,7 @@ class Model:
 @settings(max_examples=120)
 @given(st.lists(st.one_of(RUN, MARK, MARK), min_size=2, max_size=14))
 def test_the_view_is_the_sum_over_the_report(steps: list[tuple[Any, ...]]) -> None:
-    """After any runs, changed hand-ins, changed rubrics, marks and takings back: view, standing, report and a plain model agree."""
+    """After any runs, changed submissions, changed rubrics, marks and takings back: view, standing, report and a plain model agree."""
     model = Model()
     with TemporaryDirectory() as folder, Gradebook(Path(folder, "book.db"), create=True) as book:
         kept: list[list[tuple[Any, ...]]] = [[], []]

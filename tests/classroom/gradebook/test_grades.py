@@ -143,7 +143,7 @@ def test_who_was_left_behind_by_a_new_rubric(tmp_path: Path) -> None:
 
 
 def test_a_total_is_the_score_less_what_being_late_costs(tmp_path: Path) -> None:
-    """The policy is that of the rubric that the hand-in was graded by; the score stays as it is."""
+    """The policy is that of the rubric that the submission was graded by; the score stays as it is."""
     late = lab("due = 2026-09-01T12:00:00Z\npercent_per_day = 10\n")
     with Gradebook(tmp_path / "book.db", create=True) as book:
         graded_into(book, late, [came_out(late, "anna", "pppff")], submitted="2026-09-02T13:00:00Z")

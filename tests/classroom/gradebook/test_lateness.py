@@ -21,12 +21,12 @@ LONG_GRACE = lab(f"{DUE}{POLICY}grace_minutes = 30\n")
 
 
 def cost(score: str, days: float, policy: str = POLICY) -> Decimal:
-    """What so many days cost a hand-in with this score."""
+    """What so many days cost a submission with this score."""
     return lateness(lab(policy), SubmissionTimes(days_late=days), Decimal(score)).points
 
 
 def days(submitted: str, rubric: Rubric = LAB, due: datetime | None = None, own: str = "", **more: Any) -> int:
-    """How many days late a hand-in is; `own` is when it was due for this student."""
+    """How many days late a submission is; `own` is when it was due for this student."""
     return lateness(rubric, SubmissionTimes(submitted=submitted, deadline=own, **more), Decimal(11), due).days
 
 
@@ -93,7 +93,7 @@ def test_whose_due_time_counts() -> None:
 
 
 def test_a_date_alone_is_due_at_its_end() -> None:
-    """Who hands in on the day is in time."""
+    """Who submits on the day is in time."""
     assert days("2026-09-12T23:59:59", own="2026-09-12") == 0
     assert days("2026-09-13T00:00:01", own="2026-09-12") == 1
     assert days("2026-09-12T18:00:00", lab(POLICY), due=read_time("2026-09-12")) == 0

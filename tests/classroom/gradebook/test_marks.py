@@ -1,4 +1,4 @@
-"""Marks by hand: what points may be, whom and what they are for, and what waits for a person."""
+"""Marks manually: what points may be, whom and what they are for, and what waits for a person."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -21,7 +21,7 @@ ESSAY = criterion_of(LAB, "essay")
 
 @pytest.fixture
 def standings(tmp_path: Path) -> Iterator[Grades]:
-    """A gradebook with four hand-ins: two with both questions open, a URDF alone, and one that could not be read."""
+    """A gradebook with four submissions: two with both questions open, a URDF alone, and one that could not be read."""
     with Gradebook(tmp_path / "book.db", create=True) as book:
         came = [("anna", "ppp??"), ("ben", "fsp??"), ("cleo", "ppp--")]
         graded = [came_out(LAB, key, signs) for key, signs in came]
@@ -30,7 +30,7 @@ def standings(tmp_path: Path) -> Iterator[Grades]:
 
 
 def put(standings: Grades, key: str, name: str, points: str) -> None:
-    """Mark a criterion by hand."""
+    """Mark a criterion manually."""
     criterion = criterion_of(LAB, name)
     mark(standings.book, standings.find(key), criterion, read_points(points, criterion), "me", "why")
 
@@ -115,7 +115,7 @@ def test_a_misspelt_criterion() -> None:
 
 
 def test_like_is_marked_beside_like(standings: Grades) -> None:
-    """One criterion after the other, in the rubric's order; nothing of a hand-in that could not be read or has no such part."""
+    """One criterion after the other, in the rubric's order; nothing of a submission that could not be read or has no such part."""
     wanted = [("anna", "essay"), ("ben", "essay"), ("anna", "picture"), ("ben", "picture")]
     assert manual_grading_queue(standings) == wanted
     assert manual_grading_queue(standings, "picture") == wanted[2:]
@@ -134,7 +134,7 @@ def test_what_was_marked_waits_no_more(standings: Grades) -> None:
 
 
 def test_a_fault_of_ours_keeps_nobody_from_marking_the_rest(standings: Grades) -> None:
-    """What a check of ours could not decide is nobody's question, but the written answers of the same hand-in are."""
+    """What a check of ours could not decide is nobody's question, but the written answers of the same submission are."""
     graded_into(standings.book, LAB, [came_out(LAB, "emil", "p!p??")])
     assert [each.criterion for each in manual_grading_queue(standings) if each.key == "emil"] == ["essay", "picture"]
     standing = standings.find("emil")

@@ -29,7 +29,7 @@ CRITERIA = [criterion.id for criterion in LAB6.criteria]
 
 @pytest.fixture(scope="module")
 def graded(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[dict[str, str]], dict[str, Any]]:
-    """The CSV export of a class of 60 with some 150 marks by hand, and its statistics as JSON."""
+    """The CSV export of a class of 60 with some 150 marks manually, and its statistics as JSON."""
     top = tmp_path_factory.mktemp("class")
     count = sum(1 for _ in made_up.make_class(top / "class", 60, 7, "mixed"))
     assert count > 60
@@ -105,7 +105,7 @@ def test_failures(graded: tuple[list[dict[str, str]], dict[str, Any]]) -> None:
 
 
 def of(path: Path, *signs: str, rubric: Any = LAB) -> ClassStatistics:
-    """The statistics of hand-ins that came out like this."""
+    """The statistics of submissions that came out like this."""
     with Gradebook(path / "book.db", create=True) as book:
         came = [
             came_out(rubric, f"s{number}", each, reason="" if each else "no zip") for number, each in enumerate(signs)

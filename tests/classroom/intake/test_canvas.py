@@ -1,4 +1,4 @@
-"""Canvas' bulk download: whose each file is, what is late, and what was handed in again."""
+"""Canvas' bulk download: whose each file is, what is late, and what was submitted again."""
 
 import re
 import tempfile
@@ -64,7 +64,7 @@ def test_what_is_handed_in_again(tmp_path: Path) -> None:
 
 
 def test_numbers_of_the_students_own_stay(tmp_path: Path) -> None:
-    """Files that are numbered with none that has the plain name are all part of the hand-in."""
+    """Files that are numbered with none that has the plain name are all part of the submission."""
     names = ("d_1_20_task-1.zip", "d_1_21_task-2.zip", "d_1_22_step-8.png")
     assert one(tmp_path, *names).paths == (names[2], names[0], names[1])
 
@@ -128,7 +128,7 @@ ORIGINAL = st.from_regex(r"[A-Za-z][A-Za-z0-9_ ]{0,9}\.(zip|png|urdf|tar\.gz)", 
     )
 )
 def test_any_download_is_grouped_again(people: dict[int, tuple[str, bool, dict[str, None]]]) -> None:
-    """Whatever people and files are called, what Canvas makes of them gives the same hand-ins."""
+    """Whatever people and files are called, what Canvas makes of them gives the same submissions."""
     attachment, names, expected = 1000, [], {}
     for user, (name, is_late, originals) in people.items():
         shown = re.sub(r"_\d+$", "", canvas_name(name))

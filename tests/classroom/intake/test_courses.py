@@ -20,7 +20,7 @@ TEAM = (
 
 
 def test_students_of_teams(tmp_path: Path) -> None:
-    """Each student's folder is a hand-in; its key has the team's name in front; other teams stay whole."""
+    """Each student's folder is a submission; its key has the team's name in front; other teams stay whole."""
     files = (*TEAM, "blue/lab_06/Ash/lab/a.urdf", "blue/lab_06/Cedar/lab/a.urdf", "gold/my_robot/package.xml")
     for place in (lay_out(tmp_path / "class", *files), pack(tmp_path / "class.zip", files)):
         intake = read_class(place)

@@ -104,7 +104,7 @@ def test_what_a_copy_was_called(stem: str, ending: str, plain: tuple[str, int]) 
 
 
 def test_a_folder_of_attempts(tmp_path: Path) -> None:
-    """A folder with nothing but attempts hands in the last; one with anything else in it is a submission."""
+    """A folder with nothing but attempts submits the last; one with anything else in it is a submission."""
     lay_out(tmp_path, "ann/attempt 1/a.urdf", "ann/Attempt-10.zip", "ann/attempt_2/", "ann/.hidden")
     lay_out(tmp_path, "bea/attempt 1/", "bea/notes.txt", "cal/try3/", "dee/submission 2.txt")
     ann, bea, cal, dee = read_class(tmp_path).submissions()

@@ -1,4 +1,4 @@
-"""What a group has handed in together: it counts for each of its members, by the group's name in the roster."""
+"""What a group has submitted together: it counts for each of its members, by the group's name in the roster."""
 
 import random
 from pathlib import Path
@@ -73,7 +73,7 @@ def test_of_two_of_a_group_none_counts(tmp_path: Path) -> None:
 
 
 def test_a_student_goes_before_a_group(tmp_path: Path) -> None:
-    """Where a hand-in has the name of both, or might be of several students, it is not the group's."""
+    """Where a submission has the name of both, or might be of several students, it is not the group's."""
     intake = read_class(lay_out(tmp_path, "aash/"), roster(red="aash"))
     assert taken(intake) == {"100": ("aash",)}
     twins = Roster([RosterEntry(Student("1", "Sam"), "sam"), RosterEntry(Student("2", "Sam"), "sam")])
@@ -84,7 +84,7 @@ def test_a_student_goes_before_a_group(tmp_path: Path) -> None:
 
 
 def test_a_section_is_no_group(tmp_path: Path) -> None:
-    """A folder called like a section that holds hand-ins of its students is nobody's, and a note says so."""
+    """A folder called like a section that holds submissions of its students is nobody's, and a note says so."""
     files = ["Section 1/aash/my_robot.urdf", "Section 1/ccedar.zip", "Section 2/bbirch.zip", "Section 2/readme.txt"]
     place = lay_out(tmp_path, *files)
     intake = read_class(place, roster("Section 1", "Section 2"))

@@ -136,7 +136,7 @@ def test_links_in_a_zip_are_not_followed(tmp_path: Path) -> None:
 
 
 def test_the_roster_says_whose_each_is(tmp_path: Path) -> None:
-    """Hand-ins get the roster's students and order; nobody's are strangers, and who has none is absent."""
+    """Submissions get the roster's students and order; nobody's are strangers, and who has none is absent."""
     lay_out(tmp_path, "ccedar.zip", "Bea Birch/", "zoe.zip")
     intake = read_class(tmp_path, roster())
     assert taken(intake) == {"200": ("Bea Birch",), "300": ("ccedar.zip",), "zoe": ("zoe.zip",)}

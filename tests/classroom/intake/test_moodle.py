@@ -17,7 +17,7 @@ FOLDER = "assignsubmission_file"
 
 @pytest.mark.parametrize("ending", ["", "_"])
 def test_a_download_is_recognised(tmp_path: Path, ending: str) -> None:
-    """Each participant's folder is a hand-in, unpacked or in a zip, in new and old versions."""
+    """Each participant's folder is a submission, unpacked or in a zip, in new and old versions."""
     names = [f"{name}_{FOLDER}{ending}" for name in ("Jane Doe_12", "O'Neil, Sam_13", "Jörg Müller_14", "עדה לוי_15")]
     files = [f"{name}/lab6.zip" for name in names]
     for place in (lay_out(tmp_path / "class", *files), pack(tmp_path / "class.zip", files)):
@@ -109,7 +109,7 @@ def test_an_empty_text_is_no_part(tmp_path: Path) -> None:
 
 
 def test_empty_folders_and_too_many_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What cannot be put side by side leaves the folder of files as the hand-in."""
+    """What cannot be put side by side leaves the folder of files as the submission."""
     top, text = f"Jane Doe_12_{FOLDER}", "Jane Doe_12_assignsubmission_onlinetext"
     (empty,) = read_class(lay_out(tmp_path, f"{top}/", f"{text}/")).submissions()
     assert (empty.paths, empty.names) == ((top,), ())

@@ -1,4 +1,4 @@
-"""A hand-in of a class opened: what its digest and its fingerprint tell, and what is refused."""
+"""A submission of a class opened: what its digest and its fingerprint tell, and what is refused."""
 
 import io
 import os
@@ -32,17 +32,17 @@ def later() -> int:
 
 
 def digest(top: Path, *paths: str, names: tuple[str, ...] = (), key: str = "ann") -> str:
-    """The digest of a hand-in."""
+    """The digest of a submission."""
     return open_submission(str(top), paths, names, key).digest
 
 
 def mark(top: Path, *paths: str) -> str:
-    """The fingerprint of a hand-in, once it has settled."""
+    """The fingerprint of a submission, once it has settled."""
     return fingerprint(str(top), paths, later())
 
 
 def package(top: Path) -> Path:
-    """A hand-in that is a folder."""
+    """A submission that is a folder."""
     folder = top / "ann"
     (folder / "urdf").mkdir(parents=True)
     (folder / "urdf/my_robot.urdf").write_bytes(URDF)
@@ -283,7 +283,7 @@ def test_neither_a_urdf_nor_a_folder_or_archive(tmp_path: Path) -> None:
 
 
 def test_a_zip_that_was_replaced_is_read_anew(tmp_path: Path) -> None:
-    """Although it stays open from one hand-in to the next."""
+    """Although it stays open from one submission to the next."""
     place = tmp_path / "class.zip"
     seen = []
     for name in ("one", "other"):

@@ -51,7 +51,7 @@ def reports_of(book: Path, reports: Path) -> dict[str, bytes]:
 
 @pytest.fixture(scope="module")
 def samples(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A class whose hand-ins are the samples."""
+    """A class whose submissions are the samples."""
     folder = tmp_path_factory.mktemp("samples") / "class"
     for name in SAMPLES:
         shutil.copytree(ROOT / "submissions" / name, folder / name)
@@ -60,7 +60,7 @@ def samples(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def mixed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A class of all kinds of hand-ins."""
+    """A class of all kinds of submissions."""
     return mixed_class(tmp_path_factory.mktemp("mixed") / "class", 120)
 
 
@@ -243,7 +243,7 @@ def test_exactly_what_has_changed_is_graded_again(graded: Path, tmp_path: Path) 
 
 
 def test_a_new_student_and_one_who_is_gone(graded: Path, tmp_path: Path) -> None:
-    """Only the new one is graded; the grade of one whose hand-in is gone stays."""
+    """Only the new one is graded; the grade of one whose submission is gone stays."""
     shutil.copy(REFERENCE, graded / "new.urdf")
     gone = min(graded.glob("*.urdf"))
     gone.unlink()

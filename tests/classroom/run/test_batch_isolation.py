@@ -1,4 +1,4 @@
-"""A hand-in that hangs, dies or breaks the grader costs nobody else anything, and no process outlives the command."""
+"""A submission that hangs, dies or breaks the grader costs nobody else anything, and no process outlives the command."""
 
 import os
 import re

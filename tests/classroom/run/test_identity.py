@@ -104,7 +104,7 @@ def test_a_key_that_was_a_folders_goes_to_whom_the_roster_gives_it(top: Path) ->
 
 
 def test_who_is_not_there_any_more_gets_no_grade(top: Path) -> None:
-    """A hand-in that was taken away is listed and not handed on; when it comes back all is as it was."""
+    """A submission that was taken away is listed and not handed on; when it comes back all is as it was."""
     for name in ("answer-floating-link", "answer-launch-nodes", "evidence-webcam"):
         assert grader("mark", "alice", name, "2", "--gradebook", top / "g.db").returncode == 0
     assert students(top)["alice"]["is_final"]

@@ -1,4 +1,4 @@
-"""What comes of one hand-in: that it could not be read is said whatever it was wrapped in, and in the words of a class run."""
+"""What comes of one submission: that it could not be read is said whatever it was wrapped in, and in the words of a class run."""
 
 import io
 import json
@@ -48,7 +48,7 @@ UNREADABLE = {
 
 
 def graded(top: Path, *paths: str) -> GradingResult:
-    """What comes of a hand-in below a folder."""
+    """What comes of a submission below a folder."""
     (result,) = grade_all(ClassContext(str(top), LAB6.data, str(LAB6.path)), [Task("ann", paths)])
     return result
 
@@ -69,7 +69,7 @@ def test_the_folder_around_it_does_not_matter(kind: str, wrapped: str, tmp_path:
 
 
 def test_the_report_stays_what_it_is(tmp_path: Path) -> None:
-    """Of a hand-in that is a folder: its points, what is pending, and every word, as `grader grade` says it."""
+    """Of a submission that is a folder: its points, what is pending, and every word, as `grader grade` says it."""
     shutil.copytree(ROOT / "submissions/reference", tmp_path / "ann")
     (urdf,) = (tmp_path / "ann").rglob("*.urdf")
     urdf.write_bytes(LARGE)
