@@ -1,9 +1,8 @@
 """The JSON Schemas (draft 2020-12) of the grader's output and of rubrics."""
 
-from types import UnionType
-from typing import Any, Literal, get_args, get_origin
+from typing import Any
 
-from grader.checks.registry import CHECKS, Check, describe
+from grader.grading.keys import rubric_schema
 
 _DRAFT = "https://json-schema.org/draft/2020-12/schema"
 _TEXT: dict[str, Any] = {"type": "string"}
@@ -213,78 +212,3 @@ def json_schema(name: str) -> dict[str, Any]:
     if name == "rubric":
         return rubric_schema()
     return {"report": REPORT_SCHEMA, "inspect": INSPECT_SCHEMA, "class": CLASS_SCHEMA, "diff": DIFF_SCHEMA}[name]
-
-
-def rubric_schema() -> dict[str, Any]:
-    """The schema of a rubric file, with the arguments of every check that comes with the grader."""
-    checks = [describe(function) for function in CHECKS]
-    criterion = _object(
-        {
-            "id": _TEXT,
-            "part": _TEXT,
-            "about": _TEXT,
-            "title": _TEXT,
-            "points": _POINTS,
-            "check": _TEXT,
-            "with": {"type": "object"},
-            "requires": _array(_TEXT),
-            "feedback": _TEXT,
-        },
-        optional=("about", "with", "requires", "feedback"),
-    )
-    criterion["allOf"] = [_arguments_rule(check) for check in checks]
-    part = _object(
-        {"id": _TEXT, "title": _TEXT, "needs": {"enum": ["urdf", "package", "files"]}, "points": _POINTS},
-        ("needs", "points"),
-    )
-    evidence = _object({"id": _TEXT, "part": _TEXT, "title": _TEXT, "names": {**_array(_TEXT), "minItems": 1}})
-    percent = {"type": "number", "minimum": 0, "maximum": 100}
-    late = _object(
-        {"due": _TEXT, "grace_minutes": _POINTS, "percent_per_day": percent, "floor_percent": percent},
-        optional=("due", "grace_minutes", "floor_percent"),
-    )
-    rubric = _object(
-        {
-            "id": _TEXT,
-            "title": _TEXT,
-            "reference": _TEXT,
-            "urdf": _TEXT,
-            "package": _TEXT,
-            "points": _POINTS,
-            "answers": {"type": "string", "pattern": r"\.toml$"},
-            "part": {**_array(part), "minItems": 1},
-            "criterion": {**_array(criterion), "minItems": 1},
-            "evidence": {**_array(evidence), "minItems": 1},
-            "late": late,
-        },
-        optional=("reference", "urdf", "package", "points", "answers", "evidence", "late"),
-    )
-    return {"$schema": _DRAFT, "title": "grader rubric", **rubric}
-
-
-def _arguments_rule(check: Check) -> dict[str, Any]:
-    optional = tuple(each.name for each in check.parameters.values() if not each.required)
-    arguments = _object({each.name: type_schema(each.type) for each in check.parameters.values()}, optional)
-    condition = {"properties": {"check": {"const": check.name}}, "required": ["check"]}
-    then: dict[str, Any] = {"properties": {"with": arguments}}
-    if arguments["required"]:
-        then["required"] = ["with"]
-    return {"if": condition, "then": then}
-
-
-def type_schema(annotation: Any) -> dict[str, Any]:
-    """The schema of a check's argument, from its annotation."""
-    simple = {float: _NUMBER, int: {"type": "integer"}, str: _TEXT, bool: {"type": "boolean"}}
-    if annotation in simple:
-        return simple[annotation]
-    inner = get_args(annotation)
-    if get_origin(annotation) is Literal:
-        return {"enum": list(inner)}
-    if get_origin(annotation) is UnionType:
-        return {"anyOf": [type_schema(each) for each in inner]}
-    if get_origin(annotation) in (list, tuple):
-        schema = {**_array(type_schema(inner[0])), "minItems": 1}
-        if get_origin(annotation) is tuple and Ellipsis not in inner:
-            schema |= {"minItems": len(inner), "maxItems": len(inner)}
-        return schema
-    return {"type": "object", "additionalProperties": type_schema(inner[1]), "minProperties": 1}

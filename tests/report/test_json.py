@@ -10,11 +10,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.grading.grade import grade
+from grader.grading.keys import rubric_schema
 from grader.grading.rubric import load_rubric
 from grader.report.as_json import render_json
 from grader.report.inspection import Inspection, inspection_json, main_root
 from grader.report.json_data import exact, rounded, to_json
-from grader.report.schemas import INSPECT_SCHEMA, REPORT_SCHEMA, rubric_schema
+from grader.report.schemas import INSPECT_SCHEMA, REPORT_SCHEMA
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import read_urdf
 from grader.submission.submission import read_submission
