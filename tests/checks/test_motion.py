@@ -250,7 +250,7 @@ def test_a_revolute_joint_turns_too() -> None:
 def test_nothing_rolls_on_a_joint_without_a_pose(found: Scene, reason: str, at: str) -> None:
     """Where the joint's pose is undefined that is what is missing, and why."""
     error = missing(rolls_forward, found, **FORWARDS)
-    assert (error.kind, error.name) == ("pose behind joint", "wheel_joint")
+    assert (error.kind, error.name) == ("pose below joint", "wheel_joint")
     assert (
         fails(rolls_forward, found, at=at, **FORWARDS)
         == f"the pose of a joint's child is undefined: {reason} (joint 'wheel_joint')"

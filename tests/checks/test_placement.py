@@ -65,7 +65,7 @@ def test_nothing_is_known_behind_a_joint_without_a_pose(found: Scene, reason: st
     """Where a joint's pose is undefined every check of what is behind it misses the same thing, and says why."""
     for check, arguments in ((frame_at, {**FRAME, "link": "wheel"}), (centre_at, CENTRE), (clear_of, CLEAR)):
         error = missing(check, found, **arguments)
-        assert (error.kind, error.name) == ("pose behind joint", "wheel_joint")
+        assert (error.kind, error.name) == ("pose below joint", "wheel_joint")
         assert (
             fails(check, found, at=at, **arguments)
             == f"the pose of a joint's child is undefined: {reason} (joint 'wheel_joint')"
