@@ -15,6 +15,7 @@ from grader.static_python.control_flow import EvaluationStopped
 from grader.static_python.inspection import PACKAGE_FOLDER, names_package_folder
 from grader.static_python.positions import Position
 from grader.static_python.values import UNKNOWN_KEYS, Call, Unknown, Value, unknown_in
+from grader.text import enumerated
 
 # Other arguments that install files and are not evaluated.
 _OTHER_WAYS = ("package_data", "include_package_data", "cmdclass", UNKNOWN_KEYS)
@@ -94,7 +95,7 @@ class DataFiles:
         several = [copy for copy in self.copies if len(sources[copy.target]) > 1]
         self.copies = [copy for copy in self.copies if len(sources[copy.target]) == 1]
         for target, at in {copy.target: copy.at for copy in several}.items():
-            self._give_up(None, f"several files are installed as {target}: {', '.join(sorted(sources[target]))}", at)
+            self._give_up(None, f"several files are installed as {target}: {enumerated(sorted(sources[target]))}", at)
         if change is not None:
             self.copies.clear()
             self.stops.clear()
@@ -192,7 +193,7 @@ class DataFiles:
         folders = [name for name in self.listing.names("") if name in self.tree.folders and name.isidentifier()]
         found = sorted(name for name in folders if name not in _NO_PACKAGES and not name.startswith("_"))
         if len(found) > 1:
-            reason = f"packages=[...] is missing, and setuptools cannot choose among the folders {', '.join(found)}"
+            reason = f"packages=[...] is missing, and setuptools cannot choose between the folders {enumerated(found)}"
             self._stop("", reason, call.at)
 
 

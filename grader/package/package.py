@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING
 from grader.errors import InputError
 from grader.files.tree import Tree
 from grader.names import closest, did_you_mean
-from grader.package.launch.places import ENDINGS, PREFIX, SHARE, is_launch_named, launch_stem, may_launch
+from grader.package.launch.places import ENDINGS, PREFIX, SHARE, is_in_launch_folder, is_launch_named, launch_stem
 from grader.source import Location, Source
+from grader.text import enumerated
 
 # The readers are imported when they are needed: a URDF on its own needs none of them.
 if TYPE_CHECKING:
@@ -88,7 +89,7 @@ class Package:
     @cached_property
     def launch_files(self) -> tuple[str, ...]:
         """The paths of its launch files: by their names, or because they are in a folder named launch."""
-        return tuple(path for path in self.tree.files if path.endswith(ENDINGS) or may_launch(path))
+        return tuple(path for path in self.tree.files if path.endswith(ENDINGS) or is_in_launch_folder(path))
 
     @cached_property
     def rviz_files(self) -> tuple[str, ...]:
@@ -116,8 +117,7 @@ class Package:
         files = files or [path for path in self.tree.files if path.rpartition("/")[0] == folder]
         if not files:
             return f", because the folder {folder!r} is empty"
-        more = ", ..." if len(files) > _MAX_NAMED else ""
-        return f"; there {'are' if len(files) > 1 else 'is'} {', '.join(files[:_MAX_NAMED])}{more}"
+        return f"; there {'are' if len(files) > 1 else 'is'} {enumerated(files, _MAX_NAMED)}"
 
     def launch_file(self, name: str) -> str | None:
         """Return the launch file of this name, in any language; else the one with the closest name; else any."""

@@ -60,9 +60,9 @@ def read_yaml(data: bytes, path: str) -> Node:
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         last = text.count("\n") + 1  # at the end of a text without a newline, the parser reports one line more
-        place = Location(path, min(mark.line + 1, last), mark.column + 1) if mark else Location(path, 1, 1)
+        location = Location(path, min(mark.line + 1, last), mark.column + 1) if mark else Location(path, 1, 1)
         message = " ".join(filter(None, (error.context, error.problem)))
-        raise YamlFault(message or "this is not YAML", place) from None
+        raise YamlFault(message or "this is not YAML", location) from None
     except yaml.YAMLError as error:  # such as characters that YAML forbids
         raise YamlFault(" ".join(str(error).split())[:200], Location(path, 1, 1)) from None
     except RecursionError:
@@ -111,10 +111,10 @@ def _compose(events: Iterator[yaml.Event], path: str) -> Node:
 
 
 def _node(event: yaml.NodeEvent, path: str) -> Node:
-    place = _location(event, path)
+    location = _location(event, path)
     if isinstance(event, yaml.ScalarEvent):
-        return Node(place, event.value, quoted=event.style in ("'", '"'))
-    return Node(place, {} if isinstance(event, yaml.MappingStartEvent) else [])
+        return Node(location, event.value, quoted=event.style in ("'", '"'))
+    return Node(location, {} if isinstance(event, yaml.MappingStartEvent) else [])
 
 
 def _attach(parent: Node, node: Node) -> None:

@@ -37,8 +37,8 @@ def parse(data: bytes, path: str) -> Code | SyntaxFault:
     try:
         encoding, _ = tokenize.detect_encoding(BytesIO(data).readline)
         if lookup(encoding).name in _SLOW_ENCODINGS:
-            place = Location(path, 1, 1)
-            return SyntaxFault(Source(path, ""), f"the encoding {encoding} is not supported", place, sure=False)
+            location = Location(path, 1, 1)
+            return SyntaxFault(Source(path, ""), f"the encoding {encoding} is not supported", location, sure=False)
         text = data.decode(encoding)
     except (SyntaxError, ValueError, LookupError) as error:
         source = Source(path, data.decode("utf-8", "replace"))
@@ -57,9 +57,9 @@ def parse(data: bytes, path: str) -> Code | SyntaxFault:
             )  # never run: the compiler finds errors that the grammar allows
             return Code(source, tree)
     except SyntaxError as error:
-        place = Location(path, max(error.lineno or 1, 1), max(error.offset or 1, 1))
+        location = Location(path, max(error.lineno or 1, 1), max(error.offset or 1, 1))
         newer = sys.version_info < _JAZZY and error.msg.startswith("f-string")
-        return SyntaxFault(source, error.msg, place, sure=not newer)
+        return SyntaxFault(source, error.msg, location, sure=not newer)
     except (RecursionError, MemoryError, ValueError, OverflowError):
         return SyntaxFault(source, "too deeply nested for Python to read", Location(path, 1, 1))
 

@@ -447,8 +447,8 @@ def test_an_entry_that_stops_the_build_costs_its_own_kind(hand_in: HandIn, kind:
         (
             setup("    packages=find_packages(exclude=['test']),\n", ""),
             (
-                "packages=[...] is missing, and setuptools cannot choose among the folders "
-                "launch, my_robot, resource, rviz, urdf"
+                "packages=[...] is missing, and setuptools cannot choose between the folders "
+                "launch, my_robot, resource, rviz and urdf"
             ),
         ),
     ],

@@ -30,7 +30,7 @@ UNKNOWN = {
     "list_slice_replaced": "this assignment to an item is not supported",
     "listing_until_found": "the order in which folders are listed",
     "package_data_too": "package_data may install files, too",
-    "same_target_twice": "several files are installed as share/my_robot/box.urdf: other/box.urdf, urdf/box.urdf",
+    "same_target_twice": "several files are installed as share/my_robot/box.urdf: other/box.urdf and urdf/box.urdf",
     "slash_behind_a_file": "depends on the version of setuptools",
     "try_a_module_that_is_not_there": "an earlier error may have been caught",
     "two_sources_for_one_target": "several files are installed as share/my_robot/meshes/two.stl",

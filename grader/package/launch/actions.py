@@ -32,19 +32,20 @@ class ActionVisitor:
     call_function: Callable[[Function, Position, Sequence[Value]], Value]
     visited: set[int] = field(default_factory=set)  # the ids of the calls that are part of the description
     steps: int = 0
+    depth: int = 0
 
-    def visit(self, value: Value, context: Context, when: bool | None, depth: int = 0) -> None:
+    def visit(self, value: Value, context: Context, when: bool | None) -> None:
         """Visit an action, or all actions of a list."""
         self.steps += 1
-        if depth > _MAX_DEPTH or self.steps > _MAX_ACTIONS:
+        if self.depth > _MAX_DEPTH or self.steps > _MAX_ACTIONS:
             self.findings.add_unknown("the launch file has too many actions", START)
             return
+        self.depth += 1
         match value:
             case list() | tuple() | dict():
                 for action in value.values() if isinstance(value, dict) else value:
-                    if self.steps > _MAX_ACTIONS:
-                        return
-                    self.visit(action, context, when, depth + 1)
+                    if self.steps <= _MAX_ACTIONS:
+                        self.visit(action, context, when)
             case Unknown():
                 self.findings.add_unknown(value.reason, value.at)
             case QualifiedName():
@@ -54,10 +55,11 @@ class ActionVisitor:
                 executed = _executed(value, context, when)
                 self.findings.add_errors(context, start, is_certain=when is True)  # launch evaluates the condition
                 self.visited.add(id(value))
-                self._action(value, context, executed, depth)
+                self._action(value, context, executed)
                 self.findings.add_errors(context, start, is_certain=executed is True)
+        self.depth -= 1
 
-    def _action(self, call: Call, context: Context, when: bool | None, depth: int) -> None:
+    def _action(self, call: Call, context: Context, when: bool | None) -> None:
         kind = call.name.rpartition(".")[2]
         match kind:
             case "DeclareLaunchArgument" | "DeclareBooleanLaunchArgument" | "SetLaunchConfiguration":
@@ -69,17 +71,17 @@ class ActionVisitor:
             case "IncludeLaunchDescription":
                 self._include(call, context, when)
             case "LaunchDescription":
-                self._description(call, context, when, depth)
+                self._description(call, context, when)
             case "GroupAction":
-                self._group(call, context, when, depth)
+                self._group(call, context, when)
             case "TimerAction" | "RosTimer":
-                self._inner(call, call.argument(1, "actions"), context, when, depth)
+                self._inner(call, call.argument(1, "actions"), context, when)
             case "RegisterEventHandler":
-                self.visit(call.argument(0, "event_handler"), context, when, depth + 1)
+                self.visit(call.argument(0, "event_handler"), context, when)
             case _ if kind.startswith("On") and kind[2:3].isupper():
-                self._event_handler(call, context, when if kind == "OnProcessStart" else when and None, depth)
+                self._event_handler(call, context, when if kind == "OnProcessStart" else when and None)
             case "OpaqueFunction":
-                self._opaque_function(call, context, when, depth)
+                self._opaque_function(call, context, when)
             case _ if kind in _CONTAINERS:
                 self.findings.add_unknown("the nodes of a container are not supported", call.at)
             case _ if _IDLE.fullmatch(kind) and call.name.startswith(("launch.", "launch_ros.")):
@@ -87,55 +89,55 @@ class ActionVisitor:
             case _ if not call.name.startswith("?."):
                 self.findings.add_unknown(f"what {kind} starts is known only at run time", call.at)
 
-    def _description(self, call: Call, context: Context, when: bool | None, depth: int) -> None:
+    def _description(self, call: Call, context: Context, when: bool | None) -> None:
         actions, *others = [call.argument(0, "initial_entities"), *call.args[1:]]
         if isinstance(actions, Call) or others:
             context.add_error("LaunchDescription takes one list: put [ ] around the actions", call.at)
-        self._listed(others, call, context, when, depth)
-        self._listed(actions, call, context, when, depth)
+        self._listed(others, call, context, when)
+        self._listed(actions, call, context, when)
         for method in call.method_calls:
             if method.name.endswith((".add_action", ".add_entity")):
                 is_called = None if method.uncertainty is not None else True
-                self._listed(method.args, method, context, _both(when, is_called), depth)
+                self._listed(method.args, method, context, _both(when, is_called))
 
-    def _listed(self, actions: Value, call: Call, context: Context, when: bool | None, depth: int) -> None:
+    def _listed(self, actions: Value, call: Call, context: Context, when: bool | None) -> None:
         """Visit the actions of a description, which may not contain lists."""
         if isinstance(actions, list | tuple) and any(isinstance(action, list | tuple) for action in actions):
             context.add_error("expected an action, and this is a list of actions: write * before it", call.at)
-        self.visit(actions if actions is not None else [], context, when, depth + 1)
+        self.visit(actions if actions is not None else [], context, when)
 
-    def _inner(self, call: Call, actions: Value, context: Context, when: bool | None, depth: int) -> None:
+    def _inner(self, call: Call, actions: Value, context: Context, when: bool | None) -> None:
         """Visit the actions in another action, which have to be a list."""
         if isinstance(actions, Call):
             kind = call.name.rpartition(".")[2]
             context.add_error(f"{kind} takes a list of actions: put [ ] around them", call.at)
-        self.visit(actions, context, when, depth + 1)
+        self.visit(actions, context, when)
 
-    def _group(self, call: Call, context: Context, when: bool | None, depth: int) -> None:
+    def _group(self, call: Call, context: Context, when: bool | None) -> None:
         """Visit a group: the launch arguments that it sets end with it, unless scoped is False."""
         before = dict(context.arguments)
         own = call.kwargs.get("launch_configurations")
         for name, value in own.items() if isinstance(own, dict) else ():
             context.arguments[str(name)] = resolve(value, context)
-        self._inner(call, call.argument(0, "actions"), context, when, depth)
+        self._inner(call, call.argument(0, "actions"), context, when)
         if call.kwargs.get("scoped", True) is not False:
             context.arguments.clear()
             context.arguments.update(before)
 
-    def _event_handler(self, call: Call, context: Context, when: bool | None, depth: int) -> None:
+    def _event_handler(self, call: Call, context: Context, when: bool | None) -> None:
         """Visit the actions for an event. Only the start of another process certainly happens."""
         for name, value in call.kwargs.items():
             if name.startswith("on_") or name == "entities":
                 actions = self.call_function(value, call.at, ()) if isinstance(value, Function) else value
-                self.visit(actions if actions is not None else [], context, when, depth + 1)
+                self.visit(actions if actions is not None else [], context, when)
 
-    def _opaque_function(self, call: Call, context: Context, when: bool | None, depth: int) -> None:
+    def _opaque_function(self, call: Call, context: Context, when: bool | None) -> None:
         function, args = call.argument(0, "function"), call.kwargs.get("args") or []
         if not isinstance(function, Function) or not isinstance(args, list | tuple) or call.kwargs.get("kwargs"):
             self.findings.add_unknown("the result of an OpaqueFunction is known only at run time", call.at)
             return
         actions = self.call_function(function, call.at, (Call("launch.LaunchContext", [], {}, call.at), *args))
-        self.visit(actions if actions is not None else [], context, when, depth + 1)
+        self.visit(actions if actions is not None else [], context, when)
 
     def _include(self, call: Call, context: Context, when: bool | None) -> None:
         if when is False:

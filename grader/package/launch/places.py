@@ -15,7 +15,7 @@ ENDINGS = (".launch.py", ".launch.xml", ".launch.yaml", ".launch.yml", "_launch.
 _LANGUAGES = (".py", ".xml", ".yaml", ".yml")
 
 
-def may_launch(path: str) -> bool:
+def is_in_launch_folder(path: str) -> bool:
     """Return whether a file is a launch file because it is in a folder named launch, whatever its own name."""
     folder, _, name = path.rpartition("/")
     suffix = PurePosixPath(name).suffix
