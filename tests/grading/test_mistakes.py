@@ -41,7 +41,7 @@ REFERENCE = (LAB6.path.parent / LAB6.reference / LAB6.urdf).read_text()
         ("lidar-shape", 'name="lidar"', 'name="lidr"', "there is no link 'lidar'"),
         ("lidar-fixed", 'name="base_lidar_joint" type="fixed"', 'name="j" type="continuous"',
          "the joint that moves 'lidar' is continuous; it should be fixed"),
-        ("urdf-loads", "</robot>", f'{LINES}<link name="lidar"/></robot>', "URDF031: Two links with one name"),
+        ("urdf-loads", "</robot>", f'{LINES}<link name="lidar"/></robot>', "URDF031: Two links with the same name"),
         ("base-green", "0 0.6 0 1", "0 0.6 0", "'base_link' is shown in rgba 0 0 0 1; it should be 0 0.6 0 1"),
         ("joint-names", "base_lidar_joint", "j", "the joint of 'lidar' should be named 'base_lidar_joint'"),
     ],
