@@ -71,12 +71,12 @@ def grade(
         text = render(result.report, output_format, result.base, screen())
         write_stdout(text if output_format.needs == "console" else text.encode("utf-8", "backslashreplace"))
         if is_github_job():
-            annotations = publish_report(result.report, result.base, warn)
-            write_stderr(annotations if output_format is not Format.GITHUB else "")
+            annotate = write_stderr if output_format is not Format.GITHUB else None
+            publish_report(result.report, result.base, annotate, warn)
         elif result.reason:
             warn(result.reason)
     except GraderError as error:
         if is_github_job():
-            write_stderr(publish_refusal(str(error), warn))
+            publish_refusal(str(error), write_stderr, warn)
         raise
     return result.exit_code

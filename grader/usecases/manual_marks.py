@@ -20,7 +20,7 @@ from grader.classroom.gradebook.marks import (
 from grader.errors import InputError
 from grader.report.review import mark_text, render_pending
 from grader.report.screen import Screen, draw
-from grader.text import format_points, printable
+from grader.text import counted_points, format_points, printable
 from grader.usecases import Warn
 
 _HELP = "points and a comment, s to skip, q to stop (all marks are kept), ? for this help"
@@ -38,7 +38,7 @@ def give_mark(gradebook: Path, submission: str, criterion: str, points: str, by:
         now = grades.find(grade.student.key)
     if before is not None and before.points is not None:
         warn(f"this replaces the newest mark of {marked.id}: {mark_text(before)}")
-    rest = f"; {format_points(now.pending)} need manual grading" if now.pending else ""
+    rest = f"; needs manual grading: {counted_points(now.pending)}" if now.pending else ""
     return printable(f"{now.student.key}: {format_points(now.score)} of {format_points(now.out_of)} points{rest}")
 
 
