@@ -75,7 +75,7 @@ def test_the_identity_is_the_runners() -> None:
     assert data["datetime"] == "2026-11-20T18:30:05Z"
     without = {name: value for name, value in CLASSROOM50.items() if name not in ("REVIEW_URL", "ASSIGNMENT_TYPE")}
     identity = identity_from(without)
-    assert (identity.review, identity.kind) == (CLASSROOM50["COMMIT_URL"], "individual")
+    assert (identity["review"], identity["assignment_type"]) == (CLASSROOM50["COMMIT_URL"], "individual")
 
 
 @pytest.mark.parametrize(
