@@ -10,12 +10,12 @@ import tempfile
 from pathlib import Path
 
 GRADER = "urdf-grader[documents] @ git+https://github.com/YOUR-ORG/grader@v1"
-# Parts that a program decides by itself: what waits for a person would count as not passed.
+# Automatic parts only: what needs manual grading would count as not passed.
 OPTIONS = ["--rubric", "lab6", "--part", "task1", "--part", "task2"]
-# Where the runner looks for the results, and their formats.
+# The files that the runner reads, and their formats.
 RESULTS = {"result.json": "classroom50", "release-body.md": "markdown"}
 
-# What a student has committed under these names is no result, and no link that is written through.
+# Remove files and symlinks of these names that a student committed.
 for name in RESULTS:
     if Path(name).is_dir() and not Path(name).is_symlink():
         shutil.rmtree(name)

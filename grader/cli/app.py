@@ -15,19 +15,8 @@ from grader.usecases.exit_codes import ExitCode
 
 # In the order of the help. Each is a function, or a group of commands, in the module of its name.
 COMMANDS = (
-    "grade",
-    "inspect",
-    "batch",
-    "mark",
-    "review",
-    "export",
-    "diff",
-    "stats",
-    "bundle",
-    "explain",
-    "schema",
-    "rubric",
-)
+    "grade", "inspect", "batch", "mark", "review", "export", "diff", "stats", "bundle", "explain", "schema", "rubric",
+)  # fmt: skip
 COMPLETION_OPTIONS = ("--show-completion", "--install-completion")
 _NEGATIVE = re.compile(r"-[.,]?[0-9]")
 _OPTION = re.compile(r"--[^=]+")  # such as --comment, whose value may be -1

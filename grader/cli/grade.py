@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from grader.cli.options import DEFAULT_RUBRIC, MaxSizeOption, RubricOption
-from grader.cli.output import screen, warn, write_stderr
+from grader.cli.output import TERMINAL, screen, warn, write_stderr
 from grader.cli.suggestions import part_ids, save_formats
 from grader.errors import GraderError
 from grader.files.reading import URDF_LIMIT
@@ -63,20 +63,19 @@ def grade(
             path, rubric, expect_rubric, tuple(part or ()), output_format, saves, fail_under, max_size, answers
         )
         if watch:
-            from grader.usecases.watch import Terminal
             from grader.usecases.watch import watch as grade_on_change
 
-            return grade_on_change(request, Terminal(write_stdout, warn, screen))
+            return grade_on_change(request, TERMINAL)
         result = grade_and_save(request, warn)
         text = render(result.report, output_format, result.base, screen())
         write_stdout(text if output_format.needs == "console" else text.encode("utf-8", "backslashreplace"))
         if is_github_job():
-            annotations = publish_report(result.report, result.base, warn)
-            write_stderr(annotations if output_format is not Format.GITHUB else "")
+            annotate = write_stderr if output_format is not Format.GITHUB else None
+            publish_report(result.report, result.base, annotate, warn)
         elif result.reason:
             warn(result.reason)
     except GraderError as error:
         if is_github_job():
-            write_stderr(publish_refusal(str(error), warn))
+            publish_refusal(str(error), write_stderr, warn)
         raise
     return result.exit_code

@@ -6,6 +6,8 @@ from contextlib import suppress
 
 from grader.report.screen import Screen, columns
 from grader.text import without_commands
+from grader.usecases import Terminal
+from grader.usecases.writing import write_stdout
 
 
 def screen() -> Screen:
@@ -30,3 +32,15 @@ def write_stderr(text: str) -> None:
         with suppress(OSError):
             sys.stderr.write(text)
             sys.stderr.flush()
+
+
+def ask(prompt: str) -> str | None:
+    """Print a prompt and return the line that is typed; None at the end of the input."""
+    write_stdout(prompt)
+    try:
+        return input()
+    except (EOFError, RuntimeError):  # the latter if standard input is closed
+        return None
+
+
+TERMINAL = Terminal(write_stdout, warn, screen, ask)

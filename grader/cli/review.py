@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from grader.cli.options import ByOption, GradebookOption
-from grader.cli.output import screen, warn
+from grader.cli.output import TERMINAL
 from grader.usecases.writing import write_stdout
 
 
@@ -27,19 +27,9 @@ def review(
 
       grader review --gradebook lab6.db --criterion answer-floating-link
     """
-    from grader.usecases.manual_marks import Dialogue
     from grader.usecases.manual_marks import review as review_all
 
     if isinstance(sys.stdin, io.TextIOWrapper):
         sys.stdin.reconfigure(errors="backslashreplace")  # a terminal in another encoding
-    write_stdout(review_all(gradebook, criterion, by, Dialogue(_ask, write_stdout, warn, screen)))
+    write_stdout(review_all(gradebook, criterion, by, TERMINAL))
     return 0
-
-
-def _ask(prompt: str) -> str | None:
-    """Print a prompt and return the line that is typed; None at the end of the input."""
-    write_stdout(prompt)
-    try:
-        return input()
-    except (EOFError, RuntimeError):  # the latter if standard input is closed
-        return None

@@ -7,7 +7,7 @@ https://github.com/foundation50/classroom50
 import re
 from collections.abc import Mapping
 from decimal import Decimal
-from typing import Any, NamedTuple
+from typing import Any
 
 from grader.errors import InputError
 from grader.grading.report import Report, Result
@@ -16,68 +16,47 @@ from grader.report.json_data import to_json
 from grader.report.plain_text import criterion_lines
 from grader.text import printable
 
-_NEEDED = ("CLASSROOM", "ASSIGNMENT", "SUBMISSION_TAG", "USERNAME", "COMMIT_URL", "RELEASE_URL")
+_REQUIRED = ("CLASSROOM", "ASSIGNMENT", "SUBMISSION_TAG", "USERNAME", "COMMIT_URL", "RELEASE_URL")
 _KINDS = ("individual", "group", "team")
 _TAG = re.compile(r"submit/([0-9]{4}-[01][0-9]-[0-3][0-9])T([01][0-9]|2[0-3])-([0-5][0-9])-([0-5][0-9])Z-[!-~]+")
 
 
-class Identity(NamedTuple):
-    """Whose result it is, from the environment variables of Classroom 50's runner."""
-
-    classroom: str
-    assignment: str
-    kind: str
-    owner: str
-    submission: str
-    commit: str
-    release: str
-    review: str
-    datetime: str
-
-
-def identity_from(environment: Mapping[str, str]) -> Identity:
-    """Return the identity that the runner's environment variables give. Raises InputError if some are missing."""
-    missing = [name for name in _NEEDED if not environment.get(name)]
+def identity_from(environment: Mapping[str, str]) -> dict[str, str]:
+    """Return whose result it is, from the runner's environment variables. Raises InputError if some are missing."""
+    missing = [name for name in _REQUIRED if not environment.get(name)]
     if missing:
         raise InputError(
             f"classroom50 requires {', '.join(missing)} in the environment: Classroom 50's runner sets them"
         )
-    tag = environment["SUBMISSION_TAG"]
-    time = _TAG.fullmatch(tag)
+    given = {name: printable(environment[name]) for name in _REQUIRED}
+    time = _TAG.fullmatch(environment["SUBMISSION_TAG"])
     if time is None:
-        raise InputError(f"SUBMISSION_TAG must look like submit/2026-09-01T10-00-00Z-ab12cd3, not {printable(tag)!r}")
+        raise InputError(
+            f"SUBMISSION_TAG must look like submit/2026-09-01T10-00-00Z-ab12cd3, not {given['SUBMISSION_TAG']!r}"
+        )
     kind = environment.get("ASSIGNMENT_TYPE") or _KINDS[0]
     if kind not in _KINDS:
         raise InputError(f"ASSIGNMENT_TYPE must be one of {', '.join(_KINDS)}, not {printable(kind)!r}")
-    given = {name: printable(environment[name]) for name in _NEEDED}
-    return Identity(
-        given["CLASSROOM"],
-        given["ASSIGNMENT"],
-        kind,
-        given["USERNAME"],
-        given["SUBMISSION_TAG"],
-        given["COMMIT_URL"],
-        given["RELEASE_URL"],
-        printable(environment.get("REVIEW_URL") or environment["COMMIT_URL"]),
-        f"{time[1]}T{time[2]}:{time[3]}:{time[4]}Z",  # the runner replaces it by the commit's time
-    )
+    return {
+        "classroom": given["CLASSROOM"],
+        "assignment": given["ASSIGNMENT"],
+        "assignment_type": kind,
+        "owner": given["USERNAME"],
+        "submission": given["SUBMISSION_TAG"],
+        "commit": given["COMMIT_URL"],
+        "release": given["RELEASE_URL"],
+        "review": printable(environment.get("REVIEW_URL") or environment["COMMIT_URL"]),
+        "datetime": f"{time[1]}T{time[2]}:{time[3]}:{time[4]}Z",  # the runner replaces it by the commit's time
+    }
 
 
-def render_classroom50(report: Report, who: Identity) -> str:
+def render_classroom50(report: Report, identity: Mapping[str, str]) -> str:
     """Return the report. What needs manual grading has not passed and has no points."""
     scale = _scale(report)
     return to_json(
         {
             "schema": "classroom50/result/v1",
-            "classroom": who.classroom,
-            "assignment": who.assignment,
-            "assignment_type": who.kind,
-            "owner": who.owner,
-            "submission": who.submission,
-            "commit": who.commit,
-            "release": who.release,
-            "review": who.review,
-            "datetime": who.datetime,
+            **identity,
             "score": int(report.score * scale),
             "max-score": int(report.max_score * scale),
             "tests": [_test(result, report, scale) for result in report.results],

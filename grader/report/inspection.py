@@ -92,56 +92,47 @@ def inspection_terminal(inspection: Inspection, console: Console) -> None:
         return
     console.print()
     console.print(Text("Tree", style="bold"))
-    _show_tree(robot, console)
+    for line in islice(_tree(robot, console), _MAX_LISTED):
+        console.print(line, overflow="ignore", no_wrap=True, crop=False)
+    _print_rest(console, len(robot.roots) + len(robot.holding))
     console.print()
     frame = printable(inspection.relative_to or "")
     console.print(Text(f"Poses in {frame!r} (x y z in m, roll pitch yaw in rad)", style="bold"))
     for link, pose in islice(inspection.poses(), _MAX_LISTED):
-        text = _pose_words(pose) if isinstance(pose, Transform) else printable(pose)
-        wrapped(
-            console,
-            Text.assemble((f"{printable(link)}  ", ""), (text, "cyan" if isinstance(pose, Transform) else "red")),
-            2,
-        )
-    _show_rest(console, len(robot.robot.links))
+        text = (_pose_text(pose), "cyan") if isinstance(pose, Transform) else (printable(pose), "red")
+        wrapped(console, Text.assemble(f"{printable(link)}  ", text), 2)
+    _print_rest(console, len(robot.robot.links))
 
 
-def _show_rest(console: Console, count: int) -> None:
+def _print_rest(console: Console, count: int) -> None:
     if count > _MAX_LISTED:
         console.print(Text(f"  ... and {count - _MAX_LISTED} more (--format json lists all)"))
 
 
-def _show_tree(robot: Configuration, console: Console) -> None:
-    below: dict[str, list[Joint]] = {}
+def _tree(robot: Configuration, console: Console) -> Iterator[Text]:
+    """Yield a line for every link, after its parent and indented more."""
+    children: dict[str, list[Joint]] = {}
     for joint in robot.parent_joints.values():
-        below.setdefault(joint.parent, []).append(joint)
+        children.setdefault(joint.parent, []).append(joint)
     branch, last = symbol(console, "\u251c\u2500 ", "|- "), symbol(console, "\u2514\u2500 ", "`- ")
     bar = symbol(console, "\u2502  ", "|  ")
-    left = _MAX_LISTED
     for root in robot.roots:
-        if not left:
-            break
-        left -= 1
-        console.print(Text(f"  {printable(root)}"), overflow="ignore", no_wrap=True, crop=False)
-        waiting: list[tuple[Joint, str, bool]] = _branches(below.get(root, []), "")
-        while waiting and left:
-            left -= 1
-            joint, indent, is_last = waiting.pop()
-            line = Text.assemble(
+        yield Text(f"  {printable(root)}")
+        stack = _branches(children.get(root, []), "")
+        while stack:
+            joint, indent, is_last = stack.pop()
+            yield Text.assemble(
                 f"  {indent}{last if is_last else branch}{printable(joint.child)}  ",
-                (f"{printable(joint.name)}: {_joint_words(joint)}", "dim"),
+                (f"{printable(joint.name)}: {_joint_text(joint)}", "dim"),
             )
-            console.print(line, overflow="ignore", no_wrap=True, crop=False)
-            waiting += _branches(below.get(joint.child, []), (indent + ("   " if is_last else bar))[-60:])
-    if not left:
-        _show_rest(console, len(robot.roots) + len(robot.parent_joints))
+            stack += _branches(children.get(joint.child, []), (indent + ("   " if is_last else bar))[-60:])
 
 
 def _branches(joints: list[Joint], indent: str) -> list[tuple[Joint, str, bool]]:
     return [(joint, indent, index == 0) for index, joint in enumerate(reversed(joints))]
 
 
-def _joint_words(joint: Joint) -> str:
+def _joint_text(joint: Joint) -> str:
     words = printable(joint.type) or "no type"
     if joint.type not in ("fixed", "floating"):
         words += f" about {_numbers(joint.axis)}" if joint.axis is not None else " about an unreadable axis"
@@ -152,7 +143,7 @@ def _joint_words(joint: Joint) -> str:
     return words
 
 
-def _pose_words(pose: Transform) -> str:
+def _pose_text(pose: Transform) -> str:
     return f"{_numbers(pose.translation)}  rpy {_numbers(pose.rpy)}"
 
 

@@ -88,7 +88,7 @@ def _case(suite: Any, result: Result, report: Report, base: Base) -> None:
         etree.SubElement(case, "system-out").text = "\n".join(lines) + "\n"
         return
     found = etree.SubElement(
-        case, kind, type="marked manually" if result.manual_mark else result.outcome.status, message=lines[0]
+        case, kind, type="manual mark" if result.manual_mark else result.outcome.status, message=lines[0]
     )
     found.text = "\n".join(lines) + "\n"
 

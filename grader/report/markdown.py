@@ -5,23 +5,7 @@ from itertools import groupby
 from textwrap import indent
 
 from grader.grading.report import Report, Result
-from grader.report.content import (
-    Details,
-    advice,
-    earned_text,
-    evidence,
-    ignored_lines,
-    location_text,
-    notes,
-    other_problems,
-    other_problems_title,
-    package_line,
-    pending_line,
-    result_details,
-    score_text,
-    status_of,
-    summary,
-)
+from grader.report import content
 from grader.report.markdown_text import code, escaped, fenced
 from grader.report.plain_text import excerpt_lines, problem_line, provenance
 from grader.text import format_points, printable
@@ -60,7 +44,7 @@ def overview_markdown(report: Report) -> str:
 
 def criterion_markdown(result: Result, report: Report) -> str:
     """Return what is said of one criterion, beside its title and points."""
-    return "\n\n".join(_details(result_details(result, report), report, set(), answers=False))
+    return "\n\n".join(_details(content.result_details(result, report), report, set(), answers=False))
 
 
 def _blocks(report: Report, *, answers: bool) -> Iterator[str]:
@@ -70,45 +54,45 @@ def _blocks(report: Report, *, answers: bool) -> Iterator[str]:
     shown: set[str] = set()
     for part, of_part in groupby(report.results, key=lambda result: result.criterion.part):
         results = tuple(of_part)
-        yield f"## {escaped(printable(titles[part]))} ({earned_text(results)})"
+        yield f"## {escaped(printable(titles[part]))} ({content.earned_text(results)})"
         for about, of_group in groupby(results, key=lambda result: result.criterion.about):
             group = tuple(of_group)
             if about and about != titles[part]:
-                yield f"### {escaped(printable(about))} ({earned_text(group)})"
+                yield f"### {escaped(printable(about))} ({content.earned_text(group)})"
             yield from (_item(result, report, shown, answers=answers) for result in group)
     yield from _evidence(report)
     yield from _problems(report)
-    yield from filter(None, (advice(report),))
+    yield from filter(None, (content.advice(report),))
 
 
 def _head(report: Report) -> Iterator[str]:
-    yield f"# {escaped(score_text(report))}: {escaped(printable(report.rubric.title))}"
-    yield from (escaped(line) for line in (summary(report), package_line(report)) if line)
+    yield f"# {escaped(content.score_text(report))}: {escaped(printable(report.rubric.title))}"
+    yield from (escaped(line) for line in (content.summary(report), content.package_line(report)) if line)
     if report.pending:
-        yield f"**{escaped(pending_line(report))}**"
+        yield f"**{escaped(content.pending_line(report))}**"
     yield escaped(provenance(report))
-    yield from map(escaped, (*notes(report), *ignored_lines(report)))
+    yield from map(escaped, (*content.notes(report), *content.ignored_lines(report)))
 
 
 def _item(result: Result, report: Report, shown: set[str], *, answers: bool) -> str:
-    criterion, status = result.criterion, status_of(result)
+    criterion, status = result.criterion, content.status_of(result)
     start = f"- {_MARKS[status]} {format_points(result.points)}/{format_points(criterion.points)}"
     title, name = escaped(printable(criterion.title)), code(criterion.id)
     if status == "passed" and result.manual_mark is None:
         return f"{start} {title}"
-    details = result_details(result, report)
+    details = content.result_details(result, report)
     is_title = not details.expected and status != "skipped"
     blocks = (indent(block, "  ") for block in _details(details, report, shown, answers=answers))
     return "\n\n".join((f"{start} {title} ({name})" if is_title else f"{start} {name}", *blocks))
 
 
-def _details(details: Details, report: Report, shown: set[str], *, answers: bool) -> Iterator[str]:
+def _details(details: content.Details, report: Report, shown: set[str], *, answers: bool) -> Iterator[str]:
     """Yield what is said of a criterion, block by block, without feedback that is shown already."""
     yield from map(escaped, details.sentences)
     if details.expected:
         yield escaped(details.expected)
     if details.location is not None:
-        yield code(location_text(details.location))
+        yield code(content.location_text(details.location))
         lines = list(excerpt_lines(details.location, report))
         if lines:
             yield fenced(lines)
@@ -122,7 +106,7 @@ def _details(details: Details, report: Report, shown: set[str], *, answers: bool
 
 
 def _evidence(report: Report) -> Iterator[str]:
-    for number, (part, lines) in enumerate(evidence(report)):
+    for number, (part, lines) in enumerate(content.evidence(report)):
         if number == 0:
             yield "## Evidence"
         yield f"{escaped(part)}:"
@@ -130,7 +114,7 @@ def _evidence(report: Report) -> Iterator[str]:
 
 
 def _problems(report: Report) -> Iterator[str]:
-    problems = list(other_problems(report))
+    problems = list(content.other_problems(report))
     if problems:
-        yield f"## {other_problems_title(report)}"
+        yield f"## {content.other_problems_title(report)}"
         yield from (f"- {escaped(problem_line(problem))}" for problem in problems)

@@ -4,16 +4,7 @@ from collections.abc import Iterator
 
 from grader.grading.report import Report, Result
 from grader.problems import Problem
-from grader.report.content import (
-    evidence,
-    ignored_lines,
-    location_text,
-    notes,
-    package_line,
-    pending_line,
-    result_details,
-    summary,
-)
+from grader.report import content
 from grader.report.locations import excerpt
 from grader.source import Location
 from grader.text import printable
@@ -23,13 +14,13 @@ _EXCERPT_WIDTH = 120
 
 def summary_lines(report: Report) -> list[str]:
     """Return whether ROS 2 loads the URDF, the package, and what needs manual grading."""
-    return [*filter(None, (summary(report), package_line(report), pending_line(report)))]
+    return [*filter(None, (content.summary(report), content.package_line(report), content.pending_line(report)))]
 
 
 def note_lines(report: Report) -> list[str]:
     """Return notes on the whole submission: how it was read, other candidates, ignored files, evidence."""
-    shown = [f"Evidence, {part}: {text}" for part, lines in evidence(report) for text, _ in lines]
-    return [*notes(report), *ignored_lines(report), *shown]
+    shown = [f"Evidence, {part}: {text}" for part, lines in content.evidence(report) for text, _ in lines]
+    return [*content.notes(report), *content.ignored_lines(report), *shown]
 
 
 def submission_lines(report: Report) -> list[str]:
@@ -39,10 +30,10 @@ def submission_lines(report: Report) -> list[str]:
 
 def criterion_lines(result: Result, report: Report) -> list[str]:
     """Return what is said of one criterion: the finding, its place, the answer, the feedback."""
-    details = result_details(result, report)
+    details = content.result_details(result, report)
     lines = list(details.sentences)
     if details.location is not None:
-        lines += [location_text(details.location), *excerpt_lines(details.location, report)]
+        lines += [content.location_text(details.location), *excerpt_lines(details.location, report)]
     if details.answer:
         lines += ["Found:", *(f"  {line}" for line in details.answer)]
     return [*lines, details.feedback] if details.feedback else lines
@@ -60,7 +51,7 @@ def excerpt_lines(where: Location, report: Report) -> Iterator[str]:
 
 def problem_line(problem: Problem) -> str:
     """Return a problem with its code, severity and location."""
-    return f"{problem.code} {problem.severity} {location_text(problem.location)}: {printable(problem.message)}"
+    return f"{problem.code} {problem.severity} {content.location_text(problem.location)}: {printable(problem.message)}"
 
 
 def provenance(report: Report) -> str:

@@ -7,24 +7,8 @@ from rich.console import Console
 from rich.text import Text
 
 from grader.grading.report import Report, Result
+from grader.report import content
 from grader.report.console import show_excerpt, show_problems, symbol, wrapped
-from grader.report.content import (
-    Details,
-    advice,
-    earned_text,
-    evidence,
-    ignored_lines,
-    location_text,
-    notes,
-    other_problems,
-    other_problems_title,
-    package_line,
-    pending_line,
-    result_details,
-    score_text,
-    status_of,
-    summary,
-)
 from grader.text import first_lines, format_points, printable
 
 _STYLES = {"passed": "green", "failed": "bold red", "skipped": "yellow", "pending": "cyan", "errored": "bold magenta"}
@@ -56,16 +40,16 @@ def render_terminal(report: Report, console: Console) -> None:
         results = tuple(of_part)
         if len(report.parts) > 1:
             console.print()
-            heading = f"{printable(titles[part])}  {earned_text(results)}"
+            heading = f"{printable(titles[part])}  {content.earned_text(results)}"
             wrapped(console, Text(heading, style="bold underline"), 0)
         _print_groups(results, titles[part], page)
     _print_evidence(report, console)
-    problems = tuple(other_problems(report))
+    problems = tuple(content.other_problems(report))
     if problems:
         console.print()
-        console.print(Text(other_problems_title(report), style="bold"))
+        console.print(Text(content.other_problems_title(report), style="bold"))
         show_problems(console, problems, report.submission.source, report.submission.path)
-    if command := advice(report):
+    if command := content.advice(report):
         console.print()
         wrapped(console, Text(command, style="dim"), 0)
 
@@ -73,9 +57,11 @@ def render_terminal(report: Report, console: Console) -> None:
 def _print_head(report: Report, console: Console) -> None:
     style = "bold green" if report.score + report.pending == report.max_score else "bold"
     title = printable(report.rubric.title)
-    wrapped(console, Text.assemble((score_text(report), style), "  ", (title, "bold")), 0)
-    lines = [(summary(report), ""), (package_line(report), ""), (pending_line(report), "cyan")]
-    lines += [(note, "cyan") for note in notes(report)] + [(line, "dim") for line in ignored_lines(report)]
+    wrapped(console, Text.assemble((content.score_text(report), style), "  ", (title, "bold")), 0)
+    lines = [(content.summary(report), ""), (content.package_line(report), ""), (content.pending_line(report), "cyan")]
+    lines += [(note, "cyan") for note in content.notes(report)] + [
+        (line, "dim") for line in content.ignored_lines(report)
+    ]
     for line, line_style in lines:
         if line:
             wrapped(console, Text(line, style=line_style), 0)
@@ -119,12 +105,12 @@ def _reason(result: Result) -> str | None:
 
 def _print_heading(name: str, results: tuple[Result, ...], console: Console) -> None:
     console.print()
-    wrapped(console, Text.assemble((printable(name), "bold"), (f"  {earned_text(results)}", "dim")), 0)
+    wrapped(console, Text.assemble((printable(name), "bold"), (f"  {content.earned_text(results)}", "dim")), 0)
 
 
 def _print_alike(results: tuple[Result, ...], reason: str, console: Console) -> None:
     """Print one line for criteria that are skipped or pending for the same reason."""
-    maximum = earned_text(results).partition("/")[2]
+    maximum = content.earned_text(results).partition("/")[2]
     text = Text(printable(f"{len(results)} criteria are {reason}"), style="dim")
     wrapped(console, text, _INDENT, _line_start(results[0].outcome.status, f"0/{maximum:<3}", console))
 
@@ -134,7 +120,7 @@ def _line_start(status: str, points: str, console: Console) -> Text:
 
 
 def _print_result(result: Result, page: _Page) -> None:
-    criterion, status = result.criterion, status_of(result)
+    criterion, status = result.criterion, content.status_of(result)
     start = _line_start(status, f"{format_points(result.points)}/{format_points(criterion.points)}", page.console)
     title, name = Text(printable(criterion.title)), Text(criterion.id)
     if result.manual_mark is None and status == "passed":
@@ -143,7 +129,7 @@ def _print_result(result: Result, page: _Page) -> None:
         reason = Text(f"  skipped because {result.because} failed", style="dim")
         wrapped(page.console, name + reason, _INDENT, start)
     else:
-        details = result_details(result, page.report)
+        details = content.result_details(result, page.report)
         name.stylize("dim" if not details.expected else "")
         wrapped(page.console, name if details.expected else title + Text("  ") + name, _INDENT, start)
         _print_details(details, _sentence_styles(result), page)
@@ -156,7 +142,7 @@ def _sentence_styles(result: Result) -> tuple[str, ...]:
     return (_STYLES["errored"] if result.outcome.status == "errored" else "",)
 
 
-def _print_details(details: Details, styles: tuple[str, ...], page: _Page) -> None:
+def _print_details(details: content.Details, styles: tuple[str, ...], page: _Page) -> None:
     console = page.console
     for text, style in zip(details.sentences, styles, strict=False):
         wrapped(console, Text(text, style=style), _INDENT)
@@ -168,7 +154,7 @@ def _print_details(details: Details, styles: tuple[str, ...], page: _Page) -> No
         for line in lines:
             wrapped(console, Text(line), _INDENT + 2)
     if details.location is not None:
-        wrapped(console, Text(location_text(details.location), style="dim"), _INDENT)
+        wrapped(console, Text(content.location_text(details.location), style="dim"), _INDENT)
         source = page.report.submission.source(details.location.path)
         if source is not None:
             show_excerpt(console, source, details.location, _INDENT)
@@ -182,7 +168,7 @@ def _print_evidence(report: Report, console: Console) -> None:
         return
     console.print()
     console.print(Text("Evidence", style="bold"))
-    for title, lines in evidence(report):
+    for title, lines in content.evidence(report):
         wrapped(console, Text(title, style="dim"), 2)
         for text, is_found in lines[:_MAX_LISTED]:
             wrapped(console, Text(text, style="" if is_found else "yellow"), 4)

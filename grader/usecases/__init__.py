@@ -1,5 +1,21 @@
-"""What each command does, without typer and without printing: warnings go to a function that the command passes."""
+"""What each command does, without typer and without printing: the command passes what writes to the terminal."""
 
 from collections.abc import Callable
+from typing import NamedTuple
+
+from grader.report.screen import Screen
 
 Warn = Callable[[str], None]
+
+
+class Terminal(NamedTuple):
+    """The terminal of an interactive command.
+
+    `ask` prints a prompt and returns the line that is typed, None at the end of the input. `screen` is called before each use,
+    because a terminal can be resized.
+    """
+
+    show: Callable[[str], None]
+    warn: Warn
+    screen: Callable[[], Screen]
+    ask: Callable[[str], str | None]

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from grader.grading.report import Report
     from grader.report.locations import Base
 
+Annotate = Callable[[str], None]  # writes workflow commands
 _MAX_SUMMARY = 1024 * 1024  # bytes: GitHub shows nothing of a longer step summary
 
 
@@ -21,28 +22,29 @@ def is_github_job() -> bool:
     return os.environ.get("GITHUB_ACTIONS") == "true"
 
 
-def publish_report(report: "Report", base: "Base", warn: Warn) -> str:
-    """Add a report to the job summary and return its annotations.
+def publish_report(report: "Report", base: "Base", annotate: Annotate | None, warn: Warn) -> None:
+    """Annotate the findings of a report, and add it to the job summary.
 
-    They are workflow commands for standard error, where GitHub reads them as well: standard output is for the report.
+    Annotations are workflow commands for standard error, where GitHub reads them as well: standard output is for the report.
     """
     from grader.report.github import render_github
     from grader.report.markdown import cut_markdown
 
+    if annotate is not None:
+        annotate(render_github(report, base))
     _add_to_summary(lambda room: cut_markdown(report, room), warn)
-    return render_github(report, base)
 
 
-def publish_refusal(reason: str, warn: Warn) -> str:
-    """Add to the job summary why nothing was graded, and return the annotation."""
+def publish_refusal(reason: str, annotate: Annotate, warn: Warn) -> None:
+    """Annotate why nothing was graded, and add it to the job summary."""
     from grader.report.github import command
     from grader.report.markdown_text import escaped
     from grader.text import printable
 
     lines = [printable(line) for line in reason.splitlines()]
+    annotate(command("error", None, "Nothing was graded", "\n".join(lines)))
     text = "\n\n".join(("# Nothing was graded", *map(escaped, lines))) + "\n"
     _add_to_summary(lambda room: text if len(text.encode()) <= room else "", warn)
-    return command("error", None, "Nothing was graded", "\n".join(lines))
 
 
 def _add_to_summary(text: Callable[[int], str], warn: Warn) -> None:

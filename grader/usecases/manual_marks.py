@@ -1,10 +1,8 @@
 """Give manual marks: one by command, or all that need manual grading in an interactive review."""
 
-from collections.abc import Callable
 from decimal import Decimal
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
@@ -19,9 +17,9 @@ from grader.classroom.gradebook.marks import (
 )
 from grader.errors import InputError
 from grader.report.review import mark_text, render_pending
-from grader.report.screen import Screen, draw
-from grader.text import format_points, printable
-from grader.usecases import Warn
+from grader.report.screen import draw
+from grader.text import counted_points, format_points, printable
+from grader.usecases import Terminal, Warn
 
 _HELP = "points and a comment, s to skip, q to stop (all marks are kept), ? for this help"
 _KEEP = "k to keep that mark, r to replace it with yours: "
@@ -38,20 +36,11 @@ def give_mark(gradebook: Path, submission: str, criterion: str, points: str, by:
         now = grades.find(grade.student.key)
     if before is not None and before.points is not None:
         warn(f"this replaces the newest mark of {marked.id}: {mark_text(before)}")
-    rest = f"; {format_points(now.pending)} need manual grading" if now.pending else ""
+    rest = f"; needs manual grading: {counted_points(now.pending)}" if now.pending else ""
     return printable(f"{now.student.key}: {format_points(now.score)} of {format_points(now.out_of)} points{rest}")
 
 
-class Dialogue(NamedTuple):
-    """How a review talks to the person: `ask` prints a prompt and returns the line that is typed, None at the end."""
-
-    ask: Callable[[str], str | None]
-    show: Callable[[str], None]
-    warn: Warn
-    screen: Callable[[], Screen]
-
-
-def review(gradebook: Path, criterion: str, by: str, dialogue: Dialogue) -> str:
+def review(gradebook: Path, criterion: str, by: str, terminal: Terminal) -> str:
     """Show what needs manual grading, one criterion of a student after the other, and mark it; return a summary."""
     with Gradebook(gradebook) as book:
         grades = Grades(book, answers=True)
@@ -64,8 +53,8 @@ def review(gradebook: Path, criterion: str, by: str, dialogue: Dialogue) -> str:
             if found is None:  # somebody else has marked it meanwhile
                 continue
             page = partial(render_pending, found, f"{number} of {len(queue)}")
-            dialogue.show(draw(page, dialogue.screen()))
-            count = _ask(grades, found, by, dialogue)
+            terminal.show(draw(page, terminal.screen()))
+            count = _ask(grades, found, by, terminal)
             if count is None:
                 break
             given += count
@@ -73,11 +62,11 @@ def review(gradebook: Path, criterion: str, by: str, dialogue: Dialogue) -> str:
     return f"{given} marked, {left} left\n" if queue else "nothing needs manual grading\n"
 
 
-def _ask(grades: Grades, item: PendingCriterion, by: str, dialogue: Dialogue) -> int | None:
+def _ask(grades: Grades, item: PendingCriterion, by: str, terminal: Terminal) -> int | None:
     """Ask until there is a valid answer; return the number of marks given, None to stop."""
     criterion = item.result.criterion
     prompt = f"points, 0 to {format_points(criterion.points)} (? for help): "
-    while (line := dialogue.ask(prompt)) is not None:
+    while (line := terminal.ask(prompt)) is not None:
         answer, _, comment = line.strip().partition(" ")
         match answer.lower():
             case "q" | "quit":
@@ -87,16 +76,16 @@ def _ask(grades: Grades, item: PendingCriterion, by: str, dialogue: Dialogue) ->
         try:
             points = read_points(answer, criterion) if answer != "?" else None
         except InputError as error:
-            dialogue.warn(str(error))
+            terminal.warn(str(error))
             continue
         if points is not None:
-            return _mark(grades, item, points, by, comment.strip(), dialogue)
-        dialogue.warn(_HELP)
+            return _mark(grades, item, points, by, comment.strip(), terminal)
+        terminal.warn(_HELP)
     return None
 
 
 def _mark(
-    grades: Grades, item: PendingCriterion, points: Decimal, by: str, comment: str, dialogue: Dialogue
+    grades: Grades, item: PendingCriterion, points: Decimal, by: str, comment: str, terminal: Terminal
 ) -> int | None:
     """Add a mark, unless the person keeps that of somebody else; return the number of marks given, None to stop."""
     shown = item.newest
@@ -105,17 +94,17 @@ def _mark(
             mark(grades.book, item.grade, item.result.criterion, points, by, comment, shown=shown)
         except NewerMarkError as error:
             shown = error.mark.id
-            dialogue.warn(f"somebody has marked this since it was shown: {mark_text(error.mark)}")
+            terminal.warn(f"somebody has marked this since it was shown: {mark_text(error.mark)}")
         else:
             return 1
-        answer = _ask_to_keep(dialogue)
+        answer = _ask_to_keep(terminal)
         if answer != "r":
             return 0 if answer else None
 
 
-def _ask_to_keep(dialogue: Dialogue) -> str:
+def _ask_to_keep(terminal: Terminal) -> str:
     """Return `k` to keep the newer mark, `r` to replace it; empty to stop."""
-    while (line := dialogue.ask(_KEEP)) is not None:
+    while (line := terminal.ask(_KEEP)) is not None:
         if line.strip().lower() in ("k", "keep", "r", "replace"):
             return line.strip().lower()[0]
     return ""

@@ -2,16 +2,16 @@
 
 import gc
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import GraderError, InputError, RubricError
 from grader.report.comparison import comparison_lines, unchanged_line
 from grader.report.formats import Format, render
-from grader.report.screen import Screen, draw
+from grader.report.screen import draw
 from grader.text import printable_path
-from grader.usecases import Warn
+from grader.usecases import Terminal, Warn
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.grade import GradeRequest, grade_submission, remove_reports, requested_rubric, save_reports
 
@@ -19,14 +19,6 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from grader.grading.report import Report
-
-
-class Terminal(NamedTuple):
-    """Where a watch shows its reports and warnings; the screen is asked for each time, because it can be resized."""
-
-    show: Callable[[str], None]
-    warn: Warn
-    screen: Callable[[], Screen]
 
 
 class _Shown(NamedTuple):

@@ -205,8 +205,8 @@ def test_a_rubric_of_ones_own(tmp_path: Path) -> None:
     done = grader("bundle", "gradescope", tmp_path / "out.zip", "--rubric", own)
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout == (
-        f"wrote {tmp_path}/out.zip: A small lab, 5 criteria, 11 points\n"
-        "next: upload it under Configure Autograder; autograder points: 6; points that a person gives: 5 for essay (4), picture (1)\n"
+        f"wrote {tmp_path}/out.zip: A small lab (5 criteria, 11 points)\n"
+        "next: upload it under Configure Autograder; autograder points: 6; manual grading: 5 points for essay (4), picture (1)\n"
     )
     source = unpacked(tmp_path / "out.zip", tmp_path / "source")
     assert (source / "rubric.toml").read_bytes() == own.read_bytes()
@@ -247,7 +247,7 @@ def test_what_the_command_says_a_person_gives_is_what_the_reference_lacks() -> N
     pending = [each.criterion for each in report.results if each.outcome.status == "pending"]
     said = command._next_step(LAB6)
     assert (
-        f"{sum(each.points for each in pending)} for {', '.join(f'{each.id} ({each.points})' for each in pending)}"
+        f"{sum(each.points for each in pending)} points for {', '.join(f'{each.id} ({each.points})' for each in pending)}"
         in said
     )
 

@@ -322,8 +322,8 @@ def test_a_job_says_what_was_not_decided(job: Job, tmp_path: Path) -> None:
         text.replace('<box size="0.6 0.4 0.2"/>', '<mesh filename="package://my_robot/base.stl"/>'), encoding="utf-8"
     )
     done = job.grade()
-    assert "Not decided (10 points): base-on-ground, lidar-on-top, left-wheel-clear" in done.stderr
+    assert "Could not be decided (10 points): base-on-ground, lidar-on-top, left-wheel-clear" in done.stderr
     assert (
-        "wait for a person; not decided: base-on-ground, lidar-on-top, left-wheel-clear"
+        "need manual grading; could not be decided: base-on-ground, lidar-on-top, left-wheel-clear"
         in job.runner.summary.replace("\\", "")
     )

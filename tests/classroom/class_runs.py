@@ -137,8 +137,8 @@ def is_sound(gradebook: Path) -> bool:
 
 def counted(done: Done) -> str:
     """Return the line in which a run reports how many submissions it has graded."""
-    (line,) = (line for line in done.stderr.splitlines() if " unchanged since they were" in line)
-    return line.removeprefix("grader: ").removesuffix(" since they were")
+    (line,) = (line for line in done.stderr.splitlines() if line.endswith(" unchanged"))
+    return line.removeprefix("grader: ")
 
 
 def contents(folder: Path) -> dict[str, bytes]:

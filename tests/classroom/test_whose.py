@@ -396,4 +396,4 @@ def test_a_report_of_another_student_is_not_written_over(tmp_path: Path) -> None
     (tmp_path / "reports/index.csv").write_text("report,id\r\nann,Ann Ash\r\n")
     done = batch(tmp_path, "--reports", tmp_path / "reports")
     assert done.returncode == 2
-    assert "has a report of Ann Ash named ann: name another folder" in done.stderr
+    assert "has a report of Ann Ash named ann: choose another folder" in done.stderr

@@ -189,7 +189,7 @@ def test_a_gradebook_of_an_earlier_grader(top: Path) -> None:
     anna_has = json.loads((reports / "anna.json").read_text(encoding="utf-8"))
     (picture,) = [each for each in anna_has["results"] if each["id"] == "picture"]
     assert picture["mark"] == {"points": 1, "by": "", "comment": "fine"}
-    assert "Marked by hand: fine." in (reports / "anna.md").read_text(encoding="utf-8")
+    assert "Marked manually: fine." in (reports / "anna.md").read_text(encoding="utf-8")
     text = "".join(path.read_text(encoding="utf-8") for path in reports.iterdir())
     assert "of the roots" not in text
     assert "jdoe" not in text

@@ -108,7 +108,7 @@ def test_a_folder_without_a_urdf_is_graded_and_cannot_be_inspected(tmp_path: Pat
     assert report["submission"]["passed_over"][0]["path"] == "build/old.urdf"
     assert report["results"][0]["message"].startswith("no URDF was submitted")
     assert report["score"] == 0
-    refuse("inspect", str(tmp_path), words="holds no URDF")
+    refuse("inspect", str(tmp_path), words="has no URDF")
 
 
 def test_a_urdf_alone_has_no_package() -> None:
@@ -171,7 +171,7 @@ def test_usage() -> None:
     refuse("inspect", reference, "--joint", "left_wheel_joint=1", words="did you mean 'base_left_wheel_joint'?")
     refuse("inspect", reference, "--joint", "base_lidar_joint=1", words="is fixed")
     refuse("inspect", reference, "--relative-to", "chassis", words="there is no link 'chassis'")
-    refuse("explain", "URDF999", words="nothing to explain")
+    refuse("explain", "URDF999", words="there is no problem code, criterion or check")
     refuse("schema", "gradebook", words="gradebook")
     refuse("rubric", "test", "lab6", words="test")
 

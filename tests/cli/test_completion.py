@@ -128,7 +128,7 @@ def test_zsh() -> None:
         '"task2":"A package with a launch file for RViz"',
     ]
     listed = run((), _GRADER_COMPLETE="complete_zsh", _TYPER_COMPLETE_ARGS="grader ").stdout.decode()
-    assert "mend it." in listed
+    assert "Grade a submission against a rubric." in listed
     assert "..." not in listed
     assert run((), _GRADER_COMPLETE="complete_zsh", _TYPER_COMPLETE_ARGS="grader grade ").stdout == b"_files\n"
 
@@ -228,7 +228,7 @@ def test_it_is_put_where_the_shell_reads_it(shell: str, file: str, tmp_path: Pat
     for _ in range(2):
         done = run(("--install-completion", shell), HOME=str(tmp_path))
         assert (done.returncode, done.stderr) == (0, b"")
-        assert f"completion for {shell} is in {tmp_path / file}: " in done.stdout.decode()
+        assert f"completion for {shell} is installed in {tmp_path / file}; " in done.stdout.decode()
     assert (tmp_path / file).read_bytes().strip() == run(("--show-completion", shell)).stdout.strip()
     lines = (tmp_path / ".bashrc").read_text().split("\n")
     assert lines[0] == "alias ll='ls -l'"

@@ -75,7 +75,7 @@ def test_two_gradebooks(top: Path, tmp_path: Path) -> None:
     back = as_json(top / "book.db", tmp_path / "before.db")["students"]
     assert [each["because"] for each in back] == [["manual marks changed"], ["no longer there"]]
     both = refusal(grader("diff", top / "book.db", tmp_path / "before.db", "--from", 1))
-    assert both == "--from and --to are runs of one gradebook: name one, or leave them out"
+    assert both == "--from and --to choose runs of one gradebook: give one gradebook, or omit them"
     assert "there is no gradebook" in refusal(grader("diff", top / "book.db", tmp_path / "none.db"))
 
 
@@ -111,7 +111,7 @@ def test_only_the_verdict_changed(tmp_path: Path) -> None:
         graded_into(book, rubric, [came_out(rubric, "anna", "?????")])
         graded_into(book, rubric, [came_out(rubric, "anna", "?????", "b", "it is no zip")])
     assert diff(tmp_path) == (
-        "anna: 0 as before, only the verdict changed\n  the submission changed; it was graded, and is unreadable\n"
+        "anna: 0 as before, only the status changed\n  the submission changed; it was graded, and is unreadable\n"
     )
 
 

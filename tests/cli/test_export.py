@@ -173,7 +173,7 @@ def test_lateness_is_a_line_of_its_own(tmp_path: Path) -> None:
     report = json.loads((tmp_path / "reports" / "anna.json").read_text())
     jsonschema.validate(report, json.loads(grader("schema", "report").stdout))
     assert report["score"] == 6
-    assert report["notes"] == [f"{words}: 1.6 points are taken off, which leaves 4.4"]  # no deeper than the floor
+    assert report["notes"] == [f"{words}: the late penalty is 1.6 points, the total is 4.4"]  # no deeper than the floor
     assert f"Note: {report['notes'][0]}" in " ".join((tmp_path / "reports" / "anna.txt").read_text().split())
     later = table(export(tmp_path, "csv", "--due", "2026-09-11T12:00:00Z").stdout)
     assert {key: row["late_days"] for key, row in later.items()} == {
@@ -206,7 +206,7 @@ def test_who_gets_a_grade_in_canvas(top: Path) -> None:
     head, points = canvas().splitlines()
     assert done.stdout == f'{head}\n{points}\n"Anna, X",101,,anna,S1,10.50\n"Ben, X",102,,ben,S1,6.00\n'
     assert done.stderr.splitlines() == [
-        "grader: column 'A small lab (77)': 2 filled, 0 the same already",
+        "grader: column 'A small lab (77)': 2 filled in, 0 already the same",
         f"grader: without a grade, {BROKEN}: 1 (Cleo, X)",
         "grader: without a grade, nothing was submitted: 1 (Dora, X)",
         "grader: without a grade, 5 points need manual grading: 1 (Emil, X)",
@@ -236,7 +236,9 @@ def test_strict_writes_nothing(top: Path) -> None:
     assert (strict.returncode, strict.stdout, (top / "out.csv").read_text()) == (1, "", "as it was")
     assert "in the file, but not in the gradebook: row 4, Zoe, X: no student of the gradebook" in strict.stderr
     assert "in the gradebook, but not in the file: Ben Oh: has a grade, but no row in the file" in strict.stderr
-    assert strict.stderr.endswith("grader: nothing was written: --strict, and not everything has a match\n")
+    assert strict.stderr.endswith(
+        "grader: nothing was written, because of --strict: some rows or grades are unmatched\n"
+    )
     assert export(top, *arguments).returncode == 0
     assert (top / "out.csv").read_text().endswith("anna,S1,10.50\n")
 
@@ -244,10 +246,10 @@ def test_strict_writes_nothing(top: Path) -> None:
 @pytest.mark.parametrize(
     ("arguments", "why"),
     [
-        (("canvas",), "export canvas fills a file that the LMS has exported: name it with --into"),
-        (("moodle",), "export moodle fills a file that the LMS has exported: name it with --into"),
-        (("csv", "--into", "small.toml"), "export csv fills no file: leave --into out"),
-        (("json", "--into", "small.toml"), "export json fills no file: leave --into out"),
+        (("canvas",), "export canvas fills in a file that the LMS exported: give it with --into"),
+        (("moodle",), "export moodle fills in a file that the LMS exported: give it with --into"),
+        (("csv", "--into", "small.toml"), "export csv does not take --into"),
+        (("json", "--into", "small.toml"), "export json does not take --into"),
         (("canvas", "--into", "none.csv"), "cannot read none.csv: No such file or directory"),
         (("canvas", "--into", "README.md"), "README.md is not a gradebook exported from Canvas"),
         (("moodle", "--into", "README.md"), "README.md is not a grading worksheet of Moodle"),
@@ -275,7 +277,7 @@ def test_the_gradebook_is_never_replaced(name: str, top: Path) -> None:
     (top / "link.db").symlink_to("book.db")
     (top / "hard.db").hardlink_to(top / "book.db")
     before = {each.name: each.read_bytes() for each in top.iterdir() if each.is_file()}
-    why = "it would replace the gradebook, and all marks by hand in it"
+    why = "this would overwrite the gradebook and all its manual marks"
     assert refusal(export(top, "csv", "--output", top / name)) == f"cannot write {top / name}: {why}"
     book = ("--gradebook", top / "link.db")
     assert refusal(grader("export", "csv", *book, "--output", top / name)).endswith(why)
@@ -291,7 +293,7 @@ def test_the_file_of_the_lms_is_never_replaced(name: str, target: str, top: Path
     (top / "link.csv").symlink_to("lms.csv")
     (top / "hard.csv").hardlink_to(lms)
     before = lms.read_bytes()
-    why = f"cannot write {lms}: --into reads it, and rows without a grade would be lost; name another file"
+    why = f"cannot write {lms}: --into reads it, and rows without a grade would be lost; choose another file"
     assert refusal(export(top, target, "--into", lms, "--output", top / name)) == why
     with lms.open("ab") as stdout:
         command = [sys.executable, "-m", "grader", "export", target, "--gradebook", str(top / "book.db")]
@@ -320,7 +322,7 @@ def test_no_link_of_a_submission_is_followed(top: Path) -> None:
     (top / "link").symlink_to(top)
     for place in ("grades.csv", "out/victim"):
         why = refusal(export(top, "csv", "--output", top / "class" / "anna" / place))
-        assert why.endswith(" is a symlink in the submission (name a file outside of it)")
+        assert why.endswith(" is a symlink in the submission; choose a file outside of it")
     assert not (top / "victim").exists()
     assert export(top, "csv", "--output", top / "link" / "victim").returncode == 0
     assert (top / "victim").exists()
@@ -350,7 +352,7 @@ def test_a_large_class_does_not_flood_the_screen() -> None:
     conflicts = [Conflict(number, "y", "1", "2") for number in range(50)]
     found = Preflight("Grade", 0, 0, conflicts, [*waits, *late, *one], unknown, warnings=["warned"])
     lines = list(preflight_lines(found))
-    assert lines[0] == "column 'Grade': 0 filled, 0 the same already"
+    assert lines[0] == "column 'Grade': 0 filled in, 0 already the same"
     assert lines[1:51] == [f"row {number}, y: was 1, becomes 2" for number in range(50)]
     assert lines[51:54] == [
         "without a grade, 10 points need manual grading: 38 (Student 3, Student 4, Student 5, ... and 35 more)",
@@ -377,7 +379,7 @@ def test_almost_all_points_are_not_all(tmp_path: Path) -> None:
     assert table(export(tmp_path, "csv").stdout)["anna"]["total"] == "99.996"
     assert json.loads(export(tmp_path, "json").stdout)["students"][0]["total"] == 99.996
     text = grader("stats", "--gradebook", tmp_path / "book.db").stdout
-    assert "mean 99.9, deviation 0.0, lowest 99.996, median 99.996, highest 99.996" in " ".join(text.split())
+    assert "mean 99.9, standard deviation 0.0, lowest 99.996, median 99.996, highest 99.996" in " ".join(text.split())
 
 
 def test_what_a_student_reads_in_moodle(tmp_path: Path) -> None:
@@ -402,7 +404,7 @@ def test_what_a_student_reads_in_moodle(tmp_path: Path) -> None:
     assert items[0].startswith("About box: 0 of 2.5. &#x27;base&#x27; shows a box 1 1 2 m")
     assert items[2].startswith("About essay: 2 of 4. &lt;b&gt;Why&lt;/b&gt; not\\x1b[31m".replace("\\", "&#92;"))
     assert items[3] == "About picture: 1 of 1. nice"
-    assert items[4] == "Handed in late: -1.6. 2 days late, from the roster"
+    assert items[4] == "Late penalty: -1.6. 2 days late, from the roster"
     assert not set(feedback) & set("\x1b\u202e")
     assert feedback.startswith("<p>Graded automatically: 4.4 of 11 points.</p>")
 
@@ -423,7 +425,7 @@ class Trip(NamedTuple):
         book = ("--gradebook", self.top / f"{folder}.db")
         done = grader("batch", self.top / folder, *book, "--roster", self.top / "roster.csv", "--jobs", 2)
         assert done.returncode == 0, done.stderr
-        assert f"laid out as {self.layout}" in done.stderr
+        assert f"layout {self.layout}" in done.stderr
         lms = ("--into", self.top / "lms.csv", "--pending-as-zero", "--output", self.top / f"{folder}.csv")
         done = grader("export", self.layout, *book, *lms)
         assert done.returncode == 0, done.stderr
@@ -525,5 +527,5 @@ def test_a_second_import_changes_nothing(trip: Trip, tmp_path: Path) -> None:
         trip.export("class")
     book = ("--gradebook", trip.top / "class.db", "--pending-as-zero")
     done = grader("export", trip.layout, *book, "--into", trip.top / "class.csv", "--output", tmp_path / "again.csv")
-    assert ": 0 filled, " in done.stderr
+    assert ": 0 filled in, " in done.stderr
     assert (tmp_path / "again.csv").read_bytes() == (trip.top / "class.csv").read_bytes()

@@ -54,7 +54,7 @@ def test_whoever_is_meant(name: str, top: Path) -> None:
     """By key, login, address, number and name; one line says where they stand now."""
     done = mark(top, name, "essay", "3,5", "--comment", "the roots are missing", "--by", "Kim")
     assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout == "anna: 9.5 of 11 points; waiting for a person: 1\n"
+    assert done.stdout == "anna: 9.5 of 11 points; needs manual grading: 1 point\n"
     ((criterion, points, comment, author, at, _),) = marks(top)
     assert (criterion, points, comment, author) == ("essay", 35_000, "the roots are missing", "Kim")
     assert at.startswith("20")
@@ -143,7 +143,7 @@ def test_a_mark_where_the_grader_failed(tmp_path: Path) -> None:
         return found["status"], found["score"], found["is_final"]
 
     assert status() == ("errored", 1, False)
-    assert "nothing waits for a person" in grader("review", *book, **where).stdout
+    assert "nothing needs manual grading" in grader("review", *book, **where).stdout
     done = grader("mark", "anna", "behaves", "1.5", *book, **where)
     assert (done.returncode, done.stdout) == (0, "anna: 2.5 of 3 points\n")
     assert status() == ("errored", 2.5, True)
@@ -244,11 +244,11 @@ def test_what_a_mark_replaces_is_told(top: Path) -> None:
     """It is never asked about, and one that was taken back is replaced by nothing."""
     assert mark(top, "anna", "essay", "3", "--by", "Kim", "--comment", "no\nroots").stderr == ""
     second = mark(top, "anna", "essay", "1")
-    assert second.stdout == "anna: 7 of 11 points; waiting for a person: 1\n"
+    assert second.stdout == "anna: 7 of 11 points; needs manual grading: 1 point\n"
     assert second.stderr.startswith("grader: this replaces the newest mark of essay: 3 points by Kim at 20")
     assert second.stderr.endswith(": no roots\n")
     third = mark(top, "anna", "essay", "-")
-    assert "essay: 1 point by a person without a name at 20" in third.stderr
+    assert "essay: 1 point by an unnamed person at 20" in third.stderr
     assert mark(top, "anna", "essay", "2").stderr == ""
 
 
@@ -278,6 +278,6 @@ def test_an_account_is_named_by_no_report(top: Path) -> None:
     files = [path.read_text(encoding="utf-8") for path in (*out.iterdir(), out.with_suffix(".csv"))]
     assert len(files) > len(Format)
     assert all("jdoe47" not in text for text in (*files, *said))
-    assert "Marked by hand: fine." in (out / "anna.md").read_text(encoding="utf-8")
+    assert "Marked manually: fine." in (out / "anna.md").read_text(encoding="utf-8")
     assert "Marked by Kim." in (out / "emil.md").read_text(encoding="utf-8")
     assert [row[3] for row in marks(top)] == ["jdoe47", "Kim", "jdoe47"]

@@ -44,7 +44,7 @@ def refused(line: str, place: Path) -> str:
 @pytest.mark.parametrize(
     ("line", "why"),
     [
-        ("my_robot.urdf", "there is no command 'my_robot.urdf': grader grade my_robot.urdf grades it"),
+        ("my_robot.urdf", "there is no command 'my_robot.urdf'; to grade it, use grader grade my_robot.urdf"),
         ("grade my_robt.urdf", "my_robt.urdf does not exist; did you mean 'my_robot.urdf'?"),
         ("inspect clas/anna/my_robot.urdf", "did you mean 'class/anna/my_robot.urdf'?"),
         ("grade clas/ben", "clas/ben does not exist; did you mean 'class'?"),
@@ -55,7 +55,7 @@ def refused(line: str, place: Path) -> str:
         ),
         ("explain lidar-frame --rubric zzz", "write ./zzz for a file (`grader rubric list` lists"),
         ("grade my_robot.urdf --part task", "did you mean 'task3'? (see `grader rubric show lab6`)"),
-        ("explain zzz", "grader rubric show lab6 lists the criteria, grader rubric checks the checks"),
+        ("explain zzz", "grader rubric show lab6 lists the criteria, grader rubric checks lists the checks"),
         ("grade my_robot.urdf --save json=out/a.json", "there is no folder out (mkdir -p out makes it)"),
         ("grade my_robot.urdf --score", "(grader grade --help shows the usage)"),
         ("rubric shov lab6", "(grader rubric --help shows the usage)"),
@@ -69,7 +69,7 @@ def refused(line: str, place: Path) -> str:
         ("batch class --gradebook out/book.db", "there is no folder out (mkdir -p out makes it)"),
         ("stats --gradebook notes.txt", "name another file"),
         ("stats --gradebook book.db", f"there is no gradebook book.db: {BATCH} makes one"),
-        ("export canvas --gradebook book.db", "name it with --into"),
+        ("export canvas --gradebook book.db", "give it with --into"),
     ],
 )
 def test_what_to_type_is_said(line: str, why: str, place: Path) -> None:

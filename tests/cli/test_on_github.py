@@ -87,7 +87,7 @@ def test_a_summary_that_cannot_be_written_changes_nothing_else(job: Job, place: 
     done = job.run("grade", "my_robot.urdf", around={"GITHUB_STEP_SUMMARY": place})
     assert (done.stdout, done.returncode) == (usual.stdout, usual.returncode)
     added = done.stderr.removeprefix(usual.stderr)
-    assert added.startswith(b"grader: the job summary cannot be written: ")
+    assert added.startswith(b"grader: cannot write the job summary: ")
     assert added.count(b"\n") == 1
 
 
@@ -98,7 +98,7 @@ def test_a_summary_that_cannot_be_written_changes_nothing_else(job: Job, place: 
         (("my_robot.urdf", "--rubric", "nowhere.toml"), "cannot read nowhere.toml"),
         (("my_robot.urdf", "--rubric", "lab7"), "there is no rubric 'lab7'"),
         (("my_robot.urdf", "--part", "task2"), "name the folder or archive"),
-        (("my_robot.urdf", "--expect-rubric", "0" * 64), "is not the one that is expected"),
+        (("my_robot.urdf", "--expect-rubric", "0" * 64), "is not the expected one"),
         (("my_robot.urdf", "--save", "json=nowhere/a.json"), "cannot write nowhere/a.json"),
         (("my_robot.urdf", "--save", "html=a.html"), "--save takes FORMAT=FILE"),
         (("my_robot.urdf", "--fail-under", "many"), "--fail-under takes points"),

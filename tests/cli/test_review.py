@@ -17,7 +17,7 @@ from tests.classroom.gradebooks import ENVIRONMENT, grader
 from tests.command_line import PATIENCE
 from tests.samples import ROOT
 
-HELP = "points and a comment, or s to skip, q to stop (everything is kept), ? for this line"
+HELP = "points and a comment, s to skip, q to stop (all marks are kept), ? for this help"
 
 
 def review(top: Path, typed: str | bytes, *more: object, **variables: str) -> subprocess.CompletedProcess[str]:
@@ -36,7 +36,7 @@ def test_one_after_the_other(top: Path) -> None:
     """All essays, then all pictures; a URDF alone and what could not be read are not asked about."""
     done = review(top, "3.5 the roots are missing\n4\n0,5   too small to read  \n1\n")
     assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.endswith("4 marked, 0 still wait\n")
+    assert done.stdout.endswith("4 marked, 0 left\n")
     assert marks(top) == [
         ("anna", "essay", 3.5, "the roots are missing"),
         ("emil", "essay", 4.0, ""),
@@ -44,7 +44,7 @@ def test_one_after_the_other(top: Path) -> None:
         ("emil", "picture", 1.0, ""),
     ]
     again = review(top, "")
-    assert (again.returncode, again.stdout) == (0, "nothing waits for a person\n")
+    assert (again.returncode, again.stdout) == (0, "nothing needs manual grading\n")
 
 
 def test_what_is_shown(top: Path, graded_class: Path) -> None:
@@ -61,16 +61,16 @@ def test_what_is_shown(top: Path, graded_class: Path) -> None:
     assert "2 of 4  Ben Oh (emil): About essay  4 points\n" in second
     assert r"[bold]\x1b[31mRed\x1b[0m roots[/bold] \u202eturned" in second
     assert f"Look at:\n  {graded_class}/class/anna/screen.png\n" in third
-    assert last.endswith("0 marked, 4 still wait\n")
+    assert last.endswith("0 marked, 4 left\n")
     assert not set(done.stdout) & set("\x1b\u202e")
 
 
 def test_stopping_and_going_on(top: Path) -> None:
     """What was given is kept; the next review goes on with the rest, also with what was skipped."""
-    assert review(top, "s\n2\nquit\n").stdout.endswith("1 marked, 3 still wait\n")
+    assert review(top, "s\n2\nquit\n").stdout.endswith("1 marked, 3 left\n")
     done = review(top, "1 now\n")
     assert "1 of 3  Anna Ek (anna): About essay" in done.stdout
-    assert done.stdout.endswith("1 marked, 2 still wait\n")
+    assert done.stdout.endswith("1 marked, 2 left\n")
     assert marks(top) == [("emil", "essay", 2.0, ""), ("anna", "essay", 1.0, "now")]
 
 
@@ -90,7 +90,7 @@ def test_what_is_no_answer_is_asked_again(typed: str, why: str, top: Path) -> No
     """And marks nothing."""
     done = review(top, f"{typed}\n2 fine\n")
     assert done.stderr == f"grader: {why}\n"
-    assert done.stdout.endswith("1 marked, 3 still wait\n")
+    assert done.stdout.endswith("1 marked, 3 left\n")
     assert marks(top) == [("anna", "essay", 2.0, "fine")]
 
 
@@ -99,20 +99,20 @@ def test_nothing_is_marked_by_chance(typed: str, graded_class: Path) -> None:
     """The end of what is typed, empty lines, and words for going on and stopping, large or small."""
     done = review(graded_class, typed)
     assert done.returncode == 0
-    assert done.stdout.endswith("0 marked, 4 still wait\n")
+    assert done.stdout.endswith("0 marked, 4 left\n")
     assert marks(graded_class) == []
 
 
 def test_bytes_that_are_no_text(top: Path) -> None:
     """A comment in another encoding is kept as far as it can be read."""
-    assert review(top, b"2 gr\xfcn \x00 [red]\n").stdout.endswith("1 marked, 3 still wait\n")
+    assert review(top, b"2 gr\xfcn \x00 [red]\n").stdout.endswith("1 marked, 3 left\n")
     assert marks(top) == [("anna", "essay", 2.0, r"gr\xfcn " + "\0 [red]")]
 
 
 def test_one_criterion_only(top: Path) -> None:
     """The others are left for later; one that there is not is refused."""
     done = review(top, "1\n1\n", "--criterion", "picture")
-    assert done.stdout.endswith("2 marked, 0 still wait\n")
+    assert done.stdout.endswith("2 marked, 0 left\n")
     assert [row[:2] for row in marks(top)] == [("anna", "picture"), ("emil", "picture")]
     assert "did you mean 'picture'" in review(top, "", "--criterion", "pictur").stderr
 
@@ -123,7 +123,7 @@ def test_without_standard_input(graded_class: Path) -> None:
     closed = ["sh", "-c", 'exec "$@" <&-', "sh", *command]
     done = subprocess.run(closed, cwd=ROOT, env=ENVIRONMENT, capture_output=True, check=False, timeout=PATIENCE)
     assert (done.returncode, done.stderr) == (0, b"")
-    assert done.stdout.endswith(b"0 marked, 4 still wait\n")
+    assert done.stdout.endswith(b"0 marked, 4 left\n")
 
 
 def test_two_people_at_once(top: Path) -> None:
@@ -140,17 +140,17 @@ def test_two_people_at_once(top: Path) -> None:
         out, _ = slow.communicate("2\ns\n", timeout=PATIENCE)
     assert "Anna Ek (anna): About picture" not in out
     assert "Ben Oh (emil): About picture" in out
-    assert out.endswith("1 marked, 1 still wait\n")
+    assert out.endswith("1 marked, 1 left\n")
     assert marks(top) == [("emil", "essay", 4.0, ""), ("anna", "picture", 1.0, ""), ("anna", "essay", 2.0, "")]
 
 
 @pytest.mark.parametrize(
     ("typed", "end", "kept"),
     [
-        ("k\n", "0 marked, 1 still wait\n", [1.5, None, 3.0]),
-        ("what\n\nKEEP\n", "0 marked, 1 still wait\n", [1.5, None, 3.0]),
-        ("r\n", "1 marked, 1 still wait\n", [1.5, None, 3.0, 2.0]),
-        ("", "0 marked, 1 still wait\n", [1.5, None, 3.0]),
+        ("k\n", "0 marked, 1 left\n", [1.5, None, 3.0]),
+        ("what\n\nKEEP\n", "0 marked, 1 left\n", [1.5, None, 3.0]),
+        ("r\n", "1 marked, 1 left\n", [1.5, None, 3.0, 2.0]),
+        ("", "0 marked, 1 left\n", [1.5, None, 3.0]),
     ],
 )
 def test_a_newer_mark_is_shown_and_asked_about(typed: str, end: str, kept: list[float], top: Path) -> None:

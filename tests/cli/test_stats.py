@@ -31,14 +31,14 @@ def test_at_a_glance(top: Path) -> None:
         grader("mark", key, "essay", "1.5", "--gradebook", top / "book.db")
     text = stats(top / "book.db")
     assert text.startswith(
-        "A small lab\n3 graded, 1 could not be graded, 1 handed in nothing\n\n"
-        "Marks of 11: mean 6.0, deviation 1.2, lowest 4.5, median 6, highest 7.5; 2 still\nwait for a person\n"
+        "A small lab\n3 graded, 1 could not be graded, 1 without a submission\n\n"
+        "Grades out of 11: mean 6.0, standard deviation 1.2, lowest 4.5, median 6,\nhighest 7.5; 2 need manual grading\n"
     )
-    assert "criterion  points  passed  by hand  of  share  tells\n" in text
-    assert "box           2.5       2        0   3    67%  -0.19\n" in text
-    assert "essay           4       0        2   2    38%       \n" in text
-    assert "     1  About box: 'base' shows a box 1 1 2 m; it should be 1 1 1 m (x, y, z)\n" in text
-    assert "Who needs a look\n  cleo: it could not be graded: " in text
+    assert "criterion  points  passed  manual  of  share  discrimination\n" in text
+    assert "box           2.5       2       0   3    67%           -0.19\n" in text
+    assert "essay           4       0       2   2    38%                \n" in text
+    assert "     1  box: 'base' shows a box 1 1 2 m; it should be 1 1 1 m (x, y, z)\n" in text
+    assert "Needs attention\n  cleo: it could not be graded: " in text
     assert "  dora: nothing was submitted\n" in text
 
 
@@ -85,8 +85,8 @@ def test_few_or_none(signs: dict[str, str], tmp_path: Path) -> None:
     text = stats(tmp_path / "book.db")
     data = as_json(tmp_path / "book.db")
     assert len(data["students"]) == len(signs)
-    assert ("Marks of 11: mean 5.5, deviation 0.0" in text) == ("pps?f" in signs.values())
-    assert ("nobody yet" in text) == (not signs)
+    assert ("Grades out of 11: mean 5.5, standard deviation 0.0" in text) == ("pps?f" in signs.values())
+    assert ("no students" in text) == (not signs)
     assert grader("export", "csv", "--gradebook", tmp_path / "book.db").stdout.count("\n") == 1 + len(signs)
 
 
@@ -97,7 +97,7 @@ def test_almost_all_is_not_all(tmp_path: Path) -> None:
         found = [came_out(rubric, f"s{number}", "ppppp" if number else "ppppf") for number in range(300)]
         graded_into(book, rubric, found)
     text = stats(tmp_path / "book.db")
-    assert "Marks of 11: mean 10.9, deviation 0.1" in text
+    assert "Grades out of 11: mean 10.9, standard deviation 0.1" in text
     assert "picture         1     299  300    99%" in text
     assert "essay           4     300  300   100%" in text
 
@@ -109,7 +109,7 @@ def test_who_is_left_behind_by_a_new_rubric(tmp_path: Path) -> None:
         graded_into(book, old, [came_out(old, key, "ppppp") for key in ("anna", "ben")])
         graded_into(book, new, [came_out(new, "anna", "ppppp")])
     text = stats(tmp_path / "book.db")
-    assert "2 graded\n1 of the graded by an earlier rubric only: not in what follows\n" in text
+    assert "2 graded\n1 graded by an earlier rubric only: not in these statistics\n" in text
     assert "  ben: graded with an earlier version of the rubric\n" in text
 
 

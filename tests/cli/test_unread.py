@@ -30,7 +30,7 @@ def test_an_archive_that_does_not_open(tmp_path: Path, name: str) -> None:
     code, told = graded(tmp_path)
     assert code == 1
     assert f"::warning title=package-found::No package was found, but {name} could not be opened" in told
-    assert "Not decided (20 points): package-found, " in told
+    assert "Could not be decided (20 points): package-found, " in told
 
 
 def test_a_urdf_that_is_too_large(tmp_path: Path) -> None:
@@ -41,7 +41,7 @@ def test_a_urdf_that_is_too_large(tmp_path: Path) -> None:
     code, told = graded(tmp_path / "work")
     assert code == 1
     assert "::warning title=urdf-loads::" in told or "::warning file=" in told
-    assert "Not decided (70 points)" in told
+    assert "Could not be decided (70 points)" in told
 
 
 def test_what_a_person_marks_anyway_is_green() -> None:
@@ -73,7 +73,7 @@ def test_xacro_that_cannot_be_expanded_is_not_green(tmp_path: Path) -> None:
     assert b"grader: exit code 1: could not be decided, and needs manual grading: urdf-loads, base-box, " in done.stderr
     code, told = graded(tmp_path / "my_robot.urdf.xacro")
     assert code == 1
-    assert "Not decided (70 points): urdf-loads, base-box, " in told
+    assert "Could not be decided (70 points): urdf-loads, base-box, " in told
     assert graded(tmp_path / "my_robot.urdf.xacro", "--fail-under", "0")[0] == 0
 
 
@@ -103,9 +103,9 @@ def test_many_files_push_nothing_out(tmp_path: Path) -> None:
     for number in range(40):
         (tmp_path / "work" / f"robot_{number}.urdf").write_text("<robot name='r'/>", encoding="utf-8")
     done = run(("grade", str(tmp_path / "work"), "--format", "markdown"))
-    assert done.stdout.decode().count("Passed over") == 12
+    assert done.stdout.decode().count("Other candidate") == 12
     assert "... and 28 more" in done.stdout.decode()
-    assert "sha256" in done.stdout.decode().partition("Passed over")[0]
+    assert "sha256" in done.stdout.decode().partition("Other candidate")[0]
     done = run(("grade", str(tmp_path / "work"), "--format", "json"))
     assert len(json.loads(done.stdout)["submission"]["passed_over"]) == 40
 
@@ -123,7 +123,7 @@ def test_what_is_graded_is_not_written_over(tmp_path: Path) -> None:
         options = ("--rubric", str(tmp_path / "lab.toml"), "--save", f"json={tmp_path / 'a.json'}")
         done = run(("grade", str(place), *options, "--save", f"markdown={tmp_path / over}"))
         assert done.returncode == 2
-        assert b"which is graded: name another file" in done.stderr
+        assert b"which is graded: choose another file" in done.stderr
         assert (tmp_path / over).read_bytes() == before
         assert not (tmp_path / "a.json").exists()
 

@@ -75,22 +75,22 @@ def test_the_identity_is_the_runners() -> None:
     assert data["datetime"] == "2026-11-20T18:30:05Z"
     without = {name: value for name, value in CLASSROOM50.items() if name not in ("REVIEW_URL", "ASSIGNMENT_TYPE")}
     identity = identity_from(without)
-    assert (identity.review, identity.kind) == (CLASSROOM50["COMMIT_URL"], "individual")
+    assert (identity["review"], identity["assignment_type"]) == (CLASSROOM50["COMMIT_URL"], "individual")
 
 
 @pytest.mark.parametrize(
     ("changed", "words"),
     [
         (dict.fromkeys(CLASSROOM50, ""), "CLASSROOM, ASSIGNMENT, SUBMISSION_TAG, USERNAME, COMMIT_URL, RELEASE_URL"),
-        ({"USERNAME": ""}, "takes USERNAME from the environment"),
+        ({"USERNAME": ""}, "requires USERNAME in the environment"),
         ({"SUBMISSION_TAG": "main"}, "not 'main'"),
-        ({"SUBMISSION_TAG": "submit/2026-11-20T25-00-00Z-ab12cd3"}, "SUBMISSION_TAG has to be as"),
-        ({"SUBMISSION_TAG": "submit/2026-11-20T18-30-05Z-"}, "SUBMISSION_TAG has to be as"),
+        ({"SUBMISSION_TAG": "submit/2026-11-20T25-00-00Z-ab12cd3"}, "SUBMISSION_TAG must look like"),
+        ({"SUBMISSION_TAG": "submit/2026-11-20T18-30-05Z-"}, "SUBMISSION_TAG must look like"),
         (
             {"SUBMISSION_TAG": "submit/2026-11-20T18-30-05Z-a\n::error::x"},
             "not 'submit/2026-11-20T18-30-05Z-a\\\\x0a::error::x'",
         ),
-        ({"SUBMISSION_TAG": "submit/\u0662\u0660\u0662\u0666-11-20T18-30-05Z-a"}, "SUBMISSION_TAG has to be as"),
+        ({"SUBMISSION_TAG": "submit/\u0662\u0660\u0662\u0666-11-20T18-30-05Z-a"}, "SUBMISSION_TAG must look like"),
         ({"ASSIGNMENT_TYPE": "duet"}, "one of individual, group, team, not 'duet'"),
     ],
 )

@@ -117,7 +117,7 @@ def test_a_submission_that_is_all_right_has_one_notice() -> None:
     """It says the score, and what a person still decides."""
     (only,) = annotated(SAMPLES["reference"].grade())
     assert only.name == "notice"
-    assert "A person decides: evidence-webcam, answer-floating-link, answer-launch-nodes" in only.data
+    assert "Needs manual grading: evidence-webcam, answer-floating-link, answer-launch-nodes" in only.data
     assert "10 points need manual grading" in only.data
 
 

@@ -98,7 +98,7 @@ def test_what_a_person_has_decided_counts() -> None:
         ("passed", [Failure]),
         ("pending", [Failure]),
     ]
-    assert {each.type for _, told in found for each in told} == {"marked by hand"}
+    assert {each.type for _, told in found for each in told} == {"manual mark"}
 
 
 def test_a_fault_of_ours_is_an_error_and_points_are_exact(tmp_path: Path) -> None:

@@ -41,7 +41,7 @@ def facts(report: Report) -> Iterator[Fact]:
         yield Fact("package", (submission.package.folder or submission.package.name,))
     score, most, waits = map(format_points, (report.score, report.max_score, report.pending))
     if report.pending:
-        yield Fact("waits", (f"{waits} points wait", f'"pending":{waits},'))
+        yield Fact("waits", (f"{waits} points need", f'"pending":{waits},'))
     keys = ('"max_score":', '"max-score":', '"maxScore":')
     yield Fact(
         "score",
@@ -81,9 +81,7 @@ def missing_from(kind: Format, report: Report) -> Iterator[Fact]:
         text = render(report, kind)
     shown = _plain(READERS[kind].text(text))
     told = read_commands(text) if kind is Format.GITHUB else []
-    named = {
-        name for each in told for name in each.data.partition("The report tells of these, too: ")[2].split(", ")
-    } - {""}
+    named = {name for each in told for name in each.data.partition("See the report for: ")[2].split(", ")} - {""}
     for fact in facts(report):
         if fact.rule not in named and not any(_plain(each) in shown for each in fact.spellings):
             yield fact

@@ -102,10 +102,12 @@ def test_interrupted(folder: Path, undisturbed: tuple[dict[str, bytes], float], 
         _, said = process.communicate(timeout=PATIENCE)
         assert process.returncode == 130
     first, stopped, last = said.splitlines()
-    assert first == f"grader: {SIZE} hand-ins, laid out as folders"
+    assert first == f"grader: {SIZE} submissions, layout folders"
     assert last == "grader: interrupted"
     count = int(stopped.removeprefix("grader: stopped: ").partition(" ")[0])
-    assert stopped == f"grader: stopped: {count} of {SIZE} have a result, which is kept; the same command goes on"
+    assert (
+        stopped == f"grader: stopped: {count} of {SIZE} have a result, which is kept; rerun the same command to resume"
+    )
     kept = len(verdicts(book))
     assert 20 < count <= kept < SIZE
     assert is_sound(book)

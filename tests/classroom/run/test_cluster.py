@@ -121,7 +121,7 @@ def refused(*arguments: str | Path, **variables: str) -> str:
     assert (done.returncode, done.stdout) == (2, "")
     lines = done.stderr.splitlines()
     assert len(lines) == 2, done.stderr
-    assert lines[0].endswith("laid out as folders")
+    assert lines[0].endswith("layout folders")
     return lines[1].removeprefix("grader: ")
 
 
@@ -157,7 +157,7 @@ def test_misdeeds_end_no_worker(cluster: Cluster, tmp_path: Path) -> None:
     for book in ("here.db", "there.db"):
         where = ("--cluster", cluster.address) if book == "there.db" else ()
         done = grader(*command, "--gradebook", tmp_path / book, *where, **WITH_HOSTILE)
-        assert (done.returncode, counted(done)) == (0, "10 graded, 8 of them errored, 0 unchanged")
+        assert (done.returncode, counted(done)) == (0, "10 graded (8 errored), 0 unchanged")
     here, there = (reasons(tmp_path / book) for book in ("here.db", "there.db"))
     slow = "grading it took longer than 4 s (--timeout raises the limit)"
     assert set(here) == set(there) == set(names[:8])
@@ -206,7 +206,7 @@ def test_ctrl_c_leaves_the_cluster_alone(cluster: Cluster, tmp_path: Path) -> No
         _, said = process.communicate(timeout=PATIENCE)
         assert process.returncode == 130
     first, stopped, last = said.splitlines()
-    assert (first, last) == ("grader: 600 hand-ins, laid out as folders", "grader: interrupted")
+    assert (first, last) == ("grader: 600 submissions, layout folders", "grader: interrupted")
     assert stopped.startswith("grader: stopped: ")
     kept = len(verdicts(book))
     assert counted(grader(*command)) == f"{600 - kept} graded, {kept} unchanged"

@@ -154,10 +154,10 @@ def test_when_it_was_due_is_remembered(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("option", "value", "words"),
     [
-        ("--reports", "class/reports", "in the class folder"),
-        ("--reports", "class", "in the class folder"),
-        ("--reports", "g.db", "is no folder"),
-        ("--csv", "g.db", "would replace the gradebook"),
+        ("--reports", "class/reports", "outside of the class folder"),
+        ("--reports", "class", "outside of the class folder"),
+        ("--reports", "g.db", "is not a folder"),
+        ("--csv", "g.db", "would overwrite the gradebook"),
         ("--csv", "nowhere/grades.csv", "there is no folder"),
     ],
 )
