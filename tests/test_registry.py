@@ -21,8 +21,8 @@ from grader.report.rubrics import checks_text, explanation
 from grader.robot.kinematics import Configuration
 from tests.checks.asking import AnyCheck, ask
 from tests.checks.cases import CASE, CASES
-from tests.checks.hand_in_cases import HAND_IN_CASE, HAND_IN_CASES, PENDING_CASE, PENDING_CASES
-from tests.checks.hand_ins import REFERENCE
+from tests.checks.package_cases import PACKAGE_CASE, PACKAGE_CASES, PENDING_CASE, PENDING_CASES
+from tests.checks.submitted import REFERENCE
 
 NAMES = [function.__name__ for function in CHECKS]
 SHARED = {"__init__", "outcome", "registry", "toml_types", "visuals"}
@@ -69,7 +69,7 @@ def test_a_check_passes_and_fails_somewhere(check: Check) -> None:
         assert ask(check.function, REFERENCE, **pending.arguments).status == "pending"
         assert ask(check.function, pending.without, **pending.arguments).status == "pending"
     else:
-        case = CASE[check.name] if check.subject in ("urdf", "robot") else HAND_IN_CASE[check.name]
+        case = CASE[check.name] if check.subject in ("urdf", "robot") else PACKAGE_CASE[check.name]
         of = (case.check, case.arguments)
         assert ask(check.function, case.passing, **case.arguments).status == "passed"
         assert ask(check.function, case.failing, **case.arguments).status == "failed"
@@ -102,7 +102,7 @@ def test_a_check_is_found_by_its_name(check: Check) -> None:
 def test_names_are_unique() -> None:
     """No two checks have one name, and no case is for a check that is not there."""
     assert len(set(NAMES)) == len(NAMES)
-    assert sorted(case.name for case in (*CASES, *HAND_IN_CASES, *PENDING_CASES)) == sorted(NAMES)
+    assert sorted(case.name for case in (*CASES, *PACKAGE_CASES, *PENDING_CASES)) == sorted(NAMES)
 
 
 def test_only_what_a_person_marks_is_always_pending() -> None:
