@@ -1,4 +1,4 @@
-"""Write the pages that are made from the code: `python docs/make.py`. The tests fail where they are out of date."""
+"""Write the pages that are generated from the code: `python docs/make.py`. The tests fail if they are out of date."""
 
 import re
 from io import StringIO
@@ -18,21 +18,21 @@ SHOWN = DOCS.parent / "submissions" / "lidar-offset-in-visual" / "my_robot.urdf"
 
 
 def pages() -> dict[str, str]:
-    """The text of every made page by its file name."""
+    """Return the text of every generated page by its file name."""
     return {"problems.md": problems(), "checks.md": checks(), "report.svg": picture()}
 
 
 def problems() -> str:
-    """The catalogue of what can be wrong with a URDF."""
+    """Return the catalogue of problems."""
     lines = [
         "# Problems",
         "",
         "<!-- made by docs/make.py from grader/robot/catalogue.py and grader/package/catalogue.py -->",
         "",
-        "What `grader grade` and `grader inspect` can say of a URDF (`URDF`), a package (`PKG`), a launch file (`LCH`) and an RViz",
-        "file (`RVZ`). Codes never change their meaning. An *error* keeps ROS 2 (Jazzy) from loading the file, or a build or launch",
-        "from working; a *warning* changes what is shown or done; a *note* is worth knowing.",
-        "`grader explain URDF051` prints an entry.",
+        "The problems that `grader grade` and `grader inspect` report: of a URDF (`URDF`), a package (`PKG`), a launch file (`LCH`)",
+        "and an RViz file (`RVZ`). A code never changes its meaning. With an *error*, ROS 2 (Jazzy) does not load the file, or a",
+        "build or launch fails. A *warning* changes what ROS 2 shows or does. A *note* is information.",
+        "`grader explain URDF051` prints one entry.",
         "",
         "| code | | problem |",
         "|---|---|---|",
@@ -53,29 +53,29 @@ def problems() -> str:
 
 
 def checks() -> str:
-    """The checks that a rubric can name."""
+    """Return the catalogue of checks."""
     lines = [
         "# Checks",
         "",
         "<!-- made by docs/make.py from grader/checks -->",
         "",
-        "What a criterion of a rubric can name as its `check`, with the arguments that its `with` table gives. Lengths are",
-        "metres, angles degrees, colour channels 0 to 1. Checks of a robot measure with forward kinematics, all joints at 0",
-        "unless they move one themselves; checks of a package read its files and run none of them.",
+        "A criterion of a rubric names one of these checks as its `check`, and gives the arguments in its `with` table. Lengths",
+        "are in metres, angles in degrees, colour channels from 0 to 1. Checks of a robot use forward kinematics with every joint",
+        "at 0, unless they move a joint themselves. Checks of a package read its files and run none of them.",
     ]
     for function in CHECKS:
         check = describe(function)
         lines += ["", f"## {check.name}", "", escaped(check.fact)]
         if check.parameters:
-            lines += ["", "| argument | what | |", "|---|---|---|"]
-        for each in check.parameters.values():
-            default = "needed" if each.required else f"`{each.default}` unless told"
-            lines.append(f"| `{each.name}` | {each.type.name} | {default} |")
+            lines += ["", "| argument | type | default |", "|---|---|---|"]
+        for parameter in check.parameters.values():
+            default = "required" if parameter.required else f"`{parameter.default}`"
+            lines.append(f"| `{parameter.name}` | {parameter.type.name} | {default} |")
     return "\n".join(lines) + "\n"
 
 
 def picture() -> str:
-    """A real report as a terminal shows it."""
+    """Return the picture of a report in a terminal, as SVG."""
     rubric = load_rubric("lab6")
     report = grade(rubric, open_submission(str(SHOWN), wanted=rubric.urdf, package=rubric.package))
     console = Console(
