@@ -58,10 +58,10 @@ class Submitted:
         """The same without some files, or folders with all that is in them; each must be there."""
         left = dict(self.files)
         for path in paths:
-            gone = [each for each in left if each == path or each.startswith(path + "/")]
+            gone = [name for name in left if name == path or name.startswith(path + "/")]
             assert gone, f"{path} is not among {sorted(left)}"
-            for each in gone:
-                del left[each]
+            for name in gone:
+                del left[name]
         return Submitted(left)
 
     def renaming(self, old: str, new: str) -> "Submitted":

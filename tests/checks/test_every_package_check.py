@@ -98,6 +98,6 @@ def test_the_folder_of_the_package_does_not_matter(case: PackageCase) -> None:
                 for path, content in submitted.files.items()
             }
         )
-        here, there = (ask(case.check, each, **case.arguments) for each in (submitted, moved))
+        here, there = (ask(case.check, files, **case.arguments) for files in (submitted, moved))
         assert there.status == here.status
         assert there.message == here.message

@@ -148,7 +148,7 @@ launch:
 @pytest.mark.parametrize("submitted", [REFERENCE, IN_XML, IN_YAML, INCLUDES], ids=["py", "xml", "yaml", "two"])
 def test_the_launch_file_is_found_in_any_language(submitted: Submitted) -> None:
     """Its name counts, and not the language that it is written in."""
-    path = next(each for each in (LAUNCH, XML, YAML) if each in submitted.files).removeprefix("my_robot/")
+    path = next(name for name in (LAUNCH, XML, YAML) if name in submitted.files).removeprefix("my_robot/")
     assert finds(launch_found, submitted, name=NAME) == ("passed", f"the launch file is {path}", None)
 
 

@@ -151,8 +151,8 @@ def test_a_package_without_name() -> None:
     )
     message = "<name> of package.xml is empty"
     assert finds(package_found, empty, name="my_robot") == ("failed", message, empty.place(MANIFEST, "<name>"))
-    for each in (none, empty):
-        assert finds(package_type, each, build_type="ament_python")[0] == "passed"
+    for files in (none, empty):
+        assert finds(package_type, files, build_type="ament_python")[0] == "passed"
 
 
 @pytest.mark.parametrize(

@@ -338,7 +338,7 @@ def test_problems_of_the_packages_files_are_listed(submitted: Submitted, code: s
 def test_evidence_is_shown_beside_the_mark() -> None:
     """The pictures that the lab asks for are listed with what asks for them, the others on their own."""
     report = graded(REFERENCE.with_files({"holiday.png": png()}))
-    found = {each.evidence.id: [exhibit.path for exhibit in each.files] for each in report.exhibits}
+    found = {exhibits.evidence.id: [exhibit.path for exhibit in exhibits.files] for exhibits in report.exhibits}
     assert found == {
         "task1-step8": ["Task1_Step8.png"],
         "task1-step18": ["Task1_Step18.png"],
