@@ -1,4 +1,4 @@
-"""The sample submissions, each with what its expected.toml says of it."""
+"""The sample submissions, each with the contents of its expected.toml."""
 
 import tomllib
 from dataclasses import dataclass
@@ -16,33 +16,33 @@ LAB6 = load_rubric("lab6")
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """One folder of submissions/: what is handed in stands there, or at the path that expected.toml names."""
+    """One folder of submissions/: the submission is this folder, or the path in it that expected.toml names."""
 
     name: str
     expected: dict[str, Any]
 
     @property
     def path(self) -> Path:
-        """What is graded, from the project's root."""
+        """The path of the submission, relative to the project's root."""
         return Path("submissions", self.name, str(self.expected.get("path", "")))
 
     @property
     def rubric(self) -> Rubric:
-        """The rubric that it is graded by."""
+        """The rubric for its grading."""
         named = self.expected.get("rubric", LAB6.id)
         return LAB6 if named == LAB6.id else load_rubric(named)
 
     def open(self) -> Submission:
-        """The submission."""
+        """Return the submission."""
         return opened(self.path, self.rubric)
 
     def grade(self) -> Report:
-        """Its report."""
+        """Return its report."""
         return grade(self.rubric, self.open())
 
 
 def opened(path: Path | str, rubric: Rubric = LAB6) -> Submission:
-    """What is handed in at a path, seen from the project's root, opened as the command line does."""
+    """Return the submission at a path relative to the project's root, opened as the command line does."""
     return open_submission(str(ROOT / path), wanted=rubric.urdf, package=rubric.package)
 
 

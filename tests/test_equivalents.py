@@ -55,7 +55,7 @@ class Break:
 
 def both(*criteria: str) -> str:
     """Criteria of both wheels."""
-    return " ".join(f"{side}-wheel-{each}" for side in ("left", "right") for each in criteria)
+    return " ".join(f"{side}-wheel-{name}" for side in ("left", "right") for name in criteria)
 
 
 _GROUND = "footprint-at-wheel-bottoms stands-on-ground"
@@ -253,7 +253,7 @@ _ADDED = st.sampled_from(
 def test_no_value_is_a_fault_of_ours(draw: st.DataObject) -> None:
     """Whatever a few attributes of the reference are set to, no criterion ends in an error of the grader."""
     robot = etree.fromstring(etree.tostring(REFERENCE))
-    elements = [each for each in robot.iter() if each.attrib]
+    elements = [element for element in robot.iter() if element.attrib]
     for _ in range(draw.draw(st.integers(0, 4))):
         element = draw.draw(st.sampled_from(elements))
         element.set(draw.draw(st.sampled_from(sorted(map(str, element.attrib)))), draw.draw(_ODD))

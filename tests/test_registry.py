@@ -21,8 +21,8 @@ from grader.report.rubrics import checks_text, explanation
 from grader.robot.kinematics import Configuration
 from tests.checks.asking import AnyCheck, ask
 from tests.checks.cases import CASE, CASES
-from tests.checks.hand_in_cases import HAND_IN_CASE, HAND_IN_CASES, PENDING_CASE, PENDING_CASES
-from tests.checks.hand_ins import REFERENCE
+from tests.checks.package_cases import PACKAGE_CASE, PACKAGE_CASES, PENDING_CASE, PENDING_CASES
+from tests.checks.submitted import REFERENCE
 
 NAMES = [function.__name__ for function in CHECKS]
 SHARED = {"__init__", "outcome", "registry", "toml_types", "visuals"}
@@ -47,8 +47,8 @@ def test_the_signature_is_a_schema(check: Check) -> None:
     subject, *rest = inspect.signature(check.function).parameters.values()
     assert subject.name == check.subject
     assert subject.kind is subject.POSITIONAL_OR_KEYWORD
-    assert [each.kind for each in rest] == [inspect.Parameter.KEYWORD_ONLY] * len(rest)
-    assert list(check.parameters) == [each.name for each in rest]
+    assert [parameter.kind for parameter in rest] == [inspect.Parameter.KEYWORD_ONLY] * len(rest)
+    assert list(check.parameters) == [parameter.name for parameter in rest]
     for parameter in check.parameters.values():
         assert is_supported(parameter.annotation), parameter
         assert parameter.type.name
@@ -69,13 +69,13 @@ def test_a_check_passes_and_fails_somewhere(check: Check) -> None:
         assert ask(check.function, REFERENCE, **pending.arguments).status == "pending"
         assert ask(check.function, pending.without, **pending.arguments).status == "pending"
     else:
-        case = CASE[check.name] if check.subject in ("urdf", "robot") else HAND_IN_CASE[check.name]
+        case = CASE[check.name] if check.subject in ("urdf", "robot") else PACKAGE_CASE[check.name]
         of = (case.check, case.arguments)
         assert ask(check.function, case.passing, **case.arguments).status == "passed"
         assert ask(check.function, case.failing, **case.arguments).status == "failed"
     function, arguments = of
     assert function is check.function
-    required = {each.name for each in check.parameters.values() if each.required}
+    required = {parameter.name for parameter in check.parameters.values() if parameter.required}
     assert required <= set(arguments) <= set(check.parameters)
     for name, value in arguments.items():
         assert check.parameters[name].type.parse(as_toml(value)) == value
@@ -102,7 +102,7 @@ def test_a_check_is_found_by_its_name(check: Check) -> None:
 def test_names_are_unique() -> None:
     """No two checks have one name, and no case is for a check that is not there."""
     assert len(set(NAMES)) == len(NAMES)
-    assert sorted(case.name for case in (*CASES, *HAND_IN_CASES, *PENDING_CASES)) == sorted(NAMES)
+    assert sorted(case.name for case in (*CASES, *PACKAGE_CASES, *PENDING_CASES)) == sorted(NAMES)
 
 
 def test_only_what_a_person_marks_is_always_pending() -> None:
@@ -206,8 +206,12 @@ def families() -> list[Path]:
 def checks_in(path: Path) -> list[str]:
     """The public functions of a module that give an outcome."""
     body = ast.parse(path.read_text(encoding="utf-8")).body
-    functions = [each for each in body if isinstance(each, ast.FunctionDef) and not each.name.startswith("_")]
-    return [each.name for each in functions if each.returns is not None and ast.unparse(each.returns) == "Outcome"]
+    functions = [node for node in body if isinstance(node, ast.FunctionDef) and not node.name.startswith("_")]
+    return [
+        function.name
+        for function in functions
+        if function.returns is not None and ast.unparse(function.returns) == "Outcome"
+    ]
 
 
 def is_supported(annotation: Any) -> bool:
@@ -218,11 +222,11 @@ def is_supported(annotation: Any) -> bool:
     if origin is UnionType:
         return all(map(is_supported, inner))
     if origin is Literal:
-        return all(isinstance(each, str) for each in inner)
+        return all(isinstance(value, str) for value in inner)
     if origin is list:
         return inner[0] in SAMPLES
     if origin is tuple:
-        return all(each in (float, Ellipsis) for each in inner) or inner == (str, Ellipsis)
+        return all(item in (float, Ellipsis) for item in inner) or inner == (str, Ellipsis)
     if origin is not None:
         return issubclass(origin, Mapping) and inner == (str, str)
     return annotation in SAMPLES
@@ -245,7 +249,7 @@ def sample(annotation: Any) -> Any:
 def as_toml(value: object) -> object:
     """A Python value as tomllib would have given it: lists for tuples, exact numbers for floats."""
     if isinstance(value, tuple):
-        return [as_toml(each) for each in value]
+        return [as_toml(item) for item in value]
     return Decimal(repr(value)) if isinstance(value, float) else value
 
 

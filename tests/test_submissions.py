@@ -57,9 +57,9 @@ def test_the_rubric_carries_the_reference() -> None:
     compared = filecmp.dircmp(LAB6.path.parent / LAB6.reference, ROOT / REFERENCE, ignore=["__pycache__"])
     waiting = [compared]
     while waiting:
-        each = waiting.pop()
-        assert not (each.left_only or each.right_only or each.diff_files), each.left
-        waiting += each.subdirs.values()
+        folders = waiting.pop()
+        assert not (folders.left_only or folders.right_only or folders.diff_files), folders.left
+        waiting += folders.subdirs.values()
 
 
 @every_sample

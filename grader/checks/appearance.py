@@ -64,9 +64,9 @@ def shows_sphere(robot: Configuration, *, link: str, radius: NonNegative, tolera
 def shows_colour(
     robot: Configuration, *, link: str, colour: Colour, tolerance: NonNegative, shape: ShapeName = "any"
 ) -> Outcome:
-    """A link is shown in a colour: red, green, blue and, where a fourth channel is given, opacity, each in 0..1.
+    """A link is shown in a colour: red, green, blue and, if a fourth channel is given, opacity, each from 0 to 1.
 
-    Of several visuals the largest counts, among those of the named shape if there are any.
+    If a link has several visuals, the largest counts; with `shape`, the largest of that shape, if there is one.
     """
     visual = main_visual(robot, link, shape)
     if visual.material is None or _has_only_texture(visual.material):
@@ -81,7 +81,7 @@ def shows_colour(
 
 
 def shows_grey(robot: Configuration, *, link: str, at_least: float, tolerance: NonNegative) -> Outcome:
-    """A link is shown in a grey (red = green = blue) of at least the given level in 0..1; opacity does not matter."""
+    """A link is shown in a grey (red = green = blue) of at least the given level, from 0 to 1; opacity is not checked."""
     visual = main_visual(robot, link)
     if visual.material is None or _has_only_texture(visual.material):
         return _colourless(link, visual)

@@ -28,9 +28,9 @@ _MAX_PAIRS = 2_000
 
 
 def stands_on(robot: Configuration, *, link: str, on: str, tolerance: NonNegative, shape: ShapeName = "any") -> Outcome:
-    """What a link shows stands on the top of what another shows: no gap, no overlap, within its outline.
+    """The visuals of a link stand on the top of another link's visual: no gap, no overlap, within its outline.
 
-    Of several visuals of the one below the largest counts, among those of the named shape if there are any.
+    If the lower link has several visuals, the largest counts; with `shape`, the largest of that shape, if there is one.
     """
     support = main_visual(robot, on, shape)
     T_on_support = visual_pose(robot, on, support, on)
@@ -53,7 +53,7 @@ def stands_on(robot: Configuration, *, link: str, on: str, tolerance: NonNegativ
 
 
 def clear_of(robot: Configuration, *, link: str, of: str, tolerance: NonNegative) -> Outcome:
-    """Nothing that a link shows cuts into what another shows, deeper than the tolerance in metres; touching is fine."""
+    """No visual of a link cuts into a visual of another by more than the tolerance, in metres; touching passes."""
     own = [(visual, visual_pose(robot, link, visual, of)) for visual in visuals(robot, link)]
     others = [(visual.geometry, visual_pose(robot, of, visual, of)) for visual in visuals(robot, of)]
     if len(own) * len(others) > _MAX_PAIRS:

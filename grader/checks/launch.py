@@ -19,7 +19,7 @@ _ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".py", 
 
 
 def launch_found(package: Package, *, name: str) -> Outcome:
-    """The package has a launch file of this name; it may be written in Python, XML or YAML."""
+    """The package has a launch file of this name, written in Python, XML or YAML."""
     path = package.launch_file(name)
     if path is None:
         raise _no_launch_file(package)

@@ -11,7 +11,7 @@ _MAX_LISTED = 6  # files in one message
 def answered(
     submission: Submission, *, question: str, places: list[str], files: tuple[str, ...] = _DOCUMENTS, answer: str = ""
 ) -> Outcome:
-    """A question is answered in writing, as a person judges.
+    """A question is answered in writing; needs manual grading.
 
     Always pending. `places` are labels of the passage with the answer, such as "task 1 step 15" or "question 15"; `files` are
     patterns for the names of documents. `answer` is the model answer, which `grader review` and `--answers` show: the rubric
@@ -34,7 +34,7 @@ def answered(
 
 
 def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
-    """A picture or PDF shows what was asked for, as a person judges.
+    """A picture or PDF shows what the lab asks for; needs manual grading.
 
     Always pending. `names` are labels in the file's name, in any spelling: "task 3 step 3", or words such as "webcam".
     """

@@ -73,7 +73,7 @@ def axis_along(
 def turns_about_itself(
     robot: Configuration, *, link: str, base: str, tolerance: NonNegative, angle: NonNegative
 ) -> Outcome:
-    """A cylinder turns about its own axis: the joint's axis has its direction (`angle`, degrees) and place (metres)."""
+    """A cylinder turns about its own axis: the joint's axis has its direction (`angle`, degrees) and position (metres)."""
     cylinders = [visual for visual in visuals(robot, link) if isinstance(visual.geometry, Cylinder)]
     visual = max(cylinders, key=lambda visual: volume(visual.geometry)) if cylinders else main_visual(robot, link)
     if not isinstance(visual.geometry, Cylinder):

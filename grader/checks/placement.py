@@ -50,9 +50,9 @@ def centre_at(
     rigid: bool = False,
     shape: ShapeName = "any",
 ) -> Outcome:
-    """The centre of what a link shows is at a point in another link's frame; if rigid, no moving joint lies between.
+    """The centre of a link's visual is at a point in another link's frame, in metres; if rigid, only fixed joints lie between.
 
-    Of several visuals the largest counts, among those of the named shape if there are any.
+    If a link has several visuals, the largest counts; with `shape`, the largest of that shape, if there is one.
     """
     visual = main_visual(robot, link, shape)
     if isinstance(visual.geometry, Mesh):
@@ -63,7 +63,7 @@ def centre_at(
         return loose
     at = _moved_by(robot, link, visual, relative_to, minus(pose.translation, xyz))
     return measured_point(
-        f"the centre of what {link!r} shows",
+        f"the centre of the visual of {link!r}",
         pose.translation,
         xyz,
         tolerance,
@@ -81,7 +81,7 @@ def bottom_at_height(
     tolerance: NonNegative,
     shape: ShapeName = "any",
 ) -> Outcome:
-    """The lowest point of what a link shows is at a height (z) in another link's frame, in metres.
+    """The lowest point of a link's visuals is at a height (z) in another link's frame, in metres.
 
     Where a shape is named and the link shows it, only the largest of these counts.
     """
@@ -104,7 +104,7 @@ def bottom_at_height(
 def bottoms_at_height(
     robot: Configuration, *, links: list[str], relative_to: str, height: float, tolerance: NonNegative
 ) -> Outcome:
-    """Several links all reach down to the same height (z) in another link's frame, in metres."""
+    """The lowest points of several links are at the same height (z) in another link's frame, in metres."""
     robot.link(relative_to)
     lowest, missing = _measured(links, lambda link: span(robot, link, relative_to, _UP)[0])
     wrong = {link: value for link, value in lowest.items() if not within(value, height, tolerance)}

@@ -45,29 +45,37 @@ Direction = Annotated[Vector, NotZero]
 Colour = Annotated[tuple[float, float, float] | tuple[float, float, float, float], EachFromZeroToOne]
 
 
-def _simple(name: str, schema: str, kind: type) -> TomlType:
+def simple_type(
+    name: str,
+    schema: Mapping[str, Any],
+    accepts: Callable[[Any], bool],
+    convert: Callable[[Any], Any] = lambda value: value,
+) -> TomlType:
+    """Return a type whose values `accepts` recognises and `convert` converts."""
+
     def parse(value: Any) -> Any:
-        if isinstance(value, kind) and (kind is bool or not isinstance(value, bool)):
-            return value
+        if accepts(value):
+            return convert(value)
         raise WrongValue(name)
 
-    return TomlType(name, {"type": schema}, parse)
+    return TomlType(name, schema, parse)
 
 
-def _parse_float(value: Any) -> float:
-    if isinstance(value, int | Decimal) and not isinstance(value, bool):
-        with suppress(OverflowError):
-            number = float(value)
-            if isfinite(number):
-                return number
-    raise WrongValue("a number")
+def _is_integer(value: Any) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
+def _is_float(value: Any) -> bool:
+    with suppress(OverflowError):
+        return (isinstance(value, Decimal) or _is_integer(value)) and isfinite(float(value))
+    return False
 
 
 _SIMPLE = {
-    float: TomlType("a number", {"type": "number"}, _parse_float),
-    int: _simple("a whole number", "integer", int),
-    str: _simple("a text", "string", str),
-    bool: _simple("true or false", "boolean", bool),
+    float: simple_type("a number", {"type": "number"}, _is_float, float),
+    int: simple_type("a whole number", {"type": "integer"}, _is_integer),
+    str: simple_type("a text", {"type": "string"}, lambda value: isinstance(value, str)),
+    bool: simple_type("true or false", {"type": "boolean"}, lambda value: isinstance(value, bool)),
 }
 _PLURALS = {float: "numbers", str: "texts"}
 
@@ -82,7 +90,7 @@ def toml_type(annotation: Any) -> TomlType:
     if origin is Annotated:
         return constrained(toml_type(inner[0]), *(item for item in inner[1:] if isinstance(item, Constraint)))
     if origin is Literal:
-        return _choice(inner)
+        return simple_type(f"one of {', '.join(inner)}", {"enum": list(inner)}, lambda value: value in inner)
     if origin is UnionType:
         return _union([toml_type(member) for member in inner])
     if origin in (list, tuple):
@@ -105,17 +113,6 @@ def constrained(base: TomlType, *constraints: Constraint) -> TomlType:
     for constraint in constraints:
         schema |= constraint.schema
     return TomlType(base.name, schema, parse)
-
-
-def _choice(values: tuple[str, ...]) -> TomlType:
-    name = f"one of {', '.join(values)}"
-
-    def parse(value: Any) -> Any:
-        if value in values:
-            return value
-        raise WrongValue(name)
-
-    return TomlType(name, {"enum": list(values)}, parse)
 
 
 def _union(members: list[TomlType]) -> TomlType:

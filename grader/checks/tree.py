@@ -23,7 +23,7 @@ def urdf_loads(urdf: Reading) -> Outcome:
 
 
 def held_by(robot: Configuration, *, link: str, parent: str, joint_type: JointType) -> Outcome:
-    """Joints lead from the parent down to the link, one of the given type and otherwise only fixed ones."""
+    """The joints from the parent to the link are one of the given type and otherwise only fixed joints."""
     chain = robot.chain(link, above=parent)
     if chain is None:
         return _not_below(robot, link, parent)
@@ -59,7 +59,7 @@ def held_by(robot: Configuration, *, link: str, parent: str, joint_type: JointTy
 
 
 def joints_named(robot: Configuration, *, parent: str, joints: Mapping[str, str]) -> Outcome:
-    """The joints that hold links have the given names (joint name: link name).
+    """The parent joints of the links have the given names (joint name: link name).
 
     Any joint between `parent` and the link may have the name. A link without a parent joint counts if any joint of that
     name has it as its child or parent.

@@ -6,7 +6,7 @@ from decimal import Decimal
 from typing import Any, Literal, NamedTuple
 
 from grader.checks.registry import CHECKS, Check, describe
-from grader.checks.toml_types import Constraint, TomlType, WrongValue, constrained, toml_type
+from grader.checks.toml_types import Constraint, TomlType, constrained, simple_type, toml_type
 
 MAX_POINTS = 1_000_000
 _DECIMALS = 4  # of points: gradebooks store them as whole numbers of ten-thousandths
@@ -30,34 +30,24 @@ class KeyTable(NamedTuple):
         }
 
 
-def _parse_number(value: Any) -> Decimal:
-    if isinstance(value, int | Decimal) and not isinstance(value, bool) and Decimal(value).is_finite():
-        return Decimal(value)
-    raise WrongValue("a number")
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | Decimal) and not isinstance(value, bool) and Decimal(value).is_finite()
 
 
-def _parse_title(value: Any) -> str:
-    if isinstance(value, str) and value.strip():
-        return " ".join(value.split())  # one line, however it is broken in the file
-    raise WrongValue("a text that is not empty" if isinstance(value, str) else "a text")
+def _is_texts(value: Any) -> bool:
+    return isinstance(value, list) and all(isinstance(text, str) for text in value)
 
 
-def _parse_table(value: Any) -> dict[str, Any]:
-    if isinstance(value, dict):
-        return value
-    raise WrongValue("a table")
+def _is_tables(value: Any) -> bool:
+    return isinstance(value, list) and value != [] and all(isinstance(row, dict) for row in value)
 
 
-def _parse_texts(value: Any) -> tuple[str, ...]:
-    if isinstance(value, list) and all(isinstance(text, str) for text in value):
-        return tuple(value)
-    raise WrongValue("a list of texts")
+def _is_time(value: Any) -> bool:
+    return isinstance(value, datetime) and value.tzinfo is not None
 
 
-def _parse_time(value: Any) -> datetime:
-    if isinstance(value, datetime) and value.tzinfo is not None:
-        return value
-    raise WrongValue("a date and time with its offset, such as 2026-11-20T23:59:00+01:00")
+def _one_line(text: str) -> str:
+    return " ".join(text.split())
 
 
 def _is_below(path: str) -> bool:
@@ -71,18 +61,16 @@ def _range(least: int, most: int) -> Constraint:
 
 
 def _rows(table: KeyTable) -> TomlType:
-    name = f"one or more [[{table.name}]] tables"
+    schema = {"type": "array", "items": table.schema, "minItems": 1}
+    return simple_type(f"one or more [[{table.name}]] tables", schema, _is_tables)
 
-    def parse(value: Any) -> list[dict[str, Any]]:
-        if isinstance(value, list) and value and all(isinstance(row, dict) for row in value):
-            return value
-        raise WrongValue(name)
 
-    return TomlType(name, {"type": "array", "items": table.schema, "minItems": 1}, parse)
+def _table(schema: Mapping[str, Any]) -> TomlType:
+    return simple_type("a table", schema, lambda value: isinstance(value, dict))
 
 
 _TEXT = toml_type(str)
-_NUMBER = TomlType("a number", {"type": "number"}, _parse_number)
+_NUMBER = simple_type("a number", {"type": "number"}, _is_number, Decimal)
 _POINTS = constrained(
     _NUMBER,
     _range(0, MAX_POINTS),
@@ -94,7 +82,9 @@ _ID = constrained(
     _TEXT,
     Constraint("one printable word", lambda text: text.isprintable() and len(text.split(" ")) == 1 and text != ""),
 )
-_TITLE = TomlType("a text", {"type": "string"}, _parse_title)
+_NOT_EMPTY = Constraint("a text that is not empty", bool)
+_TITLE = constrained(simple_type("a text", _TEXT.schema, lambda value: isinstance(value, str), _one_line), _NOT_EMPTY)
+_TIME = simple_type("a date and time with its offset, such as 2026-11-20T23:59:00+01:00", {"type": "string"}, _is_time)
 _FILE = constrained(
     _TEXT, Constraint("the path of a file", lambda path: path.strip().rstrip("/").split("/")[-1] not in ("", ".", ".."))
 )
@@ -114,8 +104,8 @@ CRITERION = KeyTable(
         "title": _TITLE,
         "points": _POINTS,
         "check": _TEXT,
-        "with": TomlType("a table", {"type": "object"}, _parse_table),
-        "requires": TomlType("a list of texts", {"type": "array", "items": _TEXT.schema}, _parse_texts),
+        "with": _table({"type": "object"}),
+        "requires": simple_type("a list of texts", {"type": "array", "items": _TEXT.schema}, _is_texts, tuple),
         "feedback": _TEXT,
     },
     optional=("about", "with", "requires", "feedback"),
@@ -124,7 +114,7 @@ EVIDENCE = KeyTable("evidence", {"id": _ID, "part": _TEXT, "title": _TITLE, "nam
 LATE = KeyTable(
     "late policy",
     {
-        "due": TomlType("a time", {"type": "string"}, _parse_time),
+        "due": _TIME,
         "grace_minutes": _MINUTES,
         "percent_per_day": _PERCENT,
         "floor_percent": _PERCENT,
@@ -144,7 +134,7 @@ RUBRIC = KeyTable(
         "part": _rows(PART),
         "criterion": _rows(CRITERION),
         "evidence": _rows(EVIDENCE),
-        "late": TomlType("a table", LATE.schema, _parse_table),
+        "late": _table(LATE.schema),
     },
     optional=("reference", "urdf", "package", "points", "answers", "evidence", "late"),
 )

@@ -208,9 +208,9 @@ CASES = (
         placement.centre_at,
         {"link": "wheel", "relative_to": "base", "xyz": (-0.15, 0.225, 0.0), "tolerance": 0.002},
         passing=rolling(),
-        says="the centre of what 'wheel' shows is at -0.15 0.225 0 m in 'base'",
+        says="the centre of the visual of 'wheel' is at -0.15 0.225 0 m in 'base'",
         failing=rolling(xyz=(-0.15, 0.2, 0.0)),
-        complains="the centre of what 'wheel' shows is at -0.15 0.2 0 m in 'base'; it should be at -0.15 0.225 0 m"
+        complains="the centre of the visual of 'wheel' is at -0.15 0.2 0 m in 'base'; it should be at -0.15 0.225 0 m"
         " (y 25 mm too small)",
         at='xyz="-0.15 0.2 0.0"',
         edges={"tolerance": lambda off: rolling(xyz=(-0.15, 0.225 + off, 0.0))},

@@ -102,7 +102,7 @@ def test_a_box_passes_in_every_orientation_that_lies_right(order: list[int], tur
     size = (SIZE[order[0]], SIZE[order[1]], SIZE[order[2]])
     rpy = (turns[0] * pi / 2, turns[1] * pi / 2, turns[2] * pi / 2)
     outcome = ask(shows_box, boxed(*size, rpy=rpy), **BOX)
-    assert outcome.measured in [pytest.approx(each) for each in permutations(SIZE)]
+    assert outcome.measured in [pytest.approx(size) for size in permutations(SIZE)]
     assert (outcome.status == "passed") == (outcome.measured == pytest.approx(SIZE))
 
 
@@ -390,7 +390,7 @@ def test_a_grey_carries_its_measure() -> None:
 @given(channels=st.tuples(*[st.integers(0, 100)] * 3), level=st.integers(0, 100))
 def test_grey_is_decided_by_the_channels_alone(channels: tuple[int, int, int], level: int) -> None:
     """For every colour in hundredths the verdict is what exact arithmetic says, the tolerance's end included."""
-    rgba = " ".join(f"{each / 100:.2f}" for each in channels) + " 1"
+    rgba = " ".join(f"{channel / 100:.2f}" for channel in channels) + " 1"
     outcome = ask(shows_grey, painted(rgba, "lidar"), link="lidar", at_least=level / 100, tolerance=0.01)
     assert (outcome.status == "passed") == (max(channels) - min(channels) <= 1 and min(channels) >= level)
 

@@ -4,7 +4,7 @@ import pytest
 
 from grader.checks.launch import launch_finds_files, launch_found, launch_starts
 from tests.checks.asking import finds, lacks
-from tests.checks.hand_ins import FOLDER, LAUNCH, REFERENCE, RVIZ, SETUP, URDF, HandIn, start_of
+from tests.checks.submitted import FOLDER, LAUNCH, REFERENCE, RVIZ, SETUP, URDF, Submitted, start_of
 
 NAME = "my_robot_rviz.launch.py"
 STATES = "joint_state_publisher or joint_state_publisher_gui"
@@ -27,8 +27,8 @@ YAML = "my_robot/launch/my_robot_rviz.launch.yaml"
 INNER = "my_robot/launch/robot.launch.py"
 
 
-def launch(old: str, new: str, of: HandIn = REFERENCE) -> HandIn:
-    """A hand-in with another text in its launch file."""
+def launch(old: str, new: str, of: Submitted = REFERENCE) -> Submitted:
+    """A submission with another text in its launch file."""
     return of.replacing(LAUNCH, old, new)
 
 
@@ -41,24 +41,24 @@ WITH_IMPORTS = launch(
 )
 
 
-def described(code: str) -> HandIn:
+def described(code: str) -> Submitted:
     """The reference with another way to get at the robot's description."""
     return launch(READ, f"    robot_description = {code}\n", WITH_IMPORTS)
 
 
-def declaring(argument: str, of: HandIn) -> HandIn:
-    """A hand-in that declares another launch argument before the others."""
+def declaring(argument: str, of: Submitted) -> Submitted:
+    """A submission that declares another launch argument before the others."""
     return launch(GUI, f"        {argument},\n{GUI}", of)
 
 
-def starts(hand_in: HandIn) -> tuple[str, str, object]:
+def starts(submitted: Submitted) -> tuple[str, str, object]:
     """What is found of the nodes that the lab asks for."""
-    return finds(launch_starts, hand_in, name=NAME, nodes=NODES)
+    return finds(launch_starts, submitted, name=NAME, nodes=NODES)
 
 
-def finds_files(hand_in: HandIn) -> tuple[str, str, object]:
+def finds_files(submitted: Submitted) -> tuple[str, str, object]:
     """What is found of the files that the launch file names."""
-    return finds(launch_finds_files, hand_in, name=NAME)
+    return finds(launch_finds_files, submitted, name=NAME)
 
 
 DISPLAY = REFERENCE.with_files(
@@ -145,17 +145,17 @@ launch:
 # --- Its name ---------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("hand_in", [REFERENCE, IN_XML, IN_YAML, INCLUDES], ids=["py", "xml", "yaml", "two"])
-def test_the_launch_file_is_found_in_any_language(hand_in: HandIn) -> None:
+@pytest.mark.parametrize("submitted", [REFERENCE, IN_XML, IN_YAML, INCLUDES], ids=["py", "xml", "yaml", "two"])
+def test_the_launch_file_is_found_in_any_language(submitted: Submitted) -> None:
     """Its name counts, and not the language that it is written in."""
-    path = next(each for each in (LAUNCH, XML, YAML) if each in hand_in.files).removeprefix("my_robot/")
-    assert finds(launch_found, hand_in, name=NAME) == ("passed", f"the launch file is {path}", None)
+    path = next(name for name in (LAUNCH, XML, YAML) if name in submitted.files).removeprefix("my_robot/")
+    assert finds(launch_found, submitted, name=NAME) == ("passed", f"the launch file is {path}", None)
 
 
 def test_the_launch_file_is_found_in_any_folder() -> None:
     """Where it stands is for setup.py to know."""
-    hand_in = REFERENCE.renaming(LAUNCH, "my_robot/my_robot_rviz.launch.py")
-    assert finds(launch_found, hand_in, name=NAME) == ("passed", "the launch file is my_robot_rviz.launch.py", None)
+    submitted = REFERENCE.renaming(LAUNCH, "my_robot/my_robot_rviz.launch.py")
+    assert finds(launch_found, submitted, name=NAME) == ("passed", "the launch file is my_robot_rviz.launch.py", None)
 
 
 @pytest.mark.parametrize(
@@ -163,22 +163,22 @@ def test_the_launch_file_is_found_in_any_folder() -> None:
 )
 def test_another_name_costs_the_name_only(name: str) -> None:
     """A launch file of another name fails for its name, and is looked at all the same."""
-    hand_in = REFERENCE.renaming(LAUNCH, f"my_robot/launch/{name}")
+    submitted = REFERENCE.renaming(LAUNCH, f"my_robot/launch/{name}")
     message = f"there is no launch file 'my_robot_rviz.launch.py'; the package has launch/{name}"
-    assert finds(launch_found, hand_in, name=NAME) == ("failed", message, None)
-    assert starts(hand_in) == ("passed", STARTED, None)
+    assert finds(launch_found, submitted, name=NAME) == ("failed", message, None)
+    assert starts(submitted) == ("passed", STARTED, None)
 
 
 @pytest.mark.parametrize("name", ["my_robot_rviz", "my_robot_rviz.launch", "my_robot_rviz.launch.py.txt"])
 def test_without_a_proper_ending_it_cannot_be_started(name: str) -> None:
     """A launch file without an extension, or with one more, is named, and looked at all the same."""
-    hand_in = REFERENCE.renaming(LAUNCH, f"my_robot/launch/{name}")
+    submitted = REFERENCE.renaming(LAUNCH, f"my_robot/launch/{name}")
     message = (
         f"there is no launch file 'my_robot_rviz.launch.py'; the package has launch/{name}, "
         "which ros2 launch cannot start without an ending such as .launch.py"
     )
-    assert finds(launch_found, hand_in, name=NAME) == ("failed", message, None)
-    assert starts(hand_in) == ("passed", STARTED, None)
+    assert finds(launch_found, submitted, name=NAME) == ("failed", message, None)
+    assert starts(submitted) == ("passed", STARTED, None)
 
 
 def test_the_file_of_the_name_is_meant() -> None:
@@ -195,25 +195,25 @@ def test_without_launch_file_the_same_is_missed() -> None:
     """No launch file is one thing that is missed, whatever is asked of it."""
     gone, empty = REFERENCE.without("my_robot/launch"), REFERENCE.renaming(LAUNCH, "my_robot/launch/README.md")
     message = "the package has no launch file: no file ends in .launch.py, .launch.xml or .launch.yaml"
-    for hand_in, words in ((gone, f"{message}, and there is no folder launch"), (empty, message)):
+    for submitted, words in ((gone, f"{message}, and there is no folder launch"), (empty, message)):
         expected = ("launch file in the package", "", words, None)
-        assert lacks(launch_found, hand_in, name=NAME) == expected
-        assert lacks(launch_starts, hand_in, name=NAME, nodes=NODES) == expected
-        assert lacks(launch_finds_files, hand_in, name=NAME) == expected
+        assert lacks(launch_found, submitted, name=NAME) == expected
+        assert lacks(launch_starts, submitted, name=NAME, nodes=NODES) == expected
+        assert lacks(launch_finds_files, submitted, name=NAME) == expected
 
 
 # --- What it starts ---------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
-    "hand_in",
+    "submitted",
     [REFERENCE, WITH_IMPORTS, DISPLAY, INCLUDES, IN_XML, IN_YAML],
     ids=["py", "imports", "urdf_launch", "include", "xml", "yaml"],
 )
-def test_equivalent_launch_files_pass(hand_in: HandIn) -> None:
+def test_equivalent_launch_files_pass(submitted: Submitted) -> None:
     """The nodes are found in every language, and in launch files that are included."""
-    assert starts(hand_in) == ("passed", STARTED, None)
-    assert finds_files(hand_in)[0] == "passed"
+    assert starts(submitted) == ("passed", STARTED, None)
+    assert finds_files(submitted)[0] == "passed"
 
 
 def test_the_defaults_of_arguments_count() -> None:
@@ -229,7 +229,7 @@ def test_other_nodes_do_not_matter() -> None:
 
 
 @pytest.mark.parametrize(
-    ("hand_in", "missing", "running", "at"),
+    ("submitted", "missing", "running", "at"),
     [
         (launch(RVIZ_NODE, ""), "rviz2", "joint_state_publisher_gui, robot_state_publisher", None),
         (
@@ -262,44 +262,44 @@ def test_other_nodes_do_not_matter() -> None:
     ],
     ids=["left-out", "package", "executable", "misspelt", "description", "empty"],
 )  # fmt: skip
-def test_a_node_that_is_not_started_is_named(hand_in: HandIn, missing: str, running: str, at: str | None) -> None:
+def test_a_node_that_is_not_started_is_named(submitted: Submitted, missing: str, running: str, at: str | None) -> None:
     """What is missing is named beside what is started, with the place of a node that comes near."""
-    place = hand_in.place(LAUNCH, at) if at is not None else None
-    assert starts(hand_in) == ("failed", f"the launch file does not start {missing}; it starts {running}", place)
+    place = submitted.place(LAUNCH, at) if at is not None else None
+    assert starts(submitted) == ("failed", f"the launch file does not start {missing}; it starts {running}", place)
 
 
 def test_a_node_that_is_made_and_forgotten() -> None:
     """A node counts only if it is part of the LaunchDescription."""
     made = "    rviz = Node(package='rviz2', executable='rviz2')\n\n    return LaunchDescription(["
-    hand_in = launch("    return LaunchDescription([", made, launch(RVIZ_NODE, ""))
+    submitted = launch("    return LaunchDescription([", made, launch(RVIZ_NODE, ""))
     message = (
         "the launch file does not start rviz2; it starts joint_state_publisher_gui, robot_state_publisher. "
         "It creates the node rviz2, but the LaunchDescription does not contain it"
     )
-    assert starts(hand_in) == ("failed", message, hand_in.place(LAUNCH, "Node(package='rviz2'"))
+    assert starts(submitted) == ("failed", message, submitted.place(LAUNCH, "Node(package='rviz2'"))
 
 
 def test_a_condition_that_is_off() -> None:
     """A node behind a condition that is off by default is not started by the lab's command."""
-    hand_in = launch(
+    submitted = launch(
         "            arguments=['-d'", "            condition=UnlessCondition(gui),\n            arguments=['-d'"
     )
     message = (
         "the launch file does not start rviz2; it starts joint_state_publisher_gui, robot_state_publisher. "
         "A condition keeps rviz2 from starting, unless an argument is given"
     )
-    assert starts(hand_in) == ("failed", message, hand_in.place(LAUNCH, "Node(\n            package='rviz2'"))
+    assert starts(submitted) == ("failed", message, submitted.place(LAUNCH, "Node(\n            package='rviz2'"))
 
 
 def test_an_argument_without_default_is_for_a_person() -> None:
     """Which node is started then depends on who starts it."""
-    hand_in = launch("default_value='true', ", "")
-    assert starts(hand_in) == (
+    submitted = launch("default_value='true', ", "")
+    assert starts(submitted) == (
         "pending",
         f"cannot determine statically whether {STATES} is started; needs manual grading",
         None,
     )
-    worse = launch(RVIZ_NODE, "", hand_in)
+    worse = launch(RVIZ_NODE, "", submitted)
     assert starts(worse)[:2] == (
         "failed",
         f"the launch file does not start {STATES}, rviz2; it starts robot_state_publisher",
@@ -308,8 +308,8 @@ def test_an_argument_without_default_is_for_a_person() -> None:
 
 def test_what_only_a_run_tells_is_for_a_person() -> None:
     """Nodes that depend on the machine, or on launch files that nobody has, are left open."""
-    hand_in = launch("executable='rviz2'", "executable=os.environ['VIEWER']")
-    status, message, place = starts(hand_in)
+    submitted = launch("executable='rviz2'", "executable=os.environ['VIEWER']")
+    status, message, place = starts(submitted)
     assert (status, place) == ("pending", None)
     assert message.startswith("cannot determine statically whether rviz2 is started: ")
     foreign = DISPLAY.replacing(LAUNCH, "'urdf_launch'", "'urdf_tutorial'")
@@ -328,7 +328,7 @@ def test_what_only_a_run_tells_is_for_a_person() -> None:
 
 
 @pytest.mark.parametrize(
-    ("hand_in", "message", "at"),
+    ("submitted", "message", "at"),
     [
         (
             launch("from launch_ros.actions import Node\n", ""),
@@ -363,20 +363,20 @@ def test_what_only_a_run_tells_is_for_a_person() -> None:
     ],
     ids=["node", "os", "argument", "in-command", "space", "items"],
 )
-def test_what_stops_the_launch_fails(hand_in: HandIn, message: str, at: str) -> None:
+def test_what_stops_the_launch_fails(submitted: Submitted, message: str, at: str) -> None:
     """Whatever makes ros2 launch stop is told once, at its place, and the files count as found or as open."""
-    assert starts(hand_in) == ("failed", message, hand_in.place(LAUNCH, at))
-    assert finds_files(hand_in)[0] in ("passed", "pending")
+    assert starts(submitted) == ("failed", message, submitted.place(LAUNCH, at))
+    assert finds_files(submitted)[0] in ("passed", "pending")
 
 
 def test_several_faults_are_counted() -> None:
     """The first fault is told, and how many others there are."""
-    hand_in = launch("from launch_ros.actions import Node\n", "", launch("import os\n", ""))
-    assert starts(hand_in)[1] == "the name 'os' is not defined or imported (and 1 more)"
+    submitted = launch("from launch_ros.actions import Node\n", "", launch("import os\n", ""))
+    assert starts(submitted)[1] == "the name 'os' is not defined or imported (and 1 more)"
 
 
 @pytest.mark.parametrize(
-    ("hand_in", "message", "at"),
+    ("submitted", "message", "at"),
     [
         (
             launch("            executable='rviz2',", "            executable='rviz2'"),
@@ -406,20 +406,20 @@ def test_several_faults_are_counted() -> None:
     ],
     ids=["comma", "bracket", "entry", "empty", "return"],
 )
-def test_a_launch_file_of_which_nothing_is_known(hand_in: HandIn, message: str, at: str | None) -> None:
+def test_a_launch_file_of_which_nothing_is_known(submitted: Submitted, message: str, at: str | None) -> None:
     """A fault that hides everything is missed once, under one key, by both checks."""
     for check, arguments in ((launch_starts, {"nodes": NODES}), (launch_finds_files, {})):
-        *key, place = lacks(check, hand_in, name=NAME, **arguments)
+        *key, place = lacks(check, submitted, name=NAME, **arguments)
         assert key == ["launch file", "launch/my_robot_rviz.launch.py", message]
         if at is None:
             assert place == start_of(LAUNCH)
         elif at != ")\n":
-            assert place == hand_in.place(LAUNCH, at)
-    assert finds(launch_found, hand_in, name=NAME)[0] == "passed"
+            assert place == submitted.place(LAUNCH, at)
+    assert finds(launch_found, submitted, name=NAME)[0] == "passed"
 
 
 @pytest.mark.parametrize(
-    ("hand_in", "path", "message", "at"),
+    ("submitted", "path", "message", "at"),
     [
         (
             IN_XML.replacing(XML, "</node>", ""),
@@ -443,13 +443,13 @@ def test_a_launch_file_of_which_nothing_is_known(hand_in: HandIn, message: str, 
     ],
     ids=["xml", "yaml", "key", "root"],
 )
-def test_xml_and_yaml_that_cannot_be_read(hand_in: HandIn, path: str, message: str, at: str) -> None:
+def test_xml_and_yaml_that_cannot_be_read(submitted: Submitted, path: str, message: str, at: str) -> None:
     """A launch file in another language is missed in the same way."""
-    kind, name, words, place = lacks(launch_starts, hand_in, name=NAME, nodes=NODES)
+    kind, name, words, place = lacks(launch_starts, submitted, name=NAME, nodes=NODES)
     assert (kind, name) == ("launch file", path.removeprefix("my_robot/"))
     assert words.startswith(message)
     assert place is not None
-    assert (place.path, place.line) == (path, hand_in.place(path, at).line)
+    assert (place.path, place.line) == (path, submitted.place(path, at).line)
 
 
 @pytest.mark.parametrize(
@@ -471,8 +471,8 @@ def test_xml_and_yaml_that_cannot_be_read(hand_in: HandIn, path: str, message: s
 )
 def test_what_ros1_wrote_stops_the_launch(old: str, new: str, message: str) -> None:
     """Words of ROS 1 in a launch file in XML are told, with those of ROS 2."""
-    hand_in = IN_XML.replacing(XML, old, new)
-    status, words, _ = starts(hand_in)
+    submitted = IN_XML.replacing(XML, old, new)
+    status, words, _ = starts(submitted)
     assert (status, words) == ("failed", message)
 
 
@@ -543,15 +543,15 @@ def test_flat_and_nested_paths_have_to_agree() -> None:
     """The launch file and setup.py have to mean the same place, whichever it is."""
     wanted = launch(URDF_PATH, "os.path.join(share, 'urdf', 'my_robot.urdf')")
     flat, nested = "share/my_robot/my_robot.urdf", "share/my_robot/urdf/my_robot.urdf"
-    agreeing = HandIn({**NESTED.files, LAUNCH: wanted.files[LAUNCH]})
+    agreeing = Submitted({**NESTED.files, LAUNCH: wanted.files[LAUNCH]})
     assert finds_files(agreeing) == ("passed", FOUND.replace(flat, nested), None)
-    for hand_in, asked, put in ((NESTED, flat, nested), (wanted, nested, flat)):
+    for submitted, asked, put in ((NESTED, flat, nested), (wanted, nested, flat)):
         message = f"it looks for the URDF at {asked}, but a build installs it as {put}"
-        assert finds_files(hand_in) == ("failed", message, hand_in.place(LAUNCH, "open("))
+        assert finds_files(submitted) == ("failed", message, submitted.place(LAUNCH, "open("))
 
 
 @pytest.mark.parametrize(
-    ("hand_in", "message", "at"),
+    ("submitted", "message", "at"),
     [
         (
             launch(URDF_PATH, "'/home/student/ros2_ws/src/my_robot/urdf/my_robot.urdf'"),
@@ -645,10 +645,10 @@ def test_flat_and_nested_paths_have_to_agree() -> None:
         "bare-d", "no-description", "path-given", "urdf_launch-path", "urdf_launch-package", "urdf_launch-rviz",
     ],
 )  # fmt: skip
-def test_a_file_that_is_not_where_it_is_looked_for(hand_in: HandIn, message: str, at: str) -> None:
+def test_a_file_that_is_not_where_it_is_looked_for(submitted: Submitted, message: str, at: str) -> None:
     """Each way to miss a file is told in its own words, where it is named; the nodes are started all the same."""
-    assert finds_files(hand_in) == ("failed", message, hand_in.place(LAUNCH, at))
-    assert starts(hand_in)[0] == "passed"
+    assert finds_files(submitted) == ("failed", message, submitted.place(LAUNCH, at))
+    assert starts(submitted)[0] == "passed"
 
 
 def test_the_same_in_xml_and_yaml() -> None:
@@ -664,9 +664,9 @@ def test_the_same_in_xml_and_yaml() -> None:
 
 def test_two_wrong_paths_are_both_told() -> None:
     """One fault does not hide the other."""
-    hand_in = launch(RVIZ_PATH, "'my_robot.rviz'", launch(URDF_PATH, "'/home/me/my_robot.urdf'"))
-    status, message, place = finds_files(hand_in)
-    assert (status, place) == ("failed", hand_in.place(LAUNCH, "open("))
+    submitted = launch(RVIZ_PATH, "'my_robot.rviz'", launch(URDF_PATH, "'/home/me/my_robot.urdf'"))
+    status, message, place = finds_files(submitted)
+    assert (status, place) == ("failed", submitted.place(LAUNCH, "open("))
     assert "/home/me/my_robot.urdf" in message
     assert "; it looks for the RViz file at my_robot.rviz, in the folder" in message
 
@@ -687,7 +687,7 @@ def test_a_launch_file_that_names_nothing_is_missed() -> None:
 
 
 @pytest.mark.parametrize(
-    ("hand_in", "key"),
+    ("submitted", "key"),
     [
         (REFERENCE.replacing(SETUP, "        (os.path.join('share', package_name), glob('urdf/*')),\n", ""), "installed urdf"),
         (REFERENCE.replacing(SETUP, "        (os.path.join('share', package_name), glob('rviz/*')),\n", ""), "installed rviz"),
@@ -697,9 +697,9 @@ def test_a_launch_file_that_names_nothing_is_missed() -> None:
     ],
     ids=["urdf", "rviz", "no-setup", "syntax", "no-call"],
 )  # fmt: skip
-def test_what_is_not_installed_is_missed_as_such(hand_in: HandIn, key: str) -> None:
+def test_what_is_not_installed_is_missed_as_such(submitted: Submitted, key: str) -> None:
     """Where a file is not installed at all, the same is missed as by the check of what is installed."""
-    assert lacks(launch_finds_files, hand_in, name=NAME)[:2] == (key, FOLDER)
+    assert lacks(launch_finds_files, submitted, name=NAME)[:2] == (key, FOLDER)
 
 
 @pytest.mark.parametrize(("path", "kind"), [(URDF, "URDF"), (RVIZ, "RViz file")])
@@ -726,7 +726,7 @@ def test_a_file_of_another_package_is_for_a_person() -> None:
     assert finds_files(other) == ("pending", message, None)
 
 
-def test_a_second_package_of_the_hand_in_counts() -> None:
+def test_a_second_package_of_the_submission_counts() -> None:
     """The URDF may be in a description package that was handed in, too."""
     description = {
         path.replace(FOLDER, "my_description", 1): str(content).replace("my_robot'", "my_description'")
@@ -737,9 +737,11 @@ def test_a_second_package_of_the_hand_in_counts() -> None:
         ">my_robot<", ">my_description<"
     )
     description["my_description/resource/my_description"] = ""
-    hand_in = REFERENCE.without(URDF).with_files(description)
-    hand_in = launch(URDF_PATH, "os.path.join(get_package_share_directory('my_description'), 'my_robot.urdf')", hand_in)
-    assert finds_files(hand_in) == (
+    submitted = REFERENCE.without(URDF).with_files(description)
+    submitted = launch(
+        URDF_PATH, "os.path.join(get_package_share_directory('my_description'), 'my_robot.urdf')", submitted
+    )
+    assert finds_files(submitted) == (
         "passed",
         FOUND.replace("my_robot/my_robot.urdf", "my_description/my_robot.urdf"),
         None,
@@ -748,15 +750,15 @@ def test_a_second_package_of_the_hand_in_counts() -> None:
 
 def test_another_name_in_package_xml_is_no_fault_here() -> None:
     """The package is found by its entry in the resource index."""
-    hand_in = REFERENCE.replacing("my_robot/package.xml", ">my_robot<", ">robot_lab<")
-    assert finds_files(hand_in) == ("passed", FOUND, None)
+    submitted = REFERENCE.replacing("my_robot/package.xml", ">my_robot<", ">robot_lab<")
+    assert finds_files(submitted) == ("passed", FOUND, None)
 
 
 # --- What it includes -------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
-    ("hand_in", "message"),
+    ("submitted", "message"),
     [
         (
             INCLUDES.replacing(LAUNCH, "share, 'launch', ", "share, "),
@@ -775,20 +777,20 @@ def test_another_name_in_package_xml_is_no_fault_here() -> None:
     ],
     ids=["elsewhere", "no-such-file"],
 )
-def test_an_included_file_that_is_not_there(hand_in: HandIn, message: str) -> None:
+def test_an_included_file_that_is_not_there(submitted: Submitted, message: str) -> None:
     """An included launch file has to be where it is looked for; what would have been started is left open."""
-    place = hand_in.place(LAUNCH, "IncludeLaunchDescription(P")
-    assert finds_files(hand_in) == ("failed", message, place)
-    assert starts(hand_in)[0] == "pending"
+    place = submitted.place(LAUNCH, "IncludeLaunchDescription(P")
+    assert finds_files(submitted) == ("failed", message, place)
+    assert starts(submitted)[0] == "pending"
 
 
 def test_an_included_file_that_is_not_installed() -> None:
     """An included launch file has to be installed, too."""
     entry = "glob(os.path.join('launch', '*launch.[pxy][yma]*'))"
-    hand_in = INCLUDES.replacing(SETUP, entry, "['launch/my_robot_rviz.launch.py']")
+    submitted = INCLUDES.replacing(SETUP, entry, "['launch/my_robot_rviz.launch.py']")
     message = "it looks for the launch file at share/my_robot/launch/robot.launch.py, but a build does not install robot.launch.py"
-    place = hand_in.place(LAUNCH, "IncludeLaunchDescription(P")
-    assert lacks(launch_finds_files, hand_in, name=NAME) == ("installed include", FOLDER, message, place)
+    place = submitted.place(LAUNCH, "IncludeLaunchDescription(P")
+    assert lacks(launch_finds_files, submitted, name=NAME) == ("installed include", FOLDER, message, place)
 
 
 def test_a_fault_in_an_included_file() -> None:
@@ -814,11 +816,11 @@ def test_a_fault_in_an_included_file() -> None:
 
 def test_a_function_that_ros_calls_is_followed() -> None:
     """OpaqueFunction calls its function with a context: what it returns is started, too."""
-    hand_in = launch(
+    submitted = launch(
         RVIZ_NODE,
         "        OpaqueFunction(function=lambda context: [\n"
         f"            Node(package='rviz2', executable='rviz2', arguments=['-d', {RVIZ_PATH}])]),\n",
         launch("from launch.actions import D", "from launch.actions import OpaqueFunction, D"),
     )
-    assert starts(hand_in) == ("passed", STARTED, None)
-    assert finds_files(hand_in) == ("passed", FOUND, None)
+    assert starts(submitted) == ("passed", STARTED, None)
+    assert finds_files(submitted) == ("passed", FOUND, None)

@@ -14,7 +14,7 @@ from grader.checks.outcome import Outcome
 from grader.documents.collection import MAX_LINES
 from grader.source import Location
 from tests.checks.asking import ask
-from tests.checks.hand_ins import ANSWERS, REFERENCE, URDF, HandIn, gif, jpeg, png
+from tests.checks.submitted import ANSWERS, REFERENCE, URDF, Submitted, gif, jpeg, png
 from tests.samples import ROOT
 
 PLACES = ["task 1 step 15", "step 15"]
@@ -22,13 +22,13 @@ ANSWER = "There are two roots."
 QUESTION = "What happens?"
 STEP_8 = ["task 1 step 8"]
 WEBCAM = ["task 3 step 3", "task 3", "webcam", "camera"]
-ALONE = HandIn({URDF: REFERENCE.files[URDF]})
+ALONE = Submitted({URDF: REFERENCE.files[URDF]})
 NOT_FOUND = "What happens? No answer was found under 'task 1 step 15' or 'step 15'"
 
 
-def answer_in(hand_in: HandIn, places: Sequence[str] = PLACES) -> Outcome:
+def answer_in(submitted: Submitted, places: Sequence[str] = PLACES) -> Outcome:
     """What is found of the question about step 15; always pending, and never with the model answer in it."""
-    outcome = ask(answered, hand_in, question=QUESTION, answer=ANSWER, places=list(places))
+    outcome = ask(answered, submitted, question=QUESTION, answer=ANSWER, places=list(places))
     assert (outcome.status, outcome.expected) == ("pending", None)
     assert ANSWER not in repr(outcome)
     return outcome
@@ -43,9 +43,9 @@ def passage(files: dict[str, str | bytes], places: Sequence[str] = PLACES) -> tu
     return outcome.measured, outcome.location
 
 
-def pictures(hand_in: HandIn, names: Sequence[str] = STEP_8) -> tuple[str, object]:
+def pictures(submitted: Submitted, names: Sequence[str] = STEP_8) -> tuple[str, object]:
     """What is found of a piece of evidence; always pending."""
-    outcome = ask(evidence_shown, hand_in, names=list(names))
+    outcome = ask(evidence_shown, submitted, names=list(names))
     assert (outcome.status, outcome.expected, outcome.location) == ("pending", None, None)
     return outcome.message, outcome.measured
 
@@ -190,8 +190,8 @@ def test_other_texts_are_not_looked_through() -> None:
 
 def test_documents_by_other_names() -> None:
     """A rubric may say which documents hold the answers."""
-    hand_in = ALONE.with_files({"answers.txt": "Step 15: no", "report.tex": "Step 15: yes"})
-    outcome = ask(answered, hand_in, question=QUESTION, answer=ANSWER, places=PLACES, files=("*.tex",))
+    submitted = ALONE.with_files({"answers.txt": "Step 15: no", "report.tex": "Step 15: yes"})
+    outcome = ask(answered, submitted, question=QUESTION, answer=ANSWER, places=PLACES, files=("*.tex",))
     assert outcome.measured == "Step 15: yes"
 
 
@@ -255,8 +255,8 @@ def test_all_documents_share_one_budget(tmp_path: Path, monkeypatch: pytest.Monk
     converter(SLOW, tmp_path / "slow.py", monkeypatch)
     monkeypatch.setattr("grader.documents.collection.MAX_SECONDS", 0.5)
     began = time.monotonic()
-    hand_in = ALONE.with_files({f"{name}.pdf": b"" for name in "abcd"} | {"e.txt": "Task 1 step 15: It vanishes."})
-    outcome = answer_in(hand_in)
+    submitted = ALONE.with_files({f"{name}.pdf": b"" for name in "abcd"} | {"e.txt": "Task 1 step 15: It vanishes."})
+    outcome = answer_in(submitted)
     assert outcome.measured == "Task 1 step 15: It vanishes."
     assert outcome.message.endswith(f"(not read: {'; '.join(f'{name}.pdf {TOO_LATE}' for name in 'abcd')})")
     assert time.monotonic() - began < 15  # and not one of its 60 s

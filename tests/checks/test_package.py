@@ -5,7 +5,7 @@ import pytest
 from grader.checks.package import build_installs, installs_files, package_found, package_type, setup_imports
 from grader.source import Location
 from tests.checks.asking import finds, lacks
-from tests.checks.hand_ins import (
+from tests.checks.submitted import (
     FOLDER,
     LAUNCH,
     MANIFEST,
@@ -13,7 +13,7 @@ from tests.checks.hand_ins import (
     RVIZ,
     SETUP,
     URDF,
-    HandIn,
+    Submitted,
     png,
     start_of,
 )
@@ -33,22 +33,22 @@ STOPS = "the build stops here: "
 every_kind = pytest.mark.parametrize("kind", KINDS)
 
 
-def setup(old: str, new: str, of: HandIn = REFERENCE) -> HandIn:
-    """A hand-in with another text in its setup.py."""
+def setup(old: str, new: str, of: Submitted = REFERENCE) -> Submitted:
+    """A submission with another text in its setup.py."""
     return of.replacing(SETUP, old, new)
 
 
-def manifest(old: str, new: str) -> HandIn:
+def manifest(old: str, new: str) -> Submitted:
     """The reference with another text in its package.xml."""
     return REFERENCE.replacing(MANIFEST, old, new)
 
 
-def said(hand_in: HandIn) -> dict[str, str]:
+def said(submitted: Submitted) -> dict[str, str]:
     """What is said of each kind of file: its status, or what is missed."""
     found: dict[str, str] = {}
     for kind, name in KINDS.items():
         try:
-            found[kind] = finds(build_installs, hand_in, kind=kind, name=name)[0]
+            found[kind] = finds(build_installs, submitted, kind=kind, name=name)[0]
         except LookupError as error:
             found[kind] = str(getattr(error, "kind", error))
     return found
@@ -65,7 +65,7 @@ def test_the_package_of_the_lab_is_found() -> None:
     assert finds(package_found, deeper, name="my_robot") == ("passed", message, None)
     other_folder = REFERENCE.renaming(FOLDER, "lab6_final")
     assert finds(package_found, other_folder, name="my_robot") == ("passed", message, None)
-    top = HandIn({path.removeprefix("my_robot/"): content for path, content in REFERENCE.files.items()})
+    top = Submitted({path.removeprefix("my_robot/"): content for path, content in REFERENCE.files.items()})
     assert finds(package_found, top, name="my_robot") == ("passed", message, None)
 
 
@@ -88,17 +88,19 @@ def test_blanks_around_the_filedo_not_count() -> None:
 
 
 def test_of_several_packages_the_named_one_is_meant() -> None:
-    """Another package in the hand-in does not get in the way."""
+    """Another package in the submission does not get in the way."""
     other = manifest(">my_robot<", ">helpers<").files[MANIFEST]
     both = REFERENCE.with_files({"a_helpers/package.xml": other, "a_helpers/setup.py": ""})
     assert finds(package_found, both, name="my_robot")[0] == "passed"
 
 
-@pytest.mark.parametrize("hand_in", [HandIn({"x.png": png()}), HandIn({"my_robot.urdf": REFERENCE.files[URDF]})])
-def test_no_package_is_missed(hand_in: HandIn) -> None:
+@pytest.mark.parametrize(
+    "submitted", [Submitted({"x.png": png()}), Submitted({"my_robot.urdf": REFERENCE.files[URDF]})]
+)
+def test_no_package_is_missed(submitted: Submitted) -> None:
     """Pictures or a URDF are no package."""
     message = "the submission has no ROS 2 package: there is no package.xml"
-    assert lacks(package_found, hand_in, name="my_robot") == ("package", "", message, None)
+    assert lacks(package_found, submitted, name="my_robot") == ("package", "", message, None)
 
 
 def test_a_package_without_package_xml_is_missed() -> None:
@@ -115,7 +117,7 @@ def test_a_missing_package_xml_costs_no_installed_file() -> None:
 
 
 @pytest.mark.parametrize(
-    ("hand_in", "message", "line", "column"),
+    ("submitted", "message", "line", "column"),
     [
         (
             manifest("</name>", "</nam>"),
@@ -132,11 +134,11 @@ def test_a_missing_package_xml_costs_no_installed_file() -> None:
     ],
     ids=["broken", "robot"],
 )
-def test_a_package_xml_that_cannot_be_read(hand_in: HandIn, message: str, line: int, column: int) -> None:
+def test_a_package_xml_that_cannot_be_read(submitted: Submitted, message: str, line: int, column: int) -> None:
     """A broken package.xml is missed once, under one key, with its place."""
     expected = ("package.xml", "my_robot", message, Location(MANIFEST, line, column))
-    assert lacks(package_found, hand_in, name="my_robot") == expected
-    assert lacks(package_type, hand_in, build_type="ament_python") == expected
+    assert lacks(package_found, submitted, name="my_robot") == expected
+    assert lacks(package_type, submitted, build_type="ament_python") == expected
 
 
 def test_a_package_without_name() -> None:
@@ -149,8 +151,8 @@ def test_a_package_without_name() -> None:
     )
     message = "<name> of package.xml is empty"
     assert finds(package_found, empty, name="my_robot") == ("failed", message, empty.place(MANIFEST, "<name>"))
-    for each in (none, empty):
-        assert finds(package_type, each, build_type="ament_python")[0] == "passed"
+    for files in (none, empty):
+        assert finds(package_type, files, build_type="ament_python")[0] == "passed"
 
 
 @pytest.mark.parametrize(
@@ -176,15 +178,19 @@ def test_a_package_without_name() -> None:
 )
 def test_another_build_type_fails(old: str, new: str, message: str, at: str) -> None:
     """Another build type, or none, fails where it is or should be said."""
-    hand_in = manifest(old, new)
-    assert finds(package_type, hand_in, build_type="ament_python") == ("failed", message, hand_in.place(MANIFEST, at))
+    submitted = manifest(old, new)
+    assert finds(package_type, submitted, build_type="ament_python") == (
+        "failed",
+        message,
+        submitted.place(MANIFEST, at),
+    )
 
 
 def test_the_build_type_passes() -> None:
     """The build type that is asked for passes, blanks around it or not."""
-    for hand_in in (REFERENCE, manifest("ament_python", "\n ament_python ")):
+    for submitted in (REFERENCE, manifest("ament_python", "\n ament_python ")):
         expected = ("passed", "the build type is 'ament_python'", None)
-        assert finds(package_type, hand_in, build_type="ament_python") == expected
+        assert finds(package_type, submitted, build_type="ament_python") == expected
 
 
 # --- What is installed ------------------------------------------------------------------------------------------------
@@ -198,7 +204,7 @@ def test_the_reference_is_installed(kind: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "hand_in",
+    "submitted",
     [
         setup("glob('urdf/*')", "['urdf/my_robot.urdf']"),
         setup("glob('urdf/*')", "glob('urdf/*.urdf')"),
@@ -217,15 +223,15 @@ def test_the_reference_is_installed(kind: str) -> None:
         "list", "ending", "name", "join", "listdir", "f-string", "plus", "plain", "slash", "module", "nested", "alias",
     ],
 )  # fmt: skip
-def test_ways_to_say_the_same_pass(hand_in: HandIn) -> None:
+def test_ways_to_say_the_same_pass(submitted: Submitted) -> None:
     """However data_files is written, what it installs is what counts."""
-    if "glob.glob" in str(hand_in.files[SETUP]):
-        hand_in = setup("from glob import glob", "import glob", hand_in).replacing(
+    if "glob.glob" in str(submitted.files[SETUP]):
+        submitted = setup("from glob import glob", "import glob", submitted).replacing(
             SETUP, " glob('rviz", " glob.glob('rviz"
         )
-        hand_in = hand_in.replacing(SETUP, " glob(os", " glob.glob(os")
-    assert said(hand_in) == dict.fromkeys(KINDS, "passed")
-    assert finds(setup_imports, hand_in)[0] == "passed"
+        submitted = submitted.replacing(SETUP, " glob(os", " glob.glob(os")
+    assert said(submitted) == dict.fromkeys(KINDS, "passed")
+    assert finds(setup_imports, submitted)[0] == "passed"
 
 
 def test_a_loop_over_folders_passes() -> None:
@@ -262,14 +268,14 @@ def test_another_fileof_the_file_passes() -> None:
 )
 def test_a_missing_entry_is_told(kind: str, entry: str) -> None:
     """A file that no entry names is missed by its kind, and the others are installed."""
-    hand_in = setup(f"        {entry}\n", "")
+    submitted = setup(f"        {entry}\n", "")
     message = f"a build does not install {SOURCES[kind]}: no entry of data_files in setup.py names it"
-    assert lacks(build_installs, hand_in, kind=kind, name=KINDS[kind]) == (f"installed {kind}", FOLDER, message, None)
-    assert said(hand_in) == {**dict.fromkeys(KINDS, "passed"), kind: f"installed {kind}"}
+    assert lacks(build_installs, submitted, kind=kind, name=KINDS[kind]) == (f"installed {kind}", FOLDER, message, None)
+    assert said(submitted) == {**dict.fromkeys(KINDS, "passed"), kind: f"installed {kind}"}
 
 
 @pytest.mark.parametrize(
-    ("hand_in", "kind", "reason", "at"),
+    ("submitted", "kind", "reason", "at"),
     [
         (
             setup("glob('urdf/*')", "glob('udrf/*')"),
@@ -304,18 +310,18 @@ def test_a_missing_entry_is_told(kind: str, entry: str) -> None:
     ],
     ids=["folder", "folder-and-ending", "ending", "language", "other-folder"],
 )
-def test_a_pattern_that_finds_nothing_is_told(hand_in: HandIn, kind: str, reason: str, at: str) -> None:
+def test_a_pattern_that_finds_nothing_is_told(submitted: Submitted, kind: str, reason: str, at: str) -> None:
     """A glob without a match installs nothing, in silence: it is named, with its place."""
     message = f"a build does not install {SOURCES[kind]}: {reason}"
-    expected = (f"installed {kind}", FOLDER, message, hand_in.place(SETUP, at))
-    assert lacks(build_installs, hand_in, kind=kind, name=KINDS[kind]) == expected
+    expected = (f"installed {kind}", FOLDER, message, submitted.place(SETUP, at))
+    assert lacks(build_installs, submitted, kind=kind, name=KINDS[kind]) == expected
 
 
 def test_a_pattern_for_something_else_is_not_blamed() -> None:
     """A pattern that finds nothing, but was never meant for the file, is no reason."""
-    hand_in = setup(URDF_ENTRY, "(os.path.join('share', package_name, 'config'), glob('config/*.yaml')),")
+    submitted = setup(URDF_ENTRY, "(os.path.join('share', package_name, 'config'), glob('config/*.yaml')),")
     message = "a build does not install urdf/my_robot.urdf: no entry of data_files in setup.py names it"
-    assert lacks(build_installs, hand_in, kind="urdf", name="my_robot.urdf")[2] == message
+    assert lacks(build_installs, submitted, kind="urdf", name="my_robot.urdf")[2] == message
 
 
 @pytest.mark.parametrize(
@@ -344,8 +350,8 @@ def test_no_such_file_at_all(kind: str, folder: str, message: str) -> None:
 def test_a_launch_file_of_another_fileis_installed() -> None:
     """That it is named otherwise is another criterion's business."""
     for name in ("my_robot_rvix.launch.py", "display.launch.py", "my_robot_rviz_launch.py", "my_robot_rviz.launch.xml"):
-        hand_in = REFERENCE.renaming(LAUNCH, f"my_robot/launch/{name}")
-        assert finds(build_installs, hand_in, kind="launch", name=KINDS["launch"])[0] == "passed"
+        submitted = REFERENCE.renaming(LAUNCH, f"my_robot/launch/{name}")
+        assert finds(build_installs, submitted, kind="launch", name=KINDS["launch"])[0] == "passed"
 
 
 def test_a_launch_file_without_extension_is_not_found_by_the_pattern() -> None:
@@ -368,12 +374,12 @@ def test_a_launch_file_without_extension_is_not_found_by_the_pattern() -> None:
 )
 def test_a_file_that_goes_elsewhere_fails(folder: str, target: str) -> None:
     """ROS 2 looks below share/<package> only."""
-    hand_in = setup(URDF_ENTRY, f"({folder}, glob('urdf/*')),")
+    submitted = setup(URDF_ENTRY, f"({folder}, glob('urdf/*')),")
     message = (
         f"a build installs urdf/my_robot.urdf as {target}; ROS 2 looks for the package's files below share/my_robot/"
     )
-    expected = ("failed", message, hand_in.place(SETUP, "glob('urdf/*')"))
-    assert finds(build_installs, hand_in, kind="urdf", name="my_robot.urdf") == expected
+    expected = ("failed", message, submitted.place(SETUP, "glob('urdf/*')"))
+    assert finds(build_installs, submitted, kind="urdf", name="my_robot.urdf") == expected
 
 
 def test_the_filein_the_resource_index_counts() -> None:
@@ -385,7 +391,7 @@ def test_the_filein_the_resource_index_counts() -> None:
 
 
 @pytest.mark.parametrize(
-    ("hand_in", "kind", "at", "reason"),
+    ("submitted", "kind", "at", "reason"),
     [
         (
             setup("glob('urdf/*')", "['urdf/robot.urdf']"),
@@ -426,15 +432,17 @@ def test_the_filein_the_resource_index_counts() -> None:
     ],
     ids=["no-file", "folder", "misspelt", "no-list", "launch"],
 )
-def test_an_entry_that_stops_the_build_costs_its_own_kind(hand_in: HandIn, kind: str, at: str, reason: str) -> None:
+def test_an_entry_that_stops_the_build_costs_its_own_kind(
+    submitted: Submitted, kind: str, at: str, reason: str
+) -> None:
     """An entry that cannot be installed fails the kind that it is about, and no other."""
-    expected = ("failed", f"the build stops here: {reason}", hand_in.place(SETUP, at))
-    assert finds(build_installs, hand_in, kind=kind, name=KINDS[kind]) == expected
-    assert said(hand_in) == {**dict.fromkeys(KINDS, "passed"), kind: "failed"}
+    expected = ("failed", f"the build stops here: {reason}", submitted.place(SETUP, at))
+    assert finds(build_installs, submitted, kind=kind, name=KINDS[kind]) == expected
+    assert said(submitted) == {**dict.fromkeys(KINDS, "passed"), kind: "failed"}
 
 
 @pytest.mark.parametrize(
-    ("hand_in", "reason"),
+    ("submitted", "reason"),
     [
         (
             REFERENCE.without("my_robot/resource"),
@@ -454,10 +462,10 @@ def test_an_entry_that_stops_the_build_costs_its_own_kind(hand_in: HandIn, kind:
     ],
     ids=["resource", "package.xml", "packages"],
 )
-def test_what_stops_the_whole_build_costs_one_criterion(hand_in: HandIn, reason: str) -> None:
+def test_what_stops_the_whole_build_costs_one_criterion(submitted: Submitted, reason: str) -> None:
     """An entry that is about no kind of file counts as one about the URDF: one mistake costs one criterion."""
     for kind, file in KINDS.items():
-        status, message, _ = finds(build_installs, hand_in, kind=kind, name=file)
+        status, message, _ = finds(build_installs, submitted, kind=kind, name=file)
         assert status == ("failed" if kind == "urdf" else "passed")
         assert kind != "urdf" or message == STOPS + reason
 
@@ -496,11 +504,11 @@ def test_a_setup_py_in_another_encoding_is_missed() -> None:
 @pytest.mark.parametrize("text", ["", "from setuptools import setup\n", "import os\n\nprint(os.getcwd())\n"])
 def test_a_setup_py_without_setup_is_one_fault(text: str) -> None:
     """A setup.py that never calls setup() installs nothing: one thing is missed, the same for each kind."""
-    hand_in = REFERENCE.with_files({SETUP: text})
+    submitted = REFERENCE.with_files({SETUP: text})
     expected = ("call of setup", FOLDER, "a build installs nothing: setup.py does not call setup()", None)
     for kind, file in KINDS.items():
-        assert lacks(build_installs, hand_in, kind=kind, name=file) == expected
-    assert finds(setup_imports, hand_in)[0] == "passed"
+        assert lacks(build_installs, submitted, kind=kind, name=file) == expected
+    assert finds(setup_imports, submitted)[0] == "passed"
 
 
 def test_setup_below_the_main_guard_is_called() -> None:
@@ -528,8 +536,8 @@ def test_what_cmake_installs_is_for_a_person(kind: str) -> None:
 @every_kind
 def test_what_cannot_be_followed_is_for_a_person(kind: str) -> None:
     """Entries that only a run would tell leave every file open that is not seen to be installed."""
-    hand_in = setup("glob('urdf/*')", "os.environ['FILES'].split()")
-    status, message, place = finds(build_installs, hand_in, kind=kind, name=KINDS[kind])
+    submitted = setup("glob('urdf/*')", "os.environ['FILES'].split()")
+    status, message, place = finds(build_installs, submitted, kind=kind, name=KINDS[kind])
     if kind != "urdf":
         assert status == "passed"
         return
@@ -571,7 +579,7 @@ def test_files_by_patterns() -> None:
 
 
 @pytest.mark.parametrize(
-    ("hand_in", "message", "at"),
+    ("submitted", "message", "at"),
     [
         (
             setup("import os\n", ""),
@@ -596,9 +604,9 @@ def test_files_by_patterns() -> None:
     ],
     ids=["os", "glob", "module", "variable"],
 )
-def test_a_filethat_is_not_defined(hand_in: HandIn, message: str, at: str) -> None:
+def test_a_filethat_is_not_defined(submitted: Submitted, message: str, at: str) -> None:
     """A name that nothing defines is told once, at its first use."""
-    assert finds(setup_imports, hand_in) == ("failed", message, hand_in.place(SETUP, at))
+    assert finds(setup_imports, submitted) == ("failed", message, submitted.place(SETUP, at))
 
 
 @pytest.mark.parametrize("line", ["import os\n", "from glob import glob\n"])

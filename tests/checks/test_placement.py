@@ -209,7 +209,7 @@ def test_joint_and_visual_place_the_centre_together(joint_xyz: str, visual_xyz: 
     """It does not matter how the way to the centre is split between the two origins."""
     wheel = link("wheel", visual(cylinder(), xyz=visual_xyz))
     found = scene(BASE, wheel, joint("j", "continuous", "base", "wheel", xyz=joint_xyz, rpy=rpy))
-    assert passes(centre_at, found, **CENTRE) == "the centre of what 'wheel' shows is at -0.15 0.225 0 m in 'base'"
+    assert passes(centre_at, found, **CENTRE) == "the centre of the visual of 'wheel' is at -0.15 0.225 0 m in 'base'"
 
 
 def test_a_wrong_centre_is_pointed_to_where_it_was_moved() -> None:

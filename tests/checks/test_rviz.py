@@ -5,7 +5,7 @@ import pytest
 from grader.checks.rviz import rviz_display_on, rviz_fixed_frame, rviz_found, rviz_shows_robot
 from grader.source import Location
 from tests.checks.asking import Finding, finds, lacks
-from tests.checks.hand_ins import LAUNCH, REFERENCE, RVIZ, SETUP, URDF, HandIn, png, start_of
+from tests.checks.submitted import LAUNCH, REFERENCE, RVIZ, SETUP, URDF, Submitted, png, start_of
 
 NAME = "my_robot.rviz"
 BY_LAUNCH = "my_robot_rviz.launch.py"
@@ -16,22 +16,22 @@ TF = TEXT[TEXT.index("    - Class: rviz_default_plugins/TF") : TEXT.index("  Ena
 SHOWN = "the display 'RobotModel' shows the robot"
 
 
-def rviz(old: str, new: str, of: HandIn = REFERENCE) -> HandIn:
-    """A hand-in with another text in its RViz file."""
+def rviz(old: str, new: str, of: Submitted = REFERENCE) -> Submitted:
+    """A submission with another text in its RViz file."""
     return of.replacing(RVIZ, old, new)
 
 
-def frame_of(hand_in: HandIn) -> Finding:
+def frame_of(submitted: Submitted) -> Finding:
     """What is found of the fixed frame."""
-    return finds(rviz_fixed_frame, hand_in, name=NAME, frame=FRAME, launch=BY_LAUNCH)
+    return finds(rviz_fixed_frame, submitted, name=NAME, frame=FRAME, launch=BY_LAUNCH)
 
 
-def robot_in(hand_in: HandIn) -> Finding:
+def robot_in(submitted: Submitted) -> Finding:
     """What is found of the display of the robot."""
-    return finds(rviz_shows_robot, hand_in, name=NAME, launch=BY_LAUNCH)
+    return finds(rviz_shows_robot, submitted, name=NAME, launch=BY_LAUNCH)
 
 
-def grouped(model: str = MODEL, enabled: str = "true") -> HandIn:
+def grouped(model: str = MODEL, enabled: str = "true") -> Submitted:
     """The reference with its RobotModel in a group."""
     inner = "".join(f"    {line}\n" for line in model.splitlines())
     group = f"    - Class: rviz_common/Group\n      Displays:\n{inner}      Enabled: {enabled}\n      Name: Mine\n"
@@ -54,7 +54,7 @@ OPENED = OTHER.replacing(LAUNCH, "'my_robot.rviz'", "'view.rviz'")
 
 
 @pytest.mark.parametrize(
-    "hand_in",
+    "submitted",
     [
         OPENED,
         OPENED.replacing(LAUNCH, "os.path.join(share, 'view.rviz')", "'/home/me/ws/src/my_robot/rviz/view.rviz'"),
@@ -63,34 +63,36 @@ OPENED = OTHER.replacing(LAUNCH, "'my_robot.rviz'", "'view.rviz'")
     ],
     ids=["installed", "home", "nested", "not-installed"],
 )
-def test_the_file_that_the_launch_file_opens_is_found(hand_in: HandIn) -> None:
+def test_the_file_that_the_launch_file_opens_is_found(submitted: Submitted) -> None:
     """Under another name, the file that the launch file opens is meant; a wrong folder is a fault of the launch file's."""
     expected = ("passed", "the RViz file is rviz/view.rviz", None)
-    assert finds(rviz_found, hand_in, name=NAME, launch=BY_LAUNCH) == expected
-    assert frame_of(hand_in)[0] == "passed"
-
-
-@pytest.mark.parametrize("hand_in", [OTHER, OTHER.replacing(LAUNCH, "'-d', os.path.join(share, 'my_robot.rviz')", "")])
-def test_another_file_that_nothing_opens_fails(hand_in: HandIn) -> None:
-    """A file of another name that the launch file does not open is not the lab's, but it is looked at."""
-    message = "there is no RViz file 'my_robot.rviz'; the package has rviz/view.rviz"
-    assert finds(rviz_found, hand_in, name=NAME, launch=BY_LAUNCH) == ("failed", message, None)
-    assert finds(rviz_found, hand_in, name=NAME) == ("failed", message, None)
-    assert frame_of(hand_in)[0] == robot_in(hand_in)[0] == "passed"
+    assert finds(rviz_found, submitted, name=NAME, launch=BY_LAUNCH) == expected
+    assert frame_of(submitted)[0] == "passed"
 
 
 @pytest.mark.parametrize(
-    "hand_in",
+    "submitted", [OTHER, OTHER.replacing(LAUNCH, "'-d', os.path.join(share, 'my_robot.rviz')", "")]
+)
+def test_another_file_that_nothing_opens_fails(submitted: Submitted) -> None:
+    """A file of another name that the launch file does not open is not the lab's, but it is looked at."""
+    message = "there is no RViz file 'my_robot.rviz'; the package has rviz/view.rviz"
+    assert finds(rviz_found, submitted, name=NAME, launch=BY_LAUNCH) == ("failed", message, None)
+    assert finds(rviz_found, submitted, name=NAME) == ("failed", message, None)
+    assert frame_of(submitted)[0] == robot_in(submitted)[0] == "passed"
+
+
+@pytest.mark.parametrize(
+    "submitted",
     [
         OPENED.replacing(LAUNCH, "    ])\n", ""),
         OPENED.replacing(LAUNCH, "os.path.join(share, 'view.rviz')", "os.environ['VIEW']"),
     ],
     ids=["syntax", "environment"],
 )
-def test_whether_the_launch_file_opens_it_cannot_be_told(hand_in: HandIn) -> None:
+def test_whether_the_launch_file_opens_it_cannot_be_told(submitted: Submitted) -> None:
     """A launch file that cannot be followed does not cost the RViz file its name."""
     message = "cannot determine statically whether the launch file opens rviz/view.rviz; needs manual grading"
-    assert finds(rviz_found, hand_in, name=NAME, launch=BY_LAUNCH) == ("pending", message, None)
+    assert finds(rviz_found, submitted, name=NAME, launch=BY_LAUNCH) == ("pending", message, None)
 
 
 def test_of_two_files_the_opened_one_is_meant() -> None:
@@ -107,17 +109,17 @@ def test_of_two_files_the_opened_one_is_meant() -> None:
 def test_no_rviz_file_is_missed() -> None:
     """Without an RViz file, all of the checks miss the same."""
     expected = ("RViz file in the package", "", "the package has no RViz file: no file ends in .rviz", None)
-    for hand_in in (REFERENCE.without(RVIZ), REFERENCE.renaming(RVIZ, NAME)):
-        assert lacks(rviz_found, hand_in, name=NAME, launch=BY_LAUNCH) == expected
-        assert lacks(rviz_fixed_frame, hand_in, name=NAME, frame=FRAME) == expected
-        assert lacks(rviz_shows_robot, hand_in, name=NAME) == expected
-        assert lacks(rviz_display_on, hand_in, name=NAME, kind="TF") == expected
+    for submitted in (REFERENCE.without(RVIZ), REFERENCE.renaming(RVIZ, NAME)):
+        assert lacks(rviz_found, submitted, name=NAME, launch=BY_LAUNCH) == expected
+        assert lacks(rviz_fixed_frame, submitted, name=NAME, frame=FRAME) == expected
+        assert lacks(rviz_shows_robot, submitted, name=NAME) == expected
+        assert lacks(rviz_display_on, submitted, name=NAME, kind="TF") == expected
 
 
 def test_no_package_is_missed() -> None:
     """The check of the fixed frame is asked of the submission, and misses the package as others do."""
     expected = ("package", "", "the submission has no ROS 2 package: there is no package.xml", None)
-    assert lacks(rviz_fixed_frame, HandIn({"x.png": png()}), name=NAME, frame=FRAME) == expected
+    assert lacks(rviz_fixed_frame, Submitted({"x.png": png()}), name=NAME, frame=FRAME) == expected
 
 
 @pytest.mark.parametrize(
@@ -137,15 +139,15 @@ def test_no_package_is_missed() -> None:
 )
 def test_a_file_that_is_none_is_missed(text: str, message: str, line: int) -> None:
     """A file that RViz cannot read is missed once, with the place; that it is there is found all the same."""
-    hand_in = REFERENCE.with_files({RVIZ: text})
-    kind, name, words, place = lacks(rviz_fixed_frame, hand_in, name=NAME, frame=FRAME)
+    submitted = REFERENCE.with_files({RVIZ: text})
+    kind, name, words, place = lacks(rviz_fixed_frame, submitted, name=NAME, frame=FRAME)
     assert (kind, name) == ("RViz file", "rviz/my_robot.rviz")
     assert words.startswith(message)
     assert place is not None
     assert (place.path, place.line) == (RVIZ, line)
-    assert lacks(rviz_shows_robot, hand_in, name=NAME) == (kind, name, words, place)
-    assert lacks(rviz_display_on, hand_in, name=NAME, kind="TF") == (kind, name, words, place)
-    assert finds(rviz_found, hand_in, name=NAME)[0] == "passed"
+    assert lacks(rviz_shows_robot, submitted, name=NAME) == (kind, name, words, place)
+    assert lacks(rviz_display_on, submitted, name=NAME, kind="TF") == (kind, name, words, place)
+    assert finds(rviz_found, submitted, name=NAME)[0] == "passed"
 
 
 # --- The fixed frame --------------------------------------------------------------------------------------------------
@@ -156,8 +158,8 @@ def test_a_file_that_is_none_is_missed(text: str, message: str, line: int) -> No
 )
 def test_the_fixed_frame_passes(spelling: str) -> None:
     """However YAML spells it."""
-    hand_in = rviz("Fixed Frame: base_footprint", f"Fixed Frame: {spelling}")
-    assert frame_of(hand_in) == ("passed", "the Fixed Frame is 'base_footprint'", None)
+    submitted = rviz("Fixed Frame: base_footprint", f"Fixed Frame: {spelling}")
+    assert frame_of(submitted) == ("passed", "the Fixed Frame is 'base_footprint'", None)
 
 
 @pytest.mark.parametrize(
@@ -171,9 +173,9 @@ def test_the_fixed_frame_passes(spelling: str) -> None:
 )
 def test_another_fixed_frame_fails(frame: str, hint: str) -> None:
     """Another frame fails at its value; one that the robot does not have is told as such."""
-    hand_in = rviz("Fixed Frame: base_footprint", f"Fixed Frame: {frame}")
+    submitted = rviz("Fixed Frame: base_footprint", f"Fixed Frame: {frame}")
     message = f"the Fixed Frame is {frame!r}; it should be 'base_footprint'{hint}"
-    assert frame_of(hand_in) == ("failed", message, hand_in.place(RVIZ, f"{frame}\n    Frame Rate"))
+    assert frame_of(submitted) == ("failed", message, submitted.place(RVIZ, f"{frame}\n    Frame Rate"))
 
 
 @pytest.mark.parametrize("line", ["", "    Fixed Frame:\n", '    Fixed Frame: ""\n'], ids=["none", "nothing", "empty"])
@@ -187,16 +189,16 @@ def test_no_fixed_frame_fails(line: str) -> None:
 
 def test_a_frame_that_the_robot_lacks_is_not_this_files_fault() -> None:
     """The right frame passes; what the URDF is without is told, and graded where it belongs."""
-    hand_in = REFERENCE.replacing(URDF, "base_footprint", "base_ground")
+    submitted = REFERENCE.replacing(URDF, "base_footprint", "base_ground")
     message = "the Fixed Frame is 'base_footprint', which the robot does not have"
-    assert frame_of(hand_in) == ("passed", message, None)
+    assert frame_of(submitted) == ("passed", message, None)
 
 
-@pytest.mark.parametrize("hand_in", [REFERENCE.without(URDF), REFERENCE.replacing(URDF, "</robot>", "")])
-def test_the_frame_needs_no_urdf(hand_in: HandIn) -> None:
+@pytest.mark.parametrize("submitted", [REFERENCE.without(URDF), REFERENCE.replacing(URDF, "</robot>", "")])
+def test_the_frame_needs_no_urdf(submitted: Submitted) -> None:
     """Without a robot the frame is judged by its name."""
-    assert frame_of(hand_in) == ("passed", "the Fixed Frame is 'base_footprint'", None)
-    other = rviz("Fixed Frame: base_footprint", "Fixed Frame: map", hand_in)
+    assert frame_of(submitted) == ("passed", "the Fixed Frame is 'base_footprint'", None)
+    other = rviz("Fixed Frame: base_footprint", "Fixed Frame: map", submitted)
     assert frame_of(other)[:2] == ("failed", "the Fixed Frame is 'map'; it should be 'base_footprint'")
 
 
@@ -204,7 +206,7 @@ def test_the_frame_needs_no_urdf(hand_in: HandIn) -> None:
 
 
 @pytest.mark.parametrize(
-    "hand_in",
+    "submitted",
     [
         REFERENCE,
         rviz("Value: /robot_description", "Value: robot_description"),
@@ -223,13 +225,13 @@ def test_the_frame_needs_no_urdf(hand_in: HandIn) -> None:
         "one-of-two", "ros1-beside",
     ],
 )  # fmt: skip
-def test_a_robot_model_that_is_on_passes(hand_in: HandIn) -> None:
+def test_a_robot_model_that_is_on_passes(submitted: Submitted) -> None:
     """One display that shows the robot is enough, whatever group it is in and whatever its topic's quality of service is."""
-    assert robot_in(hand_in) == ("passed", SHOWN, None)
+    assert robot_in(submitted) == ("passed", SHOWN, None)
 
 
 @pytest.mark.parametrize(
-    ("hand_in", "message"),
+    ("submitted", "message"),
     [
         (
             rviz("Enabled: true\n      Name: RobotModel", "Enabled: false\n      Name: RobotModel"),
@@ -267,12 +269,12 @@ def test_a_robot_model_that_is_on_passes(hand_in: HandIn) -> None:
     ],
     ids=["off", "not-on", "group", "ros1", "bare", "topic", "empty", "no-topic", "visual"],
 )
-def test_a_robot_model_that_shows_nothing_fails(hand_in: HandIn, message: str) -> None:
+def test_a_robot_model_that_shows_nothing_fails(submitted: Submitted, message: str) -> None:
     """What keeps the robot from being shown is told, at the class of the display."""
-    lines = enumerate(str(hand_in.files[RVIZ]).splitlines(), start=1)
+    lines = enumerate(str(submitted.files[RVIZ]).splitlines(), start=1)
     number, line = next((number, line) for number, line in lines if "RobotModel" in line)
     place = Location(RVIZ, number, line.index("Class: ") + len("Class: ") + 1)
-    assert robot_in(hand_in) == ("failed", message, place)
+    assert robot_in(submitted) == ("failed", message, place)
 
 
 def test_no_robot_model_fails() -> None:
@@ -284,7 +286,7 @@ def test_no_robot_model_fails() -> None:
 
 
 @pytest.mark.parametrize(
-    ("hand_in", "message"),
+    ("submitted", "message"),
     [
         (
             rviz("Description Source: Topic", "Description Source: File"),
@@ -297,12 +299,12 @@ def test_no_robot_model_fails() -> None:
     ],
     ids=["file", "plugin"],
 )
-def test_a_robot_model_that_may_show_something_is_for_a_person(hand_in: HandIn, message: str) -> None:
+def test_a_robot_model_that_may_show_something_is_for_a_person(submitted: Submitted, message: str) -> None:
     """What only a machine with the same file or plugin shows is left open, another display that is off or not."""
-    place = hand_in.place(RVIZ, str(hand_in.files[RVIZ]).splitlines()[16].strip().removeprefix("Class: "))
-    assert robot_in(hand_in) == ("pending", message, place)
+    place = submitted.place(RVIZ, str(submitted.files[RVIZ]).splitlines()[16].strip().removeprefix("Class: "))
+    assert robot_in(submitted) == ("pending", message, place)
     off = MODEL.replace("Enabled: true\n      Name", "Enabled: false\n      Name")
-    assert robot_in(rviz("    - Alpha: 1\n", off + "    - Alpha: 1\n", hand_in))[:2] == ("pending", message)
+    assert robot_in(rviz("    - Alpha: 1\n", off + "    - Alpha: 1\n", submitted))[:2] == ("pending", message)
 
 
 # --- Other displays ---------------------------------------------------------------------------------------------------
@@ -332,9 +334,9 @@ def test_a_display_that_is_on_passes(kind: str) -> None:
 )
 def test_a_display_that_is_not_on_fails(old: str, new: str, message: str) -> None:
     """A display that is off, or of ROS 1, fails at its class."""
-    hand_in = rviz(old, new)
-    place = hand_in.place(RVIZ, new.split("\n", maxsplit=1)[0] + "\n")
-    assert finds(rviz_display_on, hand_in, name=NAME, kind="TF") == ("failed", message, place)
+    submitted = rviz(old, new)
+    place = submitted.place(RVIZ, new.split("\n", maxsplit=1)[0] + "\n")
+    assert finds(rviz_display_on, submitted, name=NAME, kind="TF") == ("failed", message, place)
 
 
 def test_a_display_that_is_not_there_fails() -> None:
@@ -352,5 +354,5 @@ def test_another_topic_may_be_asked_for() -> None:
 
 def test_the_beginning_of_a_file_is_the_place_of_what_it_is_without() -> None:
     """A file that is no RViz file is pointed to at its first character."""
-    hand_in = REFERENCE.with_files({RVIZ: "Panels: []\n"})
-    assert lacks(rviz_shows_robot, hand_in, name=NAME)[3] == start_of(RVIZ)
+    submitted = REFERENCE.with_files({RVIZ: "Panels: []\n"})
+    assert lacks(rviz_shows_robot, submitted, name=NAME)[3] == start_of(RVIZ)

@@ -12,7 +12,7 @@ from tests.checks.asking import Arguments, ask, fails, graded, missing, own_word
 from tests.checks.cases import BASE, FOOT, LIDAR, WHEEL, Case, cases_of, mounted
 from tests.checks.robots import Scene, joint, link, mesh, scene, visual
 
-MOVING = [each for each in JOINT_TYPES if each != "fixed"]
+MOVING = [kind for kind in JOINT_TYPES if kind != "fixed"]
 HELD: Arguments = {"link": "wheel", "parent": "base", "joint_type": "continuous"}
 FIXED: Arguments = {"link": "wheel", "parent": "base", "joint_type": "fixed"}
 ROOT: Arguments = {"link": "foot", "holds": "base"}

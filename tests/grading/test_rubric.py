@@ -40,15 +40,15 @@ def complaints(folder: Path, text: str | bytes) -> list[str]:
     with pytest.raises(RubricError) as caught:
         load_rubric(path)
     assert str(caught.value) == "\n".join(caught.value.complaints)
-    assert all(each.startswith(f"{path}:") for each in caught.value.complaints)
-    return [each.removeprefix(f"{path}:") for each in caught.value.complaints]
+    assert all(line.startswith(f"{path}:") for line in caught.value.complaints)
+    return [line.removeprefix(f"{path}:") for line in caught.value.complaints]
 
 
 def announced(text: str) -> list[str]:
     """The complaints that a text announces in comments, each behind `!!` in the line that it is expected for."""
     found = enumerate(text.split("\n"), 1)
     return [
-        f"{number}: {each.strip()}" for number, line in found for each in line.partition("# !!")[2].split("!!") if each
+        f"{number}: {text.strip()}" for number, line in found for text in line.partition("# !!")[2].split("!!") if text
     ]
 
 
@@ -109,7 +109,7 @@ feedback = "Look at its size."
     assert (box.points, box.requires, box.feedback) == (Decimal("5.5"), ("loads",), "Look at its size.")
     assert box.check.function is shows_box
     assert box.arguments == {"link": "base", "size": (1.0, 2.5, 3.0), "tolerance": 0.002}
-    assert [type(each) for each in box.arguments["size"]] == [float] * 3
+    assert [type(number) for number in box.arguments["size"]] == [float] * 3
 
 
 def test_what_may_be_left_out_has_a_default(tmp_path: Path) -> None:
@@ -442,7 +442,7 @@ def row(name: str, *, requires: str = "[]", part: str = "a", points: str = "1") 
 def test_only_what_stands_above_can_be_required(tmp_path: Path) -> None:
     """File order is run order: a cycle cannot be written."""
     rubric = loaded(tmp_path, GOOD + row("b", requires='["loads"]') + row("c", requires='["b", "loads"]'))
-    assert [each.requires for each in rubric.criteria] == [(), ("loads",), ("b", "loads")]
+    assert [criterion.requires for criterion in rubric.criteria] == [(), ("loads",), ("b", "loads")]
     assert complaints(tmp_path, GOOD + row("b", requires='["c"]') + row("c", requires='["b"]')) == [
         "18: requires 'c', which is below: a criterion can only require those above it"
     ]
@@ -493,8 +493,8 @@ def test_points_are_exact(tmp_path: Path, points: tuple[str, ...], total: str) -
     """Points add up as they do on paper, not as floats do."""
     rubric = loaded(tmp_path, worth(*points, total=total, part=total))
     assert rubric.points == Decimal(total)
-    assert [each.points for each in rubric.criteria] == [Decimal(each) for each in points]
-    assert all(isinstance(each.points, Decimal) for each in rubric.criteria)
+    assert [criterion.points for criterion in rubric.criteria] == [Decimal(value) for value in points]
+    assert all(isinstance(criterion.points, Decimal) for criterion in rubric.criteria)
 
 
 @settings(deadline=None, max_examples=50)
@@ -502,8 +502,8 @@ def test_points_are_exact(tmp_path: Path, points: tuple[str, ...], total: str) -
 def test_any_points_in_hundredths_add_up(tmp_path_factory: pytest.TempPathFactory, cents: list[int]) -> None:
     """However many criteria share the points, the declared total is their exact sum, and one cent more is refused."""
     folder = tmp_path_factory.getbasetemp()
-    points = [f"{each // 100}.{each % 100:02d}" for each in cents]
-    total, wrong = (f"{each // 100}.{each % 100:02d}" for each in (sum(cents), sum(cents) + 1))
+    points = [f"{cent // 100}.{cent % 100:02d}" for cent in cents]
+    total, wrong = (f"{cent // 100}.{cent % 100:02d}" for cent in (sum(cents), sum(cents) + 1))
     assert loaded(folder, worth(*points, total=total, part=total)).points * 100 == sum(cents)
     assert len(complaints(folder, worth(*points, total=wrong, part=wrong))) == 2
 
@@ -520,7 +520,7 @@ def test_points_have_four_decimals_at_most(tmp_path: Path) -> None:
     """A gradebook keeps points as whole numbers of ten-thousandths."""
     assert loaded(tmp_path, worth("0.0001")).points == Decimal("0.0001")
     found = complaints(tmp_path, worth("0.00001"))
-    assert [each.split(": ", 1)[1] for each in found] == [
+    assert [line.split(": ", 1)[1] for line in found] == [
         "points must be a number with at most 4 decimals, not 0.00001"
     ]
 
@@ -747,7 +747,7 @@ def test_an_unknown_key_of_a_criterion_is_told_in_its_line(tmp_path: Path, line:
 def test_a_table_in_a_criterion_does_not_move_those_behind_it(tmp_path: Path) -> None:
     """Arrays of tables below a criterion belong to it: the next criterion keeps its lines."""
     text = GOOD + "[[criterion.hint]]\nx = 1\n[[criterion.hint]]\nx = 1\n" + row("b", points="-1")
-    assert [each.partition(":")[0] for each in complaints(tmp_path, text)] == ["12", "20"]
+    assert [line.partition(":")[0] for line in complaints(tmp_path, text)] == ["12", "20"]
 
 
 BEHIND_TEXTS = r'''feedback = """
@@ -784,9 +784,9 @@ def test_lines_are_right_behind_text_of_many_lines(tmp_path: Path) -> None:
 def test_lines_are_right_behind_quotes_at_the_end_of_a_text(tmp_path: Path) -> None:
     """A text between triple quotes may itself end in quotes, and brackets may follow."""
     text = GOOD + 'feedback = """He said "yes"""" # ["\nrequires = ["""a"""", "[b"]\npints = 1\n'
-    assert [each.partition(":")[0] for each in complaints(tmp_path, text)] == ["13", "13", "14"]
+    assert [line.partition(":")[0] for line in complaints(tmp_path, text)] == ["13", "13", "14"]
     text = GOOD + "feedback = '''It's 'fine'''' # ['\nrequires = ['''a'''', '[b']\npints = 1\n"
-    assert [each.partition(":")[0] for each in complaints(tmp_path, text)] == ["13", "13", "14"]
+    assert [line.partition(":")[0] for line in complaints(tmp_path, text)] == ["13", "13", "14"]
 
 
 def test_lines_in_tables_of_arguments(tmp_path: Path) -> None:

@@ -197,7 +197,7 @@ _others = st.sampled_from(
 def basic(text: str) -> str:
     """A text between double quotes, in one line."""
     escapes = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r", "\t": "\\t"}
-    return '"' + "".join(escapes.get(each, each) for each in text) + '"'
+    return '"' + "".join(escapes.get(character, character) for character in text) + '"'
 
 
 def many_lines(text: str) -> str:

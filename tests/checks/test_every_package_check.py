@@ -1,13 +1,13 @@
-"""What holds of all checks of a hand-in: the cases, a grade run, and hand-ins without a package."""
+"""What holds of all checks of a submission: the cases, a grade run, and submissions without a package."""
 
 import pytest
 
 from grader.checks.registry import describe
 from tests.checks.asking import ask, graded, missing
-from tests.checks.hand_in_cases import HAND_IN_CASES, PENDING_CASES, HandInCase, PendingCase
-from tests.checks.hand_ins import FOLDER, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, URDF, HandIn, png
+from tests.checks.package_cases import PACKAGE_CASES, PENDING_CASES, PackageCase, PendingCase
+from tests.checks.submitted import FOLDER, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, URDF, Submitted, png
 
-every_case = pytest.mark.parametrize("case", HAND_IN_CASES, ids=[case.name for case in HAND_IN_CASES])
+every_case = pytest.mark.parametrize("case", PACKAGE_CASES, ids=[case.name for case in PACKAGE_CASES])
 every_pending_case = pytest.mark.parametrize("case", PENDING_CASES, ids=[case.name for case in PENDING_CASES])
 
 # Contents that no file of a package should have, and that no check may stumble over.
@@ -26,15 +26,15 @@ ODD = {
 
 
 @every_case
-def test_the_passing_hand_in_passes(case: HandInCase) -> None:
-    """A check passes the hand-in that is as it should be, says what it found, and points to no place."""
+def test_the_passing_submission_passes(case: PackageCase) -> None:
+    """A check passes the submission that is as it should be, says what it found, and points to no place."""
     outcome = ask(case.check, case.passing, **case.arguments)
     assert (outcome.status, outcome.message, outcome.location) == ("passed", case.says, None)
 
 
 @every_case
-def test_the_failing_hand_in_fails(case: HandInCase) -> None:
-    """A check fails the hand-in that is not, says what it found, and points to the place in the file."""
+def test_the_failing_submission_fails(case: PackageCase) -> None:
+    """A check fails the submission that is not, says what it found, and points to the place in the file."""
     outcome = ask(case.check, case.failing, **case.arguments)
     assert (outcome.status, outcome.message) == ("failed", case.complains)
     assert outcome.location == (None if case.at is None else case.failing.place(*case.at))
@@ -43,23 +43,23 @@ def test_the_failing_hand_in_fails(case: HandInCase) -> None:
 @every_pending_case
 def test_what_a_person_decides_is_pending(case: PendingCase) -> None:
     """A check that a person decides shows what was found, or says that nothing was."""
-    found, nothing = (ask(case.check, hand_in, **case.arguments) for hand_in in (REFERENCE, case.without))
+    found, nothing = (ask(case.check, submitted, **case.arguments) for submitted in (REFERENCE, case.without))
     place = None if case.at is None else REFERENCE.place(*case.at)
     assert (found.status, found.message, found.location) == ("pending", case.found, place)
     assert (nothing.status, nothing.message, nothing.location) == ("pending", case.not_found, None)
 
 
 @every_case
-def test_a_grade_run_finds_the_same(case: HandInCase) -> None:
+def test_a_grade_run_finds_the_same(case: PackageCase) -> None:
     """A check answers the same when it is asked as a criterion."""
-    for hand_in in (case.passing, case.failing):
-        assert graded(case.check, hand_in, **case.arguments) == ask(case.check, hand_in, **case.arguments)
+    for submitted in (case.passing, case.failing):
+        assert graded(case.check, submitted, **case.arguments) == ask(case.check, submitted, **case.arguments)
 
 
 @every_case
-def test_without_a_package_the_same_is_missed(case: HandInCase) -> None:
+def test_without_a_package_the_same_is_missed(case: PackageCase) -> None:
     """Every check of a package says that there is none, as a criterion and, where it can be asked, alone."""
-    pictures = HandIn({"Task1_Step8.png": png()})
+    pictures = Submitted({"Task1_Step8.png": png()})
     outcome = graded(case.check, pictures, **case.arguments)
     message = "the submission has no ROS 2 package: there is no package.xml"
     assert (outcome.status, outcome.message) == ("failed", message)
@@ -70,7 +70,7 @@ def test_without_a_package_the_same_is_missed(case: HandInCase) -> None:
 
 @every_case
 @pytest.mark.parametrize("path", [MANIFEST, SETUP, LAUNCH, RVIZ, URDF])
-def test_a_file_that_is_not_there_breaks_no_check(case: HandInCase, path: str) -> None:
+def test_a_file_that_is_not_there_breaks_no_check(case: PackageCase, path: str) -> None:
     """Whichever file is missing, a check passes, fails or leaves it open, in words of its own."""
     outcome = graded(case.check, REFERENCE.without(path), **case.arguments)
     assert outcome.status in ("passed", "failed", "pending"), outcome
@@ -78,7 +78,7 @@ def test_a_file_that_is_not_there_breaks_no_check(case: HandInCase, path: str) -
 
 @every_case
 @pytest.mark.parametrize("content", ODD.values(), ids=ODD)
-def test_odd_files_break_no_check(case: HandInCase, content: bytes) -> None:
+def test_odd_files_break_no_check(case: PackageCase, content: bytes) -> None:
     """Whatever stands in the files, a check passes, fails or leaves it open, in words of its own."""
     for path in (MANIFEST, SETUP, LAUNCH, RVIZ, URDF):
         outcome = graded(case.check, REFERENCE.with_files({path: content}), **case.arguments)
@@ -88,16 +88,16 @@ def test_odd_files_break_no_check(case: HandInCase, content: bytes) -> None:
 
 
 @every_case
-def test_the_folder_of_the_package_does_not_matter(case: HandInCase) -> None:
+def test_the_folder_of_the_package_does_not_matter(case: PackageCase) -> None:
     """A package is judged the same, wherever it is in what was handed in."""
     deeper = f"ws/src/{FOLDER}"
-    for hand_in in (case.passing, case.failing):
-        moved = HandIn(
+    for submitted in (case.passing, case.failing):
+        moved = Submitted(
             {
                 deeper + path.removeprefix(FOLDER) if path.startswith(FOLDER + "/") else path: content
-                for path, content in hand_in.files.items()
+                for path, content in submitted.files.items()
             }
         )
-        here, there = (ask(case.check, each, **case.arguments) for each in (hand_in, moved))
+        here, there = (ask(case.check, files, **case.arguments) for files in (submitted, moved))
         assert there.status == here.status
         assert there.message == here.message

@@ -1,4 +1,4 @@
-"""For every check of what was handed in, a hand-in that passes and one that fails, and what the check says of each."""
+"""For every check of a package, a submission that passes and one that fails, and what the check says of each."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -9,23 +9,23 @@ from grader.checks.manual import answered, evidence_shown
 from grader.checks.package import build_installs, installs_files, package_found, package_type, setup_imports
 from grader.checks.rviz import rviz_display_on, rviz_fixed_frame, rviz_found, rviz_shows_robot
 from tests.checks.asking import AnyCheck
-from tests.checks.hand_ins import ANSWERS, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, HandIn
+from tests.checks.submitted import ANSWERS, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, Submitted
 
 _NAME = "my_robot_rviz.launch.py"
 _RVIZ = {"name": "my_robot.rviz", "launch": _NAME}
 
 
 @dataclass(frozen=True)
-class HandInCase:
-    """A check with arguments, a hand-in that it fails, what it says of both, and where the failure stands, if anywhere."""
+class PackageCase:
+    """A check with arguments, a submission that it fails, what it says of both, and where the failure stands, if anywhere."""
 
     check: AnyCheck
     arguments: Mapping[str, Any]
     says: str
-    failing: HandIn
+    failing: Submitted
     complains: str
     at: tuple[str, str] | None = None
-    passing: HandIn = field(default=REFERENCE, repr=False)
+    passing: Submitted = field(default=REFERENCE, repr=False)
 
     @property
     def name(self) -> str:
@@ -41,7 +41,7 @@ class PendingCase:
     arguments: Mapping[str, Any]
     found: str
     at: tuple[str, str] | None
-    without: HandIn
+    without: Submitted
     not_found: str
 
     @property
@@ -50,8 +50,8 @@ class PendingCase:
         return self.check.__name__
 
 
-HAND_IN_CASES = (
-    HandInCase(
+PACKAGE_CASES = (
+    PackageCase(
         package_found,
         {"name": "my_robot"},
         says="the package is named 'my_robot'",
@@ -59,7 +59,7 @@ HAND_IN_CASES = (
         complains="the package is named 'robot'; it should be named 'my_robot'",
         at=(MANIFEST, "<name>"),
     ),
-    HandInCase(
+    PackageCase(
         package_type,
         {"build_type": "ament_python"},
         says="the build type is 'ament_python'",
@@ -67,7 +67,7 @@ HAND_IN_CASES = (
         complains="the build type is 'ament_cmake'; it should be 'ament_python'",
         at=(MANIFEST, "<build_type>"),
     ),
-    HandInCase(
+    PackageCase(
         build_installs,
         {"kind": "urdf", "name": "my_robot.urdf"},
         says="a build installs urdf/my_robot.urdf as share/my_robot/my_robot.urdf",
@@ -75,7 +75,7 @@ HAND_IN_CASES = (
         complains="the build stops here: data_files lists 'urdf/robot.urdf', but there is no such file; did you mean 'urdf/my_robot.urdf'?",
         at=(SETUP, "'urdf/robot.urdf'"),
     ),
-    HandInCase(
+    PackageCase(
         installs_files,
         {"files": ["launch/*.launch.py"]},
         says="a build installs launch/my_robot_rviz.launch.py as share/my_robot/launch/my_robot_rviz.launch.py",
@@ -84,7 +84,7 @@ HAND_IN_CASES = (
         "ROS 2 looks for the package's files below share/my_robot/",
         at=(SETUP, "glob(os.path"),
     ),
-    HandInCase(
+    PackageCase(
         setup_imports,
         {},
         says="every name that setup.py uses is defined",
@@ -92,14 +92,14 @@ HAND_IN_CASES = (
         complains="the name 'glob' is not defined or imported",
         at=(SETUP, "glob('urdf/*')"),
     ),
-    HandInCase(
+    PackageCase(
         launch_found,
         {"name": _NAME},
         says="the launch file is launch/my_robot_rviz.launch.py",
         failing=REFERENCE.renaming(LAUNCH, "my_robot/launch/my_robot_rvix.launch.py"),
         complains="there is no launch file 'my_robot_rviz.launch.py'; the package has launch/my_robot_rvix.launch.py",
     ),
-    HandInCase(
+    PackageCase(
         launch_starts,
         {"name": _NAME, "nodes": ["robot_state_publisher", "rviz2 or rviz"]},
         says="the launch file starts joint_state_publisher_gui, robot_state_publisher, rviz2",
@@ -107,7 +107,7 @@ HAND_IN_CASES = (
         complains="the launch file does not start rviz2 or rviz; it starts joint_state_publisher_gui, robot_state_publisher, rviz/rviz2",
         at=(LAUNCH, "Node(\n            package='rviz'"),
     ),
-    HandInCase(
+    PackageCase(
         launch_finds_files,
         {"name": _NAME},
         says="a build installs share/my_robot/my_robot.urdf and share/my_robot/my_robot.rviz, where the launch file looks for them",
@@ -115,14 +115,14 @@ HAND_IN_CASES = (
         complains="it looks for the URDF at urdf/my_robot.urdf, in the folder that ros2 launch is started from",
         at=(LAUNCH, "open("),
     ),
-    HandInCase(
+    PackageCase(
         rviz_found,
         _RVIZ,
         says="the RViz file is rviz/my_robot.rviz",
         failing=REFERENCE.renaming(RVIZ, "my_robot/rviz/view.rviz"),
         complains="there is no RViz file 'my_robot.rviz'; the package has rviz/view.rviz",
     ),
-    HandInCase(
+    PackageCase(
         rviz_fixed_frame,
         {**_RVIZ, "frame": "base_footprint"},
         says="the Fixed Frame is 'base_footprint'",
@@ -130,7 +130,7 @@ HAND_IN_CASES = (
         complains="the Fixed Frame is 'map'; it should be 'base_footprint'; the robot has no link 'map'",
         at=(RVIZ, "map\n"),
     ),
-    HandInCase(
+    PackageCase(
         rviz_shows_robot,
         {**_RVIZ, "topic": "/robot_description"},
         says="the display 'RobotModel' shows the robot",
@@ -138,7 +138,7 @@ HAND_IN_CASES = (
         complains="rviz/RobotModel is a class of ROS 1; in ROS 2 it is rviz_default_plugins/RobotModel",
         at=(RVIZ, "rviz/RobotModel"),
     ),
-    HandInCase(
+    PackageCase(
         rviz_display_on,
         {**_RVIZ, "kind": "TF"},
         says="a TF display is on",
@@ -167,10 +167,10 @@ PENDING_CASES = (
         {"names": ["task 1 step 8"]},
         found="needs manual grading: Task1_Step8.png (640 x 480 pixels, 118 bytes)",
         at=None,
-        without=HandIn({path: content for path, content in REFERENCE.files.items() if not path.endswith(".png")}),
+        without=Submitted({path: content for path, content in REFERENCE.files.items() if not path.endswith(".png")}),
         not_found="no picture or PDF is named 'task 1 step 8'; the submission has no pictures; needs manual grading",
     ),
 )
 
-HAND_IN_CASE = {case.name: case for case in HAND_IN_CASES}
+PACKAGE_CASE = {case.name: case for case in PACKAGE_CASES}
 PENDING_CASE = {case.name: case for case in PENDING_CASES}

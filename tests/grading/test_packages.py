@@ -1,4 +1,4 @@
-"""Whole hand-ins, graded by the rubric of lab 6: what one defect costs, why the rest is skipped, which problems are listed."""
+"""Whole submissions, graded by the rubric of lab 6: what one defect costs, why the rest is skipped, which problems are listed."""
 
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
@@ -10,11 +10,11 @@ from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.grading.rubric import load_rubric
 from grader.submission.submission import read_submission
-from tests.checks.hand_ins import ANSWERS, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, URDF, WEBCAM, HandIn, png
+from tests.checks.submitted import ANSWERS, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, URDF, WEBCAM, Submitted, png
 
 LAB = load_rubric("lab6")
 PENDING = ("evidence-webcam", "answer-floating-link", "answer-launch-nodes")
-PICTURES = HandIn({"Task1_Step8.png": png(), WEBCAM: png()})
+PICTURES = Submitted({"Task1_Step8.png": png(), WEBCAM: png()})
 INSTALLS = ("setup-installs-urdf", "setup-installs-launch", "setup-installs-rviz")
 OF_PACKAGE = tuple(criterion.id for criterion in LAB.criteria if criterion.part == "task2")
 OF_URDF = tuple(criterion.id for criterion in LAB.criteria if criterion.part == "task1")
@@ -25,8 +25,8 @@ CMAKE = (
     .with_files({"my_robot/CMakeLists.txt": "install(DIRECTORY urdf DESTINATION share/my_robot)\n"})
 )
 
-# What is done to the reference: the hand-in, what it loses with the failed criterion first, what is pending besides.
-DEFECTS: Mapping[str, tuple[HandIn, Sequence[str], Sequence[str]]] = {
+# What is done to the reference: the submission, what it loses with the failed criterion first, what is pending besides.
+DEFECTS: Mapping[str, tuple[Submitted, Sequence[str], Sequence[str]]] = {
     "nothing": (REFERENCE, (), ()),
     "no answers and no pictures": (REFERENCE.without(ANSWERS, WEBCAM, "Task1_Step8.png"), (), ()),
     "another folder": (REFERENCE.renaming("my_robot", "ws/src/lab6"), (), ()),
@@ -192,7 +192,7 @@ DEFECTS: Mapping[str, tuple[HandIn, Sequence[str], Sequence[str]]] = {
     ),
     "a URDF that is too large": (REFERENCE.with_files({URDF: " " * 1_100_000}), (), OF_URDF),
     "an archive that cannot be opened": (
-        HandIn({"lab6.rar": b"Rar!", "Task1_Step8.png": png()}),
+        Submitted({"lab6.rar": b"Rar!", "Task1_Step8.png": png()}),
         (),
         (*OF_URDF, *OF_PACKAGE),
     ),
@@ -204,12 +204,12 @@ DEFECTS: Mapping[str, tuple[HandIn, Sequence[str], Sequence[str]]] = {
     ),
 }
 
-every_defect = pytest.mark.parametrize(("hand_in", "lost", "pending"), DEFECTS.values(), ids=DEFECTS)
+every_defect = pytest.mark.parametrize(("submitted", "lost", "pending"), DEFECTS.values(), ids=DEFECTS)
 
 
-def graded(hand_in: HandIn, parts: Sequence[str] = ()) -> Report:
-    """The report on a hand-in."""
-    return grade(LAB, hand_in.submission, parts)
+def graded(submitted: Submitted, parts: Sequence[str] = ()) -> Report:
+    """The report on a submission."""
+    return grade(LAB, submitted.submission, parts)
 
 
 def with_status(report: Report, *statuses: str) -> set[str]:
@@ -223,9 +223,9 @@ def points(*criteria: str) -> Decimal:
 
 
 @every_defect
-def test_a_defect_costs_what_it_should(hand_in: HandIn, lost: Sequence[str], pending: Sequence[str]) -> None:
+def test_a_defect_costs_what_it_should(submitted: Submitted, lost: Sequence[str], pending: Sequence[str]) -> None:
     """Exactly the criteria are lost that the defect is about, exactly those are pending that nobody but a person can tell."""
-    report = graded(hand_in)
+    report = graded(submitted)
     assert with_status(report, "failed", "skipped") == set(lost)
     assert with_status(report, "pending") == {*PENDING, *pending}
     assert with_status(report, "errored") == set()
@@ -234,9 +234,9 @@ def test_a_defect_costs_what_it_should(hand_in: HandIn, lost: Sequence[str], pen
 
 
 @every_defect
-def test_a_defect_is_told_once(hand_in: HandIn, lost: Sequence[str], pending: Sequence[str]) -> None:
+def test_a_defect_is_told_once(submitted: Submitted, lost: Sequence[str], pending: Sequence[str]) -> None:
     """What is only a consequence is skipped, and names the criterion that has failed."""
-    report = graded(hand_in)
+    report = graded(submitted)
     failed = with_status(report, "failed")
     most = 2 if {"urdf-loads", "package-found"} <= set(lost) else 1
     assert len(failed) == min(most, len(set(lost)))
@@ -257,7 +257,7 @@ def test_two_defects_are_both_told() -> None:
 
 
 @pytest.mark.parametrize(
-    ("hand_in", "code", "path", "message"),
+    ("submitted", "code", "path", "message"),
     [
         (
             REFERENCE.replacing(MANIFEST, "</name>", "</nam>"),
@@ -328,17 +328,17 @@ def test_two_defects_are_both_told() -> None:
     ],
     ids=lambda value: value if isinstance(value, str) and value[:3] in ("PKG", "LCH", "RVZ") else "",
 )
-def test_problems_of_the_packages_files_are_listed(hand_in: HandIn, code: str, path: str, message: str) -> None:
+def test_problems_of_the_packages_files_are_listed(submitted: Submitted, code: str, path: str, message: str) -> None:
     """What is wrong with a file of the package is listed with its code and place, one defect once."""
-    (problem,) = graded(hand_in).problems
+    (problem,) = graded(submitted).problems
     assert (problem.code, problem.location.path, problem.message) == (code, path, message)
-    assert graded(hand_in, ["task1"]).problems == ()
+    assert graded(submitted, ["task1"]).problems == ()
 
 
 def test_evidence_is_shown_beside_the_mark() -> None:
     """The pictures that the lab asks for are listed with what asks for them, the others on their own."""
     report = graded(REFERENCE.with_files({"holiday.png": png()}))
-    found = {each.evidence.id: [exhibit.path for exhibit in each.files] for each in report.exhibits}
+    found = {exhibits.evidence.id: [exhibit.path for exhibit in exhibits.files] for exhibits in report.exhibits}
     assert found == {
         "task1-step8": ["Task1_Step8.png"],
         "task1-step18": ["Task1_Step18.png"],
@@ -372,8 +372,8 @@ def test_a_single_urdf_has_no_package(part: str) -> None:
         grade(LAB, single, ["task1", part])
 
 
-def test_parts_of_a_hand_in_may_be_chosen() -> None:
-    """A hand-in is graded on the parts that are named, and on nothing else."""
+def test_parts_of_a_submission_may_be_chosen() -> None:
+    """A submission is graded on the parts that are named, and on nothing else."""
     report = graded(PICTURES, ["task3"])
     assert (report.parts, report.max_score, report.pending) == (("task3",), Decimal(2), Decimal(2))
     assert (report.problems, report.notes) == ((), ())

@@ -26,7 +26,7 @@ _RUBRICS = Path(__file__).parents[2] / "rubrics" / "lab6"
 
 
 @dataclass(frozen=True)
-class HandIn:
+class Submitted:
     """Files by their paths: what a student has handed in."""
 
     files: Mapping[str, str | bytes]
@@ -36,14 +36,14 @@ class HandIn:
         """What the grader sees of it."""
         files = [_file(path, self.data(path)) for path in self.files]
         tree = make_tree(
-            "hand-in",
+            "submission",
             files,
             (),
             ignored=[
                 IgnoredFile(path, "is a rar archive", is_archive=True) for path in self.files if path.endswith(".rar")
             ],
         )
-        return submission_of(tree, "hand-in", wanted="urdf/my_robot.urdf", package=FOLDER)
+        return submission_of(tree, "submission", wanted="urdf/my_robot.urdf", package=FOLDER)
 
     @property
     def package(self) -> Package:
@@ -57,27 +57,27 @@ class HandIn:
         content = self.files[path]
         return content.encode() if isinstance(content, str) else content
 
-    def with_files(self, files: Mapping[str, str | bytes]) -> "HandIn":
+    def with_files(self, files: Mapping[str, str | bytes]) -> "Submitted":
         """The same with these files, new ones or others in place of those that there are."""
-        return HandIn({**self.files, **files})
+        return Submitted({**self.files, **files})
 
-    def without(self, *paths: str) -> "HandIn":
+    def without(self, *paths: str) -> "Submitted":
         """The same without some files, or folders with all that is in them; each must be there."""
         left = dict(self.files)
         for path in paths:
-            gone = [each for each in left if each == path or each.startswith(path + "/")]
+            gone = [name for name in left if name == path or name.startswith(path + "/")]
             assert gone, f"{path} is not among {sorted(left)}"
-            for each in gone:
-                del left[each]
-        return HandIn(left)
+            for name in gone:
+                del left[name]
+        return Submitted(left)
 
-    def renaming(self, old: str, new: str) -> "HandIn":
+    def renaming(self, old: str, new: str) -> "Submitted":
         """The same with a file or folder under another path."""
         moved = {path: path.replace(old, new, 1) for path in self.files if path == old or path.startswith(old + "/")}
         assert moved, f"{old} is not among {sorted(self.files)}"
-        return HandIn({moved.get(path, path): content for path, content in self.files.items()})
+        return Submitted({moved.get(path, path): content for path, content in self.files.items()})
 
-    def replacing(self, path: str, old: str, new: str) -> "HandIn":
+    def replacing(self, path: str, old: str, new: str) -> "Submitted":
         """The same with another text everywhere in a file, which must hold it."""
         text = self.data(path).decode()
         assert old in text, f"{old!r} does not stand in {path}:\n{text}"
@@ -142,7 +142,7 @@ The robot vanishes: two links have no parent, and a robot has one root.
 
 robot_state_publisher publishes the transforms, rviz2 shows them.
 """
-REFERENCE = HandIn(
+REFERENCE = Submitted(
     {
         **{
             f"{FOLDER}/{path.relative_to(_FOLDER).as_posix()}": path.read_text(encoding="utf-8")
