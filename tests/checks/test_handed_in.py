@@ -153,7 +153,7 @@ def test_a_long_answer_is_cut() -> None:
 
 
 def test_no_answer_at_all() -> None:
-    """Where nothing was submitted, a person decides, who is told where it was looked for."""
+    """Where nothing was handed in, a person decides, who is told where it was looked for."""
     assert answer_in(ALONE).message == f"{NOT_FOUND}; a person decides"
     other = answer_in(ALONE.with_files({"notes.txt": "It vanishes.\n", "answers.md": "\n"}))
     assert other.message == f"{NOT_FOUND}; looked through answers.md, notes.txt; a person decides"

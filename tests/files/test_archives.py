@@ -225,7 +225,7 @@ def test_names_that_lead_out(ending: str, name: str) -> None:
     """A member whose name leads out is left out and named; the others stay."""
     tree = tree_of(MAKERS[ending]({name: b"evil", "b.urdf": ROBOT}))
     assert list(tree.files) == ["b.urdf"]
-    assert tree.left_out == (f"{name} has a path that leads out of the archive, and was not read",)
+    assert tree.left_out == (f"{name} has a name that leads out of the archive, and was not read",)
 
 
 def test_harmless_dots() -> None:

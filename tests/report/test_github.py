@@ -118,7 +118,7 @@ def test_a_submission_that_is_all_right_has_one_notice() -> None:
     (only,) = annotated(SAMPLES["reference"].grade())
     assert only.name == "notice"
     assert "A person decides: evidence-webcam, answer-floating-link, answer-launch-nodes" in only.data
-    assert "10 points need manual grading" in only.data
+    assert "10 points wait for a person" in only.data
 
 
 def test_a_very_long_message_is_cut_as_a_whole() -> None:
