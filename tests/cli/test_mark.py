@@ -66,8 +66,8 @@ def test_whoever_is_meant(name: str, top: Path) -> None:
     [
         ("Ben Oh", "essay", "1", "'Ben Oh' is ambiguous: it may be 'ben', 'emil'; use one of these ids"),
         ("ana", "essay", "1", "there is no student 'ana' in the gradebook; did you mean 'anna'?"),
-        ("\x1b[31m", "essay", "1", rf"there is no '\x1b[31m' in the gradebook{EVERYONE}"),
-        (b"\xff", "essay", "1", rf"there is no '\\udcff' in the gradebook{EVERYONE}"),
+        ("\x1b[31m", "essay", "1", rf"there is no student '\x1b[31m' in the gradebook{EVERYONE}"),
+        (b"\xff", "essay", "1", rf"there is no student '\\udcff' in the gradebook{EVERYONE}"),
         ("dora", "essay", "1", "dora has submitted nothing that could be marked"),
         ("anna", "esay", "1", f"the rubric small has no criterion 'esay'; did you mean 'essay'?{CRITERIA}"),
         ("anna", "essay", "4.5", "essay is worth 0 to 4 points, not 4.5"),
