@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from grader.documents import converter
 from grader.documents.evidence import stem
-from grader.documents.headings import Heading, find_headings
+from grader.documents.labels import Heading, find_headings
 from grader.errors import InputError
 from grader.files.tree import File, Tree
 

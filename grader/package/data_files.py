@@ -11,10 +11,9 @@ from grader.files.ignore_rules import ignored_part
 from grader.files.tree import Tree
 from grader.names import did_you_mean
 from grader.package.globbing import PackageListing, SearchError
-from grader.static_python.control_flow import EvaluationStopped
+from grader.static_python.evaluation import EvaluationStopped
 from grader.static_python.inspection import PACKAGE_FOLDER, names_package_folder
-from grader.static_python.positions import Position
-from grader.static_python.values import UNKNOWN_KEYS, Call, Unknown, Value, unknown_in
+from grader.static_python.values import UNKNOWN_KEYS, Call, Position, Unknown, Value, unknown_in
 from grader.text import enumerated
 
 # Other arguments that install files and are not evaluated.

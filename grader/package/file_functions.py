@@ -9,12 +9,10 @@ from typing import NamedTuple
 
 from grader.files.ignore_rules import ignored_part
 from grader.package.globbing import PackageListing, SearchError
-from grader.static_python.control_flow import EvaluationStopped
-from grader.static_python.evaluation import Evaluation, FunctionTable
+from grader.static_python.evaluation import Evaluation, EvaluationStopped, FunctionTable
 from grader.static_python.inspection import path_text
 from grader.static_python.operators import WalkFolders
-from grader.static_python.positions import Position
-from grader.static_python.values import Call, Unknown, Value, unknown_in
+from grader.static_python.values import Call, Position, Unknown, Value, unknown_in
 
 WRITING = "builtins.open(w)"  # the name of a call that opens a file to write into it
 _OUTSIDE = "it reads files outside of the package"

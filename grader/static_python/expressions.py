@@ -1,13 +1,24 @@
 """The value of any Python expression, without running it and without statements or files."""
 
 import ast
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 
+from grader.static_python.evaluation import EvaluationStopped, ExitFlow, FunctionTable
 from grader.static_python.inspection import MAX_ITEMS, distinct, items_of, truth
 from grader.static_python.operators import store
-from grader.static_python.positions import Position, position_of
+from grader.static_python.parse import SyntaxFault, parse
 from grader.static_python.simple_expressions import SimpleEvaluator
-from grader.static_python.values import BoundMethod, Function, QualifiedName, Scope, Unknown, Value
+from grader.static_python.values import (
+    START,
+    BoundMethod,
+    Function,
+    Position,
+    QualifiedName,
+    Scope,
+    Unknown,
+    Value,
+    position_of,
+)
 
 Comprehension = ast.ListComp | ast.GeneratorExp | ast.SetComp | ast.DictComp
 
@@ -102,3 +113,25 @@ class ExpressionEvaluator(SimpleEvaluator):
                     yield False
                 elif all(conditions):
                     yield from self._rounds(nested, scope, unknown)
+
+
+_MAX_LENGTH = 1_000
+
+
+def evaluate_text(text: str, functions: FunctionTable, names: Mapping[str, Value]) -> Value:
+    """Return the value of an expression with these functions and names; Unknown if it has an error. Never raises."""
+    if len(text) > _MAX_LENGTH:
+        return Unknown("the expression is too long", START)
+    code = parse(text.strip().encode("utf-8", "replace"), "")
+    if isinstance(code, SyntaxFault):
+        return Unknown(code.message, START)
+    match code.tree.body:
+        case [ast.Expr(value=expression)]:
+            evaluator = ExpressionEvaluator(functions, names)
+        case _:
+            return Unknown("this is not one expression", START)
+    try:
+        value = evaluator.evaluate(expression, evaluator.module)
+    except (EvaluationStopped, ExitFlow, RecursionError):
+        return Unknown("the expression takes too long to evaluate", START)
+    return Unknown(evaluator.errors[0].message, evaluator.errors[0].at) if evaluator.errors else value

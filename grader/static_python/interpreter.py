@@ -4,13 +4,11 @@ import ast
 import builtins
 from collections.abc import Mapping, Sequence
 
-from grader.static_python.control_flow import EvaluationStopped, ExitFlow, LoopFlow, RaisedFlow, ReturnFlow
-from grader.static_python.evaluation import FunctionTable
+from grader.static_python.evaluation import EvaluationStopped, ExitFlow, FunctionTable, LoopFlow, RaisedFlow, ReturnFlow
 from grader.static_python.inspection import items_of, truth
 from grader.static_python.parse import Code
-from grader.static_python.positions import Position, position_of
 from grader.static_python.statements import StatementEvaluator
-from grader.static_python.values import Call, Function, Scope, Unknown, Value
+from grader.static_python.values import Call, Function, Position, Scope, Unknown, Value, position_of
 
 _Loop = ast.For | ast.AsyncFor
 _Definition = ast.FunctionDef | ast.AsyncFunctionDef

@@ -6,11 +6,9 @@ from collections.abc import Callable
 from pathlib import PurePosixPath
 from typing import Any
 
-from grader.static_python.control_flow import EvaluationStopped
-from grader.static_python.evaluation import Evaluation
+from grader.static_python.evaluation import Evaluation, EvaluationStopped
 from grader.static_python.inspection import MAX_ITEMS, MAX_TEXT, as_text, items_of, names_package_folder, size
-from grader.static_python.positions import Position
-from grader.static_python.values import UNKNOWN_KEYS, Call, QualifiedName, Unknown, Value
+from grader.static_python.values import UNKNOWN_KEYS, Call, Position, QualifiedName, Unknown, Value
 
 _TYPE_NAMES: dict[type, str] = {
     str: "a string", list: "a list", tuple: "a tuple", dict: "a dict", type(None): "None", PurePosixPath: "a path",

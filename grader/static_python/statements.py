@@ -3,13 +3,12 @@
 import ast
 import builtins
 
-from grader.static_python.control_flow import ExitFlow, LoopFlow, ReturnFlow
+from grader.static_python.evaluation import ExitFlow, LoopFlow, ReturnFlow
 from grader.static_python.expressions import ExpressionEvaluator
 from grader.static_python.imports import import_error, imported_names, is_always_installed
 from grader.static_python.inspection import truth
 from grader.static_python.operators import extend, operate, remove
-from grader.static_python.positions import position_of
-from grader.static_python.values import Scope, Unknown
+from grader.static_python.values import Scope, Unknown, position_of
 
 
 class StatementEvaluator(ExpressionEvaluator):

@@ -3,9 +3,23 @@
 import ast
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
-from grader.static_python.positions import START, Position
+
+class Position(NamedTuple):
+    """A place in a Python file; line and column count from 1."""
+
+    line: int
+    column: int
+
+
+START = Position(1, 1)
+
+
+def position_of(node: ast.expr | ast.stmt | ast.excepthandler) -> Position:
+    """Return the position of a node."""
+    return Position(node.lineno, node.col_offset + 1)
+
 
 UNKNOWN_KEYS = (
     "**"  # the key of an entry that stands for keys that are not known, in a dict and among keyword arguments

@@ -170,8 +170,11 @@ def submission_of(
     if not tree.files and not tree.generated:
         reason = f": {tree.ignored[0]}" if tree.ignored else " (hidden files and build folders are ignored)"
         raise InputError(f"{shown or identity} is empty{reason}")
-    from grader.submission.package_search import read_packages, why_not  # late: a URDF on its own needs no search
-    from grader.submission.urdf_search import find_urdf
+    from grader.submission.urdf_search import (  # late: a URDF on its own needs no search
+        find_urdf,
+        read_packages,
+        why_not,
+    )
 
     packages = read_packages(tree, package, wanted)
     graded = packages[0] if packages else None

@@ -3,8 +3,7 @@
 from collections.abc import Sequence
 from math import isclose
 
-from grader.static_python.positions import Position
-from grader.static_python.values import Call, Unknown, Value
+from grader.static_python.values import Call, Position, Unknown, Value
 
 BOOLEAN_SUBSTITUTIONS = frozenset(
     {"EqualsSubstitution", "NotEqualsSubstitution", "NotSubstitution", "AndSubstitution", "OrSubstitution",

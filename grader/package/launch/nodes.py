@@ -4,9 +4,7 @@ import re
 
 from grader.names import did_you_mean
 from grader.package.launch.commands import PART_UNKNOWN
-from grader.package.launch.context import Context
-from grader.package.launch.findings import Findings
-from grader.package.launch.model import StartedNode
+from grader.package.launch.model import Context, Findings, StartedNode
 from grader.package.launch.references import (
     RVIZ,
     STATE_PUBLISHER,
@@ -16,8 +14,7 @@ from grader.package.launch.references import (
     find_urdf_launch,
 )
 from grader.package.launch.substitutions import resolve
-from grader.static_python.positions import START
-from grader.static_python.values import UNKNOWN_KEYS, Call, Unknown, Value
+from grader.static_python.values import START, UNKNOWN_KEYS, Call, Unknown, Value
 
 # The arguments of launch_ros.actions.Node, and those that it passes on to launch.actions.ExecuteProcess (ROS 2 Jazzy).
 _NODE_ARGUMENTS = frozenset(

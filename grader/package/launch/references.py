@@ -1,9 +1,7 @@
 """The files that the nodes of a launch file are given: the URDF of robot_state_publisher, the configuration of RViz."""
 
 from grader.package.launch.commands import PART_UNKNOWN, display_config, split_words
-from grader.package.launch.context import Contents, Context
-from grader.package.launch.findings import Findings
-from grader.package.launch.model import Reference
+from grader.package.launch.model import Contents, Context, Findings, Reference
 from grader.package.launch.places import SHARE
 from grader.package.launch.substitutions import COMMAND_LINE, resolve
 from grader.static_python.values import UNKNOWN_KEYS, Call, Unknown, Value

@@ -7,12 +7,11 @@ from pathlib import PurePosixPath
 
 from grader.package.launch.booleans import BOOLEAN_SUBSTITUTIONS, boolean_substitution, operands_of
 from grader.package.launch.commands import PART_UNKNOWN, file_read
-from grader.package.launch.context import Contents, Context, Resolved
+from grader.package.launch.model import Contents, Context, Resolved
 from grader.package.launch.places import HOME, PREFIX, SHARE
+from grader.static_python.expressions import evaluate_text
 from grader.static_python.inspection import as_text
-from grader.static_python.positions import START
-from grader.static_python.text_expressions import evaluate_text
-from grader.static_python.values import Call, Unknown, Value
+from grader.static_python.values import START, Call, Unknown, Value
 
 COMMAND_LINE = "launch.frontend.command line"  # a line that is split into words, as in XML and YAML
 _MAX_DEPTH = 40
