@@ -13,7 +13,8 @@ from grader.names import did_you_mean
 from grader.package.globbing import PackageListing, SearchError
 from grader.static_python.evaluation import EvaluationStopped
 from grader.static_python.inspection import PACKAGE_FOLDER, names_package_folder
-from grader.static_python.values import UNKNOWN_KEYS, Call, Position, Unknown, Value, unknown_in
+from grader.static_python.parse import Position
+from grader.static_python.values import UNKNOWN_KEYS, Call, Unknown, Value, unknown_in
 from grader.text import enumerated
 
 # Other arguments that install files and are not evaluated.

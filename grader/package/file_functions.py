@@ -12,7 +12,8 @@ from grader.package.globbing import PackageListing, SearchError
 from grader.static_python.evaluation import Evaluation, EvaluationStopped, FunctionTable
 from grader.static_python.inspection import path_text
 from grader.static_python.operators import WalkFolders
-from grader.static_python.values import Call, Position, Unknown, Value, unknown_in
+from grader.static_python.parse import Position
+from grader.static_python.values import Call, Unknown, Value, unknown_in
 
 WRITING = "builtins.open(w)"  # the name of a call that opens a file to write into it
 _OUTSIDE = "it reads files outside of the package"

@@ -13,8 +13,8 @@ from grader.static_python.evaluation import EvaluationStopped, PythonError
 from grader.static_python.functions import standard_functions
 from grader.static_python.inspection import PACKAGE_FOLDER
 from grader.static_python.interpreter import Interpreter
-from grader.static_python.parse import Code, SyntaxFault
-from grader.static_python.values import START, Position, Unknown, position_of
+from grader.static_python.parse import START, Code, Position, SyntaxFault, position_of
+from grader.static_python.values import Unknown
 
 _ROOT = f"/{PACKAGE_FOLDER}"
 _SETUPS = ("setuptools.setup", "distutils.core.setup", "?.setup")

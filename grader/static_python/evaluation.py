@@ -12,17 +12,8 @@ from typing import Any, NamedTuple
 
 from grader.static_python.imports import USUAL_NAMES
 from grader.static_python.inspection import MAX_ITEMS
-from grader.static_python.values import (
-    UNKNOWN_KEYS,
-    Call,
-    Function,
-    Position,
-    QualifiedName,
-    Scope,
-    Unknown,
-    Value,
-    position_of,
-)
+from grader.static_python.parse import Position, position_of
+from grader.static_python.values import UNKNOWN_KEYS, Call, Function, QualifiedName, Scope, Unknown, Value
 
 
 class PythonError(NamedTuple):

@@ -3,16 +3,15 @@
 import ast
 import builtins
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 from grader.static_python.evaluation import EvaluationStopped, ExitFlow, FunctionTable, LoopFlow, RaisedFlow, ReturnFlow
 from grader.static_python.inspection import items_of, truth
-from grader.static_python.parse import Code
+from grader.static_python.parse import Code, Position, position_of
 from grader.static_python.statements import StatementEvaluator
-from grader.static_python.values import Call, Function, Position, Scope, Unknown, Value, position_of
+from grader.static_python.values import Call, Function, Scope, Unknown, Value
 
-_Loop = ast.For | ast.AsyncFor
-_Definition = ast.FunctionDef | ast.AsyncFunctionDef
-_Try = ast.Try | ast.TryStar
+_CONDITION = "a condition is known only at run time"
 
 
 class Interpreter(StatementEvaluator):
@@ -49,7 +48,9 @@ class Interpreter(StatementEvaluator):
         """Evaluate a statement."""
         match node:
             case ast.FunctionDef() | ast.AsyncFunctionDef():
-                self._define(node, scope)
+                function = self.function(node.args, scope, position_of(node), partial(self._function_body, node))
+                decorated = Unknown("a decorator is not supported", position_of(node))
+                scope.bind(node.name, decorated if node.decorator_list else function)
             case ast.If(test=test, body=body, orelse=other):
                 condition = truth(self.evaluate(test, scope))
                 if condition is None:
@@ -94,26 +95,14 @@ class Interpreter(StatementEvaluator):
             self.statement(statement, scope)
 
     def _branches(
-        self,
-        bodies: list[list[ast.stmt]],
-        scope: Scope,
-        node: ast.stmt | ast.excepthandler,
-        reason: str = "a condition is known only at run time",
+        self, bodies: list[list[ast.stmt]], scope: Scope, node: ast.stmt | ast.excepthandler, reason: str = _CONDITION
     ) -> None:
         """Evaluate blocks of which only a run decides which are executed."""
         for body in bodies:
             with self.uncertain(reason, position_of(node)):
                 self._block(body, scope)
 
-    def _define(self, node: _Definition, scope: Scope) -> None:
-        def body(inner: Scope, at: Position) -> Value:
-            return self._function_body(node, inner, at)
-
-        function = self.function(node.args, scope, position_of(node), body)
-        decorated = Unknown("a decorator is not supported", position_of(node))
-        scope.bind(node.name, decorated if node.decorator_list else function)
-
-    def _function_body(self, node: _Definition, scope: Scope, at: Position) -> Value:
+    def _function_body(self, node: ast.FunctionDef | ast.AsyncFunctionDef, scope: Scope, at: Position) -> Value:
         if self._has_generators and node not in self._generators:
             self._generators[node] = any(isinstance(inner, ast.Yield | ast.YieldFrom) for inner in ast.walk(node))
         if self._generators.get(node):
@@ -127,7 +116,7 @@ class Interpreter(StatementEvaluator):
             self.uncertainty = before
         return None
 
-    def _for(self, node: _Loop, scope: Scope) -> None:
+    def _for(self, node: ast.For | ast.AsyncFor, scope: Scope) -> None:
         items = items_of(self.evaluate(node.iter, scope))
         before = self.uncertainty
         if items is None:
@@ -147,7 +136,7 @@ class Interpreter(StatementEvaluator):
             self._block(node.orelse if items is not None else [], scope)
         self.uncertainty = before
 
-    def _try(self, node: _Try, scope: Scope) -> None:
+    def _try(self, node: ast.Try | ast.TryStar, scope: Scope) -> None:
         if not node.handlers:
             self._block(node.body, scope)
         else:
@@ -157,10 +146,8 @@ class Interpreter(StatementEvaluator):
             if raised is not None:
                 self._handle(node, raised, scope)
             elif may_have_failed:
-                handlers = [handler.body for handler in node.handlers]
-                self._branches(
-                    [node.orelse, *handlers], scope, node, "whether an error is raised is known only at run time"
-                )
+                bodies = [node.orelse, *(handler.body for handler in node.handlers)]
+                self._branches(bodies, scope, node, "whether an error is raised is known only at run time")
             else:
                 self._block(node.orelse, scope)
         self._block(node.finalbody, scope)
@@ -178,7 +165,7 @@ class Interpreter(StatementEvaluator):
             failed, self.may_have_failed = self.may_have_failed, self.may_have_failed or failed_before
         return None, failed
 
-    def _handle(self, node: _Try, raised: RaisedFlow, scope: Scope) -> None:
+    def _handle(self, node: ast.Try | ast.TryStar, raised: RaisedFlow, scope: Scope) -> None:
         """Evaluate the first handler that catches an error; raise it again where none does."""
         for handler in node.handlers:
             catches = _catches(handler.type, raised.kind)

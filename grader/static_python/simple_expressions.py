@@ -5,59 +5,24 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from grader.static_python.evaluation import Evaluation
-from grader.static_python.imports import attribute_error
 from grader.static_python.inspection import MAX_TEXT, as_text, distinct, size, truth
-from grader.static_python.methods import call_method, path_attribute
+from grader.static_python.methods import attribute, call_method
 from grader.static_python.operators import compare, extend, operate, subscript, type_name
+from grader.static_python.parse import Position, position_of
 from grader.static_python.values import (
     UNKNOWN_KEYS,
     BoundMethod,
     Call,
     Function,
-    Position,
     QualifiedName,
     Scope,
     Unknown,
     Value,
-    position_of,
     unknown_in,
 )
 
 _EXITS = ("sys.exit", "os._exit", "builtins.exit", "builtins.quit")
 _BINDS_NAMES = ("builtins.exec", "builtins.globals", "builtins.locals", "builtins.vars")
-_CONSTANTS = {
-    "os.sep": "/",
-    "os.path.sep": "/",
-    "os.linesep": "\n",
-    "os.curdir": ".",
-    "os.pardir": "..",
-    "os.name": "posix",
-}
-
-
-def attribute(evaluation: Evaluation, owner: Value, name: str, at: Position) -> Value:
-    """Return the value of an attribute; a method is returned as a BoundMethod."""
-    match owner:
-        case Unknown():
-            return owner
-        case QualifiedName(name="?glob"):  # used without an import: an attribute shows that the module is meant
-            return QualifiedName(f"glob.{name}")
-        case QualifiedName(name="glob.glob") if name in ("glob", "iglob"):
-            message = f"glob is a function here, so glob.{name} is not defined: write glob(...)"
-            evaluation.error(message, at, AttributeError)
-            return owner
-        case QualifiedName(name=module):
-            full = f"{module}.{name}"
-            if full in evaluation.functions:
-                return QualifiedName(full)
-            error = attribute_error(module, name)
-            if error is not None:
-                evaluation.error(error, at, AttributeError)
-            return _CONSTANTS.get(full, QualifiedName(full))
-        case PurePosixPath():
-            return path_attribute(owner, name, at)
-        case _:
-            return BoundMethod(owner, name)
 
 
 def call_value(evaluation: Evaluation, function: Value, call: Call) -> Value:
@@ -79,10 +44,8 @@ def call_value(evaluation: Evaluation, function: Value, call: Call) -> Value:
         case BoundMethod(owner=owner, name=name):
             return call_method(evaluation, owner, name, call)
         case _:
-            if type_name(function):
-                evaluation.error(
-                    f"{type_name(function)} cannot be called: is there a comma missing before it?", call.at
-                )
+            if kind := type_name(function):
+                evaluation.error(f"{kind} cannot be called: is there a comma missing before it?", call.at)
             return Unknown("this call is not supported", call.at)
     evaluate = evaluation.functions.get(call.name)
     if evaluate is not None:
@@ -182,12 +145,10 @@ class SimpleEvaluator(Evaluation):
                 table |= value
                 continue
             key = self.evaluate(key_node, scope)
+            if isinstance(key, Unknown):
+                return key
             if not isinstance(key, str | int | float | PurePosixPath | None) or key == UNKNOWN_KEYS:
-                return (
-                    key
-                    if isinstance(key, Unknown)
-                    else Unknown("a key of this kind is not supported", position_of(key_node))
-                )
+                return Unknown("a key of this kind is not supported", position_of(key_node))
             table[key] = value
         return table
 

@@ -3,28 +3,12 @@
 import ast
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any
 
+from grader.static_python.parse import START, Position
 
-class Position(NamedTuple):
-    """A place in a Python file; line and column count from 1."""
-
-    line: int
-    column: int
-
-
-START = Position(1, 1)
-
-
-def position_of(node: ast.expr | ast.stmt | ast.excepthandler) -> Position:
-    """Return the position of a node."""
-    return Position(node.lineno, node.col_offset + 1)
-
-
-UNKNOWN_KEYS = (
-    "**"  # the key of an entry that stands for keys that are not known, in a dict and among keyword arguments
-)
-
+# The key of an entry that stands for keys that are not known, in a dict and among keyword arguments.
+UNKNOWN_KEYS = "**"
 _MAX_SEARCHED = 20_000  # parts of a value
 
 # A plain value is a str, number, bool, None, list, tuple, dict or PurePosixPath; a set is a list without duplicates.

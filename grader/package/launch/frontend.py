@@ -9,7 +9,7 @@ from grader.package.launch.substitution_grammar import Errors
 from grader.package.xml_file import XmlFault, XmlFile
 from grader.package.yaml_nodes import Node, YamlFault, read_yaml
 from grader.source import Location, Source
-from grader.static_python.values import START, Position
+from grader.static_python.parse import START, Position
 from grader.xml.parsing import Element
 
 _MAX_DEPTH = 40

@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from grader.source import Location, Source
-from grader.static_python.values import Call, Position, Unknown, Value
+from grader.static_python.parse import Position
+from grader.static_python.values import Call, Unknown, Value
 
 _MAX_STEPS = 50_000
 

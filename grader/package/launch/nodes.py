@@ -14,7 +14,8 @@ from grader.package.launch.references import (
     find_urdf_launch,
 )
 from grader.package.launch.substitutions import resolve
-from grader.static_python.values import START, UNKNOWN_KEYS, Call, Unknown, Value
+from grader.static_python.parse import START
+from grader.static_python.values import UNKNOWN_KEYS, Call, Unknown, Value
 
 # The arguments of launch_ros.actions.Node, and those that it passes on to launch.actions.ExecuteProcess (ROS 2 Jazzy).
 _NODE_ARGUMENTS = frozenset(

@@ -16,8 +16,8 @@ from grader.static_python.evaluation import Evaluation, FunctionTable
 from grader.static_python.functions import standard_functions
 from grader.static_python.inspection import path_text
 from grader.static_python.interpreter import Interpreter
-from grader.static_python.parse import SyntaxFault, parse
-from grader.static_python.values import START, Call, Function, QualifiedName, Unknown, Value
+from grader.static_python.parse import START, SyntaxFault, parse
+from grader.static_python.values import Call, Function, QualifiedName, Unknown, Value
 
 _ENTRY = "generate_launch_description"
 _MODULE = "python_launch_file"  # the __name__ of a launch file

@@ -1,7 +1,8 @@
 """The grammar of values in XML and YAML launch files: text and $(substitutions ...), as in ros2/launch's grammar.lark."""
 
 from grader.names import closest
-from grader.static_python.values import Call, Position, Value
+from grader.static_python.parse import Position
+from grader.static_python.values import Call, Value
 
 _MAX_DEPTH = 40
 # The Python name of each substitution of the XML and YAML frontends.

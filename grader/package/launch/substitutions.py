@@ -11,7 +11,8 @@ from grader.package.launch.model import Contents, Context, Resolved
 from grader.package.launch.places import HOME, PREFIX, SHARE
 from grader.static_python.expressions import evaluate_text
 from grader.static_python.inspection import as_text
-from grader.static_python.values import START, Call, Unknown, Value
+from grader.static_python.parse import START
+from grader.static_python.values import Call, Unknown, Value
 
 COMMAND_LINE = "launch.frontend.command line"  # a line that is split into words, as in XML and YAML
 _MAX_DEPTH = 40
