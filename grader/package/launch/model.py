@@ -125,17 +125,19 @@ class Findings:
             self.add_fault(message, at)
         del context.errors[start:]
 
-    def refer(self, purpose: Purpose, path: str | Unknown, call: Call, value: Value = None, by: str = "") -> None:
-        """Add the file that an action names, or why it is unknown which."""
+    def refer(
+        self,
+        purpose: Purpose,
+        path: str | Unknown | None,
+        call: Call,
+        value: Value = None,
+        by: str = "",
+        wrong: str = "",
+    ) -> None:
+        """Add the file that an action names, why it is unknown which, or what is wrong with it."""
+        known, reason = (None, path.reason) if isinstance(path, Unknown) else (path, wrong)
         location = self.locate(_position(value, call))
-        if isinstance(path, Unknown):
-            self.references.append(Reference(purpose, None, location, path.reason, sure=False))
-        else:
-            self.references.append(Reference(purpose, path, location, by=by))
-
-    def refer_wrongly(self, purpose: Purpose, message: str, call: Call, value: Value = None) -> None:
-        """Add that an action should name a file, and what is wrong with it."""
-        self.references.append(Reference(purpose, None, self.locate(_position(value, call)), message))
+        self.references.append(Reference(purpose, known, location, reason, sure=not isinstance(path, Unknown), by=by))
 
 
 def _position(value: Value, call: Call) -> Position:

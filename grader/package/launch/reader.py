@@ -1,8 +1,10 @@
 """Reads a launch file in any of its languages, and the launch files that it includes."""
 
 import posixpath
+import re
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
+from operator import attrgetter
 from pathlib import PurePosixPath
 
 from grader.package.launch.actions import CIRCULAR_INCLUDE, ActionVisitor, Include
@@ -22,6 +24,7 @@ from grader.static_python.values import Call, Function, QualifiedName, Unknown, 
 _ENTRY = "generate_launch_description"
 _MODULE = "python_launch_file"  # the __name__ of a launch file
 _MAX_INCLUDES = 10
+_JOINED = ("nodes", "references", "faults", "unknown")  # what a launch file shares with those that it includes
 
 # Returns the bytes of an installed file and its path in the submission, by its path below the prefix; None for other files.
 Opener = Callable[[str], "tuple[bytes, str] | None"]
@@ -33,13 +36,15 @@ def read_launch(data: bytes, path: str, installed: str, opener: Opener) -> Launc
     return _LaunchReader(opener).read(data, path, installed, context)
 
 
+@dataclass(slots=True)
 class _LaunchReader:
     """Reads a launch file and a limited number of included ones."""
 
-    def __init__(self, opener: Opener) -> None:
-        self.opener = opener
-        self.includes_left = _MAX_INCLUDES
-        self.open: list[str] = []  # the launch files that are being read, each included by the one before
+    opener: Opener
+    includes_left: int = _MAX_INCLUDES
+    open: list[str] = field(
+        default_factory=list
+    )  # the launch files that are being read, each included by the one before
 
     def read(self, data: bytes, path: str, installed: str, context: Context) -> Launch:
         """Return a launch file together with those that it includes."""
@@ -55,14 +60,10 @@ class _LaunchReader:
         else:
             own = _python(data, path, installed, context, include)
         self.open.pop()
-        launches = (own, *included)
-        return replace(
-            own,
-            nodes=tuple(node for launch in launches for node in launch.nodes),
-            references=tuple(reference for launch in launches for reference in launch.references),
-            faults=tuple(fault for launch in launches for fault in launch.faults),
-            unknown=tuple(unknown for launch in launches for unknown in launch.unknown),
-        )
+        for launch in included:
+            joined = {name: getattr(own, name) + getattr(launch, name) for name in _JOINED}
+            own = replace(own, **joined)
+        return own
 
     def include(self, target: str, arguments: Context, included: list[Launch]) -> str:
         """Read an included file; return why it is not read, or nothing."""
@@ -83,17 +84,17 @@ class _LaunchReader:
 
 
 def _frontend(data: bytes, path: str, context: Context, include: Include, *, is_yaml: bool) -> Launch:
-    frontend = read_frontend(data, path, is_yaml=is_yaml)
-    if frontend.root is None:
-        return Launch(path, frontend.source, frontend.syntax)
+    source = Source(path, data.decode("utf-8", "replace"))
     findings = Findings(lambda position: Location(path, position.line, position.column))
+    root = read_frontend(data, source, findings, is_yaml=is_yaml)
+    if isinstance(root, LaunchFault):
+        return Launch(path, source, root)
+    actions = actions_of(root, findings)
+    unsupported, findings.unknown = findings.unknown, []
     visitor = ActionVisitor(findings, include, lambda _, at, __: Unknown("a function is not supported here", at))
-    actions = actions_of(frontend.root, frontend)
-    visitor.visit(Call("launch.LaunchDescription", [actions], {}, frontend.root.at), context, context.when)
-    for message, at in frontend.errors:
-        findings.add_fault(message, at)
-    findings.unknown += [LaunchFault(reason, findings.locate(at)) for reason, at in frontend.unknown]
-    return _launch(path, frontend.source, findings, ())
+    visitor.visit(Call("launch.LaunchDescription", [actions], {}, root.at), context, context.when)
+    findings.unknown += unsupported
+    return _launch(path, source, findings, ())
 
 
 def _python(data: bytes, path: str, installed: str, context: Context, include: Include) -> Launch:
@@ -130,9 +131,9 @@ def _description_error(value: Value) -> str:
     match value:
         case None:
             return f"{_ENTRY} does not return its LaunchDescription"
-        case str() | int() | float() | list() | tuple() | dict():
-            return f"{_ENTRY} does not return a LaunchDescription([...])"
-        case Call() if value.name.startswith(("launch.actions.", "launch_ros.actions.")):
+        case Call() if not value.name.startswith(("launch.actions.", "launch_ros.actions.")):
+            return ""
+        case str() | int() | float() | list() | tuple() | dict() | Call():
             return f"{_ENTRY} does not return a LaunchDescription([...])"
         case _:
             return ""
@@ -145,9 +146,7 @@ def _forgotten(node: Call, findings: Findings) -> StartedNode:
 
 
 def _launch(path: str, source: Source, findings: Findings, forgotten: tuple[StartedNode, ...]) -> Launch:
-    def order(fault: LaunchFault) -> tuple[int, int, str]:
-        return fault.location.line, fault.location.column, fault.message
-
+    order = attrgetter("location.line", "location.column", "message")
     return Launch(
         path=path,
         source=source,
@@ -160,10 +159,7 @@ def _launch(path: str, source: Source, findings: Findings, forgotten: tuple[Star
 
 
 _AMENT_INDEX = ("ament_index_python", "ament_index_python.packages")
-_FIND = (
-    "launch_ros.substitutions.FindPackageShare.find",
-    "launch_ros.substitutions.find_package.FindPackageShare.find",
-)
+_FIND = [f"launch_ros.substitutions.{module}FindPackageShare.find" for module in ("", "find_package.")]
 
 
 def launch_functions() -> FunctionTable:
@@ -193,6 +189,4 @@ def _share_path(evaluation: Evaluation, call: Call) -> Value:
 
 def _expanduser(_: Evaluation, call: Call) -> Value:
     text = path_text(call.args[0]) if call.args else None
-    if text is None:
-        return Unknown("a path is known only at run time", call.at)
-    return text.replace("~", HOME, 1) if text.startswith("~") else text
+    return re.sub("^~", HOME, text) if text is not None else Unknown("a path is known only at run time", call.at)

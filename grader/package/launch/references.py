@@ -39,12 +39,12 @@ def find_description(findings: Findings, call: Call, context: Context) -> None:
         findings.refer("urdf", Unknown("its parameters are known only at run time", call.at), call)
     else:
         message = "robot_state_publisher is started without robot_description: it has no robot to publish"
-        findings.refer_wrongly("urdf", message, call)
+        findings.refer("urdf", None, call, wrong=message)
 
 
 def _refer_description(findings: Findings, value: Value, call: Call, context: Context) -> None:
     if isinstance(value, Call) and value.name in _UNFINISHED:
-        findings.refer_wrongly("urdf", _UNFINISHED[value.name], call, value)
+        findings.refer("urdf", None, call, value, wrong=_UNFINISHED[value.name])
         return
     description = resolve(value, context)
     match description:
@@ -57,7 +57,7 @@ def _refer_description(findings: Findings, value: Value, call: Call, context: Co
             findings.refer("urdf", path, call, value, by)
         case str() if "<robot" not in description:
             message = "robot_description is given the path of the URDF, not its contents: read the file first"
-            findings.refer_wrongly("urdf", message, call, value)
+            findings.refer("urdf", None, call, value, wrong=message)
         case Unknown():
             findings.refer("urdf", description, call, value)
 
@@ -74,7 +74,7 @@ def find_configuration(findings: Findings, call: Call, context: Context) -> None
         message = (
             "rviz2 is started without -d and a file, so it opens its own default instead of the lab's configuration"
         )
-        findings.refer_wrongly("rviz", message, call)
+        findings.refer("rviz", None, call, wrong=message)
     elif path is None or PART_UNKNOWN in path:
         pieces = (resolve(piece, context) for piece in _pieces(arguments))
         unknown = (piece for piece in pieces if isinstance(piece, Unknown))
@@ -82,11 +82,11 @@ def find_configuration(findings: Findings, call: Call, context: Context) -> None
             "rviz", next(unknown, Unknown("the file that it opens is known only at run time", call.at)), call
         )
     elif path != path.lstrip():
-        findings.refer_wrongly("rviz", "'-d' and the path have to be two items of arguments: ['-d', path]", call)
+        findings.refer("rviz", None, call, wrong="'-d' and the path have to be two items of arguments: ['-d', path]")
     elif path:
         findings.refer("rviz", path, call)
     else:
-        findings.refer_wrongly("rviz", "rviz2 is given -d without the path of a file", call)
+        findings.refer("rviz", None, call, wrong="rviz2 is given -d without the path of a file")
 
 
 def find_urdf_launch(findings: Findings, name: str, call: Call, context: Context) -> tuple[str, ...]:
@@ -99,7 +99,7 @@ def find_urdf_launch(findings: Findings, name: str, call: Call, context: Context
             unknown = next(value for value in values if not isinstance(value, str))
             if None in given or not isinstance(unknown, Unknown):
                 message = "urdf_launch needs the arguments urdf_package and urdf_package_path"
-                findings.refer_wrongly("urdf", message, call)
+                findings.refer("urdf", None, call, wrong=message)
             else:
                 findings.refer("urdf", unknown, call)
     if name != "display":
@@ -110,7 +110,7 @@ def find_urdf_launch(findings: Findings, name: str, call: Call, context: Context
         findings.refer("rviz", opened, call)
     else:
         message = "urdf_launch is included without rviz_config, so it opens its own configuration, not the lab's"
-        findings.refer_wrongly("rviz", message, call)
+        findings.refer("rviz", None, call, wrong=message)
     return (STATE_PUBLISHER, "joint_state_publisher_gui", RVIZ)
 
 
