@@ -2,13 +2,13 @@
 
 import re
 from dataclasses import dataclass
+from itertools import takewhile
 from typing import NamedTuple
 
 _WORDS = re.compile(r"[^\W\d_]+|\d+")
+_NUMBER = re.compile(r"\d{1,4}")
 _TASKS = frozenset({"task", "tasks", "t", "tsk", "tast", "aufgabe", "teil"})
-_STEPS = frozenset(
-    {"step", "steps", "s", "st", "stp", "question", "questions", "q", "que", "no", "nr", "schritt", "frage"}
-)
+_STEPS = {"step", "steps", "s", "st", "stp", "question", "questions", "q", "que", "no", "nr", "schritt", "frage"}
 _KEYWORDS = _TASKS | _STEPS
 _MAX_LENGTH = 300
 
@@ -28,9 +28,10 @@ def read_label(text: str) -> Label:
     task: int | None = None
     steps: set[int] = set()
     for index, word in enumerate(words):
-        if word not in _KEYWORDS or not (numbers := _numbers(words, index + 1)):
+        if word not in _KEYWORDS:
             continue
-        if word in _TASKS:
+        numbers = [int(number) for number in takewhile(_NUMBER.fullmatch, words[index + 1 :])]
+        if word in _TASKS and numbers:
             task, steps = numbers[0], set(numbers[1:])
         else:
             steps |= set(numbers)
@@ -45,16 +46,6 @@ def matches(wanted: Label, found: Label, task: int | None = None) -> bool:
             return False
         return wanted.steps <= found.steps if wanted.steps else own == wanted.task
     return bool(wanted.words) and _in_order(wanted.words, found.words)
-
-
-def _numbers(words: tuple[str, ...], start: int) -> list[int]:
-    """Return the numbers directly after a word."""
-    numbers: list[int] = []
-    for word in words[start:]:
-        if not word.isdecimal() or len(word) > 4:
-            break
-        numbers.append(int(word))
-    return numbers
 
 
 def _in_order(wanted: tuple[str, ...], found: tuple[str, ...]) -> bool:

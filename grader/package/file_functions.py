@@ -112,9 +112,8 @@ class _PackageFolder:
         if isinstance(pattern, PurePosixPath):
             evaluation.error("glob takes a string, and this is a path: write str(...) around it", call.at)
         unknown = unknown_in([pattern, start, *options])
-        plain = isinstance(start, str | PurePosixPath | None) and all(
-            isinstance(value, int | None) for value in options
-        )
+        plain = isinstance(start, str | PurePosixPath | None)
+        plain &= all(isinstance(value, int | None) for value in options)
         is_supported = plain and call.kwargs.keys() <= _GLOB_OPTIONS and len(call.args) <= 1
         if unknown or not is_supported or not isinstance(pattern, str):
             return unknown or Unknown("this search for files is not supported", call.at)

@@ -54,7 +54,7 @@ class Interpreter(StatementEvaluator):
             case ast.If(test=test, body=body, orelse=other):
                 condition = truth(self.evaluate(test, scope))
                 if condition is None:
-                    self._branches([body, other], scope, node)
+                    self._branches([body, other], scope, position_of(node))
                 else:
                     self._block(body if condition else other, scope)
             case ast.For() | ast.AsyncFor():
@@ -63,14 +63,14 @@ class Interpreter(StatementEvaluator):
                 before = self.uncertainty
                 is_over = truth(self.evaluate(test, scope)) is False
                 # The body twice: its first round may change what the second one does.
-                self._block(other, scope) if is_over else self._branches([body, body, other], scope, node)
+                self._block(other, scope) if is_over else self._branches([body, body, other], scope, position_of(node))
                 self.uncertainty = before
             case ast.Match(subject=subject, cases=cases):
                 self.evaluate(subject, scope)
                 for pattern in ast.walk(node):
                     if isinstance(pattern, ast.MatchAs | ast.MatchStar) and pattern.name is not None:
                         scope.bind(pattern.name, Unknown("a pattern is not supported", position_of(node)))
-                self._branches([case.body for case in cases], scope, node)
+                self._branches([case.body for case in cases], scope, position_of(node))
             case ast.With() | ast.AsyncWith():
                 for item in node.items:
                     value = self.evaluate(item.context_expr, scope)
@@ -94,12 +94,10 @@ class Interpreter(StatementEvaluator):
                 self.uncertainty = Unknown("an earlier error may have been caught", position_of(statement))
             self.statement(statement, scope)
 
-    def _branches(
-        self, bodies: list[list[ast.stmt]], scope: Scope, node: ast.stmt | ast.excepthandler, reason: str = _CONDITION
-    ) -> None:
+    def _branches(self, bodies: list[list[ast.stmt]], scope: Scope, at: Position, reason: str = _CONDITION) -> None:
         """Evaluate blocks of which only a run decides which are executed."""
         for body in bodies:
-            with self.uncertain(reason, position_of(node)):
+            with self.uncertain(reason, at):
                 self._block(body, scope)
 
     def _function_body(self, node: ast.FunctionDef | ast.AsyncFunctionDef, scope: Scope, at: Position) -> Value:
@@ -147,7 +145,7 @@ class Interpreter(StatementEvaluator):
                 self._handle(node, raised, scope)
             elif may_have_failed:
                 bodies = [node.orelse, *(handler.body for handler in node.handlers)]
-                self._branches(bodies, scope, node, "whether an error is raised is known only at run time")
+                self._branches(bodies, scope, position_of(node), "whether an error is raised is known only at run time")
             else:
                 self._block(node.orelse, scope)
         self._block(node.finalbody, scope)
@@ -176,7 +174,9 @@ class Interpreter(StatementEvaluator):
             if catches:
                 self._block(handler.body, scope)
                 return
-            self._branches([handler.body], scope, handler, "which error is raised is known only at run time")
+            self._branches(
+                [handler.body], scope, position_of(handler), "which error is raised is known only at run time"
+            )
         self.error(raised.error.message, raised.error.at, raised.kind)
 
 

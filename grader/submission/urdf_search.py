@@ -61,9 +61,8 @@ def find_urdf(tree: Tree, wanted: str, package: str | None = None) -> UrdfChoice
     if not ranked:
         return UrdfChoice(None, generated)
     best, *others = ranked
-    return UrdfChoice(
-        best.path, (*(OtherCandidate(other.path, _reason(best, other, wanted)) for other in others), *generated)
-    )
+    found = [OtherCandidate(other.path, _reason(best, other, wanted)) for other in others]
+    return UrdfChoice(best.path, (*found, *generated))
 
 
 def _candidates(tree: Tree, wanted: str, package: str | None) -> list[_Candidate]:

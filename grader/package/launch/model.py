@@ -125,19 +125,16 @@ class Findings:
             self.add_fault(message, at)
         del context.errors[start:]
 
-    def refer(
-        self,
-        purpose: Purpose,
-        path: str | Unknown | None,
-        call: Call,
-        value: Value = None,
-        by: str = "",
-        wrong: str = "",
-    ) -> None:
+    def refer(self, purpose: Purpose, path: Resolved | None, call: Call, value: Value = None, wrong: str = "") -> None:
         """Add the file that an action names, why it is unknown which, or what is wrong with it."""
-        known, reason = (None, path.reason) if isinstance(path, Unknown) else (path, wrong)
         location = self.locate(_position(value, call))
-        self.references.append(Reference(purpose, known, location, reason, sure=not isinstance(path, Unknown), by=by))
+        match path:
+            case Unknown(reason=reason):
+                self.references.append(Reference(purpose, None, location, reason, sure=False))
+            case Contents():
+                self.references.append(Reference(purpose, path.path, location, by=path.by))
+            case _:
+                self.references.append(Reference(purpose, path, location, wrong))
 
 
 def _position(value: Value, call: Call) -> Position:

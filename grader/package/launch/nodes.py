@@ -43,9 +43,8 @@ def start_node(findings: Findings, call: Call, context: Context, when: bool | No
         _start(findings, package, executable, call, context, when)
         return
     unknown = executable if isinstance(package, str) else package
-    findings.add_unknown(
-        unknown.reason if isinstance(unknown, Unknown) else "the program of a node is known only at run time", call.at
-    )
+    reason = "the program of a node is known only at run time"
+    findings.add_unknown(unknown.reason if isinstance(unknown, Unknown) else reason, call.at)
 
 
 def start_process(findings: Findings, call: Call, context: Context, when: bool | None) -> None:

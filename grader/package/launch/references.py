@@ -28,14 +28,12 @@ def find_description(findings: Findings, call: Call, context: Context) -> None:
     words = command_words(call.kwargs.get("arguments"), context)
     end = words.index("--ros-args") if "--ros-args" in words else len(words)
     files = [word for word in words[:end] if not word.startswith("-")]
-    others = (
-        words or unclear is not None or findings.sets_parameters or {UNKNOWN_KEYS, "ros_arguments"} & call.kwargs.keys()
-    )
+    others = words or unclear is not None or {UNKNOWN_KEYS, "ros_arguments"} & call.kwargs.keys()
     if isinstance(unclear, Unknown):
         findings.refer("urdf", unclear, call)
     elif files and files[0] != PART_UNKNOWN:
         findings.refer("urdf", files[0], call)
-    elif others:
+    elif others or findings.sets_parameters:
         findings.refer("urdf", Unknown("its parameters are known only at run time", call.at), call)
     else:
         message = "robot_state_publisher is started without robot_description: it has no robot to publish"
@@ -49,16 +47,13 @@ def _refer_description(findings: Findings, value: Value, call: Call, context: Co
     description = resolve(value, context)
     match description:
         case Contents(path=path, by=by) if by != "xacro" and path.endswith(".xacro"):
-            message = (
-                f"{path.rpartition('/')[2]} is read without xacro; if it uses xacro, write Command(['xacro ', ...])"
-            )
+            name = path.rpartition("/")[2]
+            message = f"{name} is read without xacro; if it uses xacro, write Command(['xacro ', ...])"
             findings.references.append(Reference("urdf", path, findings.locate(call.at), message, sure=False, by=by))
-        case Contents(path=path, by=by):
-            findings.refer("urdf", path, call, value, by)
         case str() if "<robot" not in description:
             message = "robot_description is given the path of the URDF, not its contents: read the file first"
             findings.refer("urdf", None, call, value, wrong=message)
-        case Unknown():
+        case Contents() | Unknown():
             findings.refer("urdf", description, call, value)
 
 
@@ -78,9 +73,8 @@ def find_configuration(findings: Findings, call: Call, context: Context) -> None
     elif path is None or PART_UNKNOWN in path:
         pieces = (resolve(piece, context) for piece in _pieces(arguments))
         unknown = (piece for piece in pieces if isinstance(piece, Unknown))
-        findings.refer(
-            "rviz", next(unknown, Unknown("the file that it opens is known only at run time", call.at)), call
-        )
+        unnamed = Unknown("the file that it opens is known only at run time", call.at)
+        findings.refer("rviz", next(unknown, unnamed), call)
     elif path != path.lstrip():
         findings.refer("rviz", None, call, wrong="'-d' and the path have to be two items of arguments: ['-d', path]")
     elif path:
@@ -94,7 +88,7 @@ def find_urdf_launch(findings: Findings, name: str, call: Call, context: Context
     given = [context.arguments.get(key) for key in ("urdf_package", "urdf_package_path")]
     match [resolve(value, context) for value in given]:
         case [str() as package, str() as path]:
-            findings.refer("urdf", f"{SHARE}/{package}/{path}", call, by="xacro")
+            findings.refer("urdf", Contents(f"{SHARE}/{package}/{path}", "xacro"), call)
         case values:
             unknown = next(value for value in values if not isinstance(value, str))
             if None in given or not isinstance(unknown, Unknown):
