@@ -1,6 +1,6 @@
 """Written answers: the passage of a document about a question. A person grades it."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from grader.documents.collection import Document, DocumentCollection
@@ -33,11 +33,8 @@ def find_answer(documents: DocumentCollection, files: Sequence[str], places: Seq
     An earlier place wins over a later one, and for the same place a passage over a heading without a text.
     """
     read, unread = documents.named(files)
-    return AnswerSearch(
-        _best(read, [read_label(place) for place in places]),
-        tuple(document.file.path for document in read),
-        tuple(unread),
-    )
+    passage = _best(read, [read_label(place) for place in places])
+    return AnswerSearch(passage, tuple(document.file.path for document in read), tuple(unread))
 
 
 def _best(documents: list[Document], wanted: list[Label]) -> Passage | None:
@@ -48,22 +45,14 @@ def _best(documents: list[Document], wanted: list[Label]) -> Passage | None:
         for index, label in enumerate(wanted):
             if (index, False) >= rank:
                 break
-            passages = [_cut(document, start, end) for start, end in _spans(document, own, label)]
-            for passage in filter(None, passages):
+            spans = [(head.start, head.end) for head in document.headings if matches(label, head.label, head.task)]
+            if matches(label, own):  # the file is named for the place
+                spans = [(0, len(document.lines))]
+            for passage in filter(None, (_cut(document, start, end) for start, end in spans)):
                 found = (index, len(passage.text.split()) <= _MAX_HEADING_WORDS)
                 if found < rank:
                     best, rank = passage, found
     return best
-
-
-def _spans(document: Document, own: Label, wanted: Label) -> Iterator[tuple[int, int]]:
-    """Yield the lines from each matching heading to the next one; of a file that is named for the place, all lines."""
-    if matches(wanted, own):
-        yield 0, len(document.lines)
-        return
-    for heading in document.headings:
-        if matches(wanted, heading.label, heading.task):
-            yield heading.start, heading.end
 
 
 def _cut(document: Document, start: int, end: int) -> Passage | None:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from grader.documents import converter
 from grader.documents.evidence import stem
-from grader.documents.headings import Heading, find_headings
+from grader.documents.labels import Heading, find_headings
 from grader.errors import InputError
 from grader.files.tree import File, Tree
 
@@ -20,9 +20,7 @@ MAX_SECONDS = 20.0  # for all Word and PDF files of a submission
 MAX_LINES = 2000  # of one document
 _TEXT_LIMIT, _DOCUMENT_LIMIT = 1024 * 1024, 32 * 1024 * 1024  # bytes
 _MAX_FILES, _MAX_CONVERTED = 40, 8
-_NO_ANSWERS = frozenset(
-    {"CMakeLists.txt", "requirements.txt", "LICENSE.txt", "LICENSE.md", "top_level.txt", "SOURCES.txt"}
-)
+_NO_ANSWERS = {"CMakeLists.txt", "requirements.txt", "LICENSE.txt", "LICENSE.md", "top_level.txt", "SOURCES.txt"}
 # The beginning of a file without answers: of another format, or a report of the grader, which repeats questions and answers.
 _OTHER = re.compile(
     r"\s*<(?:\?xml|!--|robot|launch|package)|(?:# )?[\d.]+ / [\d.]+ points(?:  |: )|::notice title=[\d.]+ / "
@@ -51,7 +49,9 @@ class DocumentCollection:
         """Return the documents whose names match one of the patterns, and what of them was not read, and why."""
         read: list[Document] = []
         unread: list[str] = []
-        chosen = self._matching(patterns)
+        wanted = re.compile("|".join(translate(pattern.lower()) for pattern in patterns))
+        files = self._tree.files.values()
+        chosen = [file for file in files if file.name not in _NO_ANSWERS and wanted.match(file.name.lower())]
         for file in chosen[:_MAX_FILES]:
             if file.path not in self._read_files:
                 self._read_files[file.path] = self._read(file)
@@ -65,11 +65,6 @@ class DocumentCollection:
         if len(chosen) > _MAX_FILES:
             unread.append(f"{len(chosen) - _MAX_FILES} documents after the first {_MAX_FILES}, the limit")
         return read, unread
-
-    def _matching(self, patterns: Sequence[str]) -> list[File]:
-        wanted = re.compile("|".join(translate(pattern.lower()) for pattern in patterns))
-        files = self._tree.files.values()
-        return [file for file in files if file.name not in _NO_ANSWERS and wanted.match(file.name.lower())]
 
     def _read(self, file: File) -> Document | str | None:
         """Return a document, the reason why it was not read, or None for a file that holds no answers."""
@@ -104,18 +99,26 @@ class DocumentCollection:
         """Return the text of a Word or PDF file, converted by a process of its own within what is left of the budget."""
         self._converted += 1
         if self._converted > _MAX_CONVERTED:
-            raise InputError(
-                f"{file.path} was not read: at most {_MAX_CONVERTED} Word and PDF files are; needs manual grading"
-            )
-        late = InputError(
-            f"{file.path} was not read: the Word and PDF files take longer than {MAX_SECONDS:g} s in all; needs manual grading"
-        )
+            limit = f"at most {_MAX_CONVERTED} Word and PDF files are"
+            raise InputError(f"{file.path} was not read: {limit}; needs manual grading")
+        budget = f"the Word and PDF files take longer than {MAX_SECONDS:g} s in all"
+        late = InputError(f"{file.path} was not read: {budget}; needs manual grading")
         if self._seconds <= 0:
             raise late
         data = file.read(_DOCUMENT_LIMIT)
+        # -P: modules are imported neither from the current folder, which may be the student's, nor from our own.
+        command = [
+            sys.executable,
+            "-P",
+            converter.__file__,
+            file.suffix[1:],
+            str(ceil(self._seconds)),
+            str(os.getpid()),
+        ]
         began = time.monotonic()
-        try:
-            done = _run_converter(file.suffix[1:], data, self._seconds)
+        try:  # an interruption ends the process as well
+            out, err = subprocess.PIPE, subprocess.DEVNULL
+            done = subprocess.run(command, input=data, stdout=out, stderr=err, timeout=self._seconds, check=False)
         except subprocess.TimeoutExpired:
             raise late from None
         except OSError:
@@ -129,11 +132,3 @@ class DocumentCollection:
         if done.returncode:
             raise InputError(f"{file.path} cannot be read; it may be damaged: open it yourself")
         return done.stdout.decode("utf-8", "replace")
-
-
-def _run_converter(kind: str, data: bytes, seconds: float) -> "subprocess.CompletedProcess[bytes]":
-    # -P: modules are imported neither from the current folder, which may be the student's, nor from our own.
-    command = [sys.executable, "-P", converter.__file__, kind, str(ceil(seconds)), str(os.getpid())]
-    return subprocess.run(  # which kills it when it is interrupted
-        command, input=data, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, timeout=seconds, check=False
-    )

@@ -1,6 +1,7 @@
 """Pictures and other evidence in a submission: found by name and described, never graded."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -10,9 +11,8 @@ from grader.errors import InputError
 from grader.files.tree import File, Tree
 
 _PICTURES = frozenset({".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".heic", ".svg"})
-_OTHERS = frozenset({".pdf", ".mp4", ".mov", ".webm", ".mkv", ".avi"})
+_EVIDENCE = _PICTURES | {".pdf", ".mp4", ".mov", ".webm", ".mkv", ".avi"}
 _MAX_HEADER = 256 * 1024  # bytes in which the size of a picture is found
-_EVIDENCE = _PICTURES | _OTHERS
 _MAX_OPENED = 50  # files at once whose dimensions are read
 
 
@@ -53,8 +53,7 @@ def find_evidence(proofs: Sequence[Proof], names: Sequence[str]) -> tuple[Exhibi
 
 def describe(proofs: Sequence[Proof]) -> tuple[Exhibit, ...]:
     """Describe files of evidence; of many files, only the first with their dimensions."""
-    opened = [_exhibit(proof.file) for proof in proofs[:_MAX_OPENED]]
-    return (*opened, *(Exhibit(proof.file.path, proof.file.size) for proof in proofs[_MAX_OPENED:]))
+    return tuple(_exhibit(proof.file, is_opened=index < _MAX_OPENED) for index, proof in enumerate(proofs))
 
 
 def stem(path: str) -> str:
@@ -63,9 +62,9 @@ def stem(path: str) -> str:
     return folder + slash + (name.rpartition(".")[0] or name)
 
 
-def _exhibit(file: File) -> Exhibit:
-    try:
-        size = image_size(file.read(_MAX_HEADER, first=True)) if file.suffix in _PICTURES else None
-    except InputError:
-        size = None
+def _exhibit(file: File, *, is_opened: bool) -> Exhibit:
+    size = None
+    if is_opened and file.suffix in _PICTURES:
+        with suppress(InputError):
+            size = image_size(file.read(_MAX_HEADER, first=True))
     return Exhibit(file.path, file.size, *(size or (None, None)))

@@ -2,7 +2,9 @@
 
 import posixpath
 import re
+from collections import defaultdict
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import PurePosixPath
 from typing import NamedTuple
 
@@ -11,9 +13,9 @@ from grader.files.ignore_rules import ignored_part
 from grader.files.tree import Tree
 from grader.names import did_you_mean
 from grader.package.globbing import PackageListing, SearchError
-from grader.static_python.control_flow import EvaluationStopped
+from grader.static_python.evaluation import EvaluationStopped
 from grader.static_python.inspection import PACKAGE_FOLDER, names_package_folder
-from grader.static_python.positions import Position
+from grader.static_python.parse import Position
 from grader.static_python.values import UNKNOWN_KEYS, Call, Unknown, Value, unknown_in
 from grader.text import enumerated
 
@@ -55,18 +57,20 @@ class InstallError(NamedTuple):
         return f"data_files lists {self.path!r}, but {self.reason}" if self.path else self.reason
 
 
+@dataclass(slots=True)
 class DataFiles:
-    """Installs the files of data_files as setuptools' install_data does, without touching any."""
+    """Installs the files of data_files as setuptools' install_data does, without touching any.
 
-    def __init__(self, tree: Tree, listing: PackageListing, root: str, positions: Mapping[str, Position]) -> None:
-        """`root` is the absolute path that stands for the package's folder; `positions` has the origin of each path."""
-        self.tree = tree
-        self.listing = listing
-        self.root = root
-        self.positions = positions
-        self.copies: list[InstalledFile] = []
-        self.stops: list[InstallError] = []
-        self.unknown: list[Unknown] = []
+    `root` is the absolute path that stands for the package's folder; `positions` has the origin of each path.
+    """
+
+    tree: Tree
+    listing: PackageListing
+    root: str
+    positions: Mapping[str, Position]
+    copies: list[InstalledFile] = field(default_factory=list)
+    stops: list[InstallError] = field(default_factory=list)
+    unknown: list[Unknown] = field(default_factory=list)
 
     def read(self, call: Call) -> None:
         """Add the files that a call of setup() installs."""
@@ -89,9 +93,9 @@ class DataFiles:
 
     def finish(self, change: Call | None) -> None:
         """Remove what is not certain: files with the same target, and everything if the file itself changes files."""
-        sources: dict[str, set[str]] = {}
+        sources: dict[str, set[str]] = defaultdict(set)
         for copy in self.copies:
-            sources.setdefault(copy.target, set()).add(copy.source)
+            sources[copy.target].add(copy.source)
         several = [copy for copy in self.copies if len(sources[copy.target]) > 1]
         self.copies = [copy for copy in self.copies if len(sources[copy.target]) == 1]
         for target, at in {copy.target: copy.at for copy in several}.items():
@@ -161,7 +165,7 @@ class DataFiles:
         elif path is not None and path in self.tree.files:
             target = posixpath.normpath(posixpath.join(folder, posixpath.basename(path)))
             self.copies.append(InstalledFile(path, target, at))
-        elif path is not None and path in self.listing.folders:
+        elif path is not None:
             reason = f"it is a folder, and only files can be installed{self._narrower(path)}"
             self.stops.append(InstallError(text, reason, at))
         elif str(PurePosixPath(text)) in self.tree.files:
@@ -177,12 +181,10 @@ class DataFiles:
         above = posixpath.dirname(folder)
         names = self.listing.names(above) if above else []
         beside = [posixpath.splitext(name)[1] for name in names if posixpath.join(above, name) in self.tree.files]
-        endings = [ending for ending in beside if ending]
-        return (
-            f": a pattern such as '*{max(sorted(set(endings)), key=endings.count)}' does not match it"
-            if endings
-            else ""
-        )
+        if not any(beside):
+            return ""
+        most_common = max(sorted(set(beside) - {""}), key=beside.count)
+        return f": a pattern such as '*{most_common}' does not match it"
 
     def _find_packages(self, call: Call) -> None:
         """Add the error of setuptools where it searches for packages and finds several."""

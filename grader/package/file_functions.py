@@ -3,17 +3,17 @@
 import posixpath
 import re
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 from pathlib import PurePosixPath
 from typing import NamedTuple
 
 from grader.files.ignore_rules import ignored_part
 from grader.package.globbing import PackageListing, SearchError
-from grader.static_python.control_flow import EvaluationStopped
-from grader.static_python.evaluation import Evaluation, FunctionTable
+from grader.static_python.evaluation import Evaluation, EvaluationStopped, FunctionTable
 from grader.static_python.inspection import path_text
 from grader.static_python.operators import WalkFolders
-from grader.static_python.positions import Position
+from grader.static_python.parse import Position
 from grader.static_python.values import Call, Unknown, Value, unknown_in
 
 WRITING = "builtins.open(w)"  # the name of a call that opens a file to write into it
@@ -79,12 +79,12 @@ def _evaluated(
     return found
 
 
+@dataclass(frozen=True, slots=True)
 class _PackageFolder:
     """The package's folder, as the functions see it."""
 
-    def __init__(self, listing: PackageListing, root: str) -> None:
-        self.listing = listing
-        self.root = root
+    listing: PackageListing
+    root: str
 
     def inside(self, value: Value) -> str:
         """Return a path or pattern relative to the package's folder. Raises SearchError."""
@@ -112,9 +112,8 @@ class _PackageFolder:
         if isinstance(pattern, PurePosixPath):
             evaluation.error("glob takes a string, and this is a path: write str(...) around it", call.at)
         unknown = unknown_in([pattern, start, *options])
-        plain = all(isinstance(value, int | None) for value in options) and isinstance(
-            start, str | PurePosixPath | None
-        )
+        plain = isinstance(start, str | PurePosixPath | None)
+        plain &= all(isinstance(value, int | None) for value in options)
         is_supported = plain and call.kwargs.keys() <= _GLOB_OPTIONS and len(call.args) <= 1
         if unknown or not is_supported or not isinstance(pattern, str):
             return unknown or Unknown("this search for files is not supported", call.at)
@@ -135,11 +134,8 @@ class _PackageFolder:
 
     def path_glob(self, evaluation: Evaluation, call: Call, prefix: str = "") -> Value:
         pattern = call.argument(1, "pattern")
-        if (
-            not isinstance(pattern, str)
-            or not call.kwargs.keys() <= {"pattern"}
-            or len(call.args) + len(call.kwargs) != 2
-        ):
+        is_supported = call.kwargs.keys() <= {"pattern"} and len(call.args) + len(call.kwargs) == 2
+        if not isinstance(pattern, str) or not is_supported:
             return call.unknown("this search for files is not supported")
         folder = self.inside(call.args[0])
         found = [call.args[0] / path for path in self.listing.path_glob(folder, prefix + pattern)]

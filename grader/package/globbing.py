@@ -4,8 +4,10 @@ import posixpath
 import re
 import warnings
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from fnmatch import translate
 from functools import lru_cache
+from itertools import chain
 
 from grader.files.tree import Tree
 
@@ -80,7 +82,7 @@ class PackageListing:
             raise SearchError(_OUTSIDE)
         if len(pattern) > _MAX_PATTERN or pattern.count("/") > _MAX_PARTS:
             raise SearchError("the pattern is too long")
-        found = _GlobSearch(self, start, recursive=recursive, hidden=hidden).find(pattern, folders_only=False)
+        found = _GlobSearch(self, start, recursive, hidden).find(pattern, folders_only=False)
         return [above + path for path in dict.fromkeys(found) if above or path]
 
     def path_glob(self, folder: str, pattern: str) -> list[str]:
@@ -92,10 +94,9 @@ class PackageListing:
         start = self.real(folder)
         found = [""] if start in self.folders else []
         for index, part in enumerate(parts):
-            step: list[str] = []
-            for path in found:
-                step += self._path_step(_join(start or "", path), path, part, last=index == len(parts) - 1)
-            found = _bounded(list(dict.fromkeys(step)))
+            last = index == len(parts) - 1
+            steps = (self._path_step(_join(start or "", path), path, part, last=last) for path in found)
+            found = _bounded(list(dict.fromkeys(chain.from_iterable(steps))))
         return found
 
     def below(self, folder: str) -> list[str]:
@@ -119,14 +120,14 @@ class PackageListing:
         return [_join(path, name) for name in names if last or _join(real, name) in self.folders]
 
 
+@dataclass(frozen=True, slots=True)
 class _GlobSearch:
     """One call of glob.glob, with the algorithm of Python's own; paths are relative to the start of the search."""
 
-    def __init__(self, listing: PackageListing, start: str, *, recursive: bool, hidden: bool) -> None:
-        self.listing = listing
-        self.start = start
-        self.recursive = recursive
-        self.hidden = hidden
+    listing: PackageListing
+    start: str
+    recursive: bool
+    hidden: bool
 
     def find(self, pattern: str, *, folders_only: bool) -> list[str]:
         """Return the paths that match a pattern; only folders for the part before the last one."""

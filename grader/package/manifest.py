@@ -8,9 +8,6 @@ from grader.package.xml_file import XmlFault, XmlFile
 from grader.problems import Problem
 from grader.source import Location, Source
 
-_REQUIRED = ("name", "version", "description", "maintainer", "license")
-_FORMATS = ("2", "3")
-
 
 @dataclass(frozen=True, slots=True)
 class Manifest:
@@ -52,7 +49,7 @@ def read_manifest(data: bytes, path: str) -> Manifest:
 
 def _problems(file: XmlFile) -> Iterator[Problem]:
     root = file.root
-    for tag in _REQUIRED:
+    for tag in ("name", "version", "description", "maintainer", "license"):
         found = root.findall(tag)
         if not any((element.text or "").strip() for element in found):
             message = f"<{tag}> of package.xml is empty" if found else f"package.xml has no <{tag}>"
@@ -66,6 +63,6 @@ def _problems(file: XmlFile) -> Iterator[Problem]:
             if is_text and "todo" in f"{element.text or ''} {email}".lower():
                 yield Problem(catalogue.STILL_TO_DO, f"<{tag}> of package.xml is still TODO", file.location(element))
     version = root.get("format", "1")
-    if version not in _FORMATS:
+    if version not in ("2", "3"):
         message = f"package.xml has format {version[:20]}; ROS 2 packages use format 3"
         yield Problem(catalogue.OLD_FORMAT, message, file.location(root))

@@ -1,5 +1,6 @@
 """A ROS 2 package of a submission: its files are read one by one when they are needed, each once, and never run."""
 
+from contextlib import suppress
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from functools import cached_property
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from grader.package.setup_py import Setup
 
 MANIFEST, SETUP = "package.xml", "setup.py"
-_INDEX = "share/ament_index/resource_index/packages/"
+RESOURCE_INDEX = "share/ament_index/resource_index/packages/"
 NO_PACKAGE = "the submission has no ROS 2 package: there is no package.xml"
 PYTHON_LIMIT = 128 * 1024  # bytes; a syntax tree takes several hundred times as much
 _RVIZ_LIMIT = 512 * 1024
@@ -62,8 +63,9 @@ class Package:
     @cached_property
     def names(self) -> tuple[str, ...]:
         """The names that ROS 2 finds it by: its own, and those that setup.py installs in the resource index."""
-        entries = [target for target in self.setup.installed() if target.startswith(_INDEX)] if self.setup else []
-        return tuple(dict.fromkeys([self.name, *(target.removeprefix(_INDEX) for target in entries)]))
+        targets = self.setup.installed() if self.setup is not None else {}
+        index = [path.removeprefix(RESOURCE_INDEX) for path in targets if path.startswith(RESOURCE_INDEX)]
+        return tuple(dict.fromkeys([self.name, *index]))
 
     @property
     def is_cmake(self) -> bool:
@@ -77,14 +79,15 @@ class Package:
         file = self.tree.files.get(SETUP)
         if file is None:
             return None
-        from grader.package.setup_py import Setup, read_setup
+        from grader.package.setup_py import read_setup
         from grader.static_python.parse import SyntaxFault, parse
 
+        path = self.path(SETUP)
         try:
-            return read_setup(parse(file.read(PYTHON_LIMIT), self.path(SETUP)), self.tree)
+            code = parse(file.read(PYTHON_LIMIT), path)
         except InputError as error:
-            source, start = self._unread(SETUP)
-            return Setup(source.path, source, SyntaxFault(source, str(error), start, sure=False))
+            code = SyntaxFault(Source(path, ""), str(error), Location(path, 1, 1), sure=False)
+        return read_setup(code, self.tree)
 
     @cached_property
     def launch_files(self) -> tuple[str, ...]:
@@ -98,13 +101,14 @@ class Package:
 
     def missing_message(self, kind: str) -> str:
         """Return the message for a package without a file of a kind: urdf, launch or rviz."""
-        if kind == "urdf":
-            return "the package has no URDF: no file ends in .urdf or .xacro"
-        if kind == "rviz":
-            return "the package has no RViz file: no file ends in .rviz"
-        message = "the package has no launch file: no file ends in .launch.py, .launch.xml or .launch.yaml"
         has_folder = any(folder.rpartition("/")[2] == "launch" for folder in self.tree.folders)
-        return message if has_folder else f"{message}, and there is no folder launch"
+        name, endings = {
+            "urdf": ("URDF", ".urdf or .xacro"),
+            "rviz": ("RViz file", ".rviz"),
+            "launch": ("launch file", ".launch.py, .launch.xml or .launch.yaml"),
+        }[kind]
+        folder = ", and there is no folder launch" if kind == "launch" and not has_folder else ""
+        return f"the package has no {name}: no file ends in {endings}{folder}"
 
     def pattern_hint(self, pattern: str) -> str:
         """Return the end of a message on a pattern that matches no file: why, or which files there are."""
@@ -132,36 +136,32 @@ class Package:
 
     def launch(self, path: str) -> "Launch":
         """Return a launch file, evaluated."""
-        if path not in self._launches:
-            self._launches[path] = self._read_launch(path)
-        return self._launches[path]
-
-    def _read_launch(self, path: str) -> "Launch":
+        if path in self._launches:
+            return self._launches[path]
         from grader.package.launch.model import Launch
         from grader.package.launch.reader import read_launch
 
+        own = self.path(path)
         try:
             data = self.tree.files[path].read(PYTHON_LIMIT)
+            installed = self.target(path) or f"share/{self.name}/{path}"
+            launch = read_launch(data, own, installed, self._open_installed)
         except InputError as error:
-            return Launch(self.path(path), self._unread(path)[0], unread=str(error))
-        installed = self.target(path) or f"share/{self.name}/{path}"
-        return read_launch(data, self.path(path), installed, self._open_installed)
+            launch = Launch(own, Source(own, ""), unread=str(error))
+        return self._launches.setdefault(path, launch)
 
     def rviz(self, path: str) -> "RvizFile":
         """Return an RViz file."""
-        if path not in self._rviz_files:
-            self._rviz_files[path] = self._read_rviz(path)
-        return self._rviz_files[path]
-
-    def _read_rviz(self, path: str) -> "RvizFile":
+        if path in self._rviz_files:
+            return self._rviz_files[path]
         from grader.package.rviz import RvizFile, read_rviz
 
+        own = self.path(path)
         try:
-            data = self.tree.files[path].read(_RVIZ_LIMIT)
+            rviz = read_rviz(self.tree.files[path].read(_RVIZ_LIMIT), own)
         except InputError as error:
-            source, start = self._unread(path)
-            return RvizFile(source.path, source, None, None, start, (), unread=str(error))
-        return read_rviz(data, self.path(path))
+            rviz = RvizFile(own, Source(own, ""), None, None, Location(own, 1, 1), (), unread=str(error))
+        return self._rviz_files.setdefault(path, rviz)
 
     def robot_readers(self, name: str) -> set[str]:
         """Return the programs with which its launch files read the robot in a file of this name: xacro, cat or open."""
@@ -194,17 +194,12 @@ class Package:
             return None
         return self.setup.installed().get(path.removeprefix(f"{PREFIX}/"))
 
-    def _unread(self, path: str) -> tuple[Source, Location]:
-        """Return an empty source, and its start, for a file that is not read."""
-        return Source(self.path(path), ""), Location(self.path(path), 1, 1)
-
     def _open_installed(self, path: str) -> tuple[bytes, str] | None:
         """Return what a build installs at a path below the prefix, with its path, from any package of the submission."""
         for package in self.packages.values():
             source = package.setup.installed().get(path) if package.setup is not None else None
             if source is not None:
-                try:
+                with suppress(InputError):
                     return package.tree.files[source].read(PYTHON_LIMIT), package.path(source)
-                except InputError:
-                    return None
+                return None
         return None

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from grader.package import catalogue
 from grader.package.launch.model import Launch
 from grader.package.launch.places import HOME, is_of_one_machine
-from grader.package.package import Package
+from grader.package.package import RESOURCE_INDEX, Package
 from grader.package.setup_py import Setup
 from grader.problems import Problem
 from grader.source import Location
@@ -32,12 +32,10 @@ def _sorted(problems: Iterable[Problem]) -> list[Problem]:
 
 
 def _setup_problems(package: Package, setup: Setup) -> Iterator[Problem]:
-    if setup.fault is not None:
-        if setup.fault.sure:
-            message = f"Python cannot read setup.py: {setup.fault.message}"
-            yield Problem(catalogue.SETUP_SYNTAX, message, setup.fault.location)
-        else:
-            yield Problem(catalogue.SETUP_UNKNOWN, f"setup.py is not read: {setup.fault.message}", setup.fault.location)
+    if fault := setup.fault:
+        kind = catalogue.SETUP_SYNTAX if fault.sure else catalogue.SETUP_UNKNOWN
+        what = "Python cannot read setup.py" if fault.sure else "setup.py is not read"
+        yield Problem(kind, f"{what}: {fault.message}", fault.location)
         return
     for error in setup.faults:
         yield Problem(catalogue.SETUP_NAME, error.message, setup.location(error.at))
@@ -49,12 +47,7 @@ def _setup_problems(package: Package, setup: Setup) -> Iterator[Problem]:
     for unknown in setup.unknown:
         message = f"cannot be determined statically: {unknown.reason}"
         yield Problem(catalogue.SETUP_UNKNOWN, message, setup.location(unknown.at))
-    yield from _entry_problems(package, setup)
-
-
-def _entry_problems(package: Package, setup: Setup) -> Iterator[Problem]:
-    start = setup.location(setup.called_at)
-    targets = set(setup.installed())
+    start, targets = setup.location(setup.called_at), setup.installed()
     declared = package.manifest.name if package.manifest is not None else None
     if declared is not None and setup.name is not None and setup.name != declared:
         message = f"package.xml names the package {declared!r}, setup.py names it {setup.name!r}"
@@ -62,7 +55,7 @@ def _entry_problems(package: Package, setup: Setup) -> Iterator[Problem]:
         return  # the entries are missing under one of the two names in any case
     if setup.unknown or setup.stops:
         return
-    if f"share/ament_index/resource_index/packages/{package.name}" not in targets:
+    if RESOURCE_INDEX + package.name not in targets:
         message = f"data_files has no entry for the resource index: resource/{package.name} is not installed"
         yield Problem(catalogue.NO_MARKER, message, start)
     if f"share/{package.name}/package.xml" not in targets:
@@ -74,12 +67,9 @@ def _launch_problems(launch: Launch) -> Iterator[Problem]:
     if launch.unread:
         message = f"the launch file is not read: {launch.unread}"
         yield Problem(catalogue.LAUNCH_UNKNOWN, message, Location(launch.path, 1, 1))
-    if launch.syntax is not None:
-        yield Problem(catalogue.LAUNCH_SYNTAX, launch.syntax.message, launch.syntax.location)
-    for fault in launch.faults:
-        yield Problem(catalogue.LAUNCH_FAULT, fault.message, fault.location)
-    for unknown in launch.unknown:
-        yield Problem(catalogue.LAUNCH_UNKNOWN, unknown.message, unknown.location)
+    kinds = (catalogue.LAUNCH_SYNTAX, catalogue.LAUNCH_FAULT, catalogue.LAUNCH_UNKNOWN)
+    for kind, faults in zip(kinds, (filter(None, [launch.syntax]), launch.faults, launch.unknown), strict=True):
+        yield from (Problem(kind, fault.message, fault.location) for fault in faults)
     for reference in launch.references:
         if reference.path is not None and is_of_one_machine(reference.path):
             message = f"{reference.path.replace(HOME, '~')}, which exists on one machine only"

@@ -9,8 +9,6 @@ from grader.problems import Problem
 from grader.source import Location, Source
 
 _MAX_DISPLAYS = 500
-_PLUGINS = "rviz_default_plugins"
-_NOT_RVIZ = "there is no 'Visualization Manager': this is not an RViz file"
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,15 +55,12 @@ class RvizFile:
             return (self.fault,)
         if self.unread:
             return ()
-        found = [
-            Problem(
-                catalogue.ROS1_CLASS,
-                f"{display.package}/{display.kind} is a class of ROS 1; in ROS 2 it is {_PLUGINS}/{display.kind}",
-                display.location,
-            )
-            for display in self.displays
-            if display.package == "rviz"
-        ]
+        found: list[Problem] = []
+        for display in self.displays:
+            if display.package == "rviz":
+                kind = display.kind
+                message = f"rviz/{kind} is a class of ROS 1; in ROS 2 it is rviz_default_plugins/{kind}"
+                found.append(Problem(catalogue.ROS1_CLASS, message, display.location))
         if not any(display.kind == "TF" and display.enabled for display in self.displays):
             found.append(Problem(catalogue.NO_TF, "the file has no enabled TF display", Location(self.path, 1, 1)))
         return tuple(found)
@@ -77,7 +72,8 @@ def read_rviz(data: bytes, path: str) -> RvizFile:
     start = Location(path, 1, 1)
     try:
         manager = read_yaml(data, path).get("Visualization Manager")
-        problem = Problem(catalogue.BAD_RVIZ, _NOT_RVIZ, start)
+        message = "there is no 'Visualization Manager': this is not an RViz file"
+        problem = Problem(catalogue.BAD_RVIZ, message, start)
     except YamlFault as fault:
         manager = None
         problem = Problem(catalogue.BAD_RVIZ, f"not readable as YAML: {fault}", fault.location)
@@ -85,9 +81,8 @@ def read_rviz(data: bytes, path: str) -> RvizFile:
         return RvizFile(path, source, problem, None, start, ())
     frame = manager.get("Global Options", "Fixed Frame")
     displays = tuple(_displays(manager.get("Displays")))
-    return RvizFile(
-        path, source, None, frame.text if frame else None, frame.location if frame else manager.location, displays
-    )
+    location = frame.location if frame else manager.location
+    return RvizFile(path, source, None, frame.text if frame else None, location, displays)
 
 
 def switched_on(node: Node | None, *, default: bool) -> bool:

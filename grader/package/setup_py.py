@@ -9,12 +9,11 @@ from grader.package.data_files import DataFiles, InstalledFile, InstallError
 from grader.package.file_functions import WRITING, EmptyGlob, FoundPaths, file_functions
 from grader.package.globbing import ORDERS, PackageListing
 from grader.source import Location, Source
-from grader.static_python.control_flow import EvaluationStopped, PythonError
+from grader.static_python.evaluation import EvaluationStopped, PythonError
 from grader.static_python.functions import standard_functions
 from grader.static_python.inspection import PACKAGE_FOLDER
 from grader.static_python.interpreter import Interpreter
-from grader.static_python.parse import Code, SyntaxFault
-from grader.static_python.positions import START, Position, position_of
+from grader.static_python.parse import START, Code, Position, SyntaxFault, position_of
 from grader.static_python.values import Unknown
 
 _ROOT = f"/{PACKAGE_FOLDER}"

@@ -21,9 +21,9 @@ class XmlFile:
             self.root = parse_xml(data)
         except (XMLSyntaxError, ValueError) as error:
             line, column = getattr(error, "position", (1, 1))
-            message = str(getattr(error, "msg", error)).split(", line ")[
-                0
-            ]  # lxml adds the position to libxml2's message
+            message, *_ = str(getattr(error, "msg", error)).split(
+                ", line "
+            )  # lxml adds the position to libxml2's message
             location = Location(source.path, max(line, 1), max(column, 1))
             raise XmlFault(" ".join(message.split()), location) from None
         self._indices = {element: index for index, element in enumerate(self.root.iter("*"))}

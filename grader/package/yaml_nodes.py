@@ -1,7 +1,7 @@
 """YAML with the location of every value, read event by event: neither depth nor aliases use unlimited time or memory."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import yaml
 
@@ -30,7 +30,6 @@ class Node:
     location: Location
     value: "str | list[Node] | dict[str, Node]"
     quoted: bool = False
-    _key: "str | None" = field(default=None, repr=False)
 
     def get(self, *keys: str) -> "Node | None":
         """Return the node at a path of keys, None where there is none."""
@@ -71,7 +70,7 @@ def read_yaml(data: bytes, path: str) -> Node:
 
 def _compose(events: Iterator[yaml.Event], path: str) -> Node:
     root = Node(Location(path, 1, 1), {})
-    open_nodes: list[Node] = []
+    open_nodes: list[tuple[Node, list[str]]] = []  # each with the key in it whose value follows
     anchors: dict[str, Node] = {}
     aliases = 0
     first = True
@@ -88,11 +87,8 @@ def _compose(events: Iterator[yaml.Event], path: str) -> Node:
             aliases += 1
             found = anchors.get(event.anchor or "")
             if found is None or aliases > _MAX_ALIASES:
-                reason = (
-                    f"the file has more than {_MAX_ALIASES} aliases"
-                    if found
-                    else f"there is no anchor for the alias {event.anchor}"
-                )
+                missing = f"there is no anchor for the alias {event.anchor}"
+                reason = f"the file has more than {_MAX_ALIASES} aliases" if found else missing
                 raise YamlFault(reason, _location(event, path))
             node = found
         else:
@@ -100,11 +96,11 @@ def _compose(events: Iterator[yaml.Event], path: str) -> Node:
             if event.anchor:
                 anchors[event.anchor] = node
         if open_nodes:
-            _attach(open_nodes[-1], node)
+            _attach(*open_nodes[-1], node)
         elif first:
             root, first = node, False
         if isinstance(event, yaml.CollectionStartEvent):
-            open_nodes.append(node)
+            open_nodes.append((node, []))
             if len(open_nodes) > _MAX_DEPTH:
                 raise YamlFault("the file is too deeply nested", node.location)
     return root
@@ -117,14 +113,13 @@ def _node(event: yaml.NodeEvent, path: str) -> Node:
     return Node(location, {} if isinstance(event, yaml.MappingStartEvent) else [])
 
 
-def _attach(parent: Node, node: Node) -> None:
+def _attach(parent: Node, key: list[str], node: Node) -> None:
     if isinstance(parent.value, list):
         parent.value.append(node)
-    elif isinstance(parent.value, dict) and parent._key is None:  # noqa: SLF001  a node is built here
-        parent._key = node.text if node.text is not None else f"\0{len(parent.value)}"  # noqa: SLF001
+    elif isinstance(parent.value, dict) and key:
+        parent.value[key.pop()] = node  # the last key counts, in PyYAML as in RViz
     elif isinstance(parent.value, dict):
-        parent.value[parent._key or ""] = node  # noqa: SLF001  the last key counts, in PyYAML as in RViz
-        parent._key = None  # noqa: SLF001
+        key.append(node.text if node.text is not None else f"\0{len(parent.value)}")
 
 
 def _location(event: yaml.Event, path: str) -> Location:

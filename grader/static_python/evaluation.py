@@ -8,13 +8,50 @@ import ast
 import builtins
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, NamedTuple
 
-from grader.static_python.control_flow import EvaluationStopped, ExitFlow, LoopFlow, PythonError, RaisedFlow
 from grader.static_python.imports import USUAL_NAMES
 from grader.static_python.inspection import MAX_ITEMS
-from grader.static_python.positions import Position, position_of
+from grader.static_python.parse import Position, position_of
 from grader.static_python.values import UNKNOWN_KEYS, Call, Function, QualifiedName, Scope, Unknown, Value
+
+
+class PythonError(NamedTuple):
+    """An error that certainly stops Python at this position: an undefined name, an import that fails."""
+
+    message: str
+    at: Position
+
+
+class ReturnFlow(Exception):
+    """A return statement, with its value."""
+
+    def __init__(self, value: Value) -> None:
+        self.value = value
+
+
+class LoopFlow(Exception):
+    """A break or continue statement."""
+
+    def __init__(self, *, is_break: bool) -> None:
+        self.is_break = is_break
+
+
+class RaisedFlow(Exception):
+    """An error for which a handler is searched; `kind` decides which handler catches it."""
+
+    def __init__(self, error: PythonError, kind: type[Exception]) -> None:
+        self.error = error
+        self.kind = kind
+
+
+class ExitFlow(Exception):
+    """The end of the program, by sys.exit or by an error that nothing catches."""
+
+
+class EvaluationStopped(Exception):
+    """The evaluation ends here: it takes too many steps, or nothing that follows can be determined."""
+
 
 # The functions that are evaluated, by their full names: each takes its call, with the arguments, and returns its value.
 FunctionTable = Mapping[str, Callable[["Evaluation", Call], Value]]

@@ -1,15 +1,14 @@
 """The value of any Python expression, without running it and without statements or files."""
 
 import ast
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 
+from grader.static_python.evaluation import EvaluationStopped, ExitFlow, FunctionTable
 from grader.static_python.inspection import MAX_ITEMS, distinct, items_of, truth
 from grader.static_python.operators import store
-from grader.static_python.positions import Position, position_of
+from grader.static_python.parse import START, Position, SyntaxFault, parse, position_of
 from grader.static_python.simple_expressions import SimpleEvaluator
 from grader.static_python.values import BoundMethod, Function, QualifiedName, Scope, Unknown, Value
-
-Comprehension = ast.ListComp | ast.GeneratorExp | ast.SetComp | ast.DictComp
 
 
 class ExpressionEvaluator(SimpleEvaluator):
@@ -19,8 +18,12 @@ class ExpressionEvaluator(SimpleEvaluator):
         """Return the value of an expression."""
         at = position_of(node)
         match node:
-            case ast.ListComp() | ast.GeneratorExp() | ast.SetComp() | ast.DictComp():
-                return self._comprehension(node, scope, at)
+            case ast.ListComp(elt=element) | ast.GeneratorExp(elt=element) | ast.SetComp(elt=element):
+                values = self._comprehension(node.generators, None, element, scope, at)
+                return distinct(values) if isinstance(node, ast.SetComp) and isinstance(values, list) else values
+            case ast.DictComp(key=key, value=element):
+                values = self._comprehension(node.generators, key, element, scope, at)
+                return dict(values) if isinstance(values, list) else values
             case ast.NamedExpr(target=target, value=expression):
                 result = self.evaluate(expression, scope)
                 while scope.is_loop and scope.outer is not None:
@@ -55,30 +58,26 @@ class ExpressionEvaluator(SimpleEvaluator):
         self, parameters: ast.arguments, scope: Scope, at: Position, body: Callable[[Scope, Position], Value]
     ) -> Function:
         """Return a function as it is defined: its defaults are evaluated now."""
-        positional = [*parameters.posonlyargs, *parameters.args]
-        pairs = list(zip(reversed(positional), reversed(parameters.defaults), strict=False))
-        pairs += [
-            (parameter, default)
-            for parameter, default in zip(parameters.kwonlyargs, parameters.kw_defaults, strict=True)
-            if default is not None
-        ]
+        positional = reversed([*parameters.posonlyargs, *parameters.args])
+        pairs = list(zip(positional, reversed(parameters.defaults), strict=False))
+        named = zip(parameters.kwonlyargs, parameters.kw_defaults, strict=True)
+        pairs += [(parameter, default) for parameter, default in named if default is not None]
         defaults = {parameter.arg: self.evaluate(default, scope) for parameter, default in pairs}
         return Function(parameters, scope, defaults, body, at)
 
-    def _comprehension(self, node: Comprehension, scope: Scope, at: Position) -> Value:
+    def _comprehension(
+        self, loops: list[ast.comprehension], key: ast.expr | None, element: ast.expr, scope: Scope, at: Position
+    ) -> list[Value] | Unknown:
+        """Return the values of the rounds; with a key, as in a dict, pairs."""
         inner = Scope({}, scope, is_loop=True)
         values: list[Value] = []
-        for is_known in self._rounds(node.generators, inner, values if not isinstance(node, ast.DictComp) else None):
-            key = self.evaluate(node.key, inner) if isinstance(node, ast.DictComp) and is_known else ""
-            if not is_known or not isinstance(key, str | int) or len(values) > MAX_ITEMS:
+        for is_known in self._rounds(loops, inner, values if key is None else None):
+            name = self.evaluate(key, inner) if key is not None and is_known else ""
+            if not is_known or not isinstance(name, str | int) or len(values) > MAX_ITEMS:
                 return Unknown("a comprehension over items that are known only at run time", at)
-            if isinstance(node, ast.DictComp):
-                values.append((key, self.evaluate(node.value, inner)))
-            else:
-                values.append(self.evaluate(node.elt, inner))
-        if isinstance(node, ast.DictComp):
-            return dict(values)
-        return distinct(values) if isinstance(node, ast.SetComp) else values
+            value = self.evaluate(element, inner)
+            values.append(value if key is None else (name, value))
+        return values
 
     def _rounds(self, loops: list[ast.comprehension], scope: Scope, unknown: list[Value] | None) -> Iterator[bool]:
         """Bind the targets of nested loops, round by round; False where their items or conditions are not known.
@@ -102,3 +101,23 @@ class ExpressionEvaluator(SimpleEvaluator):
                     yield False
                 elif all(conditions):
                     yield from self._rounds(nested, scope, unknown)
+
+
+_MAX_LENGTH = 1_000
+
+
+def evaluate_text(text: str, functions: FunctionTable, names: Mapping[str, Value]) -> Value:
+    """Return the value of an expression with these functions and names; Unknown if it has an error. Never raises."""
+    if len(text) > _MAX_LENGTH:
+        return Unknown("the expression is too long", START)
+    code = parse(text.strip().encode("utf-8", "replace"), "")
+    if isinstance(code, SyntaxFault):
+        return Unknown(code.message, START)
+    if len(code.tree.body) != 1 or not isinstance(code.tree.body[0], ast.Expr):
+        return Unknown("this is not one expression", START)
+    evaluator = ExpressionEvaluator(functions, names)
+    try:
+        value = evaluator.evaluate(code.tree.body[0].value, evaluator.module)
+    except (EvaluationStopped, ExitFlow, RecursionError):
+        return Unknown("the expression takes too long to evaluate", START)
+    return Unknown(evaluator.errors[0].message, evaluator.errors[0].at) if evaluator.errors else value

@@ -3,7 +3,6 @@
 import posixpath
 from collections.abc import Callable
 from functools import partial
-from itertools import chain
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -23,7 +22,6 @@ from grader.static_python.values import Call, Unknown, Value, unknown_in
 
 _MAX_PATH = 4_096
 _MAX_NUMBER = 10**9
-_PATH_FUNCTIONS = ("dirname", "basename", "normpath", "split", "splitext", "isabs")
 
 
 def standard_functions(working_folder: str) -> FunctionTable:
@@ -35,11 +33,12 @@ def standard_functions(working_folder: str) -> FunctionTable:
     def relative(path: str, start: str = ".") -> str:
         return posixpath.relpath(absolute(path), absolute(start))
 
-    of_path: dict[str, Callable[..., Value]] = {name: getattr(posixpath, name) for name in _PATH_FUNCTIONS}
-    of_path |= {"abspath": absolute, "realpath": absolute, "relpath": relative}
+    own = {"abspath": absolute, "realpath": absolute, "relpath": relative}
+    names = ("dirname", "basename", "normpath", "split", "splitext", "isabs")
     return {
         **_FUNCTIONS,
-        **{f"os.path.{name}": partial(_of_path, function) for name, function in of_path.items()},
+        **{f"os.path.{name}": partial(_of_path, getattr(posixpath, name)) for name in names},
+        **{f"os.path.{name}": partial(_of_path, function) for name, function in own.items()},
         "os.getcwd": lambda *_: working_folder,
         "pathlib.Path.cwd": lambda *_: PurePosixPath(working_folder),
     }
@@ -47,12 +46,9 @@ def standard_functions(working_folder: str) -> FunctionTable:
 
 def _of_path(function: Callable[..., Value], _: Evaluation, call: Call) -> Value:
     """Run a function of os.path. The name of the package's folder is not known, so no result may depend on it."""
-    paths = [path_text(value) for value in (*call.args, *call.kwargs.values())]
     try:
-        found = function(*paths) if None not in paths else None
-    except TypeError:
-        found = None
-    if found is None:
+        found = function(*map(path_text, (*call.args, *call.kwargs.values())))
+    except TypeError:  # a value that is no path is None
         return call.unknown("the path is known only at run time")
     if any(names_package_folder(part) for part in (found if isinstance(found, tuple) else [str(found)])):
         return Unknown("the name of the package's folder is not known", call.at)
@@ -77,9 +73,7 @@ def _path(evaluation: Evaluation, call: Call) -> Value:
 
 def _text(_: Evaluation, call: Call) -> Value:
     value = call.args[0] if len(call.args) == 1 else []
-    text = as_text(value)
-    if text is None and isinstance(value, Call):
-        return value
+    text = value if isinstance(value, Call) else as_text(value)
     return text if text is not None else call.unknown("the text is known only at run time")
 
 
@@ -128,11 +122,8 @@ def _dict(_: Evaluation, call: Call) -> Value:
 
 def _len(_: Evaluation, call: Call) -> Value:
     items = items_of(call.args[0]) if call.args else []
-    return (
-        len(items)
-        if items is not None and not unknown_in(items)
-        else call.unknown("the length is known only at run time")
-    )
+    is_known = items is not None and not unknown_in(items)
+    return len(items or ()) if is_known else call.unknown("the length is known only at run time")
 
 
 def _bool(_: Evaluation, call: Call) -> Value:
@@ -174,9 +165,7 @@ _OF_ITEMS: dict[tuple[str, ...], Callable[[list[Value]], Any]] = {
     ("builtins.enumerate",): lambda items: list(enumerate(items)),
 }
 _FUNCTIONS: FunctionTable = {
-    **dict(
-        chain.from_iterable([(name, partial(_of_items, run)) for name in names] for names, run in _OF_ITEMS.items())
-    ),
+    **{name: partial(_of_items, run) for names, run in _OF_ITEMS.items() for name in names},
     **dict.fromkeys(("builtins.str", "os.fspath"), _text),
     **{f"pathlib.{name}": _path for name in ("Path", "PurePath", "PosixPath", "PurePosixPath")},
     "os.path.join": _join,

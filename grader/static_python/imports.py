@@ -18,11 +18,7 @@ _SETUPTOOLS = frozenset(
 )  # fmt: skip
 # Modules of the standard library that students' setup files import; their names are read from the modules themselves.
 _INSPECTED = frozenset({"os", "os.path", "glob", "pathlib", "sys", "shutil", "itertools", "re"})
-_INSTALLED_WITH_ROS = frozenset(
-    {"distutils", "pkg_resources", "wheel", "launch", "launch_ros", "xacro", "ament_index_python"}
-)
-
-
+_INSTALLED_WITH_ROS = ("distutils", "pkg_resources", "wheel", "launch", "launch_ros", "xacro", "ament_index_python")
 # The modules of ROS 2's launch and the names that are imported from them (ros2/launch and ros2/launch_ros, Jazzy).
 _LAUNCH_NAMES: dict[str, tuple[str, ...]] = {
     "launch": ("LaunchDescription", "LaunchContext", "LaunchService"),
@@ -71,14 +67,12 @@ def import_error(module: str, name: str) -> str | None:
     homes = [home for home, names in _LAUNCH_NAMES.items() if name in names]
     if module in _LAUNCH_NAMES and homes and module not in homes:
         return f"{module} has no {name!r}: import it from {homes[-1]}"
-    if top == "setuptools":
-        if module == "setuptools" and name not in _SETUPTOOLS and name != "*":
-            return f"setuptools has no {name!r}{did_you_mean(name, _SETUPTOOLS_PUBLIC[:3])}"
-        return None
+    if module == "setuptools" and name not in _SETUPTOOLS and name != "*":
+        return f"setuptools has no {name!r}{did_you_mean(name, _SETUPTOOLS_PUBLIC[:3])}"
     if module in _INSPECTED and name != "*":
         found = import_module(module)  # one of the few above, never a student's choice
         return None if hasattr(found, name) else f"{module} has no {name!r}{did_you_mean(name, dir(found))}"
-    if top in sys.stdlib_module_names or top in _INSTALLED_WITH_ROS:
+    if top in sys.stdlib_module_names or top in _INSTALLED_WITH_ROS or top == "setuptools":
         return None
     guess = closest(top, ("os", "glob", "pathlib", "setuptools", "sys", "shutil"))
     return f"there is no module {top!r}; did you mean {guess!r}?" if guess and not top.startswith(guess) else None
@@ -97,7 +91,7 @@ def is_always_installed(module: str) -> bool:
 def imported_names(module: str, alias: ast.alias) -> dict[str, QualifiedName]:
     """Return what `import name` or `from module import name` binds; the name * stands for names that are not known."""
     if alias.name == "*":
-        names = [*(_public_names(module) or ["", *_LAUNCH_NAMES.get(module, ())])]
+        names = _public_names(module) or ["", *_LAUNCH_NAMES.get(module, ())]
         return {name or "*": QualifiedName(f"{module}.{name or '*'}") for name in names}
     if module:
         return {alias.asname or alias.name: QualifiedName(f"{module}.{alias.name}")}

@@ -3,18 +3,15 @@
 import ast
 import builtins
 from collections.abc import Mapping, Sequence
+from functools import partial
 
-from grader.static_python.control_flow import EvaluationStopped, ExitFlow, LoopFlow, RaisedFlow, ReturnFlow
-from grader.static_python.evaluation import FunctionTable
+from grader.static_python.evaluation import EvaluationStopped, ExitFlow, FunctionTable, LoopFlow, RaisedFlow, ReturnFlow
 from grader.static_python.inspection import items_of, truth
-from grader.static_python.parse import Code
-from grader.static_python.positions import Position, position_of
+from grader.static_python.parse import Code, Position, position_of
 from grader.static_python.statements import StatementEvaluator
 from grader.static_python.values import Call, Function, Scope, Unknown, Value
 
-_Loop = ast.For | ast.AsyncFor
-_Definition = ast.FunctionDef | ast.AsyncFunctionDef
-_Try = ast.Try | ast.TryStar
+_CONDITION = "a condition is known only at run time"
 
 
 class Interpreter(StatementEvaluator):
@@ -51,11 +48,13 @@ class Interpreter(StatementEvaluator):
         """Evaluate a statement."""
         match node:
             case ast.FunctionDef() | ast.AsyncFunctionDef():
-                self._define(node, scope)
+                function = self.function(node.args, scope, position_of(node), partial(self._function_body, node))
+                decorated = Unknown("a decorator is not supported", position_of(node))
+                scope.bind(node.name, decorated if node.decorator_list else function)
             case ast.If(test=test, body=body, orelse=other):
                 condition = truth(self.evaluate(test, scope))
                 if condition is None:
-                    self._branches([body, other], scope, node)
+                    self._branches([body, other], scope, position_of(node))
                 else:
                     self._block(body if condition else other, scope)
             case ast.For() | ast.AsyncFor():
@@ -64,14 +63,14 @@ class Interpreter(StatementEvaluator):
                 before = self.uncertainty
                 is_over = truth(self.evaluate(test, scope)) is False
                 # The body twice: its first round may change what the second one does.
-                self._block(other, scope) if is_over else self._branches([body, body, other], scope, node)
+                self._block(other, scope) if is_over else self._branches([body, body, other], scope, position_of(node))
                 self.uncertainty = before
             case ast.Match(subject=subject, cases=cases):
                 self.evaluate(subject, scope)
                 for pattern in ast.walk(node):
                     if isinstance(pattern, ast.MatchAs | ast.MatchStar) and pattern.name is not None:
                         scope.bind(pattern.name, Unknown("a pattern is not supported", position_of(node)))
-                self._branches([case.body for case in cases], scope, node)
+                self._branches([case.body for case in cases], scope, position_of(node))
             case ast.With() | ast.AsyncWith():
                 for item in node.items:
                     value = self.evaluate(item.context_expr, scope)
@@ -95,27 +94,13 @@ class Interpreter(StatementEvaluator):
                 self.uncertainty = Unknown("an earlier error may have been caught", position_of(statement))
             self.statement(statement, scope)
 
-    def _branches(
-        self,
-        bodies: list[list[ast.stmt]],
-        scope: Scope,
-        node: ast.stmt | ast.excepthandler,
-        reason: str = "a condition is known only at run time",
-    ) -> None:
+    def _branches(self, bodies: list[list[ast.stmt]], scope: Scope, at: Position, reason: str = _CONDITION) -> None:
         """Evaluate blocks of which only a run decides which are executed."""
         for body in bodies:
-            with self.uncertain(reason, position_of(node)):
+            with self.uncertain(reason, at):
                 self._block(body, scope)
 
-    def _define(self, node: _Definition, scope: Scope) -> None:
-        def body(inner: Scope, at: Position) -> Value:
-            return self._function_body(node, inner, at)
-
-        function = self.function(node.args, scope, position_of(node), body)
-        decorated = Unknown("a decorator is not supported", position_of(node))
-        scope.bind(node.name, decorated if node.decorator_list else function)
-
-    def _function_body(self, node: _Definition, scope: Scope, at: Position) -> Value:
+    def _function_body(self, node: ast.FunctionDef | ast.AsyncFunctionDef, scope: Scope, at: Position) -> Value:
         if self._has_generators and node not in self._generators:
             self._generators[node] = any(isinstance(inner, ast.Yield | ast.YieldFrom) for inner in ast.walk(node))
         if self._generators.get(node):
@@ -129,7 +114,7 @@ class Interpreter(StatementEvaluator):
             self.uncertainty = before
         return None
 
-    def _for(self, node: _Loop, scope: Scope) -> None:
+    def _for(self, node: ast.For | ast.AsyncFor, scope: Scope) -> None:
         items = items_of(self.evaluate(node.iter, scope))
         before = self.uncertainty
         if items is None:
@@ -149,7 +134,7 @@ class Interpreter(StatementEvaluator):
             self._block(node.orelse if items is not None else [], scope)
         self.uncertainty = before
 
-    def _try(self, node: _Try, scope: Scope) -> None:
+    def _try(self, node: ast.Try | ast.TryStar, scope: Scope) -> None:
         if not node.handlers:
             self._block(node.body, scope)
         else:
@@ -159,10 +144,8 @@ class Interpreter(StatementEvaluator):
             if raised is not None:
                 self._handle(node, raised, scope)
             elif may_have_failed:
-                handlers = [handler.body for handler in node.handlers]
-                self._branches(
-                    [node.orelse, *handlers], scope, node, "whether an error is raised is known only at run time"
-                )
+                bodies = [node.orelse, *(handler.body for handler in node.handlers)]
+                self._branches(bodies, scope, position_of(node), "whether an error is raised is known only at run time")
             else:
                 self._block(node.orelse, scope)
         self._block(node.finalbody, scope)
@@ -180,7 +163,7 @@ class Interpreter(StatementEvaluator):
             failed, self.may_have_failed = self.may_have_failed, self.may_have_failed or failed_before
         return None, failed
 
-    def _handle(self, node: _Try, raised: RaisedFlow, scope: Scope) -> None:
+    def _handle(self, node: ast.Try | ast.TryStar, raised: RaisedFlow, scope: Scope) -> None:
         """Evaluate the first handler that catches an error; raise it again where none does."""
         for handler in node.handlers:
             catches = _catches(handler.type, raised.kind)
@@ -191,7 +174,9 @@ class Interpreter(StatementEvaluator):
             if catches:
                 self._block(handler.body, scope)
                 return
-            self._branches([handler.body], scope, handler, "which error is raised is known only at run time")
+            self._branches(
+                [handler.body], scope, position_of(handler), "which error is raised is known only at run time"
+            )
         self.error(raised.error.message, raised.error.at, raised.kind)
 
 

@@ -6,10 +6,11 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from grader.static_python.evaluation import Evaluation
+from grader.static_python.imports import attribute_error
 from grader.static_python.inspection import MAX_ITEMS, MAX_TEXT, PACKAGE_FOLDER, as_text, names_package_folder
 from grader.static_python.operators import WalkFolders, extend, forget, join_path
-from grader.static_python.positions import Position
-from grader.static_python.values import UNKNOWN_KEYS, BoundMethod, Call, Unknown, Value, unknown_in
+from grader.static_python.parse import Position
+from grader.static_python.values import UNKNOWN_KEYS, BoundMethod, Call, QualifiedName, Unknown, Value, unknown_in
 
 _MAX_PARTS = 100  # of a path
 _MAX_NAME = 255  # characters of a file name
@@ -19,19 +20,42 @@ _TEXT_METHODS = frozenset(
      "endswith", "split", "rsplit", "splitlines", "partition", "rpartition", "count", "find", "isdigit"}
 )  # fmt: skip
 _LIST_METHODS = ("reverse", "clear", "count", "index", "remove", "pop")
-_PATH_ATTRIBUTES = ("name", "stem", "suffix", "parent", "parents", "parts")
+_CONSTANTS = {
+    "os.sep": "/",
+    "os.path.sep": "/",
+    "os.linesep": "\n",
+    "os.curdir": ".",
+    "os.pardir": "..",
+    "os.name": "posix",
+}
 
 
-def path_attribute(path: PurePosixPath, name: str, at: Position) -> Value:
-    """Return an attribute of a path; every other name is a method that is about to be called."""
-    if name not in _PATH_ATTRIBUTES:
-        return BoundMethod(path, name)
-    if name in ("name", "stem", "parts") and PACKAGE_FOLDER in str(getattr(path, name)):
-        return Unknown("the name of the package's folder is not known", at)
-    if name in ("parents", "parts") and len(path.parts) > _MAX_PARTS:
-        return Unknown("a path is too long", at)
-    value = getattr(path, name)
-    return list(value) if name == "parents" else value
+def attribute(evaluation: Evaluation, owner: Value, name: str, at: Position) -> Value:
+    """Return the value of an attribute; a method is returned as a BoundMethod."""
+    match owner:
+        case Unknown():
+            return owner
+        case QualifiedName(name="?glob"):  # used without an import: an attribute shows that the module is meant
+            return QualifiedName(f"glob.{name}")
+        case QualifiedName(name="glob.glob") if name in ("glob", "iglob"):
+            message = f"glob is a function here, so glob.{name} is not defined: write glob(...)"
+            evaluation.error(message, at, AttributeError)
+            return owner
+        case QualifiedName(name=module):
+            full = f"{module}.{name}"
+            error = attribute_error(module, name) if full not in evaluation.functions else None
+            if error is not None:
+                evaluation.error(error, at, AttributeError)
+            return _CONSTANTS.get(full, QualifiedName(full))
+        case PurePosixPath() if name in ("name", "stem", "suffix", "parent", "parents", "parts"):
+            if name in ("name", "stem", "parts") and PACKAGE_FOLDER in str(getattr(owner, name)):
+                return Unknown("the name of the package's folder is not known", at)
+            if name in ("parents", "parts") and len(owner.parts) > _MAX_PARTS:
+                return Unknown("a path is too long", at)
+            value = getattr(owner, name)
+            return list(value) if name == "parents" else value
+        case _:
+            return BoundMethod(owner, name)
 
 
 def call_method(evaluation: Evaluation, owner: Value, name: str, call: Call) -> Value:
@@ -86,9 +110,9 @@ def _text(text: str, name: str, call: Call) -> Value:
         result: Any = getattr(text, name)(*call.args)
     except (TypeError, ValueError, OverflowError):
         return unknown
-    if isinstance(result, list | tuple):
-        return list(result) if len(result) <= MAX_ITEMS else unknown
-    return result
+    if not isinstance(result, list | tuple):
+        return result
+    return list(result) if len(result) <= MAX_ITEMS else unknown
 
 
 def _format(text: str, call: Call, unknown: Unknown) -> Value:
@@ -156,6 +180,7 @@ def _dict(evaluation: Evaluation, table: dict[Any, Value], name: str, call: Call
 def _path(evaluation: Evaluation, path: PurePosixPath, name: str, call: Call) -> Value:
     texts = [value for value in call.args if isinstance(value, str | PurePosixPath)]
     functions = evaluation.functions
+    given = Call(f"pathlib.Path.{name}", [path, *call.args], call.kwargs, call.at)
     match name, texts:
         case (("as_posix" | "__str__" | "__fspath__"), []):
             return str(path)
@@ -176,15 +201,15 @@ def _path(evaluation: Evaluation, path: PurePosixPath, name: str, call: Call) ->
                 return Unknown(f"the path method {name} fails here", call.at)
         case (("read_text" | "open"), _):
             opener = functions.get("builtins.open")
-            given = Call("builtins.open", [str(path), *(call.args if name == "open" else ())], {}, call.at)
-            given.kwargs = call.kwargs if opener is not None else {}
-            opened = given if opener is None else opener(evaluation, given)
+            opened = Call("builtins.open", [str(path), *(call.args if name == "open" else ())], {}, call.at)
+            if opener is not None:
+                opened.kwargs = call.kwargs
+                opened = opener(evaluation, opened)
             is_read = name == "read_text" and isinstance(opened, Call)
             return Call("builtins.open.read", [], {}, call.at, opened) if is_read else opened
+        case _ if given.name in functions:
+            return functions[given.name](evaluation, given)
         case _:
-            given = Call(f"pathlib.Path.{name}", [path, *call.args], call.kwargs, call.at)
-            if given.name in functions:
-                return functions[given.name](evaluation, given)
             if name in _WRITES:
                 evaluation.calls.append(given)
             evaluation.may_fail()

@@ -6,10 +6,9 @@ from collections.abc import Callable
 from pathlib import PurePosixPath
 from typing import Any
 
-from grader.static_python.control_flow import EvaluationStopped
-from grader.static_python.evaluation import Evaluation
+from grader.static_python.evaluation import Evaluation, EvaluationStopped
 from grader.static_python.inspection import MAX_ITEMS, MAX_TEXT, as_text, items_of, names_package_folder, size
-from grader.static_python.positions import Position
+from grader.static_python.parse import Position
 from grader.static_python.values import UNKNOWN_KEYS, Call, QualifiedName, Unknown, Value
 
 _TYPE_NAMES: dict[type, str] = {
@@ -69,9 +68,8 @@ def operate(evaluation: Evaluation, op: ast.operator, left: Value, right: Value,
             return function(left, right)
         except TypeError:
             pass
-    return next(
-        (value for value in (left, right) if isinstance(value, Unknown)), Unknown("this operation is not supported", at)
-    )
+    unknown = Unknown("this operation is not supported", at)
+    return next((value for value in (left, right) if isinstance(value, Unknown)), unknown)
 
 
 def type_name(value: Value) -> str:
@@ -84,8 +82,7 @@ def compare(evaluation: Evaluation, op: ast.cmpop, left: Value, right: Value, at
     cost = size([left, right])
     evaluation.step(cost // 64)
     supported = cost < MAX_ITEMS and _is_plain(left) and _is_plain(right)
-    if isinstance(right, dict) and not isinstance(left, str | int | float | PurePosixPath | None):
-        supported = False
+    supported &= not isinstance(right, dict) or isinstance(left, str | int | float | PurePosixPath | None)
     match op:
         case ast.Is() | ast.IsNot():
             supported &= left is None or right is None
@@ -153,12 +150,8 @@ def store(evaluation: Evaluation, container: Value, key: Value, value: Value, at
 def remove(evaluation: Evaluation, container: Value, key: Value, unknown: Unknown) -> None:
     """Delete an item of a dict or list; where it is unknown which, forget all of them for the reason in `unknown`."""
     match container:
-        case WalkFolders():
-            is_known = False
-        case list():
-            is_known = (
-                isinstance(key, int) and -len(container) <= key < len(container) and are_known(evaluation, container)
-            )
+        case list() if isinstance(key, int) and not isinstance(container, WalkFolders):
+            is_known = -len(container) <= key < len(container) and are_known(evaluation, container)
         case dict():
             is_known = isinstance(key, str | int) and key in container and UNKNOWN_KEYS not in container
         case _:

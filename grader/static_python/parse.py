@@ -7,11 +7,27 @@ import warnings
 from codecs import lookup
 from dataclasses import dataclass
 from io import BytesIO
+from typing import NamedTuple
 
 from grader.source import Location, Source
 
 _SLOW_ENCODINGS = ("idna", "punycode")  # encodings of domain names; their time grows with the square of the length
 _JAZZY = (3, 12)  # the Python version of ROS 2 Jazzy
+
+
+class Position(NamedTuple):
+    """A place in a Python file; line and column count from 1."""
+
+    line: int
+    column: int
+
+
+START = Position(1, 1)
+
+
+def position_of(node: ast.expr | ast.stmt | ast.excepthandler) -> Position:
+    """Return the position of a node."""
+    return Position(node.lineno, node.col_offset + 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,10 +67,12 @@ def parse(data: bytes, path: str) -> Code | SyntaxFault:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # such as an invalid escape sequence, which Python accepts
-            tree = _tree(text)
-            compile(
-                tree, path, "exec", dont_inherit=True
-            )  # never run: the compiler finds errors that the grammar allows
+            try:
+                tree = ast.parse(text)
+            except SystemError:  # CPython 3.11 miscounts its depth if its garbage collector runs meanwhile: try again
+                tree = ast.parse(text)
+            # Never run: the compiler finds errors that the grammar allows.
+            compile(tree, path, "exec", dont_inherit=True)
             return Code(source, tree)
     except SyntaxError as error:
         location = Location(path, max(error.lineno or 1, 1), max(error.offset or 1, 1))
@@ -62,11 +80,3 @@ def parse(data: bytes, path: str) -> Code | SyntaxFault:
         return SyntaxFault(source, error.msg, location, sure=not newer)
     except (RecursionError, MemoryError, ValueError, OverflowError):
         return SyntaxFault(source, "too deeply nested for Python to read", Location(path, 1, 1))
-
-
-def _tree(text: str) -> ast.Module:
-    """Return the syntax tree of a text. CPython 3.11 miscounts its depth if its garbage collector runs meanwhile: then try again."""
-    try:
-        return ast.parse(text)
-    except SystemError:  # AST constructor recursion depth mismatch
-        return ast.parse(text)

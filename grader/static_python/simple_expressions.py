@@ -4,12 +4,58 @@ import ast
 from pathlib import PurePosixPath
 from typing import Any
 
-from grader.static_python.calls import attribute, call_value
 from grader.static_python.evaluation import Evaluation
 from grader.static_python.inspection import MAX_TEXT, as_text, distinct, size, truth
-from grader.static_python.operators import compare, extend, operate, subscript
-from grader.static_python.positions import Position, position_of
-from grader.static_python.values import UNKNOWN_KEYS, Call, Function, Scope, Unknown, Value, unknown_in
+from grader.static_python.methods import attribute, call_method
+from grader.static_python.operators import compare, extend, operate, subscript, type_name
+from grader.static_python.parse import Position, position_of
+from grader.static_python.values import (
+    UNKNOWN_KEYS,
+    BoundMethod,
+    Call,
+    Function,
+    QualifiedName,
+    Scope,
+    Unknown,
+    Value,
+    unknown_in,
+)
+
+_EXITS = ("sys.exit", "os._exit", "builtins.exit", "builtins.quit")
+_BINDS_NAMES = ("builtins.exec", "builtins.globals", "builtins.locals", "builtins.vars")
+
+
+def call_value(evaluation: Evaluation, function: Value, call: Call) -> Value:
+    """Return the value of a call of any value. The call gets its name here; one that is not evaluated is recorded."""
+    match function:
+        case Unknown():
+            evaluation.may_fail()
+            return function
+        case Function():
+            return evaluation.call_function(function, call)
+        case QualifiedName(name=name):
+            if name == "glob":
+                evaluation.error("glob is a module here and cannot be called: write glob.glob(...)", call.at)
+            call.name = "glob.glob" if name in ("glob", "?glob") else name
+        case BoundMethod(owner=Call() as owner, name=name):
+            call.name, call.owner = f"{owner.name}.{name}", owner
+            if call.name not in evaluation.functions:
+                owner.method_calls.append(call)
+        case BoundMethod(owner=owner, name=name):
+            return call_method(evaluation, owner, name, call)
+        case _:
+            if kind := type_name(function):
+                evaluation.error(f"{kind} cannot be called: is there a comma missing before it?", call.at)
+            return Unknown("this call is not supported", call.at)
+    evaluate = evaluation.functions.get(call.name)
+    if evaluate is not None:
+        return evaluate(evaluation, call)
+    if call.name in _EXITS:
+        evaluation.exit(call)
+    if call.name in _BINDS_NAMES:
+        evaluation.module.names["*"] = Unknown("names may be bound here", call.at)
+    return evaluation.record(call)
+
 
 _RUN_TIME = "its value is known only at run time"
 
@@ -99,12 +145,10 @@ class SimpleEvaluator(Evaluation):
                 table |= value
                 continue
             key = self.evaluate(key_node, scope)
+            if isinstance(key, Unknown):
+                return key
             if not isinstance(key, str | int | float | PurePosixPath | None) or key == UNKNOWN_KEYS:
-                return (
-                    key
-                    if isinstance(key, Unknown)
-                    else Unknown("a key of this kind is not supported", position_of(key_node))
-                )
+                return Unknown("a key of this kind is not supported", position_of(key_node))
             table[key] = value
         return table
 

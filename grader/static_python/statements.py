@@ -3,12 +3,12 @@
 import ast
 import builtins
 
-from grader.static_python.control_flow import ExitFlow, LoopFlow, ReturnFlow
+from grader.static_python.evaluation import ExitFlow, LoopFlow, ReturnFlow
 from grader.static_python.expressions import ExpressionEvaluator
 from grader.static_python.imports import import_error, imported_names, is_always_installed
 from grader.static_python.inspection import truth
 from grader.static_python.operators import extend, operate, remove
-from grader.static_python.positions import position_of
+from grader.static_python.parse import position_of
 from grader.static_python.values import Scope, Unknown
 
 
@@ -26,8 +26,12 @@ class StatementEvaluator(ExpressionEvaluator):
                     self.assign(target, value, scope)
             case ast.AnnAssign(target=target, value=ast.expr() as expression):
                 self.assign(target, self.evaluate(expression, scope), scope)
-            case ast.AugAssign():
-                self._augment(node, scope)
+            case ast.AugAssign(target=target, op=op, value=expression):
+                before, value = self.evaluate(target, scope), self.evaluate(expression, scope)
+                if isinstance(op, ast.Add) and isinstance(before, list):
+                    extend(self, before, value, position_of(node))
+                else:
+                    self.assign(target, operate(self, op, before, value, position_of(node)), scope)
             case ast.Expr(value=expression):
                 self.evaluate(expression, scope)
             case ast.ClassDef(name=name):
@@ -59,14 +63,6 @@ class StatementEvaluator(ExpressionEvaluator):
                 self.error(error, position_of(node), ImportError)
             for name, value in imported_names(module, alias).items():
                 scope.bind(name, value)
-
-    def _augment(self, node: ast.AugAssign, scope: Scope) -> None:
-        before = self.evaluate(node.target, scope)
-        value = self.evaluate(node.value, scope)
-        if isinstance(node.op, ast.Add) and isinstance(before, list):
-            extend(self, before, value, position_of(node))
-        else:
-            self.assign(node.target, operate(self, node.op, before, value, position_of(node)), scope)
 
     def _delete(self, target: ast.expr, scope: Scope) -> None:
         match target:

@@ -5,12 +5,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from grader.static_python.positions import START, Position
+from grader.static_python.parse import START, Position
 
-UNKNOWN_KEYS = (
-    "**"  # the key of an entry that stands for keys that are not known, in a dict and among keyword arguments
-)
-
+# The key of an entry that stands for keys that are not known, in a dict and among keyword arguments.
+UNKNOWN_KEYS = "**"
 _MAX_SEARCHED = 20_000  # parts of a value
 
 # A plain value is a str, number, bool, None, list, tuple, dict or PurePosixPath; a set is a list without duplicates.

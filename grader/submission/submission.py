@@ -9,7 +9,7 @@ from grader.errors import InputError, MissingElement, NotDecided
 from grader.files.opening import open_tree, tree_name
 from grader.files.reading import URDF_LIMIT, read_capped, read_standard_input, sha256_of
 from grader.files.tree import Tree, make_tree
-from grader.package.package import NO_PACKAGE, Package
+from grader.package.package import MANIFEST, NO_PACKAGE, Package
 from grader.robot.reader import Reading, Verdict
 from grader.source import Source
 from grader.submission.urdf import Absent, NeedsExpansion, OtherCandidate, Read, Unreadable, Urdf, read_as_ros
@@ -170,15 +170,13 @@ def submission_of(
     if not tree.files and not tree.generated:
         reason = f": {tree.ignored[0]}" if tree.ignored else " (hidden files and build folders are ignored)"
         raise InputError(f"{shown or identity} is empty{reason}")
-    from grader.submission.package_search import read_packages, why_not  # late: a URDF on its own needs no search
-    from grader.submission.urdf_search import find_urdf
+    # Late: a URDF on its own needs no search.
+    from grader.submission.urdf_search import find_urdf, read_packages, why_not
 
     packages = read_packages(tree, package, wanted)
     graded = packages[0] if packages else None
     path, others = find_urdf(tree, wanted, graded.folder if graded else None)
-    others += tuple(
-        OtherCandidate(other.path("package.xml"), why_not(packages[0], other, wanted)) for other in packages[1:]
-    )
+    others += tuple(OtherCandidate(it.path(MANIFEST), why_not(packages[0], it, wanted)) for it in packages[1:])
     urdf: Urdf = Absent()
     if path is not None:
         try:

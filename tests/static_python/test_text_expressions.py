@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.static_python.evaluation import Evaluation
-from grader.static_python.text_expressions import evaluate_text
+from grader.static_python.expressions import evaluate_text
 from grader.static_python.values import Call, QualifiedName, Unknown, Value
 
 

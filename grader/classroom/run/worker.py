@@ -29,7 +29,7 @@ from grader.submission.urdf import Absent, Unreadable
 PRELOAD = (
     "grader.classroom.run.worker",
     "grader.robot.edge_overlap",
-    "grader.submission.package_search",
+    "grader.submission.urdf_search",
     "grader.submission.urdf_search",
     "grader.package.problems",
 )

@@ -5,11 +5,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 from grader.package.launch.conditions import holds
-from grader.package.launch.context import Context
-from grader.package.launch.findings import Findings
+from grader.package.launch.model import Context, Findings
 from grader.package.launch.nodes import start_node, start_process, start_urdf_launch
 from grader.package.launch.substitutions import resolve
-from grader.static_python.positions import START, Position
+from grader.static_python.parse import START, Position
 from grader.static_python.values import UNKNOWN_KEYS, Call, Function, QualifiedName, Unknown, Value
 
 _MAX_ACTIONS = 5_000

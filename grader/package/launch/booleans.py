@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from math import isclose
 
-from grader.static_python.positions import Position
+from grader.static_python.parse import Position
 from grader.static_python.values import Call, Unknown, Value
 
 BOOLEAN_SUBSTITUTIONS = frozenset(

@@ -1,7 +1,7 @@
 """Whether the condition of an action holds, with the defaults of the launch arguments."""
 
 from grader.package.launch.booleans import boolean
-from grader.package.launch.context import Context
+from grader.package.launch.model import Context
 from grader.package.launch.substitutions import resolve
 from grader.static_python.values import Call, Value
 

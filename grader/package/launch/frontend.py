@@ -4,12 +4,11 @@ from dataclasses import dataclass, field
 
 import yaml
 
-from grader.package.launch.model import LaunchFault
-from grader.package.launch.substitution_grammar import Errors
+from grader.package.launch.model import Findings, LaunchFault
 from grader.package.xml_file import XmlFault, XmlFile
 from grader.package.yaml_nodes import Node, YamlFault, read_yaml
 from grader.source import Location, Source
-from grader.static_python.positions import START, Position
+from grader.static_python.parse import START, Position
 from grader.xml.parsing import Element
 
 _MAX_DEPTH = 40
@@ -36,59 +35,35 @@ class Entity:
     children: "list[Entity]" = field(default_factory=list)
 
 
-@dataclass(slots=True)
-class Frontend:
-    """The root entity of a file in XML or YAML, with its errors; `syntax` is set where it cannot be read."""
-
-    source: Source
-    root: Entity | None = None
-    syntax: LaunchFault | None = None
-    errors: Errors = field(default_factory=list)
-    unknown: Errors = field(default_factory=list)
-
-
-def read_frontend(data: bytes, path: str, *, is_yaml: bool) -> Frontend:
-    """Read a launch file in XML or YAML. Never raises."""
-    frontend = Frontend(Source(path, data.decode("utf-8", "replace")))
+def read_frontend(data: bytes, source: Source, findings: Findings, *, is_yaml: bool) -> Entity | LaunchFault:
+    """Return the root entity of a launch file in XML or YAML, or why it cannot be read. Never raises."""
     try:
-        root = _YamlReader(frontend).root(data, path) if is_yaml else _xml_root(data, frontend.source)
-    except YamlFault as fault:
-        frontend.syntax = LaunchFault(f"not readable as YAML: {fault}", fault.location)
-        return frontend
-    except XmlFault as fault:
-        frontend.syntax = LaunchFault(f"not readable as XML: {fault}", fault.location)
-        return frontend
+        root = _YamlReader(findings).root(data, source.path) if is_yaml else _xml_root(XmlFile(data, source))
+    except (YamlFault, XmlFault) as fault:
+        return LaunchFault(f"not readable as {'YAML' if is_yaml else 'XML'}: {fault}", fault.location)
     if root is not None and root.kind == "launch":
-        frontend.root = root
-    else:
-        what = "the file is not one list below launch:" if is_yaml else "the root of the file is not <launch>"
-        frontend.syntax = LaunchFault(f"{what}; ros2 launch starts nothing", Location(path, 1, 1))
-    return frontend
+        return root
+    what = "the file is not one list below launch:" if is_yaml else "the root of the file is not <launch>"
+    return LaunchFault(f"{what}; ros2 launch starts nothing", Location(source.path, 1, 1))
 
 
-def _xml_root(data: bytes, source: Source) -> Entity:
-    file = XmlFile(data, source)
-
+def _xml_root(file: XmlFile) -> Entity:
     def entity(element: Element, depth: int) -> Entity:
         location = file.location(element)
-        attributes = dict(element.attrib.items())
+        attributes = {str(name): str(value) for name, value in element.attrib.items()}
         children = element.iterchildren("*") if depth < _MAX_DEPTH else ()
-        return Entity(
-            str(element.tag),
-            Position(location.line, location.column),
-            attributes,  # type: ignore[arg-type]
-            [entity(child, depth + 1) for child in children],
-        )
+        at = Position(location.line, location.column)
+        return Entity(str(element.tag), at, attributes, [entity(child, depth + 1) for child in children])
 
     return entity(file.root, 0)
 
 
+@dataclass(slots=True)
 class _YamlReader:
     """Reads entities from YAML's lists and mappings; aliases can multiply them, so they are counted."""
 
-    def __init__(self, frontend: Frontend) -> None:
-        self.frontend = frontend
-        self.count = 0
+    findings: Findings
+    count: int = 0
 
     def root(self, data: bytes, path: str) -> Entity | None:
         """Return the entity of the whole file; None where its only key is not launch."""
@@ -96,9 +71,8 @@ class _YamlReader:
         node = root.get("launch")
         if node is None or not isinstance(root.value, dict) or len(root.value) > 1:
             return None
-        return Entity(
-            "launch", _position(node), {}, self.entries(node if node.items else node.get("children") or node, 0)
-        )
+        listed = node if node.items else node.get("children") or node
+        return Entity("launch", _position(node), {}, self.entries(listed, 0))
 
     def entries(self, listed: Node, depth: int) -> list[Entity]:
         """Return the actions of a list, each below its own key."""
@@ -108,7 +82,7 @@ class _YamlReader:
             if len(table) != 1:
                 names = ", ".join(list(table)[:4]) or "nothing"
                 message = f"expected one action below one key, found {names}. Is it indented far enough?"
-                self.frontend.errors.append((message, _position(item)))
+                self.findings.add_fault(message, _position(item))
             found += [self.entity(kind, value, depth + 1) for kind, value in list(table.items())[:1]]
         return found
 
@@ -117,7 +91,7 @@ class _YamlReader:
         entity = Entity(kind, _position(node))
         self.count += 1
         if depth > _MAX_DEPTH or self.count > _MAX_ENTITIES:
-            self.frontend.unknown[:] = [("the launch file has too many elements", START)]
+            self.findings.add_unknown("the launch file has too many elements", START)
             return entity
         if not isinstance(node.value, dict):
             entity.children += self.entries(node, depth)
@@ -139,7 +113,7 @@ class _YamlReader:
         tag: str = _YAML.resolve(yaml.ScalarNode, value.text, (True, False))  # type: ignore[no-untyped-call]
         if tag.rpartition(":")[2] in ("bool", "int", "float", "null"):
             message = f"{key} of {kind} has to be a string, and {value.text!r} is none in YAML: put quotes around it"
-            self.frontend.errors.append((message, _position(value)))
+            self.findings.add_fault(message, _position(value))
 
 
 def merged(node: Node) -> dict[str, Node]:

@@ -1,9 +1,44 @@
 """The model of a launch file: the nodes that it starts, and the files that it names."""
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from typing import Literal
 
 from grader.source import Location, Source
+from grader.static_python.parse import Position
+from grader.static_python.values import Call, Unknown, Value
+
+_MAX_STEPS = 50_000
+
+
+@dataclass(frozen=True, slots=True)
+class Contents:
+    """The contents of a file, read by open, cat or xacro."""
+
+    path: str
+    by: str
+
+
+Resolved = str | Contents | Unknown
+
+
+@dataclass(slots=True)
+class Context:
+    """The folder of the installed launch file, the launch arguments so far, and the errors of the current action.
+
+    `when` is whether the file is launched at all; `steps_left` counts down, also for included files.
+    """
+
+    folder: str
+    arguments: dict[str, Value] = field(default_factory=dict)
+    errors: list[tuple[str, Position]] = field(default_factory=list)
+    when: bool | None = True
+    steps_left: list[int] = field(default_factory=lambda: [_MAX_STEPS])
+
+    def add_error(self, message: str, at: Position) -> None:
+        """Add an error that stops the launch if it certainly executes the current action."""
+        self.errors.append((message, at))
+
 
 Purpose = Literal["urdf", "rviz", "include"]
 
@@ -61,3 +96,51 @@ class Launch:
     def named(self, *purposes: Purpose) -> tuple[Reference, ...]:
         """Return the files that are named for one of these purposes."""
         return tuple(reference for reference in self.references if reference.purpose in purposes)
+
+
+@dataclass(slots=True)
+class Findings:
+    """The findings so far in one launch file. `sets_parameters` is set where an action gives parameters to all nodes."""
+
+    locate: Callable[[Position], Location]
+    nodes: list[StartedNode] = field(default_factory=list)
+    references: list[Reference] = field(default_factory=list)
+    faults: list[LaunchFault] = field(default_factory=list)
+    unknown: list[LaunchFault] = field(default_factory=list)
+    sets_parameters: bool = False
+
+    def add_fault(self, message: str, at: Position) -> None:
+        """Add an error that stops the launch."""
+        self.faults.append(LaunchFault(message, self.locate(at)))
+
+    def add_unknown(self, reason: str, at: Position) -> None:
+        """Add something that cannot be determined; the same again only where others are between."""
+        fault = LaunchFault(reason, self.locate(at))
+        if fault not in self.unknown[-3:]:
+            self.unknown.append(fault)
+
+    def add_errors(self, context: Context, start: int, *, is_certain: bool) -> None:
+        """Take the errors of an action from the context; they count if the action is certainly executed."""
+        for message, at in context.errors[start:] if is_certain else ():
+            self.add_fault(message, at)
+        del context.errors[start:]
+
+    def refer(self, purpose: Purpose, path: Resolved | None, call: Call, value: Value = None, wrong: str = "") -> None:
+        """Add the file that an action names, why it is unknown which, or what is wrong with it."""
+        location = self.locate(_position(value, call))
+        match path:
+            case Unknown(reason=reason):
+                self.references.append(Reference(purpose, None, location, reason, sure=False))
+            case Contents():
+                self.references.append(Reference(purpose, path.path, location, by=path.by))
+            case _:
+                self.references.append(Reference(purpose, path, location, wrong))
+
+
+def _position(value: Value, call: Call) -> Position:
+    """Return the position of the call that gives a value; of open(path).read() that of open."""
+    if isinstance(value, list | tuple):
+        value = next((part for part in value if isinstance(part, Call)), None)
+    while isinstance(value, Call) and value.owner is not None:
+        value = value.owner
+    return value.at if isinstance(value, Call) else call.at

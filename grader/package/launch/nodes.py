@@ -4,9 +4,7 @@ import re
 
 from grader.names import did_you_mean
 from grader.package.launch.commands import PART_UNKNOWN
-from grader.package.launch.context import Context
-from grader.package.launch.findings import Findings
-from grader.package.launch.model import StartedNode
+from grader.package.launch.model import Context, Findings, StartedNode
 from grader.package.launch.references import (
     RVIZ,
     STATE_PUBLISHER,
@@ -16,7 +14,7 @@ from grader.package.launch.references import (
     find_urdf_launch,
 )
 from grader.package.launch.substitutions import resolve
-from grader.static_python.positions import START
+from grader.static_python.parse import START
 from grader.static_python.values import UNKNOWN_KEYS, Call, Unknown, Value
 
 # The arguments of launch_ros.actions.Node, and those that it passes on to launch.actions.ExecuteProcess (ROS 2 Jazzy).
@@ -45,9 +43,8 @@ def start_node(findings: Findings, call: Call, context: Context, when: bool | No
         _start(findings, package, executable, call, context, when)
         return
     unknown = executable if isinstance(package, str) else package
-    findings.add_unknown(
-        unknown.reason if isinstance(unknown, Unknown) else "the program of a node is known only at run time", call.at
-    )
+    reason = "the program of a node is known only at run time"
+    findings.add_unknown(unknown.reason if isinstance(unknown, Unknown) else reason, call.at)
 
 
 def start_process(findings: Findings, call: Call, context: Context, when: bool | None) -> None:

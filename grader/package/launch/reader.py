@@ -1,28 +1,30 @@
 """Reads a launch file in any of its languages, and the launch files that it includes."""
 
 import posixpath
+import re
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
+from operator import attrgetter
 from pathlib import PurePosixPath
 
 from grader.package.launch.actions import CIRCULAR_INCLUDE, ActionVisitor, Include
-from grader.package.launch.context import Context
-from grader.package.launch.findings import Findings
 from grader.package.launch.frontend import read_frontend
 from grader.package.launch.frontend_actions import actions_of
-from grader.package.launch.functions import launch_functions
-from grader.package.launch.model import Launch, LaunchFault, StartedNode
-from grader.package.launch.places import PREFIX
+from grader.package.launch.model import Context, Findings, Launch, LaunchFault, StartedNode
+from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.package.setup_py import location_in
 from grader.source import Location, Source
+from grader.static_python.evaluation import Evaluation, FunctionTable
+from grader.static_python.functions import standard_functions
+from grader.static_python.inspection import path_text
 from grader.static_python.interpreter import Interpreter
-from grader.static_python.parse import SyntaxFault, parse
-from grader.static_python.positions import START
+from grader.static_python.parse import START, SyntaxFault, parse
 from grader.static_python.values import Call, Function, QualifiedName, Unknown, Value
 
 _ENTRY = "generate_launch_description"
 _MODULE = "python_launch_file"  # the __name__ of a launch file
 _MAX_INCLUDES = 10
+_JOINED = ("nodes", "references", "faults", "unknown")  # what a launch file shares with those that it includes
 
 # Returns the bytes of an installed file and its path in the submission, by its path below the prefix; None for other files.
 Opener = Callable[[str], "tuple[bytes, str] | None"]
@@ -34,13 +36,15 @@ def read_launch(data: bytes, path: str, installed: str, opener: Opener) -> Launc
     return _LaunchReader(opener).read(data, path, installed, context)
 
 
+@dataclass(slots=True)
 class _LaunchReader:
     """Reads a launch file and a limited number of included ones."""
 
-    def __init__(self, opener: Opener) -> None:
-        self.opener = opener
-        self.includes_left = _MAX_INCLUDES
-        self.open: list[str] = []  # the launch files that are being read, each included by the one before
+    opener: Opener
+    includes_left: int = _MAX_INCLUDES
+    open: list[str] = field(
+        default_factory=list
+    )  # the launch files that are being read, each included by the one before
 
     def read(self, data: bytes, path: str, installed: str, context: Context) -> Launch:
         """Return a launch file together with those that it includes."""
@@ -56,14 +60,10 @@ class _LaunchReader:
         else:
             own = _python(data, path, installed, context, include)
         self.open.pop()
-        launches = (own, *included)
-        return replace(
-            own,
-            nodes=tuple(node for launch in launches for node in launch.nodes),
-            references=tuple(reference for launch in launches for reference in launch.references),
-            faults=tuple(fault for launch in launches for fault in launch.faults),
-            unknown=tuple(unknown for launch in launches for unknown in launch.unknown),
-        )
+        for launch in included:
+            joined = {name: getattr(own, name) + getattr(launch, name) for name in _JOINED}
+            own = replace(own, **joined)
+        return own
 
     def include(self, target: str, arguments: Context, included: list[Launch]) -> str:
         """Read an included file; return why it is not read, or nothing."""
@@ -84,17 +84,17 @@ class _LaunchReader:
 
 
 def _frontend(data: bytes, path: str, context: Context, include: Include, *, is_yaml: bool) -> Launch:
-    frontend = read_frontend(data, path, is_yaml=is_yaml)
-    if frontend.root is None:
-        return Launch(path, frontend.source, frontend.syntax)
+    source = Source(path, data.decode("utf-8", "replace"))
     findings = Findings(lambda position: Location(path, position.line, position.column))
+    root = read_frontend(data, source, findings, is_yaml=is_yaml)
+    if isinstance(root, LaunchFault):
+        return Launch(path, source, root)
+    actions = actions_of(root, findings)
+    unsupported, findings.unknown = findings.unknown, []
     visitor = ActionVisitor(findings, include, lambda _, at, __: Unknown("a function is not supported here", at))
-    actions = actions_of(frontend.root, frontend)
-    visitor.visit(Call("launch.LaunchDescription", [actions], {}, frontend.root.at), context, context.when)
-    for message, at in frontend.errors:
-        findings.add_fault(message, at)
-    findings.unknown += [LaunchFault(reason, findings.locate(at)) for reason, at in frontend.unknown]
-    return _launch(path, frontend.source, findings, ())
+    visitor.visit(Call("launch.LaunchDescription", [actions], {}, root.at), context, context.when)
+    findings.unknown += unsupported
+    return _launch(path, source, findings, ())
 
 
 def _python(data: bytes, path: str, installed: str, context: Context, include: Include) -> Launch:
@@ -131,9 +131,9 @@ def _description_error(value: Value) -> str:
     match value:
         case None:
             return f"{_ENTRY} does not return its LaunchDescription"
-        case str() | int() | float() | list() | tuple() | dict():
-            return f"{_ENTRY} does not return a LaunchDescription([...])"
-        case Call() if value.name.startswith(("launch.actions.", "launch_ros.actions.")):
+        case Call() if not value.name.startswith(("launch.actions.", "launch_ros.actions.")):
+            return ""
+        case str() | int() | float() | list() | tuple() | dict() | Call():
             return f"{_ENTRY} does not return a LaunchDescription([...])"
         case _:
             return ""
@@ -146,9 +146,7 @@ def _forgotten(node: Call, findings: Findings) -> StartedNode:
 
 
 def _launch(path: str, source: Source, findings: Findings, forgotten: tuple[StartedNode, ...]) -> Launch:
-    def order(fault: LaunchFault) -> tuple[int, int, str]:
-        return fault.location.line, fault.location.column, fault.message
-
+    order = attrgetter("location.line", "location.column", "message")
     return Launch(
         path=path,
         source=source,
@@ -158,3 +156,37 @@ def _launch(path: str, source: Source, findings: Findings, forgotten: tuple[Star
         unknown=tuple(dict.fromkeys(findings.unknown)),
         forgotten=forgotten,
     )
+
+
+_AMENT_INDEX = ("ament_index_python", "ament_index_python.packages")
+_FIND = [f"launch_ros.substitutions.{module}FindPackageShare.find" for module in ("", "find_package.")]
+
+
+def launch_functions() -> FunctionTable:
+    """Return the functions by full name; the folders that they return are stand-ins."""
+    return {
+        **standard_functions(WORKING_FOLDER),
+        **dict.fromkeys([*_FIND, *(f"{module}.get_package_share_directory" for module in _AMENT_INDEX)], _share),
+        **dict.fromkeys((f"{module}.get_package_share_path" for module in _AMENT_INDEX), _share_path),
+        **dict.fromkeys((f"{module}.get_package_prefix" for module in _AMENT_INDEX), lambda *_: PREFIX),
+        "os.path.expanduser": _expanduser,
+        "os.path.expandvars": lambda _, call: Unknown("the environment is known only at run time", call.at),
+        "pathlib.Path.home": lambda *_: PurePosixPath(HOME),
+    }
+
+
+def _share(_: Evaluation, call: Call) -> Value:
+    name = call.argument(0, "package_name", "package")
+    if isinstance(name, str):
+        return f"{SHARE}/{name}"
+    return name if isinstance(name, Unknown) else Unknown("the package is known only at run time", call.at)
+
+
+def _share_path(evaluation: Evaluation, call: Call) -> Value:
+    found = _share(evaluation, call)
+    return PurePosixPath(found) if isinstance(found, str) else found
+
+
+def _expanduser(_: Evaluation, call: Call) -> Value:
+    text = path_text(call.args[0]) if call.args else None
+    return re.sub("^~", HOME, text) if text is not None else Unknown("a path is known only at run time", call.at)

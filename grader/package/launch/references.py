@@ -1,9 +1,7 @@
 """The files that the nodes of a launch file are given: the URDF of robot_state_publisher, the configuration of RViz."""
 
 from grader.package.launch.commands import PART_UNKNOWN, display_config, split_words
-from grader.package.launch.context import Contents, Context
-from grader.package.launch.findings import Findings
-from grader.package.launch.model import Reference
+from grader.package.launch.model import Contents, Context, Findings, Reference
 from grader.package.launch.places import SHARE
 from grader.package.launch.substitutions import COMMAND_LINE, resolve
 from grader.static_python.values import UNKNOWN_KEYS, Call, Unknown, Value
@@ -30,37 +28,32 @@ def find_description(findings: Findings, call: Call, context: Context) -> None:
     words = command_words(call.kwargs.get("arguments"), context)
     end = words.index("--ros-args") if "--ros-args" in words else len(words)
     files = [word for word in words[:end] if not word.startswith("-")]
-    others = (
-        words or unclear is not None or findings.sets_parameters or {UNKNOWN_KEYS, "ros_arguments"} & call.kwargs.keys()
-    )
+    others = words or unclear is not None or {UNKNOWN_KEYS, "ros_arguments"} & call.kwargs.keys()
     if isinstance(unclear, Unknown):
         findings.refer("urdf", unclear, call)
     elif files and files[0] != PART_UNKNOWN:
         findings.refer("urdf", files[0], call)
-    elif others:
+    elif others or findings.sets_parameters:
         findings.refer("urdf", Unknown("its parameters are known only at run time", call.at), call)
     else:
         message = "robot_state_publisher is started without robot_description: it has no robot to publish"
-        findings.refer_wrongly("urdf", message, call)
+        findings.refer("urdf", None, call, wrong=message)
 
 
 def _refer_description(findings: Findings, value: Value, call: Call, context: Context) -> None:
     if isinstance(value, Call) and value.name in _UNFINISHED:
-        findings.refer_wrongly("urdf", _UNFINISHED[value.name], call, value)
+        findings.refer("urdf", None, call, value, wrong=_UNFINISHED[value.name])
         return
     description = resolve(value, context)
     match description:
         case Contents(path=path, by=by) if by != "xacro" and path.endswith(".xacro"):
-            message = (
-                f"{path.rpartition('/')[2]} is read without xacro; if it uses xacro, write Command(['xacro ', ...])"
-            )
+            name = path.rpartition("/")[2]
+            message = f"{name} is read without xacro; if it uses xacro, write Command(['xacro ', ...])"
             findings.references.append(Reference("urdf", path, findings.locate(call.at), message, sure=False, by=by))
-        case Contents(path=path, by=by):
-            findings.refer("urdf", path, call, value, by)
         case str() if "<robot" not in description:
             message = "robot_description is given the path of the URDF, not its contents: read the file first"
-            findings.refer_wrongly("urdf", message, call, value)
-        case Unknown():
+            findings.refer("urdf", None, call, value, wrong=message)
+        case Contents() | Unknown():
             findings.refer("urdf", description, call, value)
 
 
@@ -76,19 +69,18 @@ def find_configuration(findings: Findings, call: Call, context: Context) -> None
         message = (
             "rviz2 is started without -d and a file, so it opens its own default instead of the lab's configuration"
         )
-        findings.refer_wrongly("rviz", message, call)
+        findings.refer("rviz", None, call, wrong=message)
     elif path is None or PART_UNKNOWN in path:
         pieces = (resolve(piece, context) for piece in _pieces(arguments))
         unknown = (piece for piece in pieces if isinstance(piece, Unknown))
-        findings.refer(
-            "rviz", next(unknown, Unknown("the file that it opens is known only at run time", call.at)), call
-        )
+        unnamed = Unknown("the file that it opens is known only at run time", call.at)
+        findings.refer("rviz", next(unknown, unnamed), call)
     elif path != path.lstrip():
-        findings.refer_wrongly("rviz", "'-d' and the path have to be two items of arguments: ['-d', path]", call)
+        findings.refer("rviz", None, call, wrong="'-d' and the path have to be two items of arguments: ['-d', path]")
     elif path:
         findings.refer("rviz", path, call)
     else:
-        findings.refer_wrongly("rviz", "rviz2 is given -d without the path of a file", call)
+        findings.refer("rviz", None, call, wrong="rviz2 is given -d without the path of a file")
 
 
 def find_urdf_launch(findings: Findings, name: str, call: Call, context: Context) -> tuple[str, ...]:
@@ -96,12 +88,12 @@ def find_urdf_launch(findings: Findings, name: str, call: Call, context: Context
     given = [context.arguments.get(key) for key in ("urdf_package", "urdf_package_path")]
     match [resolve(value, context) for value in given]:
         case [str() as package, str() as path]:
-            findings.refer("urdf", f"{SHARE}/{package}/{path}", call, by="xacro")
+            findings.refer("urdf", Contents(f"{SHARE}/{package}/{path}", "xacro"), call)
         case values:
             unknown = next(value for value in values if not isinstance(value, str))
             if None in given or not isinstance(unknown, Unknown):
                 message = "urdf_launch needs the arguments urdf_package and urdf_package_path"
-                findings.refer_wrongly("urdf", message, call)
+                findings.refer("urdf", None, call, wrong=message)
             else:
                 findings.refer("urdf", unknown, call)
     if name != "display":
@@ -112,7 +104,7 @@ def find_urdf_launch(findings: Findings, name: str, call: Call, context: Context
         findings.refer("rviz", opened, call)
     else:
         message = "urdf_launch is included without rviz_config, so it opens its own configuration, not the lab's"
-        findings.refer_wrongly("rviz", message, call)
+        findings.refer("rviz", None, call, wrong=message)
     return (STATE_PUBLISHER, "joint_state_publisher_gui", RVIZ)
 
 

@@ -1,7 +1,10 @@
 """The grammar of values in XML and YAML launch files: text and $(substitutions ...), as in ros2/launch's grammar.lark."""
 
+from dataclasses import dataclass
+
 from grader.names import closest
-from grader.static_python.positions import Position
+from grader.package.launch.model import Findings
+from grader.static_python.parse import Position
 from grader.static_python.values import Call, Value
 
 _MAX_DEPTH = 40
@@ -29,22 +32,20 @@ _SUBSTITUTIONS = {
 _ROS1 = {"find": "find-pkg-share", "arg": "var", "optenv": "env"}
 _ON_STDERR = ("fail", "ignore", "warn", "capture")
 
-Errors = list[tuple[str, Position]]
+
+def parse_value(text: str, at: Position, findings: Findings) -> list[Value]:
+    """Return a value as a list of strings and calls of substitutions; what is wrong with it is added to the findings."""
+    return _ValueParser(text, at, findings).pieces("", 0)
 
 
-def parse_value(text: str, at: Position, errors: Errors) -> list[Value]:
-    """Return a value as a list of strings and calls of substitutions; what is wrong with it is added to `errors`."""
-    return _ValueParser(text, at, errors).pieces("", 0)
-
-
+@dataclass(slots=True)
 class _ValueParser:
     """Parses a value from its beginning to its end."""
 
-    def __init__(self, text: str, at: Position, errors: Errors) -> None:
-        self.text = text
-        self.at = at
-        self.errors = errors
-        self.position = 0
+    text: str
+    at: Position
+    findings: Findings
+    position: int = 0
 
     def pieces(self, ends: str, depth: int) -> list[Value]:
         """Return strings and substitutions, up to one of the characters that end them."""
@@ -81,7 +82,7 @@ class _ValueParser:
             else:
                 values.append(self.pieces(" \t\n)", depth))
         if self.position >= len(self.text):
-            self.errors.append((f"the bracket of $({name[:40]} is not closed", self.at))
+            self.findings.add_fault(f"the bracket of $({name[:40]} is not closed", self.at)
         self.position += 1
         return self.call(name, values)
 
@@ -89,13 +90,13 @@ class _ValueParser:
         """Return a substitution as the call that it is in Python."""
         if name in _ROS1:
             message = f"$({name} ...) is a substitution of ROS 1; in ROS 2 write $({_ROS1[name]} ...)"
-            self.errors.append((message, self.at))
+            self.findings.add_fault(message, self.at)
             name = _ROS1[name]
         if name == "command" and len(values) > 1 and values[1] not in [[mode] for mode in _ON_STDERR]:
             message = "$(command ...) takes its command in quotes: $(command 'xacro ...')"
-            self.errors.append((message, self.at))
+            self.findings.add_fault(message, self.at)
             values = [[part for value in values for part in (*value, " ")]]
         similar = closest(name, _SUBSTITUTIONS) if name not in _SUBSTITUTIONS else None
         if similar:
-            self.errors.append((f"there is no substitution $({name} ...); did you mean $({similar} ...)?", self.at))
+            self.findings.add_fault(f"there is no substitution $({name} ...); did you mean $({similar} ...)?", self.at)
         return Call(_SUBSTITUTIONS.get(name, f"launch.substitutions.{name}"), values, {}, self.at)

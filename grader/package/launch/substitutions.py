@@ -7,11 +7,11 @@ from pathlib import PurePosixPath
 
 from grader.package.launch.booleans import BOOLEAN_SUBSTITUTIONS, boolean_substitution, operands_of
 from grader.package.launch.commands import PART_UNKNOWN, file_read
-from grader.package.launch.context import Contents, Context, Resolved
+from grader.package.launch.model import Contents, Context, Resolved
 from grader.package.launch.places import HOME, PREFIX, SHARE
+from grader.static_python.expressions import evaluate_text
 from grader.static_python.inspection import as_text
-from grader.static_python.positions import START
-from grader.static_python.text_expressions import evaluate_text
+from grader.static_python.parse import START
 from grader.static_python.values import Call, Unknown, Value
 
 COMMAND_LINE = "launch.frontend.command line"  # a line that is split into words, as in XML and YAML
@@ -74,9 +74,6 @@ class _Substitution:
     def value(self) -> Resolved:
         """Return the text that the call gives, or the contents of a file."""
         name = self.call.name.rpartition(".")[2]
-        argument = _FIRST_ARGUMENT.get(name)
-        if argument is not None:
-            return self.argument(*argument)
         method = _METHODS.get(name)
         if method is not None:
             return method(self)
@@ -189,17 +186,14 @@ class _Substitution:
         return text if isinstance(text, Unknown) else Unknown(reason, self.call.at)
 
 
-# The calls that give their first argument, with its names.
-_FIRST_ARGUMENT: dict[str, tuple[str, ...]] = {
-    "TextSubstitution": ("text",),
-    "PathSubstitution": ("path",),
-    "ParameterValue": ("value",),
-    "ParameterFile": ("param_file",),
-    "FindExecutable": ("name",),
-}
 _METHODS: dict[str, Callable[[_Substitution], Resolved]] = {
     **dict.fromkeys(_OF_OWNER, lambda substitution: substitution.resolve(substitution.call.owner)),
     **dict.fromkeys(_PACKAGE_FOLDERS, _Substitution.package_folder),
+    "TextSubstitution": lambda substitution: substitution.argument("text"),
+    "PathSubstitution": lambda substitution: substitution.argument("path"),
+    "ParameterValue": lambda substitution: substitution.argument("value"),
+    "ParameterFile": lambda substitution: substitution.argument("param_file"),
+    "FindExecutable": lambda substitution: substitution.argument("name"),
     "LaunchConfiguration": _Substitution.configuration,
     "PathJoinSubstitution": _Substitution.joined_path,
     "ThisLaunchFileDir": lambda substitution: substitution.context.folder,
