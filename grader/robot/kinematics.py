@@ -7,9 +7,8 @@ from grader.errors import MissingElement
 from grader.robot.frames import Frames, undefined_pose
 from grader.robot.model import Joint, Link, Robot, Visual
 from grader.robot.motion import Position, check_position, motion_of
-from grader.robot.parent_joints import parent_joints
-from grader.robot.positions import Positions
 from grader.robot.transforms import IDENTITY, Transform, Vector, unit
+from grader.robot.tree import parent_joints
 from grader.text import quoted
 
 
@@ -39,8 +38,7 @@ class Configuration:
             for name, position in self.positions.items():
                 check_position(robot.joint(name), position)
         self.shown: dict[str, tuple[Visual, ...]] = {}  # a cache for the checks of what a link shows
-        self._positions = Positions(robot, self.positions)
-        self._frames = Frames(robot, self.parent_joints, self._positions)
+        self._frames = Frames(robot, self.parent_joints, self.positions)
         self._relative: dict[tuple[str, str | None], Transform] = {}
 
     @property
@@ -154,4 +152,4 @@ class Configuration:
 
     def position(self, joint: Joint) -> Position:
         """Return the position of a joint: its own, that of the joint that it mimics, or 0."""
-        return self._positions.of(joint)
+        return self._frames.position(joint)

@@ -8,12 +8,11 @@ from typing import Literal
 from grader.problems import Effect, Problem
 from grader.robot import catalogue
 from grader.robot.diagnostics import Problems
-from grader.robot.joints import read_joint
+from grader.robot.joints import check_references, read_joint
 from grader.robot.links import read_link
 from grader.robot.materials import Materials
 from grader.robot.model import Joint, Link, Robot
 from grader.robot.numbers import is_version_one
-from grader.robot.references import check_references
 from grader.robot.spelling import check_spelling
 from grader.robot.tree import check_tree
 from grader.source import Source

@@ -1,4 +1,7 @@
-"""Check that links and joints form one tree (`model.h`: initTree, initRoot; kdl_parser: addChildrenToTree)."""
+"""The tree of links: their parent joints, and what keeps them from being one tree.
+
+ROS 2 does so in `model.h` (initTree, initRoot) and kdl_parser (addChildrenToTree).
+"""
 
 from collections.abc import Iterable
 from graphlib import CycleError, TopologicalSorter
@@ -6,7 +9,6 @@ from graphlib import CycleError, TopologicalSorter
 from grader.robot import catalogue
 from grader.robot.diagnostics import Problems
 from grader.robot.model import Joint, Robot
-from grader.robot.parent_joints import parent_joints
 from grader.text import enumerated, quoted
 from grader.xml.parsing import Element
 
@@ -16,6 +18,52 @@ _MAX_NAMED = 20
 _MAX_ROOTS = 50
 
 Edges = dict[str, list[Joint]]  # the joints by their parent link
+
+
+def parent_joints(robot: Robot) -> dict[str, Joint]:
+    """Return the parent joint of each link, by the link's name; a root has none.
+
+    Of two joints with one child the last in name order counts, as in ROS 2. ROS 2 shows nothing of a rejected file, so there
+    the most plausible reading counts: no joint that would close a loop, rather one whose name contains its child's than one
+    whose name contains only its parent's (these two may be swapped), and then the first in the file.
+    """
+    complete = [
+        joint
+        for joint in robot.joints
+        if joint.parent and joint.child and robot.has_link(joint.parent) and robot.has_link(joint.child)
+    ]
+    if robot.rejected:
+        return _most_plausible(complete)
+    parents: dict[str, Joint] = {}
+    for joint in complete:
+        rival = parents.get(joint.child)
+        if rival is None or rival.name <= joint.name:
+            parents[joint.child] = joint
+    return parents
+
+
+def _implausibility(joint: Joint) -> tuple[bool, bool]:
+    names_child = joint.child in joint.name
+    return (joint.parent in joint.name and not names_child, not names_child)
+
+
+def _most_plausible(joints: list[Joint]) -> dict[str, Joint]:
+    parents: dict[str, Joint] = {}
+    above: dict[str, str] = {}  # some link further up; a path is shortened whenever it is followed
+
+    def root(link: str) -> str:
+        passed = []
+        while link in above:
+            passed.append(link)
+            link = above[link]
+        above.update(dict.fromkeys(passed, link))
+        return link
+
+    for joint in sorted(joints, key=_implausibility):
+        if joint.child not in parents and root(joint.parent) != joint.child:
+            parents[joint.child] = joint
+            above[joint.child] = joint.parent
+    return parents
 
 
 def check_tree(robot: Robot, links: dict[str, Element], problems: Problems) -> None:
