@@ -2,17 +2,7 @@
 
 from itertools import product
 
-from grader.checks.outcome import (
-    SLACK,
-    Outcome,
-    difference,
-    judged,
-    pending,
-    place,
-    point,
-    size,
-    within,
-)
+from grader.checks.outcome import SLACK, Outcome, difference, judged, pending, place, point, size, within
 from grader.checks.toml_types import NonNegative
 from grader.checks.visuals import ShapeName, main_visual, origin_place, visual_pose, visuals
 from grader.robot.kinematics import Configuration

@@ -1,6 +1,7 @@
 """Forward kinematics: the pose of every link with the joints at given positions."""
 
 from collections.abc import Mapping
+from itertools import takewhile
 from math import isfinite
 
 from grader.errors import MissingElement
@@ -123,9 +124,7 @@ class Configuration:
         up, down = self.chain(one) or (), self.chain(other) or ()
         if self.root_of(one) != self.root_of(other):
             self.pose(other, relative_to=one)
-        shared = 0
-        while shared < min(len(up), len(down)) and up[shared] is down[shared]:
-            shared += 1
+        shared = sum(1 for _ in takewhile(lambda pair: pair[0] is pair[1], zip(up, down, strict=False)))
         return (*reversed(up[shared:]), *down[shared:])
 
     def moved(self, joint: str | Joint, position: Position) -> "Configuration":
