@@ -17,8 +17,7 @@ from grader.robot.spelling import check_spelling
 from grader.robot.tree import check_tree
 from grader.source import Source
 from grader.text import quoted
-from grader.xml.document import read_document
-from grader.xml.parsing import Element
+from grader.xml.parsing import Element, read_document
 
 Verdict = Literal["clean", "degraded", "rejected"]
 
