@@ -90,9 +90,16 @@ def failed(message: str, at: AnyPlace = None, *, detail: str = "") -> Outcome:
 
 
 def judged(
-    fine: bool, message: str, actual: Value = None, expected: Value = None, tolerance: float | None = None,
-    unit: str | None = None, *, at: AnyPlace = None, detail: str = "",
-) -> Outcome:  # fmt: skip
+    fine: bool,
+    message: str,
+    actual: Value = None,
+    expected: Value = None,
+    tolerance: float | None = None,
+    unit: str | None = None,
+    *,
+    at: AnyPlace = None,
+    detail: str = "",
+) -> Outcome:
     """Return a measurement that passes or fails; only a failure has a place to look at."""
     location = None if fine else location_of(at)
     mistake = message if detail and not fine else ""
@@ -111,9 +118,15 @@ def within(actual: float, expected: float, tolerance: float) -> bool:
 
 
 def measured(
-    what: str, actual: float, expected: float, tolerance: float, unit: str, *,
-    sides: tuple[str, str] = ("too large", "too small"), at: LazyLocation | None = None,
-) -> Outcome:  # fmt: skip
+    what: str,
+    actual: float,
+    expected: float,
+    tolerance: float,
+    unit: str,
+    *,
+    sides: tuple[str, str] = ("too large", "too small"),
+    at: LazyLocation | None = None,
+) -> Outcome:
     """Compare one number: "the radius of 'wheel' is 0.2 m; it should be 0.1 m (100 mm too large)"."""
     fine = within(actual, expected, tolerance)
     message = f"{what} {quantity(actual, unit)}"

@@ -16,8 +16,9 @@ from grader.source import LazyLocation, Location
 from grader.submission.submission import Submission, open_submission
 from grader.submission.urdf import NeedsExpansion, Read
 
-# Problems that explain a measurement at the same place.
+# Problems that explain a measurement at the same place, and those with which ROS 2 drops visuals of a link.
 _EXPLAINING = (catalogue.BAD_COLOUR, catalogue.COLOUR_COUNT, catalogue.DEGREES, catalogue.UNDEFINED_MATERIAL)
+_DROPPING = (catalogue.BAD_VISUAL, catalogue.BAD_INERTIAL)
 
 
 def grade(rubric: Rubric, submission: Submission, parts: Sequence[str] = ()) -> Report:
@@ -48,20 +49,16 @@ class _Grading:
 
     def __init__(self, submission: Submission) -> None:
         self.submission = submission
-        self.urdf = submission.urdf.reading if isinstance(submission.urdf, Read) else None
-        robot = self.urdf.robot if self.urdf is not None else None
-        self.robot = Configuration(robot) if robot is not None else None
+        self.problems: tuple[Problem, ...] = ()
+        self.robot: Configuration | None = None
         self.results: dict[str, Result] = {}
         self.missed: dict[tuple[str, str], str] = {}
         self._subjects: dict[Subject, object] = {"submission": submission}
-        if self.urdf is not None:
-            self._subjects["urdf"] = self.urdf
-        if self.robot is not None:
-            self._subjects["robot"] = self.robot
-
-    @property
-    def _problems(self) -> tuple[Problem, ...]:
-        return self.urdf.problems if self.urdf is not None else ()
+        if isinstance(submission.urdf, Read):
+            urdf = submission.urdf.reading
+            self.problems = urdf.problems
+            self.robot = Configuration(urdf.robot) if urdf.robot is not None else None
+            self._subjects |= {"urdf": urdf, "robot": self.robot}
 
     def decide(self, criterion: Criterion) -> None:
         """Run the check of a criterion, or skip it because of another that failed."""
@@ -93,9 +90,7 @@ class _Grading:
             return Result(criterion, outcome)
         except MissingElement as missing:
             return self._miss(criterion, missing)
-        except UnknownShape as unknown:
-            return Result(criterion, pending(f"{unknown}; needs manual grading"))
-        except NotDecided as reason:
+        except (UnknownShape, NotDecided) as reason:
             return Result(criterion, pending(f"{reason}; needs manual grading"))
         except KeyboardInterrupt:
             raise
@@ -124,14 +119,12 @@ class _Grading:
     def _explained(self, outcome: Outcome, link: str | None = None) -> Outcome:
         """Return a failure with the problem that explains it: at its place, or why ROS 2 drops the visuals of a link."""
         mistake = outcome.mistake or outcome.message
-        for problem in self._problems:
-            if link is not None:
-                if problem.kind in (catalogue.BAD_VISUAL, catalogue.BAD_INERTIAL) and problem.subject == link:
-                    message = f"{outcome.message}: {problem.message}"
-                    return outcome._replace(message=message, location=problem.location, mistake=mistake)
-            elif problem.location == outcome.location and (
-                problem.kind in _EXPLAINING or (problem.kind is catalogue.DEFAULT_AXIS and outcome.unit == "deg")
-            ):
+        for problem in self.problems:
+            if link is not None and problem.kind in _DROPPING and problem.subject == link:
+                message = f"{outcome.message}: {problem.message}"
+                return outcome._replace(message=message, location=problem.location, mistake=mistake)
+            explains = problem.kind in _EXPLAINING or (problem.kind is catalogue.DEFAULT_AXIS and outcome.unit == "deg")
+            if link is None and explains and problem.location == outcome.location:
                 message = f"{outcome.message} ({problem.code}: {problem.message})"
                 return outcome._replace(message=message, mistake=mistake)
         return outcome

@@ -113,7 +113,7 @@ def test_a_folder_without_a_urdf_is_graded_and_cannot_be_inspected(tmp_path: Pat
 
 def test_a_urdf_alone_has_no_package() -> None:
     """A part that needs more than a URDF cannot be asked of one."""
-    refuse("grade", str(REFERENCE), "--part", "task2", words="name the folder or archive")
+    refuse("grade", str(REFERENCE), "--part", "task2", words="give the folder or archive")
 
 
 CONTENTS = {

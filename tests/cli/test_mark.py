@@ -21,7 +21,7 @@ from tests.command_line import PATIENCE
 from tests.samples import ROOT
 
 GRADE = ("score", "max_score", "pending")
-EVERYONE = "; grader export csv --gradebook TOP/book.db lists everyone"
+EVERYONE = "; grader export csv --gradebook TOP/book.db lists all students"
 CRITERIA = " (grader rubric show TOP/small.toml lists them)"
 
 
@@ -64,11 +64,11 @@ def test_whoever_is_meant(name: str, top: Path) -> None:
 @pytest.mark.parametrize(
     ("who", "what", "points", "why"),
     [
-        ("Ben Oh", "essay", "1", "'Ben Oh' may be any of 'ben', 'emil': name one by this key"),
-        ("ana", "essay", "1", "there is no 'ana' in the gradebook; did you mean 'anna'?"),
-        ("\x1b[31m", "essay", "1", rf"there is no '\x1b[31m' in the gradebook{EVERYONE}"),
-        (b"\xff", "essay", "1", rf"there is no '\\udcff' in the gradebook{EVERYONE}"),
-        ("dora", "essay", "1", "dora has handed in nothing that could be marked"),
+        ("Ben Oh", "essay", "1", "'Ben Oh' is ambiguous: it may be 'ben', 'emil'; use one of these ids"),
+        ("ana", "essay", "1", "there is no student 'ana' in the gradebook; did you mean 'anna'?"),
+        ("\x1b[31m", "essay", "1", rf"there is no student '\x1b[31m' in the gradebook{EVERYONE}"),
+        (b"\xff", "essay", "1", rf"there is no student '\\udcff' in the gradebook{EVERYONE}"),
+        ("dora", "essay", "1", "dora has submitted nothing that could be marked"),
         ("anna", "esay", "1", f"the rubric small has no criterion 'esay'; did you mean 'essay'?{CRITERIA}"),
         ("anna", "essay", "4.5", "essay is worth 0 to 4 points, not 4.5"),
         ("anna", "essay", "nan", "points are a number from 0 to 4, with at most 4 decimals, not 'nan'"),
@@ -147,7 +147,7 @@ def test_a_mark_where_the_grader_failed(tmp_path: Path) -> None:
     done = grader("mark", "anna", "behaves", "1.5", *book, **where)
     assert (done.returncode, done.stdout) == (0, "anna: 2.5 of 3 points\n")
     assert status() == ("errored", 2.5, True)
-    assert "it could not be graded, and was marked by hand" in grader("stats", *book, **where).stdout
+    assert "it could not be graded, and was marked manually" in grader("stats", *book, **where).stdout
 
 
 def test_no_run_loses_a_mark(top: Path) -> None:
@@ -166,7 +166,7 @@ def test_no_run_loses_a_mark(top: Path) -> None:
     (top / "class" / "anna" / "robot.urdf").write_text(urdf("2 2 2"))
     assert score_after() == 7  # the check that needs the box is skipped now
     listed = grader("stats", "--gradebook", top / "book.db").stdout
-    assert "2 marks by hand are from before the submission or the points changed" in " ".join(listed.split())
+    assert "2 manual marks are from before the submission or the points changed" in " ".join(listed.split())
     (top / "other.toml").write_text(lab_text(loads="2", extra="0.5"))
     assert score_after(rubric=top / "other.toml") == 6.5
     (top / "without.toml").write_text(lab_text().replace('"essay"', '"answer"'))

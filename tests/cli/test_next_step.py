@@ -60,15 +60,15 @@ def refused(line: str, place: Path) -> str:
         ("grade my_robot.urdf --score", "(grader grade --help shows the usage)"),
         ("rubric shov lab6", "(grader rubric --help shows the usage)"),
         ("batch clas --gradebook book.db", "clas does not exist; did you mean 'class'?"),
-        ("batch my_robot.urdf --gradebook book.db", "(grader grade takes a single one)"),
-        ("batch package --gradebook book.db", "(grader grade package grades it)"),
+        ("batch my_robot.urdf --gradebook book.db", "(grader grade grades a single one)"),
+        ("batch package --gradebook book.db", "(grade it with grader grade package)"),
         ("batch empty --gradebook book.db", "name the folder that holds the class's submissions"),
-        ("batch class --layout canvas --gradebook book.db", "(without --layout canvas it is found out)"),
-        ("batch class --layout nbgrader --gradebook book.db", "--assignment has to say which assignment"),
+        ("batch class --layout canvas --gradebook book.db", "(without --layout canvas the layout is detected)"),
+        ("batch class --layout nbgrader --gradebook book.db", "name the assignment to grade with --assignment"),
         ("batch class --gradebook book.db --csv out/a.csv", "there is no folder out (mkdir -p out makes it)"),
         ("batch class --gradebook out/book.db", "there is no folder out (mkdir -p out makes it)"),
         ("stats --gradebook notes.txt", "name another file"),
-        ("stats --gradebook book.db", f"there is no gradebook book.db: {BATCH} makes one"),
+        ("stats --gradebook book.db", f"there is no gradebook book.db: create it with {BATCH}"),
         ("export canvas --gradebook book.db", "give it with --into"),
     ],
 )
@@ -85,7 +85,7 @@ def test_what_to_type_with_a_gradebook(place: Path) -> None:
     for line, why in (
         ("mark zoe lidar-frame 1 --gradebook book.db", "; grader export csv --gradebook book.db lists all students"),
         ("mark anna lidar 1 --gradebook book.db", "has no criterion 'lidar' (grader rubric show lab6 lists them)"),
-        ("diff book.db", f"{BATCH} makes one more, or name a second gradebook"),
+        ("diff book.db", f"run {BATCH} again, or name a second gradebook"),
         ("export csv --gradebook book.db --output out/a.csv", "there is no folder out (mkdir -p out makes it)"),
     ):
         assert why in refused(line, place)

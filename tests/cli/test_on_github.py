@@ -97,7 +97,7 @@ def test_a_summary_that_cannot_be_written_changes_nothing_else(job: Job, place: 
         (("nowhere.urdf",), "nowhere.urdf does not exist"),
         (("my_robot.urdf", "--rubric", "nowhere.toml"), "cannot read nowhere.toml"),
         (("my_robot.urdf", "--rubric", "lab7"), "there is no rubric 'lab7'"),
-        (("my_robot.urdf", "--part", "task2"), "name the folder or archive"),
+        (("my_robot.urdf", "--part", "task2"), "give the folder or archive"),
         (("my_robot.urdf", "--expect-rubric", "0" * 64), "is not the expected one"),
         (("my_robot.urdf", "--save", "json=nowhere/a.json"), "cannot write nowhere/a.json"),
         (("my_robot.urdf", "--save", "html=a.html"), "--save takes FORMAT=FILE"),
