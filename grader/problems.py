@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import partial
 from typing import Literal
 
 from grader.source import Location
@@ -20,10 +21,10 @@ class Kind:
     """
 
     code: str
-    severity: Severity
-    effect: Effect
     title: str
     explanation: str
+    severity: Severity
+    effect: Effect
     is_consequence: bool = False
     detaches_links: bool = False
 
@@ -48,24 +49,10 @@ class Problem:
         return self.kind.severity
 
 
-def rejects(code: str, title: str, explanation: str, *, is_consequence: bool = False) -> Kind:
-    """Return a kind of problem with which ROS 2 loads nothing of the file."""
-    return Kind(code, "error", "rejects", title, explanation, is_consequence=is_consequence)
-
-
-def drops(code: str, title: str, explanation: str, *, detaches_links: bool = False) -> Kind:
-    """Return a kind of problem with which ROS 2 loads the file without part of its content."""
-    return Kind(code, "warning", "drops", title, explanation, detaches_links=detaches_links)
-
-
-def warns(code: str, title: str, explanation: str) -> Kind:
-    """Return a kind of problem that deserves a warning although ROS 2 loads everything."""
-    return Kind(code, "warning", "loads", title, explanation)
-
-
-def notes(code: str, title: str, explanation: str) -> Kind:
-    """Return a kind of problem that is worth a note."""
-    return Kind(code, "note", "loads", title, explanation)
+rejects = partial(Kind, severity="error", effect="rejects")  # ROS 2 loads nothing of the file
+drops = partial(Kind, severity="warning", effect="drops")  # ROS 2 loads the file without part of its content
+warns = partial(Kind, severity="warning", effect="loads")  # ROS 2 loads everything, but it deserves a warning
+notes = partial(Kind, severity="note", effect="loads")
 
 
 def kinds_in(namespace: Iterable[object]) -> tuple[Kind, ...]:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from itertools import permutations
 from math import cos, radians
+from typing import TypeVar
 
 from grader.checks.outcome import SLACK, Outcome, failed, judged, measured, passed, pending, place, point, within
 from grader.checks.toml_types import Colour, NonNegative, Size
@@ -14,14 +15,13 @@ from grader.robot.transforms import IDENTITY_ROTATION, Vector, rotation_from_rpy
 
 _ALIGNED = cos(radians(1.0))
 
+Shown = TypeVar("Shown", Box, Cylinder, Sphere)
+
 
 def shows_box(robot: Configuration, *, link: str, size: Size, tolerance: NonNegative) -> Outcome:
     """A link shows a box whose edges along the link's x, y and z axes have the given lengths in metres."""
-    found = [visual for visual in visuals(robot, link) if isinstance(visual.geometry, Box)]
-    if not found:
-        return _other_shape(robot, link, "box")
-    visual = min(found, key=lambda visual: _difference(_edges(visual), size))
-    actual = _edges(visual)
+    edges = [(_edges(visual, box), visual) for visual, box in _shown(robot, link, Box)]
+    actual, visual = min(edges, key=lambda pair: _difference(pair[0], size))
     is_turned = actual is None or _all_within(sorted(actual), sorted(size), tolerance)
     is_turned = is_turned and any(visual.origin.rpy)
     at = place(visual.origin.location, "rpy") if is_turned else place(visual.geometry.location, "size")
@@ -36,12 +36,9 @@ def shows_cylinder(
     robot: Configuration, *, link: str, radius: NonNegative, length: NonNegative, tolerance: NonNegative
 ) -> Outcome:
     """A link shows a cylinder of the given radius and length in metres."""
-    found = [visual.geometry for visual in visuals(robot, link) if isinstance(visual.geometry, Cylinder)]
-    if not found:
-        return _other_shape(robot, link, "cylinder")
     expected = (radius, length)
-    best = min(found, key=lambda shape: _difference((abs(shape.radius), abs(shape.length)), expected))
-    actual = (abs(best.radius), abs(best.length))
+    sizes = [((abs(shape.radius), abs(shape.length)), shape) for _, shape in _shown(robot, link, Cylinder)]
+    actual, best = min(sizes, key=lambda pair: _difference(pair[0], expected))
     fine = _all_within(actual, expected, tolerance)
     message = f"{link!r} shows a cylinder of radius {point(actual[:1])} m and length {point(actual[1:])} m"
     if not fine:
@@ -52,13 +49,10 @@ def shows_cylinder(
 
 def shows_sphere(robot: Configuration, *, link: str, radius: NonNegative, tolerance: NonNegative) -> Outcome:
     """A link shows a sphere of the given radius in metres."""
-    found = [visual.geometry for visual in visuals(robot, link) if isinstance(visual.geometry, Sphere)]
-    if not found:
-        return _other_shape(robot, link, "sphere")
-    best = min(found, key=lambda shape: abs(abs(shape.radius) - radius))
+    spheres = (sphere for _, sphere in _shown(robot, link, Sphere))
+    best = min(spheres, key=lambda sphere: abs(abs(sphere.radius) - radius))
     what = f"the radius of the sphere that {link!r} shows is"
-    at = place(best.location, "radius")
-    return measured(what, abs(best.radius), radius, tolerance, "m", at=at)
+    return measured(what, abs(best.radius), radius, tolerance, "m", at=place(best.location, "radius"))
 
 
 def shows_colour(
@@ -76,8 +70,7 @@ def shows_colour(
     message = f"{link!r} is shown in {'rgba' if len(colour) == 4 else 'rgb'} {point(actual)}"
     if not fine:
         message += f"; it should be {point(colour)}"
-    at = place(visual.material.location, "rgba")
-    return judged(fine, message, actual, colour, tolerance, at=at)
+    return judged(fine, message, actual, colour, tolerance, at=place(visual.material.location, "rgba"))
 
 
 def shows_grey(robot: Configuration, *, link: str, at_least: float, tolerance: NonNegative) -> Outcome:
@@ -93,8 +86,8 @@ def shows_grey(robot: Configuration, *, link: str, at_least: float, tolerance: N
         message += ", which is not grey; red, green and blue should be equal"
     elif not is_light:
         message += f"; it should be at least {at_least:g}"
-    at = place(visual.material.location, "rgba")
-    return judged(is_grey and is_light, message, actual, at_least, tolerance, at=at)
+    fine, at = is_grey and is_light, place(visual.material.location, "rgba")
+    return judged(fine, message, actual, at_least, tolerance, at=at)
 
 
 def shows_nothing(robot: Configuration, *, link: str) -> Outcome:
@@ -107,13 +100,23 @@ def shows_nothing(robot: Configuration, *, link: str) -> Outcome:
     if not shown:
         return passed(f"{link!r} shows nothing")
     message = f"{link!r} shows {shape_name(shown[0].geometry)}; it should have no visual"
-    return failed(message, place(shown[0].location))
+    return failed(message, shown[0].location)
 
 
-def _edges(visual: Visual) -> Vector | None:
+def _shown(robot: Configuration, link: str, kind: type[Shown]) -> list[tuple[Visual, Shown]]:
+    """Return the visuals of a link that show a shape of a kind; raise MissingElement where there is none."""
+    pairs = ((visual, visual.geometry) for visual in visuals(robot, link))
+    found = [(visual, shape) for visual, shape in pairs if isinstance(shape, kind)]
+    if not found:
+        other, wanted = main_visual(robot, link).geometry, kind.__name__.lower()
+        message = f"{link!r} shows {shape_name(other)}; it should show a {wanted}"
+        raise MissingElement(wanted, link, message=message, location=place(other.location))
+    return found
+
+
+def _edges(visual: Visual, box: Box) -> Vector | None:
     """Return the edge lengths of a box along its link's axes, in metres; None where they are not along them."""
-    assert isinstance(visual.geometry, Box)
-    a, b, c = visual.geometry.size
+    a, b, c = box.size
     size = (abs(a), abs(b), abs(c))  # RViz shows a negative size as a positive one
     rotation = rotation_from_rpy(visual.origin.rpy)
     if rotation is IDENTITY_ROTATION:
@@ -132,12 +135,6 @@ def _difference(actual: Sequence[float] | None, expected: Sequence[float]) -> fl
     return float("inf") if actual is None else max(abs(a - b) for a, b in zip(actual, expected, strict=True))
 
 
-def _other_shape(robot: Configuration, link: str, wanted: str) -> Outcome:
-    visual = main_visual(robot, link)
-    message = f"{link!r} shows {shape_name(visual.geometry)}; it should show a {wanted}"
-    raise MissingElement(wanted, link, message=message, location=place(visual.geometry.location))
-
-
 def _has_only_texture(material: Material) -> bool:
     # ROS 2 gives a material black where it has a texture and no colour.
     return material.texture != "" and material.rgba == Material("").rgba
@@ -148,8 +145,5 @@ def _colourless(link: str, visual: Visual) -> Outcome:
         return pending(f"{link!r} is shown with a texture, which the grader does not open; needs manual grading")
     if visual.material_name:
         message = f"{link!r} has no colour: the material {visual.material_name!r} is not defined here"
-    else:
-        message = f"{link!r} has no material, so RViz shows it in its default colour, red"
-    return failed(
-        message, place(visual.location, "name", "material") if visual.material_name else place(visual.location)
-    )
+        return failed(message, place(visual.location, "name", "material"))
+    return failed(f"{link!r} has no material, so RViz shows it in its default colour, red", place(visual.location))

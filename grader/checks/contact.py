@@ -1,18 +1,9 @@
 """Checks of contact between two links: one stands on the other, or does not cut into it."""
 
 from itertools import product
+from operator import itemgetter
 
-from grader.checks.outcome import (
-    SLACK,
-    Outcome,
-    difference,
-    judged,
-    pending,
-    place,
-    point,
-    size,
-    within,
-)
+from grader.checks.outcome import SLACK, Outcome, difference, judged, pending, place, point, size, within
 from grader.checks.toml_types import NonNegative
 from grader.checks.visuals import ShapeName, main_visual, origin_place, visual_pose, visuals
 from grader.robot.kinematics import Configuration
@@ -42,10 +33,8 @@ def stands_on(robot: Configuration, *, link: str, on: str, tolerance: NonNegativ
     touches = within(bottom, top, tolerance)
     fine = touches and beyond <= tolerance + SLACK
     if not touches:
-        message = (
-            f"the bottom of {link!r} is at z = {point((bottom,))} m in {on!r}; it should be at the top of {on!r},"
-            f" {point((top,))} m ({difference(bottom - top, 'm', 'too high', 'too low')})"
-        )
+        off = difference(bottom - top, "m", "too high", "too low")
+        message = f"the bottom of {link!r} is at z = {point((bottom,))} m in {on!r}; it should be at the top of {on!r}, {point((top,))} m ({off})"
     elif not fine:
         message = f"{link!r} reaches {size(beyond, 'm')} beyond the edge of the top of {on!r}"
     at = origin_place(robot, link) if touches else None  # either of the two may be wrong
@@ -59,16 +48,17 @@ def clear_of(robot: Configuration, *, link: str, of: str, tolerance: NonNegative
     if len(own) * len(others) > _MAX_PAIRS:
         return pending(f"{link!r} and {of!r} show too many shapes to compare; needs manual grading")
     deepest, culprit = 0.0, own[0][0]
-    unknown: Geometry | None = None
+    unknown: Mesh | None = None
     for (visual, pose), (geometry, other) in product(own, others):
-        if isinstance(visual.geometry, Mesh) or isinstance(geometry, Mesh):
-            unknown = visual.geometry if isinstance(visual.geometry, Mesh) else geometry
-            continue
-        depth = penetration(visual.geometry, pose, geometry, other, allowed=tolerance)
-        if depth > deepest:
-            deepest, culprit = depth, visual
+        if isinstance(visual.geometry, Mesh):
+            unknown = visual.geometry
+        elif isinstance(geometry, Mesh):
+            unknown = geometry
+        else:
+            depth = penetration(visual.geometry, pose, geometry, other, allowed=tolerance)
+            deepest, culprit = max((deepest, culprit), (depth, visual), key=itemgetter(0))
     fine = deepest <= tolerance
-    if fine and isinstance(unknown, Mesh):
+    if fine and unknown is not None:
         raise UnknownShape(unknown)
     message = f"{link!r} does not cut into {of!r}" if fine else f"{link!r} cuts {size(deepest, 'm')} deep into {of!r}"
     at = place(culprit.origin.location, "xyz") or place(culprit.location)

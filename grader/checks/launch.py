@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 _WORDS = {"urdf": "URDF", "rviz": "RViz file", "include": "launch file", "launch": "launch file"}
 _ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".py", ".xml", ".yaml", ".yml")}
 
+Verdict = tuple[Status | Literal["missing"], str]
+
 
 def launch_found(package: Package, *, name: str) -> Outcome:
     """The package has a launch file of this name, written in Python, XML or YAML."""
-    path = package.launch_file(name)
-    if path is None:
-        raise _no_launch_file(package)
+    path = _path(package, name)
     if is_launch_named(path, name):
         return passed(f"the launch file is {path}")
     detail = f"; the package has {path}"
@@ -50,23 +50,19 @@ def launch_starts(package: Package, *, name: str, nodes: list[str]) -> Outcome:
         reason = f": {launch.unknown[0].message}" if launch.unknown else ""
         return pending(f"cannot determine statically whether {listed} is started{reason}; needs manual grading")
     running = tuple(sorted(started))
-    message = f"the launch file starts {', '.join(running) or 'nothing'}"
-    at = None
+    message, at = f"starts {', '.join(running) or 'nothing'}", None
     if missing:
-        message = f"the launch file does not start {listed}; it starts {', '.join(running) or 'nothing'}"
         reason, at = _why_missing(launch, {node for choice in missing for node in choice})
-        message += reason
-    return judged(not missing, message, running, tuple(nodes), at=at)
+        message = f"does not start {listed}; it {message}{reason}"
+    return judged(not missing, f"the launch file {message}", running, tuple(nodes), at=at)
 
 
 def _why_missing(launch: "Launch", missing: set[str]) -> "tuple[str, Location | None]":
     """Return why a launch file does not start nodes that should be started, in a sentence, and where to look."""
     for node in launch.forgotten:
         if _name_of(node) in missing:
-            return (
-                f". It creates the node {node.executable}, but the LaunchDescription does not contain it",
-                node.location,
-            )
+            reason = f". It creates the node {node.executable}, but the LaunchDescription does not contain it"
+            return reason, node.location
     for node in launch.nodes:
         if node.when is False and _name_of(node) in missing:
             return f". A condition keeps {node.executable} from starting, unless an argument is given", node.location
@@ -101,14 +97,15 @@ def launch_finds_files(package: Package, *, name: str) -> Outcome:
     return passed(f"a build installs {enumerated(found)}, where the launch file looks for them")
 
 
-def _no_launch_file(package: Package) -> MissingElement:
-    return MissingElement("launch file in the package", "", message=package.missing_message("launch"))
+def _path(package: Package, name: str) -> str:
+    path = package.launch_file(name)
+    if path is None:
+        raise MissingElement("launch file in the package", "", message=package.missing_message("launch"))
+    return path
 
 
 def _launch(package: Package, name: str) -> "Launch":
-    path = package.launch_file(name)
-    if path is None:
-        raise _no_launch_file(package)
+    path = _path(package, name)
     launch = package.launch(path)
     if launch.unread:
         raise NotDecided(launch.unread)
@@ -119,8 +116,8 @@ def _launch(package: Package, name: str) -> "Launch":
 
 def _stopped(package: Package, name: str, launch: "Launch") -> MissingElement:
     """Return the fault of a launch file that starts nothing because of it."""
-    path = package.launch_file(name) or name
-    return MissingElement("launch file", path, message=_faults(launch), location=launch.faults[0].location)
+    message, at = _faults(launch), launch.faults[0].location
+    return MissingElement("launch file", _path(package, name), message=message, location=at)
 
 
 def _faults(launch: "Launch") -> str:
@@ -134,54 +131,44 @@ def _name_of(node: "StartedNode") -> str:
 
 def _missing(package: Package, named: "Reference", text: str) -> MissingElement:
     """Return what the package is missing for a named file, by the kinds and names that the checks of packages use."""
-    setup = package.setup
-    what = _WORDS[named.purpose]
+    setup, kind, name = package.setup, f"installed {named.purpose}", package.folder
     if setup is None or setup.fault is not None:
-        return MissingElement("setup.py", package.folder, message=text, location=named.location)
-    if not setup.is_called:
-        return MissingElement("call of setup", package.folder, message=text, location=named.location)
-    if not any(path.lower().endswith(_ENDINGS[named.purpose]) for path in package.tree.files):
-        return MissingElement(f"{what} in the package", "", message=text, location=named.location)
-    return MissingElement(f"installed {named.purpose}", package.folder, message=text, location=named.location)
+        kind = "setup.py"
+    elif not setup.is_called:
+        kind = "call of setup"
+    elif not any(path.lower().endswith(_ENDINGS[named.purpose]) for path in package.tree.files):
+        kind, name = f"{_WORDS[named.purpose]} in the package", ""
+    return MissingElement(kind, name, message=text, location=named.location)
 
 
-def _verdict(package: Package, named: "Reference") -> "tuple[Status | Literal['missing'], str]":
+def _verdict(package: Package, named: "Reference") -> Verdict:
     """Return whether a launch file finds a file that it names, and why not; "missing": a build does not install it."""
-    what = _WORDS[named.purpose]
     if named.path is None or named.reason:
         return ("failed" if named.sure else "pending", named.reason)
-    path = posixpath.normpath(named.path)
+    what, path = _WORDS[named.purpose], posixpath.normpath(named.path)
+    looks = f"it looks for the {what} at"
     if path.startswith(f"{SHARE}/"):
         owner, _, rest = path.removeprefix(f"{SHARE}/").partition("/")
         return _below_share(package, owner, rest, named)
     if is_of_one_machine(path):
-        return "failed", f"it looks for the {what} at {path.replace(HOME, '~')}, which exists on one machine only"
+        return "failed", f"{looks} {path.replace(HOME, '~')}, which exists on one machine only"
     if path.startswith(WORKING_FOLDER) or not path.startswith("/"):
         shown = path.removeprefix(WORKING_FOLDER + "/")
         if shown.startswith("~"):
-            return "failed", f"it looks for the {what} at {shown}, but nothing replaces ~ by the home folder"
-        return "failed", f"it looks for the {what} at {shown}, in the folder that ros2 launch is started from"
+            return "failed", f"{looks} {shown}, but nothing replaces ~ by the home folder"
+        return "failed", f"{looks} {shown}, in the folder that ros2 launch is started from"
     if not path.startswith(PREFIX) and posixpath.basename(path) in map(posixpath.basename, package.tree.files):
-        return (
-            "failed",
-            f"it looks for the {what} at {path}: joining a path that begins with / drops the folders before it",
-        )
+        return "failed", f"{looks} {path}: joining a path that begins with / drops the folders before it"
     return "pending", f"the {what} {path.removeprefix(PREFIX)} is not part of the package"
 
 
-def _is_glued(package: Package, owner: str, rest: str) -> bool:
-    """Return whether a path lacks a slash after the package's name: get_package_share_directory(...) + 'my_robot.urdf'."""
-    tail = posixpath.basename(rest or owner.removeprefix(package.name))
-    return owner.startswith(package.name) and tail in map(posixpath.basename, package.tree.files)
-
-
-def _below_share(
-    package: Package, owner: str, rest: str, named: "Reference"
-) -> "tuple[Status | Literal['missing'], str]":
+def _below_share(package: Package, owner: str, rest: str, named: "Reference") -> Verdict:
     what = _WORDS[named.purpose]
     other = package.find(owner)
     if other is None:
-        if _is_glued(package, owner, rest):
+        # A path may lack a slash after the package's name: get_package_share_directory(...) + 'my_robot.urdf'.
+        tail = posixpath.basename(rest or owner.removeprefix(package.name))
+        if owner.startswith(package.name) and tail in map(posixpath.basename, package.tree.files):
             path = posixpath.join("share", owner, rest).rstrip("/")
             return "failed", f"it looks for the {what} at {path}: a slash is missing after {package.name!r}"
         if closest(owner, [package.name]):

@@ -16,8 +16,7 @@ _SMALL_ANGLE = 1e-3  # radians
 _STANDSTILL = 1e-9  # metres
 # The smallest relative motion of lowest and highest point, as a share of that of a level wheel: 45 degrees off level.
 _ROLLING = 0.7
-_NONE, _Z_AXIS = (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)
-_TURNING_TYPES = ("continuous", "revolute")
+_Z_AXIS = (0.0, 0.0, 1.0)
 
 
 def rolls_forward(
@@ -84,37 +83,30 @@ def turns_about_itself(
     turning, own = robot.axis(joint), T_joint_wheel.rotate((0.0, 0.0, 1.0))
     tilt = min(_angle(turning, own), 180.0 - _angle(turning, own))
     away = hypot(*cross(turning, T_joint_wheel.translation))
-    at = place(joint.axis_location, "xyz") or place(joint.location)
-    detail = f" (joint {joint.name!r})"
+    at, detail = place(joint.axis_location, "xyz") or joint.location, f" (joint {joint.name!r})"
     if tilt > angle + SLACK:
         message = f"{link!r} wobbles: its joint axis is {quantity(tilt, 'deg')} off the cylinder's axis; it should be along it"
         return judged(False, message, tilt, 0.0, angle, "deg", at=at, detail=detail)
-    at = place(visual.origin.location, "xyz") or at
-    if away <= tolerance + SLACK:
-        message, detail = f"{link!r} turns about its own axis", ""
-    else:
+    fine = away <= tolerance + SLACK
+    message = f"{link!r} turns about its own axis"
+    if not fine:
         message = f"{link!r} turns off centre: its joint axis is {size(away, 'm')} beside the cylinder's axis; it should be on it"
-    fine = not detail
-    return judged(fine, message, away, 0.0, tolerance, "m", at=at, detail=detail)
+    at = place(visual.origin.location, "xyz") or at
+    return judged(fine, message, away, 0.0, tolerance, "m", at=at, detail="" if fine else detail)
 
 
 def _axis_place(joint: Joint) -> LazyLocation | None:
     """Return the place that gives an axis its direction: the joint's rpy, if the axis is z of a frame that is turned."""
-    origin = joint.origin
-    if (
-        origin is not None
-        and any(origin.rpy)
-        and joint.axis_location is not None
-        and unit(joint.axis or _NONE) == _Z_AXIS
-    ):
-        return place(origin.location, "rpy")
-    return place(joint.axis_location, "xyz") or place(joint.location)
+    is_z = joint.axis_location is not None and joint.axis is not None and unit(joint.axis) == _Z_AXIS
+    if is_z and joint.origin is not None and any(joint.origin.rpy):
+        return place(joint.origin.location, "rpy")
+    return place(joint.axis_location, "xyz") or joint.location
 
 
 def _turning_joint(robot: Configuration, link: str, base: str) -> Joint:
     """Return the turning joint next to a link, on the path to the base; raise MissingElement where nothing turns."""
     path = robot.between(base, link)
-    moving = [joint for joint in path if joint.type in _TURNING_TYPES]
+    moving = [joint for joint in path if joint.type in ("continuous", "revolute")]
     if not moving:
         message = f"no joint between {base!r} and {link!r} turns; one should be continuous or revolute"
         raise MissingElement("moving joint", link, message=message, location=place(path[-1].location if path else None))
@@ -124,12 +116,9 @@ def _turning_joint(robot: Configuration, link: str, base: str) -> Joint:
 def _lowest_and_highest(robot: Configuration, link: str, base: str, up: Vector) -> tuple[Vector, Vector]:
     """Return the lowest and the highest point of a link's visuals, in the base's frame; of a face or edge its middle."""
     poses = [(visual.geometry, visual_pose(robot, link, visual, base)) for visual in visuals(robot, link)]
-    down = (-up[0], -up[1], -up[2])
-    lowest = highest = poses[0]
-    if len(poses) > 1:
-        lowest = min(poses, key=lambda shape: extent(shape[0], shape[1], up)[0])
-        highest = max(poses, key=lambda shape: extent(shape[0], shape[1], up)[1])
-    return farthest(*lowest, down), farthest(*highest, up)
+    lowest = min(poses, key=lambda shape: extent(shape[0], shape[1], up)[0])
+    highest = max(poses, key=lambda shape: extent(shape[0], shape[1], up)[1])
+    return farthest(*lowest, (-up[0], -up[1], -up[2])), farthest(*highest, up)
 
 
 def _flat(vector: Vector, up: Vector) -> Vector:

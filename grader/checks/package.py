@@ -64,11 +64,8 @@ def installs_files(package: Package, *, files: list[str]) -> Outcome:
     """A build of the package installs at least one file that matches these patterns, below share/<package>."""
     found = [path for path in package.tree.files if any(fnmatch(path, pattern) for pattern in files)]
     if not found:
-        raise MissingElement(
-            "file",
-            files[0],
-            message=f"the package has no file that matches {enumerated([repr(pattern) for pattern in files], word='or')}",
-        )
+        patterns = enumerated([repr(pattern) for pattern in files], word="or")
+        raise MissingElement("file", files[0], message=f"the package has no file that matches {patterns}")
     return _installed(package, found, None)
 
 
@@ -100,9 +97,8 @@ def _readable_setup(package: Package) -> "Setup | Outcome":
     """
     setup = package.setup
     if package.is_cmake:
-        return pending(
-            "the grader does not evaluate CMakeLists.txt, which says what is installed; needs manual grading"
-        )
+        reason = "the grader does not evaluate CMakeLists.txt, which says what is installed"
+        return pending(f"{reason}; needs manual grading")
     if setup is None:
         message = "the package has no setup.py, so a build of an ament_python package installs nothing"
         raise MissingElement("setup.py", package.folder, message=message)
@@ -150,11 +146,9 @@ def _installed(package: Package, files: Sequence[str], kind: FileKind | None) ->
     if inside:
         return passed(f"a build installs {inside[0].source} as {inside[0].target}")
     if setup.unknown:
-        unknown = setup.unknown[0]
-        reason = f"{unknown.reason} (line {unknown.at.line} of setup.py)"
-        return pending(
-            f"cannot determine statically whether a build installs {files[0]}: {reason}; needs manual grading"
-        )
+        reason = f"{setup.unknown[0].reason} (line {setup.unknown[0].at.line} of setup.py)"
+        message = f"cannot determine statically whether a build installs {files[0]}: {reason}"
+        return pending(f"{message}; needs manual grading")
     if copies:
         message = f"a build installs {copies[0].source} as {copies[0].target}; ROS 2 looks for the package's files below {shares[0]}"
         return failed(message, setup.location(copies[0].at))

@@ -34,10 +34,8 @@ _UP: Vector = (0.0, 0.0, 1.0)
 
 def frame_at(robot: Configuration, *, link: str, relative_to: str, xyz: Vector, tolerance: NonNegative) -> Outcome:
     """The origin of a link's frame is at a point in another link's frame, in metres."""
-    pose = robot.pose(link, relative_to=relative_to)
-    return measured_point(
-        f"the frame {link!r}", pose.translation, xyz, tolerance, relative_to, at=origin_place(robot, link)
-    )
+    actual = robot.pose(link, relative_to=relative_to).translation
+    return measured_point(f"the frame {link!r}", actual, xyz, tolerance, relative_to, at=origin_place(robot, link))
 
 
 def centre_at(
@@ -57,19 +55,12 @@ def centre_at(
     visual = main_visual(robot, link, shape)
     if isinstance(visual.geometry, Mesh):
         raise UnknownShape(visual.geometry)
-    pose = visual_pose(robot, link, visual, relative_to)
+    actual = visual_pose(robot, link, visual, relative_to).translation
     loose = _loose_joint(robot, link, relative_to) if rigid else None
     if loose is not None:
         return loose
-    at = _moved_by(robot, link, visual, relative_to, minus(pose.translation, xyz))
-    return measured_point(
-        f"the centre of the visual of {link!r}",
-        pose.translation,
-        xyz,
-        tolerance,
-        relative_to,
-        at=at or place(visual.location),
-    )
+    at = _moved_by(robot, link, visual, relative_to, minus(actual, xyz)) or place(visual.location)
+    return measured_point(f"the centre of the visual of {link!r}", actual, xyz, tolerance, relative_to, at=at)
 
 
 def bottom_at_height(
@@ -90,15 +81,9 @@ def bottom_at_height(
         lowest, _ = span(robot, link, relative_to, _UP)
     else:
         lowest, _ = extent(visual.geometry, visual_pose(robot, link, visual, relative_to), _UP)
-    return measured(
-        f"the bottom of {link!r} in the frame {relative_to!r} is at z =",
-        lowest,
-        height,
-        tolerance,
-        "m",
-        sides=("too high", "too low"),
-        at=place(visual.origin.location, "xyz") or place(visual.location),
-    )
+    what = f"the bottom of {link!r} in the frame {relative_to!r} is at z ="
+    at = place(visual.origin.location, "xyz") or visual.location
+    return measured(what, lowest, height, tolerance, "m", sides=("too high", "too low"), at=at)
 
 
 def bottoms_at_height(
@@ -111,9 +96,8 @@ def bottoms_at_height(
     actual = tuple(lowest.values())
     if not wrong and missing is not None:
         raise missing
-    message = (
-        f"the bottoms of {enumerated([repr(link) for link in lowest])} are at z = {point(actual)} m in {relative_to!r}"
-    )
+    names = enumerated([repr(link) for link in lowest])
+    message = f"the bottoms of {names} are at z = {point(actual)} m in {relative_to!r}"
     if wrong:
         off = [f"{link!r} {difference(value - height, 'm', 'too high', 'too low')}" for link, value in wrong.items()]
         message += f"; they should be at {height:g} m ({', '.join(off)})"
@@ -143,11 +127,8 @@ def under_the_base(
         faults.append(f"the lowest point of {wheel!r} is {size(value, 'm')} {side} it")
     if missing is not None and not faults:
         raise missing
-    message = f"the frame {link!r} is under {base!r}, level with the bottoms of the wheels"
-    if faults:
-        message = (
-            f"the frame {link!r} should be under {base!r}, level with the bottoms of the wheels: {'; '.join(faults)}"
-        )
+    verb, found = ("should be", f": {'; '.join(faults)}") if faults else ("is", "")
+    message = f"the frame {link!r} {verb} under {base!r}, level with the bottoms of the wheels{found}"
     actual = (x, y, *lowest.values())
     at = origin_place(robot, base)
     if len(off) == len(faults) < len(lowest):  # the frame is where it should be, and some wheel is not
@@ -164,10 +145,9 @@ def _loose_joint(robot: Configuration, link: str, relative_to: str) -> Outcome |
         return None
     detail = f" (joint {loose.name!r})"
     if own is not None and own in path and loose is not own:
-        message = (
-            f"{link!r} is a child of {own.parent!r}, which moves: a joint above it is {loose.type}; it should be fixed"
-        )
-        return failed(message, place(own.location, "link", "parent"), detail=detail)
+        reason = f"which moves: a joint above it is {loose.type}; it should be fixed"
+        at = place(own.location, "link", "parent")
+        return failed(f"{link!r} is a child of {own.parent!r}, {reason}", at, detail=detail)
     message = f"a joint between {relative_to!r} and {link!r} is {loose.type}; it should be fixed"
     return failed(message, place(loose.location, "type"), detail=detail)
 

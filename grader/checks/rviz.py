@@ -20,14 +20,11 @@ _PLUGINS = "rviz_default_plugins"
 def rviz_found(package: Package, *, name: str, launch: str = "") -> Outcome:
     """The package has the RViz file: that of this name, or the one that the launch file opens."""
     opened = _launch(package, launch)
-    path = package.rviz_file(name, opened)
-    if path is None:
-        raise _no_rviz_file(package)
+    path = _path(package, name, opened)
     if path.rpartition("/")[2] == name or (opened is not None and path == package.rviz_opened(opened)):
         return passed(f"the RViz file is {path}")
     if opened is not None and (opened.syntax or opened.unknown or not all(file.sure for file in opened.named("rviz"))):
-        message = f"cannot determine statically whether the launch file opens {path}; needs manual grading"
-        return pending(message)
+        return pending(f"cannot determine statically whether the launch file opens {path}; needs manual grading")
     return failed(f"there is no RViz file {name!r}", detail=f"; the package has {path}")
 
 
@@ -100,13 +97,12 @@ def _fault_of(model: "Display", topic: str) -> tuple[Status, str]:
         return "failed", fault
     if model.package != _PLUGINS:
         return "pending", f"{model.package}/RobotModel is not a class of RViz itself; needs manual grading"
-    node = model.node
     if not model.is_on("Visual Enabled"):
         return "failed", "the RobotModel display is on, but its Visual Enabled is off, so RViz draws nothing"
-    source = node.get("Description Source")
+    source = model.node.get("Description Source")
     if source is not None and source.text == "File":
         return "pending", "the RobotModel display reads a local file instead of a topic; needs manual grading"
-    value = node.get("Description Topic", "Value") or node.get("Description Topic")
+    value = model.node.get("Description Topic", "Value") or model.node.get("Description Topic")
     actual = (value.text or "" if value is not None else "").strip()
     if actual.strip("/") == topic.strip("/"):
         return "passed", ""
@@ -120,14 +116,15 @@ def _launch(package: Package, launch: str) -> "Launch | None":
     return package.launch(path) if path is not None else None
 
 
-def _no_rviz_file(package: Package) -> MissingElement:
-    return MissingElement("RViz file in the package", "", message=package.missing_message("rviz"))
+def _path(package: Package, name: str, opened: "Launch | None") -> str:
+    path = package.rviz_file(name, opened)
+    if path is None:
+        raise MissingElement("RViz file in the package", "", message=package.missing_message("rviz"))
+    return path
 
 
 def _read(package: Package, name: str, launch: str) -> "RvizFile":
-    path = package.rviz_file(name, _launch(package, launch))
-    if path is None:
-        raise _no_rviz_file(package)
+    path = _path(package, name, _launch(package, launch))
     rviz = package.rviz(path)
     if rviz.unread:
         raise NotDecided(rviz.unread)

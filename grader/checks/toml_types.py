@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from decimal import Decimal
-from functools import lru_cache
+from functools import lru_cache, partial
 from math import isfinite
 from types import UnionType
 from typing import Annotated, Any, Literal, get_args, get_origin
@@ -51,11 +51,12 @@ def simple_type(
     accepts: Callable[[Any], bool],
     convert: Callable[[Any], Any] = lambda value: value,
 ) -> TomlType:
-    """Return a type whose values `accepts` recognises and `convert` converts."""
+    """Return a type whose values `accepts` recognises and `convert` converts, unless it raises WrongValue for a part."""
 
     def parse(value: Any) -> Any:
         if accepts(value):
-            return convert(value)
+            with suppress(WrongValue):
+                return convert(value)
         raise WrongValue(name)
 
     return TomlType(name, schema, parse)
@@ -92,11 +93,18 @@ def toml_type(annotation: Any) -> TomlType:
     if origin is Literal:
         return simple_type(f"one of {', '.join(inner)}", {"enum": list(inner)}, lambda value: value in inner)
     if origin is UnionType:
-        return _union([toml_type(member) for member in inner])
+        members = [toml_type(member) for member in inner]
+        name = " or ".join(member.name for member in members)
+        choices = {"anyOf": [member.schema for member in members]}
+        return simple_type(name, choices, lambda _: True, partial(_first_parsed, members))
     if origin in (list, tuple):
         length = len(inner) if origin is tuple and Ellipsis not in inner else None
         return _sequence(toml_type(inner[0]), origin, length, _PLURALS.get(inner[0], "values"))
-    return _mapping(toml_type(inner[1]) if len(inner) == 2 else _SIMPLE[str])
+    item = toml_type(inner[1]) if len(inner) == 2 else _SIMPLE[str]
+    schema = {"type": "object", "additionalProperties": item.schema, "minProperties": 1}
+    return simple_type(
+        "a table of texts", schema, _is_table, lambda table: {key: item.parse(table[key]) for key in table}
+    )
 
 
 def constrained(base: TomlType, *constraints: Constraint) -> TomlType:
@@ -115,43 +123,24 @@ def constrained(base: TomlType, *constraints: Constraint) -> TomlType:
     return TomlType(base.name, schema, parse)
 
 
-def _union(members: list[TomlType]) -> TomlType:
-    name = " or ".join(member.name for member in members)
+def _first_parsed(members: list[TomlType], value: Any) -> Any:
+    for member in members:
+        with suppress(WrongValue):
+            return member.parse(value)
+    raise WrongValue
 
-    def parse(value: Any) -> Any:
-        for member in members:
-            with suppress(WrongValue):
-                return member.parse(value)
-        raise WrongValue(name)
 
-    return TomlType(name, {"anyOf": [member.schema for member in members]}, parse)
+def _is_table(value: Any) -> bool:
+    return isinstance(value, dict) and value != {}
 
 
 def _sequence(item: TomlType, origin: type, length: int | None, plural: str) -> TomlType:
-    name = f"a list of {plural}" if length is None else f"{length} {plural}"
     schema: dict[str, Any] = {"type": "array", "items": item.schema, "minItems": length or 1}
     if length is not None:
         schema["maxItems"] = length
 
-    def parse(value: Any) -> Any:
-        if not isinstance(value, list) or not value or length not in (None, len(value)):
-            raise WrongValue(name)
-        with suppress(WrongValue):
-            return origin(item.parse(member) for member in value)
-        raise WrongValue(name)
+    def accepts(value: Any) -> bool:
+        return isinstance(value, list) and value != [] and length in (None, len(value))
 
-    return TomlType(name, schema, parse)
-
-
-def _mapping(item: TomlType) -> TomlType:
-    name = "a table of texts"
-    schema = {"type": "object", "additionalProperties": item.schema, "minProperties": 1}
-
-    def parse(value: Any) -> Any:
-        if not isinstance(value, dict) or not value:
-            raise WrongValue(name)
-        with suppress(WrongValue):
-            return {key: item.parse(member) for key, member in value.items()}
-        raise WrongValue(name)
-
-    return TomlType(name, schema, parse)
+    name = f"a list of {plural}" if length is None else f"{length} {plural}"
+    return simple_type(name, schema, accepts, lambda value: origin(map(item.parse, value)))

@@ -28,9 +28,8 @@ def held_by(robot: Configuration, *, link: str, parent: str, joint_type: JointTy
     if chain is None:
         return _not_below(robot, link, parent)
     if not chain:
-        return failed(
-            f"{link!r} is itself the parent; it should be the child of a joint", place(robot.link(link).location)
-        )
+        message = f"{link!r} is itself the parent; it should be the child of a joint"
+        return failed(message, robot.link(link).location)
     joint = robot.parent_joints[link]
     at = place(joint.location, "type")
     moving = [joint for joint in chain if joint.type != "fixed"]
@@ -45,11 +44,10 @@ def held_by(robot: Configuration, *, link: str, parent: str, joint_type: JointTy
         wrong = unknown[0]
         kind = f"the type {wrong.type!r}, which does not exist" if wrong.type else "no type"
         message = f"a joint between {parent!r} and {link!r} has {kind}"
-        detail = f"{did_you_mean(wrong.type, JOINT_TYPES)} (joint {wrong.name!r})"
+        detail, at = f"{did_you_mean(wrong.type, JOINT_TYPES)} (joint {wrong.name!r})", place(wrong.location, "type")
         if not wanted or len(unknown) < len(moving):
-            return failed(message, place(wrong.location, "type"), detail=detail)
-        location = place(wrong.location, "type")
-        raise MissingElement("moving joint", link, message=message, detail=detail, location=location)
+            return failed(message, at, detail=detail)
+        raise MissingElement("moving joint", link, message=message, detail=detail, location=at)
     if len(moving) > 1:
         names = enumerated([repr(joint.name) for joint in moving])
         expected = "only fixed joints" if not wanted else f"one {joint_type} joint"
@@ -67,13 +65,14 @@ def joints_named(robot: Configuration, *, parent: str, joints: Mapping[str, str]
     wrong: list[tuple[str, str]] = []
     at = None
     for name, link in joints.items():
-        if not _is_named(robot, name, link, parent):
-            joint = robot.parent_joints.get(link)
-            at = at or (place(joint.location, "name") if joint else None)
-            if joint is None:
-                wrong.append((f"no joint {name!r} connects {link!r}", ""))
-            else:
-                wrong.append((f"the joint of {link!r} should be named {name!r}", f", not {joint.name!r}"))
+        joint = robot.parent_joints.get(link)
+        if _is_named(robot, name, link, parent):
+            continue
+        if joint is None:
+            wrong.append((f"no joint {name!r} connects {link!r}", ""))
+        else:
+            wrong.append((f"the joint of {link!r} should be named {name!r}", f", not {joint.name!r}"))
+            at = at or place(joint.location, "name")
     if not wrong:
         return passed(f"the joints are named {enumerated([repr(name) for name in joints])}")
     message = "; ".join(mistake + detail for mistake, detail in wrong)

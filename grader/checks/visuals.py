@@ -1,5 +1,6 @@
 """The visuals of a link, for the checks that measure them."""
 
+from math import inf
 from typing import Literal
 
 from grader.checks.outcome import place
@@ -38,10 +39,7 @@ def main_visual(robot: Configuration, link: str, shape: ShapeName = "any") -> Vi
         return shown[0]
     if shape != "any":
         shown = tuple(visual for visual in shown if isinstance(visual.geometry, _SHAPES[shape])) or shown
-    for visual in shown:
-        if isinstance(visual.geometry, Mesh):
-            return visual
-    return max(shown, key=lambda visual: volume(visual.geometry))
+    return max(shown, key=lambda visual: inf if isinstance(visual.geometry, Mesh) else volume(visual.geometry))
 
 
 def visual_pose(robot: Configuration, link: str, visual: Visual, relative_to: str) -> Transform:

@@ -6,61 +6,52 @@ Bounded in members, size, ratio and nesting. A name that leads out, a device or 
 import io
 import tempfile
 import weakref
-from collections.abc import Iterable
+from bisect import bisect_left
+from collections.abc import Iterable, Mapping
+from contextlib import ExitStack
 from functools import partial
 from typing import IO
 
 from grader.errors import FileError, InputError
 from grader.files import limits
 from grader.files.ignore_rules import ignored_part, is_generated
-from grader.files.links import Links
-from grader.files.members import ARCHIVE_ERRORS, MAX_NAME_LENGTH, ArchiveMember, error_text, safe_path
+from grader.files.members import ARCHIVE_ERRORS, MAX_NAME_LENGTH, ArchiveMember, error_text, safe_path, zip_members
 from grader.files.reading import advice_for, capped
 from grader.files.tar_members import COMPRESSED_KINDS, compressed_members, tar_members
 from grader.files.tree import File, IgnoredFile, Tree, folders_above, make_tree, parents
-from grader.files.zip_members import zip_members
 from grader.text import printable_path
 
 _IN_MEMORY = 16 * 1024 * 1024  # bytes
+_MAX_DEPTH = 200  # folders above what a link leads to
+_MAX_LINKS = 40  # in a chain
+_MAX_STEPS = 500_000  # for all links of an archive
 
 
 def read_archive(file: IO[bytes], kind: str, name: str, allowance: limits.Allowance | None = None) -> Tree:
     """Return the files in an archive. `file` is closed with the tree, or at once where it cannot be read (InputError)."""
-    opened = [file]
     allowance = allowance or limits.Allowance()
-    try:
-        limit = max(limits.HARMLESS_SIZE, limits.MAX_RATIO * _checked_size(file, kind, name))
-        if kind in COMPRESSED_KINDS:
-            stored = tempfile.SpooledTemporaryFile(max_size=_IN_MEMORY)  # noqa: SIM115  it lives as long as the tree
-            opened.append(stored)
-            members = compressed_members(file, kind, stored, name, limit, allowance)
-        else:
-            members = zip_members(file) if kind == "zip" else tar_members(file)
-        tree = tree_of(members, name, limit)
-        readable = (file.size for file in tree.files.values() if file.size <= limits.MAX_FILE_SIZE)
-        allowance.spend(name, unpacked=sum(readable))
-    except (*ARCHIVE_ERRORS, InputError) as error:
-        _close(opened)
-        if isinstance(error, InputError):
-            raise
-        raise FileError(name, f"cannot be read as an archive: {error_text(error)}") from None
-    weakref.finalize(tree, _close, opened)
+    with ExitStack() as opened:
+        opened.callback(file.close)
+        if kind in ("7z", "rar"):
+            raise FileError(name, f"is a {kind} archive, which is not supported: submit a .zip or .tar.gz")
+        try:
+            size = file.seek(0, io.SEEK_END)
+            file.seek(0)
+            if size > limits.MAX_ARCHIVE_SIZE:
+                raise limits.too_large(name)
+            limit = max(limits.HARMLESS_SIZE, limits.MAX_RATIO * size)
+            if kind in COMPRESSED_KINDS:
+                stored = opened.enter_context(tempfile.SpooledTemporaryFile(max_size=_IN_MEMORY))
+                members = compressed_members(file, kind, stored, name, limit, allowance)
+            else:
+                members = zip_members(file) if kind == "zip" else tar_members(file)
+            tree = tree_of(members, name, limit)
+        except ARCHIVE_ERRORS as error:
+            raise FileError(name, f"cannot be read as an archive: {error_text(error)}") from None
+        sizes = (member.size for member in tree.files.values())
+        allowance.spend(name, unpacked=sum(size for size in sizes if size <= limits.MAX_FILE_SIZE))
+        weakref.finalize(tree, opened.pop_all().close)
     return tree
-
-
-def _checked_size(file: IO[bytes], kind: str, name: str) -> int:
-    if kind in ("7z", "rar"):
-        raise FileError(name, f"is a {kind} archive, which is not supported: submit a .zip or .tar.gz")
-    size = file.seek(0, io.SEEK_END)
-    file.seek(0)
-    if size > limits.MAX_ARCHIVE_SIZE:
-        raise limits.too_large(name)
-    return size
-
-
-def _close(files: list[IO[bytes]]) -> None:
-    for file in files:
-        file.close()
 
 
 def tree_of(members: Iterable[ArchiveMember], name: str, limit: int = limits.MAX_UNPACKED_SIZE) -> Tree:
@@ -86,7 +77,7 @@ def tree_of(members: Iterable[ArchiveMember], name: str, limit: int = limits.MAX
     if environments:
         found = {path: member for path, member in found.items() if environments.isdisjoint(parents(path))}
     folders = {path for path, member in found.items() if member.kind == "folder"} | folders_above(found, name)
-    links = Links(found, folders, name)
+    links = _Links(found, folders, name)
     for path, member in found.items():
         if member.reason:
             ignored.append(IgnoredFile(path, member.reason))
@@ -120,3 +111,54 @@ def _read(member: ArchiveMember, path: str, limit: int, *, first: bool = False) 
     except ARCHIVE_ERRORS as error:
         raise InputError(f"cannot read {path}: {error_text(error)}") from None
     return capped(data, limit, path, advice_for(path))
+
+
+class _Links:
+    """The files and folders that links of an archive lead to; the files of a folder are below the link, too."""
+
+    def __init__(self, members: Mapping[str, ArchiveMember], folders: set[str], name: str) -> None:
+        self._members, self._real_folders, self._name = members, folders, name
+        self._paths = sorted(path for path, member in members.items() if member.kind == "file")
+        self._steps_left = _MAX_STEPS
+        self.files: dict[str, str] = {}  # paths by way of a link, with the real ones
+        self.folders: set[str] = set()
+
+    def add(self, path: str) -> bool:
+        """Add what a link leads to, unless that is a folder around it; False where it is not in the archive."""
+        real = self._resolve(path)
+        if real is None:
+            return False
+        if real not in self._real_folders:
+            self.files[path] = real
+        elif not path.startswith(f"{real}/"):
+            self.folders.add(path)
+            first, end = bisect_left(self._paths, f"{real}/"), bisect_left(self._paths, f"{real}0")  # 0 comes after /
+            self.files |= {path + file.removeprefix(real): file for file in self._paths[first:end]}
+            if len(self.files) > limits.MAX_FILES:
+                raise limits.too_many(self._name)
+        return True
+
+    def _resolve(self, path: str) -> str | None:
+        """Return the file or folder at the end of a chain of links; None outside of the archive and in a circle."""
+        steps: list[str] = []
+        waiting = path.split("/")[::-1]
+        links = 0
+        while waiting:
+            step = printable_path(waiting.pop())
+            self._steps_left -= 1
+            if (step == ".." and not steps) or len(steps) > _MAX_DEPTH or self._steps_left < 0:
+                return None
+            if step in ("", ".", ".."):
+                steps = steps[:-1] if step == ".." else steps
+                continue
+            steps.append(step)
+            member = self._members.get("/".join(steps))
+            if member is not None and member.kind == "link":
+                links += 1
+                if links > _MAX_LINKS or member.target.startswith("/") or len(member.target) > MAX_NAME_LENGTH:
+                    return None
+                steps = steps[:-1] if not member.is_hard else []
+                waiting += member.target.split("/")[::-1]
+        real = "/".join(steps)
+        is_file = real in self._members and self._members[real].kind == "file"
+        return real if is_file or real in self._real_folders else None

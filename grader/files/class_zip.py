@@ -10,10 +10,9 @@ from typing import IO, TYPE_CHECKING
 from grader.errors import FileError, InputError
 from grader.files import limits
 from grader.files.archive import read_archive, tree_of
-from grader.files.members import ARCHIVE_ERRORS, NOT_REGULAR, ArchiveMember, error_text, safe_path
+from grader.files.members import ARCHIVE_ERRORS, NOT_REGULAR, ArchiveMember, error_text, safe_path, zip_members
 from grader.files.opening import ARCHIVES, NOT_AN_ARCHIVE, archive_kind
-from grader.files.tree import File, Tree
-from grader.files.zip_members import zip_members
+from grader.files.tree import Tree
 from grader.text import printable_path
 
 if TYPE_CHECKING:
@@ -59,7 +58,10 @@ class ClassZip:
 
     def read(self, path: str, limit: int) -> bytes:
         """Return the bytes of one file of at most `limit` bytes."""
-        return self._file_of(path).read(limit)
+        tree = self.files({path: path.rpartition("/")[2]}, path)
+        for file in tree.files.values():
+            return file.read(limit)
+        raise InputError(str(tree.ignored[0]) if tree.ignored else f"{path} cannot be read")
 
     def archive(self, path: str, digest: "hashlib._Hash") -> Tree | None:
         """Return the files of an archive in it, whose bytes update the digest; None for a file that is not an archive."""
@@ -82,12 +84,6 @@ class ClassZip:
         if path.lower().endswith(ARCHIVES):
             raise FileError(path, NOT_AN_ARCHIVE)
         return None
-
-    def _file_of(self, path: str) -> File:
-        tree = self.files({path: path.rpartition("/")[2]}, path)
-        for file in tree.files.values():
-            return file
-        raise InputError(str(tree.ignored[0]) if tree.ignored else f"{path} cannot be read")
 
     def _member(self, path: str) -> ArchiveMember:
         member = self._members.get(path)

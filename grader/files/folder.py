@@ -99,7 +99,10 @@ class _Walk:
             return True
         elif is_file:
             place = real or f"{real_folder}/{entry.name}"
-            self.files.append(File(shown, _size(entry), partial(_read, place, shown, self._trusted)))
+            size = 0
+            with suppress(OSError):
+                size = entry.stat().st_size
+            self.files.append(File(shown, size, partial(_read, place, shown, self._trusted)))
         elif entry.is_symlink() and not Path(entry.path).exists():
             self._ignore(shown, "is a symlink that leads nowhere, and was not followed")
         else:
@@ -152,11 +155,8 @@ def _generated(folder: Path, path: str) -> list[str]:
             seen += len(names) + len(folders)
             if seen > _MAX_GENERATED:
                 break
-            found += [
-                printable_path(os.path.relpath(f"{where}/{name}", folder))
-                for name in names
-                if is_generated("build/" + name)
-            ]
+            copies = (f"{where}/{name}" for name in names if is_generated("build/" + name))
+            found += [printable_path(os.path.relpath(copy, folder)) for copy in copies]
     return found
 
 
@@ -165,11 +165,3 @@ def _read(path: str, shown: str, top: str, limit: int, *, first: bool = False) -
     if first:
         return read_start(path, limit, shown, top)
     return read_capped(path, limit, shown=shown, top=top, advice=advice_for(shown))
-
-
-def _size(entry: "os.DirEntry[str]") -> int:
-    try:
-        status = entry.stat()
-    except OSError:
-        return 0
-    return status.st_size if stat.S_ISREG(status.st_mode) else 0

@@ -1,12 +1,8 @@
 """The parts of a submission that are silently ignored, because no student wrote them."""
 
 BUILD_FOLDERS = frozenset({"build", "install", "log"})
-IGNORED_FOLDERS = BUILD_FOLDERS | {
-    "node_modules",
-    "site-packages",
-    "__pycache__",
-    "__MACOSX",
-}  # and those with a pyvenv.cfg
+# And those with a pyvenv.cfg.
+IGNORED_FOLDERS = BUILD_FOLDERS | {"node_modules", "site-packages", "__pycache__", "__MACOSX"}
 _LITTER = frozenset({"Thumbs.db", "desktop.ini", "Icon\r", "AMENT_IGNORE", "COLCON_IGNORE"})
 
 

@@ -46,6 +46,5 @@ def too_large(name: str) -> FileError:
 def too_much(name: str, limit: int) -> FileError:
     """Return the error for an archive that would unpack to more than a limit."""
     ratio = f", {MAX_RATIO} times its own size" if HARMLESS_SIZE < limit < MAX_UNPACKED_SIZE else ""
-    return FileError(
-        name, f"would unpack to more than {limit} bytes, the limit for an archive{ratio}, and was not read"
-    )
+    reason = f"would unpack to more than {limit} bytes, the limit for an archive{ratio}, and was not read"
+    return FileError(name, reason)

@@ -1,13 +1,15 @@
-"""The members of an archive, as zip and tar give them alike."""
+"""The members of an archive, as zip and tar give them alike, and those of a zip."""
 
 import lzma
+import stat
 import struct
 import tarfile
 import zipfile
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
-from typing import IO, Literal, NamedTuple
+from functools import partial
+from typing import IO, Any, Literal, NamedTuple
 
 from grader.text import printable_path
 
@@ -29,6 +31,11 @@ ARCHIVE_ERRORS = (
     LookupError,
     struct.error,
 )
+
+_MAX_DIRECTORY_SIZE = 16 * 1024 * 1024  # bytes of a zip's table of contents
+_ENCRYPTED = 0x1  # flag bits of a member
+_UTF8 = 0x800
+_METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)  # the others unpack without a bound, or are not known at all
 
 Opener = Callable[[], AbstractContextManager[IO[bytes]]]
 
@@ -59,3 +66,61 @@ def safe_path(name: str) -> str | None:
 def error_text(error: BaseException) -> str:
     """Return what an error says, fit for a message."""
     return printable_path(" ".join(str(error).split())[:200]) or type(error).__name__
+
+
+def zip_members(file: IO[bytes]) -> Iterator[ArchiveMember]:
+    """Yield the members of a zip, which stays open for them."""
+    bounded: Any = _BoundedReader(file)
+    archive = zipfile.ZipFile(bounded)
+    archive.fp = file  # the bound is for the table of contents only
+    for info in archive.infolist():
+        yield _member(archive, info)
+
+
+def _member(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> ArchiveMember:
+    name, mode = _name(info), info.external_attr >> 16
+    opened = partial(archive.open, info)
+    if name.endswith(("/", "\\")):
+        return ArchiveMember(name, "folder", 0, opened)
+    reason = ""
+    if info.flag_bits & _ENCRYPTED:
+        reason = "is encrypted, and was not read"
+    elif info.compress_type not in _METHODS:
+        reason = "is compressed with a method other than deflate, and was not read"
+    elif stat.S_ISLNK(mode):
+        return ArchiveMember(name, "link", 0, opened, target=_target(archive, info))
+    elif stat.S_IFMT(mode) not in (0, stat.S_IFREG, stat.S_IFDIR):
+        reason = NOT_REGULAR
+    return ArchiveMember(name, "other" if reason else "file", info.file_size, opened, reason=reason)
+
+
+def _target(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> str:
+    """Return where a symlink points to, which is its content; `/` (outside) where that cannot be read."""
+    try:
+        with archive.open(info) as file:
+            return file.read(MAX_NAME_LENGTH).decode("utf-8", "replace")
+    except ARCHIVE_ERRORS:
+        return "/"
+
+
+def _name(info: zipfile.ZipInfo) -> str:
+    """Return a member's name: many programs write UTF-8 without declaring it."""
+    if info.flag_bits & _UTF8:
+        return info.filename
+    try:
+        return info.orig_filename.encode("cp437").decode("utf-8")
+    except (UnicodeEncodeError, UnicodeDecodeError):
+        return info.filename
+
+
+class _BoundedReader:
+    """A file that refuses to be read in pieces larger than a table of contents may be."""
+
+    def __init__(self, file: IO[bytes]) -> None:
+        self._read, self.seek, self.tell = file.read, file.seek, file.tell
+
+    def read(self, size: int = -1) -> bytes:
+        """Return the next bytes."""
+        if size > _MAX_DIRECTORY_SIZE:
+            raise zipfile.BadZipFile("its table of contents is far too long")
+        return self._read(size)

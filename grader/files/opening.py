@@ -8,14 +8,12 @@ from pathlib import Path, PurePosixPath
 
 from grader.errors import FileError, InputError
 from grader.files import limits
-from grader.files.limits import Allowance
 from grader.files.reading import not_there, open_regular, read_start, shown_below
 from grader.files.tree import File, IgnoredFile, Tree, make_tree
 from grader.text import printable_path
 
 ARCHIVES = (".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar")
 NOT_AN_ARCHIVE = "is not a readable archive: it is damaged or empty"
-_PACKAGE_FILES = ("package.xml", "setup.py")
 _SIGNATURES = {
     b"PK\x03\x04": "zip",
     b"PK\x05\x06": "zip",
@@ -29,10 +27,8 @@ _SIGNATURES = {
 
 def archive_kind(start: bytes) -> str | None:
     """Return the kind of archive that the first 512 bytes of a file belong to: zip, tar, gz, bz2, xz, 7z, rar, or None."""
-    for signature, kind in _SIGNATURES.items():
-        if start.startswith(signature):
-            return kind
-    return "tar" if start[257:262] == b"ustar" else None
+    tar = "tar" if start[257:262] == b"ustar" else None
+    return next((kind for signature, kind in _SIGNATURES.items() if start.startswith(signature)), tar)
 
 
 def open_tree(path: Path) -> Tree | None:
@@ -78,28 +74,28 @@ def tree_name(path: Path) -> str:
     return printable_path(without_endings(str(path)))
 
 
-def with_inner(tree: Tree, allowance: Allowance | None = None, depth: int = 0) -> Tree:
+def with_inner(tree: Tree, allowance: limits.Allowance | None = None, depth: int = 0) -> Tree:
     """Return the tree with what is in its archives, unless a package and a URDF are beside them."""
-    archives = [file for file in tree.files.values() if file.suffix in ARCHIVES]
-    has_package = any(file.name in _PACKAGE_FILES for file in tree.files.values())
-    if not archives or (has_package and any(file.suffix == ".urdf" for file in tree.files.values())):
+    files = tree.files.values()
+    archives = [file for file in files if file.suffix in ARCHIVES]
+    has_package = any(file.name in ("package.xml", "setup.py") for file in files)
+    if not archives or (has_package and any(file.suffix == ".urdf" for file in files)):
         return tree
-    allowance = allowance or Allowance()
+    allowance = allowance or limits.Allowance()
     parts = [("", tree)]
     unopened = []
     count = len(tree.files)
     for archive in archives:
         try:
             inner = _inner(archive, allowance, depth)
-            count += len(inner.files)
-            if count > limits.MAX_FILES:
-                count -= len(inner.files)
+            if count + len(inner.files) > limits.MAX_FILES:
                 raise limits.too_many(archive.path)
         except InputError as error:
             reason = error.reason if isinstance(error, FileError) else f"cannot be opened: {error}"
             unopened.append(IgnoredFile(archive.path, reason, is_archive=True))
         else:
             parts.append((archive.path + "/", inner))
+            count += len(inner.files)
     return make_tree(
         tree.name,
         [replace(file, path=start + file.path) for start, part in parts for file in part.files.values()],
@@ -111,7 +107,7 @@ def with_inner(tree: Tree, allowance: Allowance | None = None, depth: int = 0) -
     )
 
 
-def _inner(archive: File, allowance: Allowance, depth: int) -> Tree:
+def _inner(archive: File, allowance: limits.Allowance, depth: int) -> Tree:
     """Return what is in an archive inside of another one, or of a folder; raises InputError."""
     from grader.files.archive import read_archive
 

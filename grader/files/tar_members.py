@@ -60,12 +60,12 @@ def _headers(file: Any) -> Iterator[tuple[tarfile.TarFile, tarfile.TarInfo]]:
 
 
 def _member(info: tarfile.TarInfo, opened: Opener) -> ArchiveMember:
-    if info.isdir():
-        return ArchiveMember(info.name, "folder", 0, opened)
     if info.issym() or info.islnk():
         return ArchiveMember(info.name, "link", 0, opened, info.linkname, is_hard=info.islnk())
     if info.isfile():
         return ArchiveMember(info.name, "file", info.size, opened)
+    if info.isdir():
+        return ArchiveMember(info.name, "folder", 0, opened)
     return ArchiveMember(info.name, "other", 0, opened, reason=NOT_REGULAR)
 
 

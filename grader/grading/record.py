@@ -118,4 +118,4 @@ def _exhibit(exhibit: Exhibit) -> tuple[Any, ...]:
 
 
 def _read_problem(code: str, severity: Any, message: str, place: Sequence[Any]) -> Problem:
-    return Problem(Kind(code, severity, "other", "", ""), message, Location(*place))
+    return Problem(Kind(code, "", "", severity, "other"), message, Location(*place))

@@ -4,7 +4,7 @@ from grader.problems import Kind, Severity, kinds_in
 
 
 def _kind(code: str, severity: Severity, title: str, explanation: str) -> Kind:
-    return Kind(code, severity, "other", title, explanation)
+    return Kind(code, title, explanation, severity, "other")
 
 
 BAD_MANIFEST = _kind(

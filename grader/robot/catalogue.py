@@ -4,9 +4,7 @@ from grader.problems import drops, kinds_in, notes, rejects, warns
 from grader.xml import catalogue as xml_catalogue
 
 NO_ROBOT = rejects(
-    "URDF013",
-    "No <robot> at the top level",
-    'A URDF is one <robot name="..."> that contains the links and joints.',
+    "URDF013", "No <robot> at the top level", 'A URDF is one <robot name="..."> that contains the links and joints.'
 )
 RAW_XACRO = warns(
     "URDF014",
@@ -129,9 +127,7 @@ BAD_LIMIT = rejects(
     "Every <limit>, even of a fixed or continuous joint, needs effort and velocity, and only plain numbers.",
 )
 BAD_DYNAMICS = rejects(
-    "URDF066",
-    "An empty or invalid <dynamics>",
-    "<dynamics> needs damping, friction or both, as plain numbers.",
+    "URDF066", "An empty or invalid <dynamics>", "<dynamics> needs damping, friction or both, as plain numbers."
 )
 BAD_MIMIC = rejects(
     "URDF067",
@@ -143,25 +139,17 @@ BAD_SAFETY = rejects(
     "An incomplete or invalid <safety_controller>",
     "<safety_controller> needs k_velocity; all its values are plain numbers.",
 )
-BAD_CALIBRATION = rejects(
-    "URDF069",
-    "An invalid <calibration>",
-    "rising and falling are plain numbers.",
-)
+BAD_CALIBRATION = rejects("URDF069", "An invalid <calibration>", "rising and falling are plain numbers.")
 NO_PARENT_OR_CHILD = rejects(
     "URDF070",
     "A joint without parent or child",
     'A joint connects two links: it needs <parent link="..."/> and <child link="..."/>.',
 )
 UNKNOWN_LINK = rejects(
-    "URDF071",
-    "A joint with a link that does not exist",
-    "Names must match exactly, including upper and lower case.",
+    "URDF071", "A joint with a link that does not exist", "Names must match exactly, including upper and lower case."
 )
 DEFAULT_AXIS = notes(
-    "URDF072",
-    "A moving joint without an axis",
-    "ROS 2 uses the x axis (1 0 0) of the joint's frame. State the axis.",
+    "URDF072", "A moving joint without an axis", "ROS 2 uses the x axis (1 0 0) of the joint's frame. State the axis."
 )
 ZERO_AXIS = warns(
     "URDF073",
@@ -243,9 +231,7 @@ MISSPELT = notes(
     "ROS 2 silently ignores unknown names. This one looks like a misspelling of a known name.",
 )
 DEGREES = warns(
-    "URDF092",
-    "An angle that looks like degrees",
-    "rpy is in radians: 90 degrees are 1.5708, 180 degrees 3.1416.",
+    "URDF092", "An angle that looks like degrees", "rpy is in radians: 90 degrees are 1.5708, 180 degrees 3.1416."
 )
 ROOT_INERTIA = notes(
     "URDF093",

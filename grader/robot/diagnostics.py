@@ -1,12 +1,16 @@
-"""The problems that are found in a URDF while it is read, each with its location."""
+"""The problems that are found in a URDF while its elements and their values are read, each with its location."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from math import nan
+from typing import TypeVar
 
 from grader.names import closest, did_you_mean
 from grader.problems import Effect, Kind, Problem
 from grader.robot import catalogue
-from grader.robot.model import Joint
+from grader.robot.model import Joint, Origin
+from grader.robot.numbers import NumberError, number, vector
+from grader.robot.transforms import Vector
 from grader.source import LazyLocation, Source
 from grader.text import quoted
 from grader.xml.parsing import Element
@@ -14,6 +18,10 @@ from grader.xml.parsing import Element
 _FORMAT_DIRECTIVE = re.compile(r"%[-+ #0-9.$*'hlLqjzt]*n")
 _MAX_PROBLEMS = 1000
 _MAX_GUESSES = 50  # in one file, because they take long
+_PRINTED = frozenset({"origin", "box", "cylinder", "sphere", "mass"})  # whose values urdfdom uses as printf's format
+_FULL_TURN = 6.2832  # radians
+
+Value = TypeVar("Value")
 
 
 class Problems:
@@ -71,6 +79,68 @@ class Problems:
         if "%" in text and _FORMAT_DIRECTIVE.search(text):
             message = "ROS 2 passes this value to printf as a format, where %n writes to memory: it can crash"
             self.add(catalogue.FORMAT_DIRECTIVE, message, element, attribute)
+
+
+class ElementReader:
+    """Reads one element that ROS 2 keeps or loses as a whole: every defect in it is a problem of one kind.
+
+    A value that cannot be read is a problem, sets `failed` and is returned as its default.
+    """
+
+    __slots__ = ("_consequence", "_kind", "_link", "_problems", "failed")
+
+    def __init__(
+        self, problems: Problems, kind: Kind, consequence: str = "ROS 2 rejects the file", link: str = ""
+    ) -> None:
+        """`consequence` says what ROS 2 does about a defect; the name of the `link` is put where it has {}."""
+        self._problems = problems
+        self._kind = kind
+        self._consequence = consequence.format(quoted(link))
+        self._link = link
+        self.failed = False
+
+    def fail(self, reason: str, element: Element, attribute: str | None = None) -> None:
+        """Add a problem: the element is lost."""
+        self.failed = True
+        self._problems.add(self._kind, f"{reason}; {self._consequence}", element, attribute, self._link)
+
+    def number(self, element: Element, attribute: str, default: float = 0.0) -> float:
+        """Return an attribute's number, or the default if it is not given."""
+        return self._value(element, attribute, number, default)
+
+    def required(self, element: Element, attribute: str) -> float:
+        """Return an attribute's number; it is a problem if it is not given."""
+        if element.get(attribute) is None:
+            self.fail(f"<{element.tag}> has no {attribute}", element)
+        return self._value(element, attribute, number, nan)
+
+    def vector(self, element: Element, attribute: str, default: Vector = (0.0, 0.0, 0.0)) -> Vector:
+        """Return an attribute's three numbers, or the default if it is not given."""
+        return self._value(element, attribute, vector, default)
+
+    def origin(self, element: Element | None) -> Origin:
+        """Return an <origin>: the identity if there is none."""
+        if element is None:
+            return Origin()
+        origin = Origin(self.vector(element, "xyz"), self.vector(element, "rpy"), self._problems.location(element))
+        if not self.failed and any(origin.rpy):
+            angle = next((angle for angle in origin.rpy if abs(angle) > _FULL_TURN and angle % 15 == 0), None)
+            if angle is not None:
+                message = f"rpy is in radians, and {angle:g} is more than a full turn: is it in degrees?"
+                self._problems.add(catalogue.DEGREES, message, element, "rpy")
+        return origin
+
+    def _value(self, element: Element, attribute: str, parse: Callable[[str], Value], default: Value) -> Value:
+        text = element.get(attribute)
+        if text is None:
+            return default
+        try:
+            return parse(text)
+        except NumberError as error:
+            self.fail(f"cannot read {attribute}={shown(text)} of <{element.tag}>: {error}", element, attribute)
+            if element.tag in _PRINTED:
+                self._problems.check_printed(text, element, attribute)
+            return default
 
 
 def first_children(element: Element) -> dict[str, Element]:

@@ -1,4 +1,4 @@
-"""The frame of each link: forward kinematics down the tree, and why a pose is undefined."""
+"""The position of each joint and the frame of each link: forward kinematics down the tree, and why a pose is undefined."""
 
 from collections.abc import Mapping
 from math import isfinite
@@ -6,8 +6,7 @@ from typing import NamedTuple
 
 from grader.errors import MissingElement
 from grader.robot.model import Joint, Robot
-from grader.robot.motion import after_joint
-from grader.robot.positions import Positions
+from grader.robot.motion import Position, after_joint
 from grader.robot.transforms import IDENTITY, Transform, unit
 from grader.text import quoted
 
@@ -26,10 +25,14 @@ class Frame(NamedTuple):
 
 
 class Frames:
-    """The frames of a robot's links. Each is computed once, when it is asked for, from the nearest known one above."""
+    """The frames of a robot's links, with its joints at the `given` positions (rad or m) or at 0.
 
-    def __init__(self, robot: Robot, parents: Mapping[str, Joint], positions: Positions) -> None:
-        self._robot, self._parents, self._positions = robot, parents, positions
+    Each is computed once, when it is asked for, from the nearest known one above.
+    """
+
+    def __init__(self, robot: Robot, parents: Mapping[str, Joint], given: Mapping[str, Position]) -> None:
+        self._robot, self._parents, self._given = robot, parents, given
+        self._mimicked: dict[str, float] = {}  # the positions of mimic joints
         self._known: dict[str, Frame] = {}
         self._loops: dict[str, str] = {}  # links on or below a loop of joints, with one link's name for the loop
 
@@ -50,7 +53,7 @@ class Frames:
             name = parents[name].parent
         frame = known.get(name) or known.setdefault(name, Frame(name, name, IDENTITY, 0))
         for joint in reversed(joints.values()):
-            pose = after_joint(frame.pose, joint, self._positions.of(joint))
+            pose = after_joint(frame.pose, joint, self.position(joint))
             if pose is not None and isfinite(sum(pose.translation)):
                 frame = Frame(frame.root, frame.group, pose, frame.depth)
             else:
@@ -63,6 +66,36 @@ class Frames:
         self._loops.update(dict.fromkeys(joints, loop))
         message = f"link {quoted(link)} is on or below a loop of joints, so it is in no tree"
         return MissingElement("connection", loop, message=message, location=self._robot.link(link).location)
+
+    def position(self, joint: Joint) -> Position:
+        """Return the position of a joint: its own, that of the joint that it mimics, or 0."""
+        if joint.mimic is None or joint.name in self._given:
+            return self._given.get(joint.name, 0.0)
+        return self._follow(joint)
+
+    def _follow(self, joint: Joint) -> float:
+        """Return a mimic joint's position, keeping those of the joints between: long chains are followed once.
+
+        It is 0 if the chain of mimics ends at a joint that does not exist or has no single number, or forms a loop.
+        """
+        followers: dict[str, Joint] = {}
+        value = 0.0
+        while joint.name not in followers:
+            own = self._mimicked.get(joint.name, self._given.get(joint.name))
+            if own is not None or joint.mimic is None:
+                value = own if isinstance(own, int | float) else 0.0
+                break
+            followers[joint.name] = joint
+            if not self._robot.has_joint(joint.mimic.joint):
+                break
+            joint = self._robot.joint(joint.mimic.joint)
+        else:
+            self._mimicked.update(dict.fromkeys(followers, 0.0))
+            return 0.0
+        for name, follower in reversed(followers.items()):
+            assert follower.mimic is not None  # no other joint is a follower
+            value = self._mimicked[name] = follower.mimic.multiplier * value + follower.mimic.offset
+        return value
 
 
 def undefined_pose(joint: Joint) -> MissingElement:

@@ -1,11 +1,11 @@
-"""Joints as urdfdom reads them (`joint.cpp`): every defect of a joint makes ROS 2 reject the whole file."""
+"""Joints as urdfdom reads them (`joint.cpp`), where every defect rejects the whole file, and the names that they refer to."""
 
+from itertools import islice
 from typing import Literal, get_args
 
 from grader.robot import catalogue
-from grader.robot.diagnostics import Problems, first_children
-from grader.robot.element_reader import ElementReader
-from grader.robot.model import Joint, Limit, Mimic
+from grader.robot.diagnostics import ElementReader, Problems, first_children
+from grader.robot.model import Joint, Limit, Mimic, Robot
 from grader.robot.transforms import Vector, unit
 from grader.text import quoted
 from grader.xml.parsing import Element
@@ -13,10 +13,11 @@ from grader.xml.parsing import Element
 JointType = Literal["fixed", "continuous", "revolute", "prismatic", "floating", "planar"]
 JOINT_TYPES: tuple[str, ...] = get_args(JointType)
 MOVING_TYPES = ("continuous", "revolute", "prismatic", "planar", "floating")
-_WITHOUT_AXIS = ("fixed", "floating")
 _WITH_LIMIT = ("revolute", "prismatic")
 _REJECTED = "ROS 2 rejects the file"
 _X_AXIS = (1.0, 0.0, 0.0)
+_MAX_NAMED = 12  # links in a message
+_MAX_STEPS = 20  # of a loop in a message
 _EXTRAS = {
     "dynamics": (catalogue.BAD_DYNAMICS, ("damping", "friction")),
     "safety_controller": (catalogue.BAD_SAFETY, ("soft_lower_limit", "soft_upper_limit", "k_position")),
@@ -32,7 +33,8 @@ def read_joint(element: Element, problems: Problems) -> Joint:
         problems.add(catalogue.JOINT_WITHOUT_NAME, f"this joint has no name; {_REJECTED}", element)
     _check_type(element, kind, label, problems)
     inside = first_children(element)
-    origin = ElementReader(problems, catalogue.BAD_JOINT_ORIGIN).origin(inside.get("origin"))
+    reader = ElementReader(problems, catalogue.BAD_JOINT_ORIGIN)
+    origin = reader.origin(inside.get("origin"))
     axis = _read_axis(element, inside.get("axis"), kind or "", problems)
     limit = _read_limit(element, inside.get("limit"), kind or "", problems)
     mimic = _read_mimic(inside["mimic"], problems) if "mimic" in inside else None
@@ -47,7 +49,7 @@ def read_joint(element: Element, problems: Problems) -> Joint:
         kind or "",
         _linked(element, inside, "parent", label, problems),
         _linked(element, inside, "child", label, problems),
-        origin,
+        None if reader.failed else origin,
         axis,
         limit,
         mimic,
@@ -78,15 +80,16 @@ def _linked(element: Element, inside: dict[str, Element], role: str, label: str,
 
 
 def _read_axis(element: Element, axis: Element | None, kind: str, problems: Problems) -> Vector | None:
-    if kind in _WITHOUT_AXIS:
+    if kind in ("fixed", "floating"):
         return _X_AXIS  # urdfdom ignores it, well-formed or not
     if axis is None:
         if kind in MOVING_TYPES:
             message = "this joint has no <axis>; ROS 2 uses the x axis, 1 0 0"
             problems.add(catalogue.DEFAULT_AXIS, message, element)
         return _X_AXIS
-    direction = ElementReader(problems, catalogue.BAD_AXIS).vector(axis, "xyz")
-    if direction is None:
+    reader = ElementReader(problems, catalogue.BAD_AXIS)
+    direction = reader.vector(axis, "xyz")
+    if reader.failed:
         return None
     if unit(direction) is None:
         message = "this axis has length 0; ROS 2 loads it, but every pose below this joint is undefined"
@@ -104,7 +107,7 @@ def _read_limit(element: Element, limit: Element | None, kind: str, problems: Pr
             problems.add(catalogue.LIMIT_MISSING, message, element, "type")
         return None
     reader = ElementReader(problems, catalogue.BAD_LIMIT)
-    lower, upper = reader.number(limit, "lower", 0.0), reader.number(limit, "upper", 0.0)
+    lower, upper = reader.number(limit, "lower"), reader.number(limit, "upper")
     effort, velocity = reader.required(limit, "effort"), reader.required(limit, "velocity")
     if reader.failed:
         return None
@@ -119,7 +122,7 @@ def _read_mimic(element: Element, problems: Problems) -> Mimic | None:
     joint = element.get("joint")
     if joint is None:
         reader.fail("<mimic> has no joint", element)
-    multiplier, offset = reader.number(element, "multiplier", 1.0), reader.number(element, "offset", 0.0)
+    multiplier, offset = reader.number(element, "multiplier", 1.0), reader.number(element, "offset")
     return None if reader.failed or joint is None else Mimic(joint, multiplier, offset)
 
 
@@ -130,8 +133,49 @@ def _check_extras(inside: dict[str, Element], problems: Problems) -> None:
             continue
         element, reader = inside[tag], ElementReader(problems, kind)
         for attribute in attributes:
-            reader.number(element, attribute, 0.0)
+            reader.number(element, attribute)
         if tag == "safety_controller":
             reader.required(element, "k_velocity")
         elif tag == "dynamics" and not any(attribute in element.attrib for attribute in attributes):
             reader.fail("<dynamics> has neither damping nor friction", element)
+
+
+def check_references(robot: Robot, problems: Problems) -> None:
+    """Report links and joints that do not exist, and mimic joints that follow themselves."""
+    links = [link.name for link in robot.links]
+    for joint in robot.joints:
+        for role, name in (("parent", joint.parent), ("child", joint.child)):
+            if name and not robot.has_link(name):
+                guess = problems.did_you_mean(name, links)
+                guess = guess or f"; the links are: {', '.join(map(quoted, islice(links, _MAX_NAMED)))}"
+                message = f"the {role} link {quoted(name)} of joint {quoted(joint.name)} does not exist; ROS 2 rejects the file{guess}"
+                problems.add(catalogue.UNKNOWN_LINK, message, _child_element(joint, role, problems), "link")
+        if joint.mimic is not None and not robot.has_joint(joint.mimic.joint):
+            guess = problems.did_you_mean(joint.mimic.joint, [other.name for other in robot.joints])
+            message = f"joint {quoted(joint.name)} mimics {quoted(joint.mimic.joint)}, which does not exist{guess}"
+            problems.add(catalogue.MIMIC_TARGET, message, _child_element(joint, "mimic", problems), "joint")
+    for loop in _mimic_loops(robot):
+        message = f"joint {quoted(loop[0])} mimics itself: {' -> '.join(map(quoted, (*loop[:_MAX_STEPS], loop[0])))}"
+        problems.add(catalogue.MIMIC_TARGET, message, _child_element(robot.joint(loop[0]), "mimic", problems), "joint")
+
+
+def _child_element(joint: Joint, tag: str, problems: Problems) -> Element:
+    element = problems.element(joint)
+    child = element.find(tag)
+    return element if child is None else child
+
+
+def _mimic_loops(robot: Robot) -> list[list[str]]:
+    targets = {joint.name: joint.mimic.joint for joint in robot.joints if joint.mimic is not None}
+    seen: set[str] = set()
+    loops = []
+    for start in targets:
+        path: list[str] = []
+        name = start
+        while name in targets and name not in seen:
+            seen.add(name)
+            path.append(name)
+            name = targets[name]
+        if name in path:
+            loops.append(path[path.index(name) :])
+    return loops

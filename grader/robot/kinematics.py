@@ -1,15 +1,15 @@
 """Forward kinematics: the pose of every link with the joints at given positions."""
 
 from collections.abc import Mapping
+from itertools import takewhile
 from math import isfinite
 
 from grader.errors import MissingElement
 from grader.robot.frames import Frames, undefined_pose
 from grader.robot.model import Joint, Link, Robot, Visual
 from grader.robot.motion import Position, check_position, motion_of
-from grader.robot.parent_joints import parent_joints
-from grader.robot.positions import Positions
 from grader.robot.transforms import IDENTITY, Transform, Vector, unit
+from grader.robot.tree import parent_joints
 from grader.text import quoted
 
 
@@ -39,8 +39,7 @@ class Configuration:
             for name, position in self.positions.items():
                 check_position(robot.joint(name), position)
         self.shown: dict[str, tuple[Visual, ...]] = {}  # a cache for the checks of what a link shows
-        self._positions = Positions(robot, self.positions)
-        self._frames = Frames(robot, self.parent_joints, self._positions)
+        self._frames = Frames(robot, self.parent_joints, self.positions)
         self._relative: dict[tuple[str, str | None], Transform] = {}
 
     @property
@@ -125,9 +124,7 @@ class Configuration:
         up, down = self.chain(one) or (), self.chain(other) or ()
         if self.root_of(one) != self.root_of(other):
             self.pose(other, relative_to=one)
-        shared = 0
-        while shared < min(len(up), len(down)) and up[shared] is down[shared]:
-            shared += 1
+        shared = sum(1 for _ in takewhile(lambda pair: pair[0] is pair[1], zip(up, down, strict=False)))
         return (*reversed(up[shared:]), *down[shared:])
 
     def moved(self, joint: str | Joint, position: Position) -> "Configuration":
@@ -154,4 +151,4 @@ class Configuration:
 
     def position(self, joint: Joint) -> Position:
         """Return the position of a joint: its own, that of the joint that it mimics, or 0."""
-        return self._positions.of(joint)
+        return self._frames.position(joint)

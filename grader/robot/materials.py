@@ -21,20 +21,20 @@ class Materials:
     def define(self, element: Element) -> None:
         """Read a material directly under <robot>; without a valid colour it is black."""
         problems = self._problems
-        name = element.get("name")
-        if name is None:
+        name = element.get("name") or ""
+        material, _ = self._read(element, name, "ROS 2 shows black")
+        if element.get("name") is None:
             problems.add(catalogue.UNNAMED_MATERIAL, "this material has no name; no link can use it", element)
-        material, _ = self._read(element, name or "", "ROS 2 shows black")
-        if name is not None and material is None:
-            message = f"material {quoted(name)} has no valid colour; ROS 2 makes it black"
+        elif material is None:
             if element.find("color[@rgba]") is None:
+                message = f"material {quoted(name)} has no valid colour; ROS 2 makes it black"
                 problems.add(catalogue.COLOURLESS_MATERIAL, message, element)
             problems.check_printed(name, element, "name")
-        if (name or "") in self.known:
-            message = f"material {quoted(name or '')} is defined twice under <robot>; ROS 2 rejects the file"
+        if name in self.known:
+            message = f"material {quoted(name)} is defined twice under <robot>; ROS 2 rejects the file"
             problems.add(catalogue.DUPLICATE_MATERIAL, message, element, "name")
-            return
-        self.known[name or ""] = material or Material(name or "", location=problems.location(element))
+        else:
+            self.known[name] = material or Material(name, location=problems.location(element))
 
     def assign(self, element: Element, link: str) -> tuple[Material | None, str]:
         """Return the material that a visual gets, and its name: a defined one wins, otherwise the one in place is defined."""
@@ -44,12 +44,12 @@ class Materials:
         fallback = "the definition above applies" if name in self.known else f"material {quoted(name)} stays undefined"
         own, reported = self._read(element, name, f"ROS 2 logs an error: {fallback}")
         found = self.known.get(name) if name else own
-        if found is None and own is None:
-            if name and not reported:
+        if own is None:
+            if found is None and name and not reported:
                 self._undefined(name, element, link)
-        elif found is None and own is not None:
+        elif found is None:
             found = self.known[name] = own
-        elif own is not None and found is not None and (own.rgba, own.texture) != (found.rgba, found.texture):
+        elif (own.rgba, own.texture) != (found.rgba, found.texture):
             message = f"material {quoted(name)} is already defined differently; ROS 2 ignores this definition"
             self._problems.add(catalogue.REDEFINED_MATERIAL, message, element, "name")
         return found, name
@@ -57,11 +57,10 @@ class Materials:
     def _read(self, element: Element, name: str, consequence: str) -> tuple[Material | None, bool]:
         """Return the material that an element defines, if it does, and whether its colour is reported as a problem."""
         inside = first_children(element)
-        texture, colour = inside.get("texture"), inside.get("color")
-        filename = texture.get("filename") if texture is not None else None
-        text = colour.get("rgba") if colour is not None else None
+        colour = inside.get("color")
+        filename = inside["texture"].get("filename") if "texture" in inside else None
         channels, reported = None, False
-        if text is not None and colour is not None:
+        if colour is not None and (text := colour.get("rgba")) is not None:
             try:
                 channels = rgba(text)
                 if channels is None:
@@ -81,11 +80,11 @@ class Materials:
     def _undefined(self, name: str, element: Element, link: str) -> None:
         problems = self._problems
         if self._defined is None:
-            every = [other for other in problems.root.iter("material") if len(other) and other.get("name")]
+            every = [other for other in problems.root.iter("material") if len(other)]
             self._defined = {other.get("name") or "": other for other in reversed(every)}
-        later = self._defined.get(name)
-        if later is not None:
-            line = problems.line(later)
+            self._defined.pop("", None)
+        if name in self._defined:
+            line = problems.line(self._defined[name])
             hint = f" before its definition in line {line}; define it directly under <robot>"
         else:
             hint = f", which is not defined{problems.did_you_mean(name, self._defined)}"

@@ -6,6 +6,7 @@ cannot be read; a value that the file does not give has ROS 2's default.
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from typing import NoReturn
 
 from grader.errors import MissingElement
 from grader.names import did_you_mean
@@ -171,17 +172,11 @@ class Robot:
 
     def link(self, name: str) -> Link:
         """Return the link of this name; raises MissingElement, which lists the existing names."""
-        try:
-            return self._links[name]
-        except KeyError:
-            raise _missing("link", name, self.links) from None
+        return self._links.get(name) or _raise_missing("link", name, self.links)
 
     def joint(self, name: str) -> Joint:
         """Return the joint of this name; raises MissingElement, which lists the existing names."""
-        try:
-            return self._joints[name]
-        except KeyError:
-            raise _missing("joint", name, self.joints) from None
+        return self._joints.get(name) or _raise_missing("joint", name, self.joints)
 
     def has_joint(self, name: str) -> bool:
         """Return whether a joint of this name was read."""
@@ -192,7 +187,7 @@ class Robot:
         return name in self._links
 
 
-def _missing(kind: str, name: str, existing: Iterable[Link | Joint]) -> MissingElement:
+def _raise_missing(kind: str, name: str, existing: Iterable[Link | Joint]) -> NoReturn:
     known = tuple(element.name for element in existing)
     guess = did_you_mean(name, known) or f"; the file has: {', '.join(map(quoted, known[:20])) or 'none'}"
-    return MissingElement(kind, name, known, message=f"there is no {kind} {quoted(name)}", detail=guess)
+    raise MissingElement(kind, name, known, message=f"there is no {kind} {quoted(name)}", detail=guess)

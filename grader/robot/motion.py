@@ -14,12 +14,9 @@ Position = float | Sequence[float]
 DEGREES_OF_FREEDOM = {"continuous": 1, "revolute": 1, "prismatic": 1, "planar": 3, "floating": 6}
 
 
-_NO_TURN = (0.0, 0.0, 0.0)
-
-
 def placed_by(T_frame_parent: Transform, origin: Origin) -> Transform:
     """Return T_frame_child: the frame that an origin places in its parent."""
-    if origin.rpy == _NO_TURN:
+    if origin.rpy == (0.0, 0.0, 0.0):
         return T_frame_parent.shifted(origin.xyz)
     return T_frame_parent @ Transform(rotation_from_rpy(origin.rpy), origin.xyz)
 
@@ -40,7 +37,10 @@ def motion_of(joint: Joint, position: Position) -> Transform | None:
     if isinstance(position, int | float) and not isfinite(position):
         return None  # a chain of mimic joints can overflow
     if joint.type == "floating":
-        return _floating(position)
+        if isinstance(position, int | float):
+            return IDENTITY
+        x, y, z, roll, pitch, yaw = position
+        return Transform(rotation_from_rpy((roll, pitch, yaw)), (x, y, z))
     direction = unit(joint.axis) if joint.axis is not None else None
     if direction is None:
         # KDL divides by the axis' length before it uses the position. An unreadable axis matters only if the joint moves.
@@ -56,13 +56,6 @@ def motion_of(joint: Joint, position: Position) -> Transform | None:
     return Transform(rotation_about(direction, position))
 
 
-def _floating(position: Position) -> Transform:
-    if isinstance(position, int | float):
-        return IDENTITY
-    x, y, z, roll, pitch, yaw = position
-    return Transform(rotation_from_rpy((roll, pitch, yaw)), (x, y, z))
-
-
 def _planar(normal: Vector, position: Position) -> Transform:
     """Return a motion in the plane across `normal`, then about it; x and y are the frame's if the normal is its z axis."""
     if isinstance(position, int | float):
@@ -73,9 +66,7 @@ def _planar(normal: Vector, position: Position) -> Transform:
     if turn is None:
         slide: Vector = (x, y, 0.0) if normal[2] > 0 else (x, -y, 0.0)
     else:
-        cosine = dot((0.0, 0.0, 1.0), normal)
-        sine = dot(turn, around)
-        tilt = rotation_about(turn, atan2(sine, cosine))
+        tilt = rotation_about(turn, atan2(dot(turn, around), normal[2]))
         slide = Transform(tilt).rotate((x, y, 0.0))
     return Transform(rotation_about(normal, angle), slide)
 
@@ -83,13 +74,11 @@ def _planar(normal: Vector, position: Position) -> Transform:
 def check_position(joint: Joint, position: Position) -> None:
     """Raise ValueError for a position that a joint of this type cannot have."""
     wanted = DEGREES_OF_FREEDOM.get(joint.type, 0)
-    given = 1 if isinstance(position, int | float) else len(position)
+    values = (position,) if isinstance(position, int | float) else position
     if wanted == 0:
         raise ValueError(f"joint {quoted(joint.name)} is {joint.type or 'without type'}: it cannot move")
-    values = (position,) if isinstance(position, int | float) else position
     if not all(map(isfinite, values)):
         raise ValueError(f"joint {quoted(joint.name)} cannot be at {position}")
-    if given != wanted or (wanted > 1 and isinstance(position, int | float)):
-        raise ValueError(
-            f"joint {quoted(joint.name)} is {joint.type}: its position takes {counted(wanted, 'number')}, not {given}"
-        )
+    if len(values) != wanted:
+        takes = f"its position takes {counted(wanted, 'number')}, not {len(values)}"
+        raise ValueError(f"joint {quoted(joint.name)} is {joint.type}: {takes}")

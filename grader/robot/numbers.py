@@ -49,14 +49,9 @@ def rgba(text: str) -> tuple[float, float, float, float] | None:
 
 def is_version_one(text: str) -> bool:
     """Return whether urdfdom's URDFVersion, which uses C's strtol, reads a robot's `version` as 1.0."""
-    pieces = text.split(".")
-    if pieces[-1] == "":
-        pieces.pop()
-    parsed = [_VERSION.fullmatch(piece) for piece in pieces]
-    if len(pieces) != 2 or not all(parsed):
-        return False
+    parsed = [_VERSION.fullmatch(piece) for piece in text.removesuffix(".").split(".")]
     values = [_strtol(match[1]) for match in parsed if match]
-    return all(value >= 0 for value in values) and [value % 2**32 for value in values] == [1, 0]
+    return len(values) == len(parsed) and min(values) >= 0 and [value % 2**32 for value in values] == [1, 0]
 
 
 def _number(text: str) -> float:
@@ -82,25 +77,20 @@ _cached_vector = lru_cache(maxsize=4096)(_vector)
 
 def _strtol(digits: str) -> int:
     # C stops at the largest long; Python refuses to convert thousands of digits.
-    magnitude = digits.lstrip("+-0")[:20] or "0"
-    value = min(int(magnitude), _MAX_LONG)
+    value = min(int(digits.lstrip("+-0")[:20] or "0"), _MAX_LONG)
     return -value if digits[0] == "-" else value
 
 
 def _reason(text: str) -> str:
-    shown = quoted(text)
     if not text.strip():
         return "it is empty"
-    if "," in text:
-        return f"{shown} contains a comma: separate numbers by spaces"
-    if "$" in text:
-        return f"{shown} is xacro, which ROS 2 does not evaluate in a .urdf file"
-    if any(c in text for c in "\t\n\v\f\r"):
-        return f"{shown} contains a tab or a line break: separate numbers by plain spaces"
-    if _NUMBER.fullmatch(text.rstrip(" ")):
-        return f"{shown} has a space after the number, which ROS 2 does not accept"
-    if any(c in text for c in "\u201c\u201d\u2018\u2019"):
-        return f"{shown} contains a typographic quote, as word processors write"
-    if not text.isascii():
-        return f"{shown} contains a character that is not ASCII, such as a typographic minus or space"
-    return f"{shown} is not a number"
+    reasons = {
+        "contains a comma: separate numbers by spaces": "," in text,
+        "is xacro, which ROS 2 does not evaluate in a .urdf file": "$" in text,
+        "contains a tab or a line break: separate numbers by plain spaces": not set("\t\n\v\f\r").isdisjoint(text),
+        "has a space after the number, which ROS 2 does not accept": _NUMBER.fullmatch(text.rstrip(" ")),
+        "contains a typographic quote, as word processors write": not set("\u201c\u201d\u2018\u2019").isdisjoint(text),
+        "contains a character that is not ASCII, such as a typographic minus or space": not text.isascii(),
+        "is not a number": True,
+    }
+    return f"{quoted(text)} {next(reason for reason, applies in reasons.items() if applies)}"

@@ -5,21 +5,19 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from grader.problems import Effect, Problem
+from grader.problems import Problem
 from grader.robot import catalogue
 from grader.robot.diagnostics import Problems
-from grader.robot.joints import read_joint
+from grader.robot.joints import check_references, read_joint
 from grader.robot.links import read_link
 from grader.robot.materials import Materials
 from grader.robot.model import Joint, Link, Robot
 from grader.robot.numbers import is_version_one
-from grader.robot.references import check_references
 from grader.robot.spelling import check_spelling
 from grader.robot.tree import check_tree
 from grader.source import Source
 from grader.text import quoted
-from grader.xml.document import read_document
-from grader.xml.parsing import Element
+from grader.xml.parsing import Element, read_document
 
 Verdict = Literal["clean", "degraded", "rejected"]
 
@@ -43,32 +41,36 @@ def read_urdf(data: bytes, path: str = "robot.urdf") -> Reading:
     of the tree; `rejected`. Every problem is reported, sorted by location. Never raises for any input.
     """
     root, source, listed, first_tag = read_document(data, path)
-    if root is None or root.tag != "robot":
-        if not any(problem.kind.effect == "rejects" for problem in listed):
-            message = "the file has no <robot> at its top level; ROS 2 rejects it"
-            if root is not None:
-                message = f"the root of the file is <{root.tag.rpartition('}')[2]}>, expected <robot>; ROS 2 rejects it"
-            listed.append(Problem(catalogue.NO_ROBOT, message, source.at(first_tag) if root is None else source.tag(0)))
-        return _judge(None, listed, {problem.kind.effect for problem in listed}, source)
-    problems = Problems(source, root)
-    robot = _read_robot(root, problems)
-    listed += problems.listed
-    if problems.unlisted:
-        message = f"{problems.unlisted} more problems of this file are not listed"
-        listed.append(Problem(catalogue.UNLISTED, message, source.at(len(source.text))))
-    return _judge(robot, listed, {problem.kind.effect for problem in listed} | problems.effects, source)
-
-
-def _judge(robot: Robot | None, problems: list[Problem], effects: set[Effect], source: Source) -> Reading:
+    robot = None
+    effects = {problem.kind.effect for problem in listed}
+    if root is not None and root.tag == "robot":
+        problems = Problems(source, root)
+        robot = _read_robot(root, problems)
+        listed += problems.listed
+        effects |= problems.effects
+        if problems.unlisted:
+            message = f"{problems.unlisted} more problems of this file are not listed"
+            listed.append(Problem(catalogue.UNLISTED, message, source.at(len(source.text))))
+    elif "rejects" not in effects:
+        effects.add("rejects")
+        message = "the file has no <robot> at its top level; ROS 2 rejects it"
+        if root is not None:
+            message = f"the root of the file is <{root.tag.rpartition('}')[2]}>, expected <robot>; ROS 2 rejects it"
+        listed.append(Problem(catalogue.NO_ROBOT, message, source.at(first_tag) if root is None else source.tag(0)))
     verdict: Verdict = "rejected" if "rejects" in effects else "degraded" if "drops" in effects else "clean"
-    problems.sort(key=lambda problem: (problem.location.line, problem.location.column, problem.code))
+    listed.sort(key=lambda problem: (problem.location.line, problem.location.column, problem.code))
     if robot is not None and verdict == "rejected":
         robot = replace(robot, rejected=True)
-    return Reading(verdict, robot, tuple(problems), source)
+    return Reading(verdict, robot, tuple(listed), source)
 
 
 def _read_robot(root: Element, problems: Problems) -> Robot:
-    _check_robot(root, problems)
+    if root.get("name") is None:
+        problems.add(catalogue.ROBOT_WITHOUT_NAME, "<robot> has no name; ROS 2 rejects the file", root)
+    version = root.get("version", "1.0")
+    if not is_version_one(version):
+        message = f'version="{version[:40]}" is not supported, expected 1.0; ROS 2 rejects the file'
+        problems.add(catalogue.BAD_VERSION, message, root, "version")
     materials = Materials(problems)
     for element in root.iterchildren("material"):
         materials.define(element)
@@ -107,33 +109,24 @@ def _read_joints(root: Element, problems: Problems) -> tuple[Joint, ...]:
     return tuple(joints)
 
 
-def _check_robot(root: Element, problems: Problems) -> None:
-    if root.get("name") is None:
-        problems.add(catalogue.ROBOT_WITHOUT_NAME, "<robot> has no name; ROS 2 rejects the file", root)
-    version = root.get("version")
-    if version is not None and not is_version_one(version):
-        message = f'version="{version[:40]}" is not supported, expected 1.0; ROS 2 rejects the file'
-        problems.add(catalogue.BAD_VERSION, message, root, "version")
-
-
 def _check_root_inertia(robot: Robot, links: dict[str, Element], problems: Problems) -> None:
     children = {joint.child for joint in robot.joints}
     for link in robot.links:
         if link.inertial is not None and link.name not in children:
             message = f"the root link {quoted(link.name)} has an inertia: KDL ignores it, robot_state_publisher warns"
-            inertial = links[link.name].find("inertial")
-            problems.add(catalogue.ROOT_INERTIA, message, links[link.name] if inertial is None else inertial)
+            problems.add(catalogue.ROOT_INERTIA, message, next(links[link.name].iterchildren("inertial")))
 
 
 def _check_text(problems: Problems) -> None:
     text = problems.source.text
-    comments = list(_comments(text)) if "<!--" in text else []
-    if "$" in text or "xacro:" in text:
-        xacro = _search_outside(_XACRO, text, comments)
-        if xacro is not None:
-            name = problems.source.path.rpartition("/")[2]
-            message = f"this is xacro, which ROS 2 does not evaluate in a .urdf: run `ros2 run xacro xacro {name}`"
-            problems.listed.append(Problem(catalogue.RAW_XACRO, message, problems.source.at(xacro)))
+    comments = list(_comments(text))
+    outside = zip([0, *(end for _, end in comments)], [*(start for start, _ in comments), len(text)], strict=True)
+    found = (_XACRO.search(text, *span) for span in outside) if "$" in text or "xacro:" in text else ()
+    xacro = next(filter(None, found), None)
+    if xacro is not None:
+        name = problems.source.path.rpartition("/")[2]
+        message = f"this is xacro, which ROS 2 does not evaluate in a .urdf: run `ros2 run xacro xacro {name}`"
+        problems.listed.append(Problem(catalogue.RAW_XACRO, message, problems.source.at(xacro.start())))
     for start, end in comments:
         if text.find(": ", start, end) >= 0 or text.find("\t", start, end) >= 0:
             message = "this comment contains a colon and a space, or a tab: it can stop a launch file that passes the URDF as YAML"
@@ -147,14 +140,3 @@ def _comments(text: str) -> Iterator[tuple[int, int]]:
     while start >= 0 and (end := text.find("-->", start + 4)) >= 0:
         yield start, end
         start = text.find("<!--", end)
-
-
-def _search_outside(pattern: re.Pattern[str], text: str, comments: list[tuple[int, int]]) -> int | None:
-    """Return the offset of the first match outside comments."""
-    position = 0
-    for start, end in [*comments, (len(text), len(text))]:
-        found = pattern.search(text, position, start)
-        if found:
-            return found.start()
-        position = end
-    return None

@@ -52,7 +52,6 @@ _SINGLE = frozenset(
     {"origin", "geometry", "parent", "child", "axis", "limit", "inertial", "mass", "inertia", "mimic", "dynamics"}
 )
 _SWAPPED = {("cylinder", "height"): "length", ("color", "rgb"): "rgba", ("origin", "pos"): "xyz"}
-_KNOWN_NAMES = frozenset(_ATTRIBUTES)
 _KNOWN_ATTRIBUTES = {tag: frozenset(names) for tag, names in _ATTRIBUTES.items()}
 
 
@@ -80,14 +79,12 @@ def check_spelling(root: Element, problems: Problems) -> None:
 
 
 def _check_attributes(element: Element, problems: Problems) -> None:
-    known = _ATTRIBUTES[element.tag]
-    given = set(element.keys())
-    for name in map(str, element.keys()):
+    known, given = _KNOWN_ATTRIBUTES[element.tag], list(map(str, element.keys()))
+    missing = known.difference(given)
+    for name in given:
         if name in known or name.startswith("{"):
             continue
-        meant = _SWAPPED.get((element.tag, name)) or problems.closest(
-            name, [other for other in known if other not in given]
-        )
+        meant = _SWAPPED.get((element.tag, name)) or problems.closest(name, missing)
         if meant:
             message = (
                 f"ROS 2 ignores the unknown attribute {quoted(name)} of <{element.tag}>; did you mean {quoted(meant)}?"
@@ -99,7 +96,7 @@ def _check_tag(child: Element, parent: str, allowed: tuple[str, ...], problems: 
     meant = problems.closest(child.tag, allowed)
     if meant:
         message = f"ROS 2 ignores <{child.tag}> in <{parent}>; did you mean <{meant}>?"
-    elif child.tag in _KNOWN_NAMES:
+    elif child.tag in _ATTRIBUTES:
         message = f"ROS 2 ignores <{child.tag}> in <{parent}>: it does not belong there"
     else:
         return
@@ -109,11 +106,8 @@ def _check_tag(child: Element, parent: str, allowed: tuple[str, ...], problems: 
 def _check_repeated(element: Element, tags: list[str], problems: Problems) -> None:
     seen: set[str] = set()
     for child, tag in zip(element, tags, strict=True):
-        if element.tag == "geometry":
-            if seen:
-                problems.add(
-                    catalogue.REPEATED_ELEMENT, "a <geometry> has one shape: ROS 2 reads only the first", child
-                )
+        if element.tag == "geometry" and seen:
+            problems.add(catalogue.REPEATED_ELEMENT, "a <geometry> has one shape: ROS 2 reads only the first", child)
         elif tag in seen and (tag in _SINGLE or (element.tag == "visual" and tag == "material")):
             message = f"<{tag}> is repeated in this <{element.tag}>: ROS 2 reads only the first"
             problems.add(catalogue.REPEATED_ELEMENT, message, child)

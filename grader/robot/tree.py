@@ -1,12 +1,15 @@
-"""Check that links and joints form one tree (`model.h`: initTree, initRoot; kdl_parser: addChildrenToTree)."""
+"""The tree of links: their parent joints, and what keeps them from being one tree.
+
+ROS 2 does so in `model.h` (initTree, initRoot) and kdl_parser (addChildrenToTree).
+"""
 
 from collections.abc import Iterable
 from graphlib import CycleError, TopologicalSorter
+from itertools import pairwise
 
 from grader.robot import catalogue
 from grader.robot.diagnostics import Problems
 from grader.robot.model import Joint, Robot
-from grader.robot.parent_joints import parent_joints
 from grader.text import enumerated, quoted
 from grader.xml.parsing import Element
 
@@ -18,14 +21,63 @@ _MAX_ROOTS = 50
 Edges = dict[str, list[Joint]]  # the joints by their parent link
 
 
+def parent_joints(robot: Robot) -> dict[str, Joint]:
+    """Return the parent joint of each link, by the link's name; a root has none.
+
+    Of two joints with one child the last in name order counts, as in ROS 2. ROS 2 shows nothing of a rejected file, so there
+    the most plausible reading counts: no joint that would close a loop, rather one whose name contains its child's than one
+    whose name contains only its parent's (these two may be swapped), and then the first in the file.
+    """
+    complete = _complete_joints(robot)
+    if robot.rejected:
+        return _most_plausible(complete)
+    parents: dict[str, Joint] = {}
+    for joint in complete:
+        if joint.name >= parents.get(joint.child, joint).name:
+            parents[joint.child] = joint
+    return parents
+
+
+def _complete_joints(robot: Robot) -> list[Joint]:
+    """Return the joints whose parent and child exist, in file order."""
+    return [
+        joint
+        for joint in robot.joints
+        if joint.parent and joint.child and robot.has_link(joint.parent) and robot.has_link(joint.child)
+    ]
+
+
+def _implausibility(joint: Joint) -> tuple[bool, bool]:
+    names_child = joint.child in joint.name
+    return (joint.parent in joint.name and not names_child, not names_child)
+
+
+def _most_plausible(joints: list[Joint]) -> dict[str, Joint]:
+    parents: dict[str, Joint] = {}
+    above: dict[str, str] = {}  # some link further up; a path is shortened whenever it is followed
+
+    def root(link: str) -> str:
+        passed = []
+        while link in above:
+            passed.append(link)
+            link = above[link]
+        above.update(dict.fromkeys(passed, link))
+        return link
+
+    for joint in sorted(joints, key=_implausibility):
+        if joint.child not in parents and root(joint.parent) != joint.child:
+            parents[joint.child] = joint
+            above[joint.child] = joint.parent
+    return parents
+
+
 def check_tree(robot: Robot, links: dict[str, Element], problems: Problems) -> None:
     """Report everything that keeps the links from being one tree. `links` gives their elements by name."""
     parents = parent_joints(robot)
     roots = [link.name for link in robot.links if link.name not in parents]
     edges: Edges = {}
-    for joint in robot.joints:
-        if joint.parent and joint.child and joint.parent in links and joint.child in links:
-            edges.setdefault(joint.parent, []).append(joint)
+    for joint in _complete_joints(robot):
+        edges.setdefault(joint.parent, []).append(joint)
     reachable = _reachable(roots, edges)
     if len(roots) == 1 and len(parents) == len(robot.joints) and len(reachable) == len(links):
         return
@@ -46,10 +98,8 @@ def _check_two_parents(edges: Edges, parents: dict[str, Joint], problems: Proble
     for child, rivals in by_child.items():
         if len({joint.name for joint in rivals}) > 1:
             names = " and ".join(quoted(joint.name) for joint in rivals[:_MAX_NAMED])
-            message = (
-                f"link {quoted(child)} is the child of the joints {names}; ROS 2 takes "
-                f"{quoted(parents[child].name)}, the last in name order"
-            )
+            taken = f"ROS 2 takes {quoted(parents[child].name)}, the last in name order"
+            message = f"link {quoted(child)} is the child of the joints {names}; {taken}"
             problems.add(catalogue.TWO_PARENTS, message, problems.element(rivals[1]))
 
 
@@ -84,14 +134,9 @@ def _cycles(edges: Edges, links: list[str]) -> list[list[Joint]]:
         else:
             break
         first = names.index(min(names, key=links.index))
-        ring = [*names[first:], *names[:first]]
-        children = [*ring[1:], ring[0]]
-        cycles.append(
-            [
-                next(joint for joint in edges[parent] if joint.child == child)
-                for parent, child in zip(ring, children, strict=True)
-            ]
-        )
+        ring = [*names[first:], *names[:first], names[first]]
+        steps = pairwise(ring)
+        cycles.append([next(joint for joint in edges[parent] if joint.child == child) for parent, child in steps])
         links = [link for link in links if link not in set(ring)]
     return cycles
 
@@ -123,10 +168,8 @@ def _check_roots(robot: Robot, roots: list[str], edges: Edges, links: dict[str, 
     named = enumerated([*map(quoted, others)], _MAX_ROOTS)
     verb, them = ("is", "it") if len(others) == 1 else ("are", "them")
     all_roots = ", ".join(map(quoted, [main, *others][:_MAX_ROOTS]))
-    message = (
-        f"{named} {verb} not connected to the robot: no joint has {them} as its child (roots are {all_roots}); "
-        "ROS 2 rejects the file"
-    )
+    reason = f"no joint has {them} as its child (roots are {all_roots})"
+    message = f"{named} {verb} not connected to the robot: {reason}; ROS 2 rejects the file"
     problems.add(catalogue.TWO_ROOTS, message, links[others[0]], "name")
 
 

@@ -26,15 +26,9 @@ MISPLACED_DECLARATION = rejects(
     "<?xml ...?> must be at the very top of the file, before comments and tags, and so must processing instructions "
     "(<? ... ?>). The usual cause is a second file that was pasted in.",
 )
-STRAY_TEXT = rejects(
-    "URDF006",
-    "Text after the robot",
-    "Only white space and comments may follow </robot>.",
-)
+STRAY_TEXT = rejects("URDF006", "Text after the robot", "Only white space and comments may follow </robot>.")
 TOO_DEEP = rejects(
-    "URDF007",
-    "Tags nested too deep",
-    "TinyXML2, which reads the file for ROS 2, stops at the 499th level of nesting.",
+    "URDF007", "Tags nested too deep", "TinyXML2, which reads the file for ROS 2, stops at the 499th level of nesting."
 )
 NOT_UTF8 = rejects(
     "URDF008",

@@ -1,6 +1,12 @@
-"""XML read by lxml, which may open nothing: no file, no network, no entity."""
+"""XML read by lxml, which may open nothing: no file, no network, no entity; and a URDF as TinyXML2 reads it."""
+
+import re
+from typing import NamedTuple
 
 from lxml import etree
+
+from grader.problems import Problem
+from grader.source import Source
 
 Element = etree._Element  # noqa: SLF001  lxml has no public name for it
 XMLSyntaxError = etree.XMLSyntaxError
@@ -16,7 +22,57 @@ _PARSER = etree.XMLParser(
     remove_pis=True,
 )
 
+# lxml turns a line break or tab in a value into a space, TinyXML2 keeps it. The search skips all other bytes.
+_UNIMPORTANT = bytes(sorted(set(range(256)) - set(b"=\"'\t\n\r")))
+_BROKEN_VALUE = re.compile(rb"""=[\t\n\r]*(?:"[='\t\n\r]*?[\t\n\r]|'[="\t\n\r]*?[\t\n\r])""")
+_DEFAULT_NAMESPACE = re.compile(rb"xmlns[ \t\r\n]*=")
+_PLAIN_START = re.compile(
+    rb"""(?!<\?|\xff\xfe|\xfe\xff|\xef\xbb\xbf)|<\?xml\s+version\s*=\s*["']1\.0["'](?:\s+encoding\s*=\s*["'](?i:utf-8)["'])?\s*\?>"""
+)
+
+
+class XmlDocument(NamedTuple):
+    """The root element, and everything that TinyXML2 or XML rejects in the text; `first_tag` is an offset.
+
+    The root is None where TinyXML2 refuses the text, or finds no <robot> at its top level.
+    """
+
+    root: Element | None
+    source: Source
+    problems: list[Problem]
+    first_tag: int
+
 
 def parse_xml(data: bytes) -> Element:
     """Return the root element of an XML text; raises XMLSyntaxError."""
     return etree.fromstring(data, _PARSER)
+
+
+def read_document(data: bytes, path: str) -> XmlDocument:
+    """Read the bytes of a URDF; never raises. Text that lxml may not read as TinyXML2 does is translated first."""
+    text = data.decode("utf-8", "surrogateescape")
+    body = data.removeprefix(b"\xef\xbb\xbf")  # TinyXML2 skips a byte-order mark
+    if is_plain(body):
+        source = Source(path, text)
+        try:
+            return XmlDocument(parse_xml(body), source, [], 0)
+        except XMLSyntaxError:
+            pass
+    from grader.xml.tinyxml2.scanner import Scanner  # late: most files are plain, and compiling its patterns takes long
+
+    scan = Scanner(text).scan()
+    source = Source(path, text, scan.offsets)
+    problems = [Problem(found.kind, found.message, source.at(found.offset)) for found in scan.differences]
+    return XmlDocument(parse_xml(scan.xml) if scan.xml else None, source, problems, scan.first_tag)
+
+
+def is_plain(data: bytes) -> bool:
+    """Return whether a text that lxml accepts means the same to TinyXML2, so that no translation is needed."""
+    return (
+        b"\0" not in data
+        and data.find(b"<?", 1) < 0
+        and data.count(b"<!") == data.count(b"<!--")
+        and _PLAIN_START.match(data) is not None
+        and _BROKEN_VALUE.search(data.translate(None, _UNIMPORTANT)) is None
+        and (b"xmlns" not in data or _DEFAULT_NAMESPACE.search(data) is None)
+    )

@@ -6,8 +6,8 @@ import pytest
 
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint, Link, Robot
-from grader.robot.parent_joints import parent_joints
 from grader.robot.reader import read_urdf
+from grader.robot.tree import parent_joints
 
 
 def joint(name: str, parent: str, child: str) -> Joint:

@@ -5,8 +5,7 @@ from pathlib import Path
 
 from grader.classroom.intake.listing import Children, is_litter
 from grader.errors import InputError
-from grader.files.members import ARCHIVE_ERRORS, ArchiveMember, error_text, safe_path
-from grader.files.zip_members import zip_members
+from grader.files.members import ARCHIVE_ERRORS, ArchiveMember, error_text, safe_path, zip_members
 from grader.text import printable_path
 
 MAX_MEMBERS = 200_000

@@ -1,22 +1,21 @@
 """A text read by TinyXML2's rules (`tinyxml2.cpp`: Identify, ParseDeep): its first <robot> as XML, or why there is none."""
 
 import re
-from dataclasses import dataclass, field
+from functools import cached_property
 from typing import NamedTuple
 
 from grader.problems import Kind
 from grader.xml import catalogue
 from grader.xml.tinyxml2.tags import REFERENCE, MalformedTagError, Tag, read_tag, short, skip_blank
 from grader.xml.tinyxml2.values import ILLEGAL
-from grader.xml.tinyxml2.writer import RobotWriter
 
 _DECLARATION = re.compile(
     r"""xml\s+version\s*=\s*["']1\.[0-9]+["'](\s+encoding\s*=\s*["'](?i:utf-8|us-ascii)["'])?[^<>]*"""
 )
 _NAMESPACE = re.compile(r"xmlns:([^\s=]+)")
 _MAX_DEPTH = 500  # TINYXML2_MAX_ELEMENT_DEPTH; the document itself is the first level
+_MAX_WRITTEN_DEPTH = 32  # urdfdom never looks deeper than robot/link/visual/geometry/box
 _MAX_ERRORS = 20
-_SPACE = " \t\n\v\f\r"
 
 
 class Difference(NamedTuple):
@@ -27,14 +26,16 @@ class Difference(NamedTuple):
     offset: int
 
 
-@dataclass(slots=True)
-class Scan:
-    """The first top-level <robot> as XML, empty if there is none, with the offset of each of its start tags."""
+class Scan(NamedTuple):
+    """The first top-level <robot> as XML, with the offset of each of its start tags; both empty if there is none.
 
-    xml: bytes = b""
-    offsets: list[int] = field(default_factory=list)
-    first_tag: int = 0
-    differences: list[Difference] = field(default_factory=list)
+    The XML has tags and attributes only, which are all that urdfdom reads.
+    """
+
+    xml: bytes
+    offsets: list[int]
+    first_tag: int
+    differences: list[Difference]
 
 
 class Scanner:
@@ -42,11 +43,11 @@ class Scanner:
 
     def __init__(self, text: str) -> None:
         self._text = text
-        self._writer = RobotWriter()
+        self._xml: list[str] = []
+        self._offsets: list[int] = []  # of the start tags that were written
         self._differences: list[Difference] = []
-        self._open_tags: list[tuple[Tag, str]] = []  # each with the name that was written, if it was
+        self._open_tags: list[tuple[Tag, bool]] = []  # each with whether it was written
         self._top_level: list[Tag] = []
-        self._declared: set[str] | None = None  # the prefixes of the file, once one is met
         self._noted: set[str] = set()
         self._errors = 0
         self._only_declarations = True
@@ -59,9 +60,13 @@ class Scanner:
         first_tag = self._top_level[0].offset if self._top_level else 0
         if self._errors:
             errors = [found for found in self._differences if found.kind is not catalogue.NOT_WELL_FORMED]
-            return Scan(b"", self._writer.offsets, first_tag, errors)
-        self._check_roots()
-        return Scan(self._writer.xml, self._writer.offsets, first_tag, self._differences)
+            return Scan(b"", self._offsets, first_tag, errors)
+        robot = next((tag for tag in self._top_level if tag.name == "robot"), None)
+        other = next((tag for tag in self._top_level if tag is not robot), None)
+        if robot and other:
+            message = f"ROS 2 reads the first <robot> at the top level and ignores <{short(other.name)}> beside it"
+            self._add(catalogue.SEVERAL_ROOTS, message, other.offset)
+        return Scan("".join(self._xml).encode(), self._offsets, first_tag, self._differences)
 
     def _start(self) -> int | None:
         text = self._text
@@ -72,8 +77,7 @@ class Scanner:
             self._add(catalogue.IGNORED_REST, "ROS 2 ignores everything after this NUL byte", end)
             text = self._text = text[:end]
         position = skip_blank(text, 0)
-        if text.startswith("\ufeff", position):
-            position += 1
+        position += text.startswith("\ufeff", position)
         if position == len(text):
             return self._refuse(catalogue.EMPTY_DOCUMENT, "the file is empty; ROS 2 rejects it", 0)
         illegal = ILLEGAL.search(text)
@@ -161,14 +165,19 @@ class Scanner:
 
     def _open(self, tag: Tag, end: int) -> int | None:
         prefix, colon, _ = tag.name.partition(":")
-        if colon and "prefix" not in self._noted and prefix not in self._prefixes():
+        if colon and "prefix" not in self._noted and prefix not in self._prefixes:
             self._differ("prefix", f"the prefix of <{short(tag.name)}> is not declared with xmlns", tag.offset)
         depth = len(self._open_tags)
-        if not depth:
+        if depth:
+            is_written = depth < _MAX_WRITTEN_DEPTH and self._open_tags[-1][1]
+        else:
             self._top_level.append(tag)
-        written = self._writer.open(tag, depth) if not depth or self._open_tags[-1][1] else ""
+            is_written = tag.name == "robot" and not self._xml
+        if is_written:
+            self._xml.append(tag.xml)
+            self._offsets.append(tag.offset)
         if tag.form == "open":
-            self._open_tags.append((tag, written))
+            self._open_tags.append((tag, is_written))
             if depth + 2 >= _MAX_DEPTH and not self._errors:
                 return self._refuse(catalogue.TOO_DEEP, "tags are nested too deep; ROS 2 rejects the file", tag.offset)
         return end
@@ -178,32 +187,22 @@ class Scanner:
             if self._errors:
                 return end
             self._differ("stray", f"the closing tag </{short(tag.name)}>, which closes nothing", tag.offset)
-            if self._text[end:].strip(_SPACE):
+            if skip_blank(self._text, end) < len(self._text):
                 message = "ROS 2 stops reading at this closing tag, which closes nothing"
                 self._add(catalogue.IGNORED_REST, message, tag.offset)
             return None
-        opened, written = self._open_tags.pop()
-        if written:
-            self._writer.close(written)
+        opened, is_written = self._open_tags.pop()
+        if is_written:
+            self._xml.append(f"</{opened.xml_name}>")
         if opened.name != tag.name and not self._errors:
             line = self._text.count("\n", 0, opened.offset) + 1
-            message = (
-                f"</{short(tag.name)}> does not match <{short(opened.name)}> in line {line}; ROS 2 rejects the file"
-            )
-            self._refuse(catalogue.MISMATCHED_TAG, message, tag.offset)
+            message = f"</{short(tag.name)}> does not match <{short(opened.name)}> in line {line}"
+            self._refuse(catalogue.MISMATCHED_TAG, f"{message}; ROS 2 rejects the file", tag.offset)
         return end
 
+    @cached_property
     def _prefixes(self) -> set[str]:
-        if self._declared is None:
-            self._declared = set(_NAMESPACE.findall(self._text))
-        return self._declared
-
-    def _check_roots(self) -> None:
-        robot = next((tag for tag in self._top_level if tag.name == "robot"), None)
-        other = next((tag for tag in self._top_level if tag is not robot), None)
-        if robot and other:
-            message = f"ROS 2 reads the first <robot> at the top level and ignores <{short(other.name)}> beside it"
-            self._add(catalogue.SEVERAL_ROOTS, message, other.offset)
+        return set(_NAMESPACE.findall(self._text))
 
     def _add(self, kind: Kind, message: str, offset: int) -> None:
         self._differences.append(Difference(kind, message, offset))

@@ -4,12 +4,14 @@ import re
 from collections.abc import Callable
 from typing import Literal, NamedTuple
 
-from grader.xml.tinyxml2.values import decode
+from grader.xml.tinyxml2.values import decode, escape
 
 Note = Callable[[str, str, int], None]  # the kind of a difference from XML, its description and its offset
 
 _BLANK = re.compile(r"[ \t\n\v\f\r]*")
 _NAME = re.compile(r"[A-Za-z_:\u0080-\U0010ffff][A-Za-z0-9_:.\-\u0080-\U0010ffff]*")
+_PLAIN_NAME = re.compile(r"(?!(?i:xml))[A-Za-z_][A-Za-z0-9_.\-]*")
+_MAX_NAME_LENGTH = 60  # the longest name that urdfdom knows has 17 letters
 _MAIN_ATTRIBUTES = {"parent": "link", "child": "link", "origin": "xyz", "axis": "xyz", "box": "size", "color": "rgba"}
 
 # A bare & or an entity that XML does not define.
@@ -17,12 +19,23 @@ REFERENCE = re.compile(r"&(?!(?:amp|lt|gt|quot|apos|#[0-9]+|#x[0-9a-fA-F]+);)")
 
 
 class Tag(NamedTuple):
-    """One tag; attribute values are decoded."""
+    """One tag; attribute values are decoded. Names that XML or lxml may refuse mean nothing to urdfdom: `_` replaces them."""
 
     name: str
     form: Literal["open", "close", "empty"]
     attributes: dict[str, str]
     offset: int
+
+    @property
+    def xml_name(self) -> str:
+        """Its name in XML."""
+        return self.name if _is_plain(self.name) else "_"
+
+    @property
+    def xml(self) -> str:
+        """A start tag as XML, without attributes that mean nothing to urdfdom."""
+        values = "".join(f' {key}="{escape(value)}"' for key, value in self.attributes.items() if _is_plain(key))
+        return f"<{self.xml_name}{values}{'>' if self.form == 'open' else '/>'}"
 
 
 class MalformedTagError(Exception):
@@ -32,6 +45,10 @@ class MalformedTagError(Exception):
         super().__init__(message)
         self.offset = offset
         self.resume = resume
+
+
+def _is_plain(name: str) -> bool:
+    return len(name) < _MAX_NAME_LENGTH and _PLAIN_NAME.fullmatch(name) is not None
 
 
 def skip_blank(text: str, position: int) -> int:
