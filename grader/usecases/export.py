@@ -11,9 +11,9 @@ from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.lms.canvas import fill_gradebook
 from grader.classroom.lms.feedback import FeedbackItem, feedback_html, feedback_items
+from grader.classroom.lms.filling import Filled, Preflight, RowNote
 from grader.classroom.lms.grades import LmsGrade
 from grader.classroom.lms.moodle import fill_worksheet
-from grader.classroom.lms.preflight import Filled, Preflight, RowNote
 from grader.classroom.lms.spreadsheet import write_table
 from grader.classroom.lms.tables import SIZE_LIMIT
 from grader.errors import GraderError

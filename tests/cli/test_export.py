@@ -22,7 +22,7 @@ from grader.classroom.gradebook.marks import criterion_of
 from grader.classroom.gradebook.marks import mark as add_mark
 from grader.classroom.intake.intake import read_class
 from grader.classroom.intake.roster_file import read_roster
-from grader.classroom.lms.preflight import Conflict, Preflight, RowNote
+from grader.classroom.lms.filling import Conflict, Preflight, RowNote
 from grader.classroom.students import ClassSubmission
 from grader.errors import InputError
 from grader.files.opening import ARCHIVES

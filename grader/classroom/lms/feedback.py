@@ -11,10 +11,11 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 
-from grader.classroom.lms.grades import exact_text, rounded_down
+from grader.classroom.lms.grades import rounded_down
 from grader.classroom.lms.spreadsheet import FORMULA_BEHIND_SEMICOLON, spelt_out
 from grader.files.reading import sha256_of
 from grader.grading.report import Result
+from grader.text import format_points
 
 LIMIT = 4_000  # characters
 _MAX_MESSAGE = 600
@@ -70,7 +71,7 @@ def _capitalised(message: str) -> str:
 
 def feedback_html(score: Decimal, out_of: Decimal, items: Sequence[FeedbackItem]) -> str:
     """Return a comment of one line and at most LIMIT characters: the exported score, then the items in order."""
-    opening = f"<p>{_OPENING}: {exact_text(rounded_down(score))} of {exact_text(out_of)} points.</p>"
+    opening = f"<p>{_OPENING}: {format_points(rounded_down(score))} of {format_points(out_of)} points.</p>"
     lines = [_item(item) for item in items]
     room = LIMIT - len(opening) - 100  # for the list's tags, the mark, and the line that counts the rest
     shown = 0
@@ -92,9 +93,9 @@ def is_own_feedback(text: str) -> bool:
 
 
 def _item(item: FeedbackItem) -> str:
-    points = exact_text(item.points)
+    points = format_points(item.points)
     if item.points >= 0:  # a late penalty is negative, and has no maximum
-        points += f" of {exact_text(item.out_of)}"
+        points += f" of {format_points(item.out_of)}"
     message = _escaped(item.message)
     return f"<li>{_escaped(item.title)}: {points}.{' ' if message else ''}{message}</li>"
 

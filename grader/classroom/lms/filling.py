@@ -1,16 +1,84 @@
-"""Fill an LMS file with grades, row by row. Rows of students without a grade are removed, so that nothing of theirs changes."""
+"""Fill an LMS file with grades: match its rows with the students, write the grades, and say what importing the file does.
+
+Only pairs that are unambiguous in both directions match. Rows of students without a grade are removed, so that nothing of theirs
+changes.
+"""
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from decimal import Decimal
+from typing import NamedTuple
 
-from grader.classroom.lms.grades import LmsGrade, exact_text, points_text, read_points
-from grader.classroom.lms.matching import LmsStudent, match_rows
-from grader.classroom.lms.preflight import Conflict, Filled, Preflight, RowNote
+from grader.classroom.lms.grades import LmsGrade, has_decimal_comma, points_text, read_points
 from grader.classroom.lms.tables import Table, TableRow
+from grader.classroom.matching import OF_RECORDS, People, clues_of, numbers_of
+from grader.classroom.students import Student
 from grader.errors import InputError
+from grader.text import format_points
 
+_MAX_NAMED = 5
 FillRow = Callable[[TableRow, LmsGrade, Decimal, str], TableRow | str]
+
+
+@dataclass(frozen=True, slots=True)
+class LmsStudent:
+    """A student in an LMS file: the number of the row, the name in messages, and the data in the row."""
+
+    row: int
+    who: str
+    student: Student
+    aliases: tuple[str, ...] = ()
+
+
+class RowNote(NamedTuple):
+    """A row or student without a new grade, and why. `row` counts from 1 in the LMS file; 0 for a student without a row."""
+
+    row: int
+    who: str
+    why: str
+
+
+class Conflict(NamedTuple):
+    """A row with another grade, which is overwritten: `was` becomes `becomes`."""
+
+    row: int
+    who: str
+    was: str
+    becomes: str
+
+
+@dataclass(slots=True)
+class Preflight:
+    """What importing the filled file does.
+
+    `filled` rows are changed and `unchanged` ones have the grade already; all other students' rows are removed from the file, so that
+    nothing of theirs can change. `ungraded` are rows of students without a grade, `unknown` rows that match nobody, `missing`
+    students with a grade but without a row, `ambiguous` rows and students with several possible matches, which are left
+    unassigned. `kept_feedback` are rows with a comment that a person wrote.
+    """
+
+    column: str
+    filled: int = 0
+    unchanged: int = 0
+    conflicts: list[Conflict] = field(default_factory=list)
+    ungraded: list[RowNote] = field(default_factory=list)
+    unknown: list[RowNote] = field(default_factory=list)
+    missing: list[RowNote] = field(default_factory=list)
+    ambiguous: list[RowNote] = field(default_factory=list)
+    kept_feedback: list[RowNote] = field(default_factory=list)
+    warnings: list[str] = field(default_factory=list)
+
+    @property
+    def matches(self) -> bool:
+        """Whether every row has its student and every grade its row."""
+        return not (self.unknown or self.missing or self.ambiguous)
+
+
+class Filled(NamedTuple):
+    """A filled LMS file, unchanged except for the cells that were written, and what importing it does."""
+
+    data: bytes
+    preflight: Preflight
 
 
 def fill_rows(
@@ -44,10 +112,10 @@ def fill_rows(
 
 
 def with_points(
-    table: Table, row: TableRow, column: int, total: Decimal, who: str, preflight: Preflight, *, comma: bool
+    table: Table, row: TableRow, column: int, total: Decimal, who: str, preflight: Preflight, like: str
 ) -> TableRow:
-    """Return a row with the total in a column, the same row if it is there already; a grade that is overwritten is a conflict."""
-    old, new = row.value(column), points_text(total, comma=comma)
+    """Return a row with the total, written `like` another number, in a column; a grade that is overwritten is a conflict."""
+    old, new = row.value(column), points_text(total, comma=has_decimal_comma(like))
     if read_points(old) == read_points(new):
         return row
     if old not in {"", "-"}:
@@ -61,6 +129,38 @@ def check_maximum(what: str, maxima: Iterable[str], out_of: Decimal) -> None:
         maximum = read_points(text)
         if maximum is not None and maximum != out_of:
             raise InputError(
-                f"{what} is {exact_text(maximum)}, but the rubric's maximum is {exact_text(out_of)}: change the maximum in the"
+                f"{what} is {format_points(maximum)}, but the rubric's maximum is {format_points(out_of)}: change the maximum in the"
                 " LMS and export again, or write the points as they are with --any-maximum"
             )
+
+
+def match_rows(students: Sequence[LmsStudent], grades: Sequence[LmsGrade], preflight: Preflight) -> dict[int, LmsGrade]:
+    """Return the grades by row number, and report the others in `preflight`.
+
+    A submission that is not on the roster is matched by LMS ids only: its name was written by a student.
+    """
+    rows = People(clues_of(student.student, student.aliases) for student in students)
+    ours = People(clues_of(grade.student) if grade.is_on_roster else numbers_of(grade.student) for grade in grades)
+    row_of = [rows.find(clues, OF_RECORDS) for clues in ours.clues]
+    found: dict[int, LmsGrade] = {}
+    left = set(range(len(grades)))
+    for index, clues in enumerate(rows.clues):
+        student, match = students[index], ours.find(clues, OF_RECORDS)
+        if match.only is not None and row_of[match.only].only == index:
+            found[student.row] = grades[match.only]
+            left.discard(match.only)
+        elif len(match.people) > 1 or any(index in row_of[grade].people for grade in match.people):
+            left.difference_update(match.people)
+            names = [repr(grades[grade].who) for grade in match.people[:_MAX_NAMED]]
+            could_be = f"could be any of {', '.join(names)}"
+            why = could_be if len(match.people) > 1 else f"{names[0]} could be this row or another one"
+            preflight.ambiguous.append(RowNote(student.row, student.who, why))
+        else:
+            why = "no student of the gradebook has this id, address or name"
+            preflight.unknown.append(RowNote(student.row, student.who, why))
+    preflight.missing += (
+        RowNote(0, grades[index].who, "has a grade, but no row in the file")
+        for index in sorted(left)
+        if grades[index].total is not None
+    )
+    return found

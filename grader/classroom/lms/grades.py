@@ -41,11 +41,6 @@ def points_text(points: Decimal, *, comma: bool = False) -> str:
     return text.replace(".", ",") if comma else text
 
 
-def exact_text(points: Decimal) -> str:
-    """Return points without trailing zeros: 58.5, and 70 rather than 70.0."""
-    return format(points.normalize(), "f") if points else "0"
-
-
 def read_points(text: str) -> Decimal | None:
     """Return the points in a cell, or None. The last comma or point is the decimal mark (Canvas gradebook_importer.rb)."""
     text = re.sub(r"\s", "", text)

@@ -12,18 +12,17 @@ from collections.abc import Iterator, Sequence
 from decimal import Decimal
 
 from grader.classroom.lms.feedback import is_own_feedback
-from grader.classroom.lms.filling import check_maximum, fill_rows, with_points
-from grader.classroom.lms.grades import LmsGrade, exact_text, has_decimal_comma, points_text, read_points, rounded_down
-from grader.classroom.lms.matching import LmsStudent
+from grader.classroom.lms.filling import Filled, LmsStudent, Preflight, RowNote, check_maximum, fill_rows, with_points
+from grader.classroom.lms.grades import LmsGrade, points_text, read_points, rounded_down
 from grader.classroom.lms.moodle_columns import MoodleColumns, find_columns, student_rows
-from grader.classroom.lms.moodle_headers import NO
-from grader.classroom.lms.preflight import Filled, Preflight, RowNote
 from grader.classroom.lms.spreadsheet import neutral
 from grader.classroom.lms.tables import Table, TableRow, read_table
 from grader.classroom.students import Student
+from grader.text import format_points
 
 _TAG = re.compile(r"<[^>]*+>")  # gradingtable.php puts the name of a suspended student into a span, with a picture
 _NUMBER = re.compile(r"\d+$")
+_NO = frozenset({"no", "nein", "non", "não", "nee"})  # in the languages of `moodle_columns`
 
 
 def fill_worksheet(
@@ -50,14 +49,12 @@ def fill_worksheet(
     preflight = Preflight(table.titles[columns.grade])
 
     def fill_row(row: TableRow, grade: LmsGrade, total: Decimal, who: str) -> TableRow | str:
-        shown_maximum = row.value(columns.maximum)
-        maximum = read_points(shown_maximum)
-        if row.value(columns.changeable).casefold() in NO:
+        maximum = read_points(row.value(columns.maximum))
+        if row.value(columns.changeable).casefold() in _NO:
             return "has a grade that is locked in Moodle"
         if maximum is not None and rounded_down(total) > maximum:
-            return f"has {points_text(total)} points, but the maximum in Moodle is {exact_text(maximum)}"
-        comma = has_decimal_comma(shown_maximum)
-        row = with_points(table, row, columns.grade, total, who, preflight, comma=comma)
+            return f"has {points_text(total)} points, but the maximum in Moodle is {format_points(maximum)}"
+        row = with_points(table, row, columns.grade, total, who, preflight, row.value(columns.maximum))
         return _with_comment(table, row, columns, who, grade, preflight)
 
     filled = fill_rows(table, [_student(row, columns) for row in student_rows(table)], grades, preflight, fill_row)
@@ -92,7 +89,7 @@ def _warnings(
     table: Table, columns: MoodleColumns, out_of: Decimal, maxima: Sequence[str], preflight: Preflight
 ) -> Iterator[str]:
     if any(read_points(maximum) != out_of for maximum in maxima):
-        yield f"the maximum in Moodle is {', '.join(maxima)} points, and that of the rubric {exact_text(out_of)}"
+        yield f"the maximum in Moodle is {', '.join(maxima)} points, and that of the rubric {format_points(out_of)}"
     if not columns.has_modified:
         yield 'the file has no known column "Last modified (grade)": Moodle refuses a worksheet without it'
     if preflight.conflicts:

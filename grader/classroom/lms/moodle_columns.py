@@ -10,10 +10,38 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from grader.classroom.lms.grades import read_points
-from grader.classroom.lms.moodle_headers import CHANGEABLE, FEEDBACK, IDENTIFIER, MAXIMUM, MODIFIED, NUMBERS, STATUS
 from grader.classroom.lms.tables import Table, TableRow
 from grader.errors import InputError
 
+# Headers in lower case, as the language packs have them (assign.php, assignfeedback_comments.php): English, German, French, Spanish,
+# Italian, Portuguese, Brazilian and Dutch, as far as they were looked up. The other columns are detected by place and values, so
+# that a language that is not here mostly works as well.
+_HEADERS = {
+    "identifier": "identifier | id | identifiant | identificador | identificativo | identificatie",
+    "maximum": (
+        "maximum grade | bestwertung | note maximale | calificación máxima | valutazione massima | nota máxima"
+        " | maximaal cijfer"
+    ),
+    "changeable": (
+        "grade can be changed | bewertung kann geändert werden | la note peut être modifiée"
+        " | la calificación puede ser cambiada | la calificación puede cambiarse"
+        " | la valutazione può essere cambiata | a nota pode ser alterada. | nota pode ser alterada"
+    ),
+    "feedback": (
+        "feedback comments | feedback als kommentar | feedback par commentaires"
+        " | comentarios de retroalimentación | commenti | comentários de feedback | feedback"
+    ),
+    "modified": (
+        "last modified (grade) | zuletzt geändert (bewertung) | dernière modification (note)"
+        " | última modificación (calificación) | ultima modifica (valutazione) | última atualização (avaliação)"
+        " | última modificação (nota) | laatst gewijzigd (beoordeling)"
+    ),
+    "grade": "grade",
+    "scale": "scale",
+    "status": "status | statut | stato | estado",
+    "numbers": "id number | id-nummer | username",
+}
+_KIND_OF = {header: kind for kind, headers in _HEADERS.items() for header in headers.split(" | ")}
 _IDENTIFIER = re.compile(r"[^\d\s][^\d]*\d+")
 _ADDRESS = re.compile(r"[^@\s]+@[^@\s]+")
 
@@ -44,46 +72,47 @@ def find_columns(table: Table, column: str, feedback_column: str, shown: str) ->
     Raises InputError if it is not a worksheet, if a column cannot be detected, and if the assignment is graded by a scale.
     """
     titles = table.titles
-    headers = [title.casefold() for title in titles]
+    kinds = [_KIND_OF.get(title.casefold(), "") for title in titles]
     rows = student_rows(table)
-    first = [index for index, header in enumerate(headers) if index == 0 or header in IDENTIFIER]
+    first = [index for index, kind in enumerate(kinds) if index == 0 or kind == "identifier"]
     identifier = next((index for index in first if _all(rows, index, _IDENTIFIER)), None)
     if identifier is None:
         raise InputError(
             f"{shown} is not a grading worksheet of Moodle: its first column does not have 'Participant 123' in every row; {_list(titles)}"
         )
-    grade = _named(titles, column, shown) if column else _grade(headers, rows, identifier)
+    grade = _named(titles, column, shown) if column else _grade(kinds, rows, identifier)
     if grade is None:
         raise InputError(f"cannot detect the column of {shown} with the grades, name it with --column; {_list(titles)}")
     maximum = grade + 1
-    if not rows or any(not _is_maximum(row.value(maximum)) for row in rows if len(row.cells) == len(titles)):
+    if not rows or any((read_points(row.value(maximum)) or 0) <= 0 for row in rows if len(row.cells) == len(titles)):
         raise InputError(
             f"{shown} has no number as the maximum grade behind {titles[grade]!r}: an assignment that is graded by a scale takes no points"
         )
     between = range(identifier + 1, grade)
     email = next((index for index in between if _all(rows, index, _ADDRESS)), None)
-    name = next((index for index in between[:1] if index != email and headers[index] not in STATUS), None)
+    name = next((index for index in between[:1] if index != email and kinds[index] != "status"), None)
     return MoodleColumns(
         identifier=identifier,
         name=name,
         email=email,
-        numbers=tuple(index for index in between if headers[index] in NUMBERS),
+        numbers=tuple(index for index in between if kinds[index] == "numbers"),
         grade=grade,
         maximum=maximum,
-        changeable=_first(headers, CHANGEABLE, grade),
-        feedback=_named(titles, feedback_column, shown) if feedback_column else _first(headers, FEEDBACK, maximum),
-        has_modified=_first(headers, MODIFIED, maximum) is not None,
+        changeable=_first(kinds, "changeable", grade),
+        feedback=_named(titles, feedback_column, shown) if feedback_column else _first(kinds, "feedback", maximum),
+        has_modified="modified" in kinds[maximum + 1 :],
     )
 
 
-def _grade(headers: Sequence[str], rows: Sequence[TableRow], identifier: int) -> int | None:
+def _grade(kinds: list[str], rows: Sequence[TableRow], identifier: int) -> int | None:
     """Return the column before the maximum grade: by the maximum's header, by English headers, else by the values."""
-    for index in range(identifier + 2, len(headers)):
-        if headers[index] in MAXIMUM or (headers[index - 1], headers[index]) == ("grade", "scale"):
+    behind = range(identifier + 2, len(kinds))
+    for index in behind:
+        if kinds[index] == "maximum" or kinds[index - 1 : index + 1] == ["grade", "scale"]:
             return index - 1
-    if headers.count("grade") == 1:
-        return headers.index("grade")
-    shaped = [index - 1 for index in range(identifier + 2, len(headers)) if _is_grade_and_maximum(rows, index)]
+    if kinds.count("grade") == 1:
+        return kinds.index("grade")
+    shaped = [index - 1 for index in behind if _is_grade_and_maximum(rows, index)]
     return shaped[0] if len(shaped) == 1 else None
 
 
@@ -97,19 +126,14 @@ def _is_grade_and_maximum(rows: Sequence[TableRow], index: int) -> bool:
     return all(not grade or ((points := read_points(grade)) is not None and points <= limit) for grade in grades)
 
 
-def _is_maximum(text: str) -> bool:
-    points = read_points(text)
-    return points is not None and points > 0
-
-
 def _all(rows: Sequence[TableRow], index: int, pattern: re.Pattern[str]) -> bool:
     """Return whether all values in a column match a pattern, and there is at least one."""
     values = [value for row in rows if (value := row.value(index))]
     return bool(values) and all(pattern.fullmatch(value) for value in values)
 
 
-def _first(headers: Sequence[str], known: frozenset[str], behind: int) -> int | None:
-    return next((index for index in range(behind + 1, len(headers)) if headers[index] in known), None)
+def _first(kinds: list[str], kind: str, behind: int) -> int | None:
+    return kinds.index(kind, behind + 1) if kind in kinds[behind + 1 :] else None
 
 
 def _named(titles: tuple[str, ...], column: str, shown: str) -> int:

@@ -7,14 +7,17 @@ also behind spaces. A spreadsheet with the semicolon as separator begins a cell 
 import csv
 import io
 import re
-import unicodedata
 from collections.abc import Iterable, Sequence
 from decimal import Decimal
+
+from grader.text import format_points
 
 _TRIGGERS = "=+\\-@\uff1d\uff0b\uff0d\uff20\ufe66\ufe62\ufe63\ufe6b"  # the last four are the small forms
 _AT_START = re.compile(rf"\s*[{_TRIGGERS}]|[\t\r\n]")
 FORMULA_BEHIND_SEMICOLON = re.compile(rf"(?<=;)\s*+[{_TRIGGERS}\s]*+")
 _INSIDE = re.compile(rf"([;\t\r\n]\s*+)(?=[{_TRIGGERS}])")
+
+_ESCAPED = re.compile("[\\0-\\x08\\v\\f\\x0e-\\x1f\\x7f-\\x9f\\u202a-\\u202e\\u2066-\\u2069\\ud800-\\udfff]")
 
 CellValue = str | int | Decimal | None
 
@@ -41,28 +44,12 @@ def neutral(text: str) -> str:
 
 def spelt_out(text: str) -> str:
     """Return text with escapes for controls, lone surrogates and bidirectional marks."""
-    return "".join(f"\\x{ord(character):02x}" if _needs_escape(character) else character for character in text)
-
-
-def _needs_escape(character: str) -> bool:
-    kind = unicodedata.category(character)
-    return (
-        kind == "Cs"
-        or (kind == "Cc" and character not in "\t\r\n")
-        or unicodedata.bidirectional(character) in _BIDIRECTIONAL
-    )
-
-
-_BIDIRECTIONAL = frozenset({"LRE", "RLE", "LRO", "RLO", "PDF", "LRI", "RLI", "FSI", "PDI"})
+    return _ESCAPED.sub(lambda found: f"\\x{ord(found[0]):02x}", text)
 
 
 def _cell(value: CellValue) -> str:
-    match value:
-        case None:
-            return ""
-        case Decimal():
-            return format(value.normalize(), "f") if value else "0"
-        case int():
-            return str(value)
-        case str():
-            return neutral(value)
+    if value is None:
+        return ""
+    if isinstance(value, str):
+        return neutral(value)
+    return format_points(value) if isinstance(value, Decimal) else str(value)

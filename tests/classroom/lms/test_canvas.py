@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.classroom.lms.canvas import fill_gradebook
+from grader.classroom.lms.filling import Conflict, Filled, RowNote
 from grader.classroom.lms.grades import LmsGrade, has_decimal_comma, points_text, read_points
-from grader.classroom.lms.preflight import Conflict, Filled, RowNote
 from grader.classroom.lms.tables import read_table
 from grader.classroom.students import Student
 from grader.errors import InputError

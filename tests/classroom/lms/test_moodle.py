@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 
 from grader.checks.outcome import Outcome
 from grader.classroom.lms.feedback import LIMIT, FeedbackItem, feedback_html, feedback_items, is_own_feedback
+from grader.classroom.lms.filling import Conflict, Filled, RowNote
 from grader.classroom.lms.grades import LmsGrade
 from grader.classroom.lms.moodle import fill_worksheet
-from grader.classroom.lms.preflight import Conflict, Filled, RowNote
 from grader.classroom.lms.spreadsheet import neutral
 from grader.classroom.lms.tables import read_table
 from grader.classroom.students import Student
