@@ -38,7 +38,7 @@ class MissingElement(LookupError):
 
     `kind` and `name` are equal for checks that fail for the same reason; `known` lists the names that exist; `location` is a
     Location or LazyLocation in the file, or None. The text is the message and the detail, which is what differs
-    between students who made the same mistake; `mistake` is the message alone.
+    between students who made the same mistake; `mistake` is the message alone. `problem` is that of an Outcome.
     """
 
     def __init__(
@@ -50,11 +50,13 @@ class MissingElement(LookupError):
         message: str = "",
         detail: str = "",
         location: object = None,
+        problem: str = "",
     ) -> None:
         self.kind = kind
         self.name = name
         self.known = known
         self.location = location
+        self.problem = problem
         self.mistake = message or f"there is no {kind} {name!r}"
         if not message:
             detail = f"; the file has: {', '.join(map(repr, known[:20])) or 'none'}"

@@ -6,7 +6,14 @@ from typing import TYPE_CHECKING, Literal
 from grader.checks.outcome import Outcome, Status, failed, judged, passed, pending
 from grader.errors import MissingElement, NotDecided
 from grader.names import closest
-from grader.package.launch.places import HOME, PREFIX, SHARE, WORKING_FOLDER, is_launch_named, is_of_one_machine
+from grader.package.launch.places import (
+    PREFIX,
+    SHARE,
+    WORKING_FOLDER,
+    is_launch_named,
+    is_of_one_machine,
+    one_machine_only,
+)
 from grader.package.package import Package
 from grader.source import Location
 from grader.text import enumerated
@@ -41,7 +48,7 @@ def launch_starts(package: Package, *, name: str, nodes: list[str]) -> Outcome:
     if launch.faults and not launch.nodes:
         raise _stopped(package, name, launch)
     if launch.faults:
-        return failed(_faults(launch), launch.faults[0].location)
+        return failed(_faults(launch), launch.faults[0].location, problem=launch.faults[0].message)
     started = {_name_of(node) for node in launch.nodes if node.when}
     uncertain = {_name_of(node) for node in launch.nodes if node.when is None}
     missing = [choice for choice in (node.split(" or ") for node in nodes) if started.isdisjoint(choice)]
@@ -79,7 +86,8 @@ def launch_finds_files(package: Package, *, name: str) -> Outcome:
         message = "; ".join(dict.fromkeys(text for text, _ in wrong))
         if any(file.path is not None and is_of_one_machine(file.path) for _, file in wrong):
             message += f"; get_package_share_directory({package.name!r}) returns the folder that it is installed in"
-        return failed(message, wrong[0][1].location)
+        first = wrong[0][1]
+        return failed(message, first.location, problem=one_machine_only(first.path) if first.path else "")
     for (status, text), file in verdicts:
         if status == "missing":
             raise _missing(package, file, text)
@@ -116,8 +124,8 @@ def _launch(package: Package, name: str) -> "Launch":
 
 def _stopped(package: Package, name: str, launch: "Launch") -> MissingElement:
     """Return the fault of a launch file that starts nothing because of it."""
-    message, at = _faults(launch), launch.faults[0].location
-    return MissingElement("launch file", _path(package, name), message=message, location=at)
+    path, first = _path(package, name), launch.faults[0]
+    return MissingElement("launch file", path, message=_faults(launch), location=first.location, problem=first.message)
 
 
 def _faults(launch: "Launch") -> str:
@@ -151,7 +159,7 @@ def _verdict(package: Package, named: "Reference") -> Verdict:
         owner, _, rest = path.removeprefix(f"{SHARE}/").partition("/")
         return _below_share(package, owner, rest, named)
     if is_of_one_machine(path):
-        return "failed", f"{looks} {path.replace(HOME, '~')}, which exists on one machine only"
+        return "failed", f"{looks} {one_machine_only(path)}"
     if path.startswith(WORKING_FOLDER) or not path.startswith("/"):
         shown = path.removeprefix(WORKING_FOLDER + "/")
         if shown.startswith("~"):

@@ -23,6 +23,7 @@ class Outcome(NamedTuple):
 
     `mistake` is the message without what differs between students who made the same mistake, such as the names of their
     joints: statistics count equal mistakes. It is empty where the message holds nothing of that kind.
+    `problem` is the message of the problem of the file, at `location`, that the outcome reports, where its own message says more.
     """
 
     status: Status
@@ -33,6 +34,7 @@ class Outcome(NamedTuple):
     unit: str | None = None
     location: Location | None = None
     mistake: str = ""
+    problem: str = ""
 
 
 def fault_of(returned: object) -> str:
@@ -71,6 +73,7 @@ _VALID: Mapping[str, Callable[[object], bool]] = {
     "unit": lambda value: value is None or _is_text(value),
     "location": lambda value: value is None or isinstance(value, Location),
     "mistake": _is_text,
+    "problem": _is_text,
 }
 
 
@@ -84,9 +87,9 @@ def pending(message: str, at: Location | None = None) -> Outcome:
     return Outcome("pending", message, location=at)
 
 
-def failed(message: str, at: AnyPlace = None, *, detail: str = "") -> Outcome:
+def failed(message: str, at: AnyPlace = None, *, detail: str = "", problem: str = "") -> Outcome:
     """Return the outcome for a fact that is not true; `detail` ends the message with what differs between students."""
-    return judged(False, message, at=at, detail=detail)
+    return judged(False, message, at=at, detail=detail)._replace(problem=problem)
 
 
 def judged(

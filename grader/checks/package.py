@@ -77,7 +77,7 @@ def setup_imports(package: Package) -> Outcome:
     if not setup.faults:
         return passed("every name that setup.py uses is defined")
     messages = list(dict.fromkeys(fault.message for fault in setup.faults))
-    return failed("; ".join(first_lines(messages, 3)), setup.location(setup.faults[0].at))
+    return failed("; ".join(first_lines(messages, 3)), setup.location(setup.faults[0].at), problem=messages[0])
 
 
 def files_of(package: Package, kind: FileKind, name: str) -> Sequence[str]:
@@ -135,7 +135,8 @@ def _installed(package: Package, files: Sequence[str], kind: FileKind | None) ->
             continue  # other criteria report the missing package.xml
         owner = _owner(stop.path, package) or "urdf"  # one mistake costs one criterion: of an unknown kind, the first
         if owner == kind or posixpath.dirname(stop.path) in {posixpath.dirname(path) for path in files}:
-            return failed(f"the build stops here: {stop.message}", setup.location(stop.at), detail=stop.hint)
+            message, problem = f"the build stops here: {stop.message}", stop.message + stop.hint
+            return failed(message, setup.location(stop.at), detail=stop.hint, problem=problem)
     copies = [copy for copy in setup.copies if copy.source in files]
     shares = tuple(f"share/{name}/" for name in package.names)
     inside = [copy for copy in copies if copy.target.startswith(shares)]
@@ -160,9 +161,10 @@ def _installed(package: Package, files: Sequence[str], kind: FileKind | None) ->
     if empty is None:
         message += ": no entry of data_files in setup.py names it"
         raise MissingElement(what, package.folder, message=message)
-    message += f": the pattern {empty.pattern!r} in setup.py matches no file"
+    problem = f"the pattern {empty.pattern!r} in setup.py matches no file"
     detail, at = package.pattern_hint(empty.pattern), setup.location(empty.at)
-    raise MissingElement(what, package.folder, message=message, detail=detail, location=at)
+    message += f": {problem}"
+    raise MissingElement(what, package.folder, message=message, detail=detail, location=at, problem=problem + detail)
 
 
 def _meant(empty: "Sequence[EmptyGlob]", files: Sequence[str], kind: FileKind | None) -> "EmptyGlob | None":

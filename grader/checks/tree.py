@@ -19,7 +19,8 @@ def urdf_loads(urdf: Reading) -> Outcome:
     causes = [problem for problem in problems if not problem.kind.is_consequence]
     first = (causes or problems or list(urdf.problems))[0]
     others = f" (and {counted(len(problems) - 1, 'more such problem')})" if len(problems) > 1 else ""
-    return failed(f"{first.message}{others}", first.location)._replace(mistake=f"{first.code}: {first.kind.title}")
+    outcome = failed(f"{first.message}{others}", first.location, problem=first.message)
+    return outcome._replace(mistake=f"{first.code}: {first.kind.title}")
 
 
 def held_by(robot: Configuration, *, link: str, parent: str, joint_type: JointType) -> Outcome:

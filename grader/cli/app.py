@@ -5,13 +5,17 @@ import re
 import sys
 from collections.abc import Sequence
 from importlib import import_module
+from typing import Annotated
 
 import typer
 
+from grader import __version__
 from grader.cli.output import warn
+from grader.cli.suggestions import SHELLS
 from grader.errors import GraderError, RubricError
 from grader.text import printable
 from grader.usecases.exit_codes import ExitCode
+from grader.usecases.writing import write_stdout
 
 # In the order of the help. Each is a function, or a group of commands, in the module of its name.
 COMMANDS = (
@@ -20,6 +24,41 @@ COMMANDS = (
 COMPLETION_OPTIONS = ("--show-completion", "--install-completion")
 _NEGATIVE = re.compile(r"-[.,]?[0-9]")
 _OPTION = re.compile(r"--[^=]+")  # such as --comment, whose value may be -1
+
+
+def _print_version(is_given: bool) -> None:
+    if is_given:
+        write_stdout(f"grader {__version__}\n")
+        raise typer.Exit
+
+
+def _root(
+    version: Annotated[
+        bool,
+        typer.Option("--version", "-V", help="Print the version and exit.", callback=_print_version, is_eager=True),
+    ] = False,
+    show_completion: Annotated[
+        str | None,
+        typer.Option(metavar="[SHELL]", help="Print the completion script for a shell.", autocompletion=lambda: SHELLS),
+    ] = None,
+    install_completion: Annotated[
+        str | None,
+        typer.Option(metavar="[SHELL]", help="Install the completion script.", autocompletion=lambda: SHELLS),
+    ] = None,
+) -> None:
+    """Grade robotics lab submissions: URDF, forward kinematics, ROS 2 package.
+
+    Students start with grade, instructors with rubric show and batch. Each command describes its arguments under --help, with
+    examples.
+
+    Examples:
+
+      grader grade my_robot.urdf
+
+      grader rubric show lab6
+
+      grader batch submissions.zip --gradebook lab6.db
+    """
 
 
 def make_app(names: Sequence[str]) -> typer.Typer:
@@ -32,12 +71,7 @@ def make_app(names: Sequence[str]) -> typer.Typer:
         pretty_exceptions_enable=False,
         context_settings={"help_option_names": ["-h", "--help"]},
     )
-    if len(names) > 1:
-        from grader.cli.root import root
-
-        app.callback()(root)
-    else:  # the options of `grader` itself precede the command
-        app.callback()(lambda: None)
+    app.callback()(_root if len(names) > 1 else lambda: None)  # the options of `grader` itself precede the command
     for name in names:
         command = getattr(import_module(f"grader.cli.{name}"), name)
         if isinstance(command, typer.Typer):
@@ -48,7 +82,10 @@ def make_app(names: Sequence[str]) -> typer.Typer:
 
 
 def run(arguments: Sequence[str]) -> int:
-    """Run a command and return the exit code. Every error is one line on standard error, never a traceback."""
+    """Run a command, print the text that it returns, and return the exit code.
+
+    Every error is one line on standard error, never a traceback.
+    """
     try:
         if os.environ.get("_GRADER_COMPLETE"):
             from grader.cli.completion import complete
@@ -60,6 +97,8 @@ def run(arguments: Sequence[str]) -> int:
             return set_up(arguments)
         app = make_app(_command(arguments) or COMMANDS)
         result = app(_points_last(arguments), standalone_mode=False, prog_name="grader")
+        if isinstance(result, str):
+            write_stdout(result)
     except RubricError as error:
         for line in error.complaints:
             warn(line)

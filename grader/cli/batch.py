@@ -1,8 +1,7 @@
 """grader batch: a class against a rubric, into a gradebook."""
 
-from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal, get_args
 
 import typer
 
@@ -11,20 +10,8 @@ from grader.cli.output import screen, warn
 from grader.errors import GraderError
 from grader.files.reading import URDF_LIMIT
 from grader.report.formats import Format, OutputFormat
-from grader.usecases.writing import write_stdout
 
-
-class Layout(StrEnum):
-    """How a class folder is organized."""
-
-    AUTO = "auto"
-    FOLDERS = "folders"
-    CANVAS = "canvas"
-    MOODLE = "moodle"
-    TEAMS = "teams"
-    NBGRADER = "nbgrader"
-
-
+Layout = Literal["auto", "folders", "canvas", "moodle", "teams", "nbgrader"]
 _PATH = "A folder with an entry for each student, or the zip of an LMS."
 _ADD = "Add to the gradebook even if it has another class, assignment or rubric."
 _TIMEOUT = "Time limit for each submission."
@@ -40,8 +27,8 @@ def batch(
     timeout: Annotated[float, typer.Option(metavar="SECONDS", min=0.1, help=_TIMEOUT)] = 60.0,
     roster: Annotated[Path | None, typer.Option(metavar="CSV", help="The students of the class.")] = None,
     layout: Annotated[
-        Layout, typer.Option(metavar="LAYOUT", help=f"Layout of PATH: {', '.join(Layout)}.")
-    ] = Layout.AUTO,
+        Layout, typer.Option(metavar="LAYOUT", help=f"Layout of PATH: {', '.join(get_args(Layout))}.")
+    ] = "auto",
     assignment: Annotated[str, typer.Option(metavar="NAME", help="The assignment in the nbgrader layout.")] = "",
     reports: Annotated[Path | None, typer.Option(metavar="DIR", help="Write a report for each student here.")] = None,
     report_format: Annotated[
@@ -54,7 +41,7 @@ def batch(
     cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="A Dask cluster, as tcp://host:8786.")] = None,
     max_size: MaxSizeOption = URDF_LIMIT,
     output_format: FormatOption = OutputFormat.TERMINAL,
-) -> int:
+) -> str:
     """Grade a class into a gradebook, in parallel.
 
     Rerun the same command to resume, or to grade what is new or changed. Submissions are isolated: a crash or timeout affects only
@@ -74,7 +61,6 @@ def batch(
         if kind.needs == "identity":
             raise GraderError(f"{kind} is for one repository: use `grader grade` there")
     request = ClassRequest(
-        path, gradebook, rubric, jobs, timeout, roster, layout.value, assignment, due, force, cluster, add, max_size, reports, formats, csv
+        path, gradebook, rubric, jobs, timeout, roster, layout, assignment, due, force, cluster, add, max_size, reports, formats, csv
     )  # fmt: skip
-    write_stdout(grade_class(request, output_format, screen(), progress_display(), warn))
-    return 0
+    return grade_class(request, output_format, screen(), progress_display(), warn)

@@ -8,7 +8,6 @@ import typer
 from grader.cli.options import FormatOption
 from grader.cli.output import screen
 from grader.report.formats import OutputFormat
-from grader.usecases.writing import write_stdout
 
 
 def diff(
@@ -17,7 +16,7 @@ def diff(
     before: Annotated[int | None, typer.Option("--from", metavar="RUN", help="The number of the older run.")] = None,
     after: Annotated[int | None, typer.Option("--to", metavar="RUN", help="The number of the newer run.")] = None,
     output_format: FormatOption = OutputFormat.TERMINAL,
-) -> int:
+) -> str:
     """Show whose grade changed between two runs, by how much, and why.
 
     Compares the last two runs of a gradebook, or two gradebooks. The reasons are a changed submission, rubric or grader, and manual
@@ -31,5 +30,4 @@ def diff(
     """
     from grader.usecases.diff import diff as compare
 
-    write_stdout(compare(gradebook, other, before, after, output_format, screen()))
-    return 0
+    return compare(gradebook, other, before, after, output_format, screen())

@@ -6,7 +6,6 @@ import typer
 
 from grader.cli.options import DEFAULT_RUBRIC, RubricOption
 from grader.cli.suggestions import explainable
-from grader.usecases.writing import write_stdout
 
 _NAME = "Such as URDF051, frame_at or lidar-frame."
 
@@ -14,7 +13,7 @@ _NAME = "Such as URDF051, frame_at or lidar-frame."
 def explain(
     name: Annotated[str, typer.Argument(metavar="CODE|CHECK|CRITERION", help=_NAME, autocompletion=explainable)],
     rubric: RubricOption = DEFAULT_RUBRIC,
-) -> int:
+) -> str:
     """Explain a problem code, a check or a criterion.
 
     Examples:
@@ -28,5 +27,4 @@ def explain(
     from grader.grading.rubric import load_rubric
     from grader.report.rubrics import explanation
 
-    write_stdout(explanation(name, load_rubric(rubric)))
-    return 0
+    return explanation(name, load_rubric(rubric))

@@ -1,8 +1,7 @@
 """grader export: the current grades, for a spreadsheet or an LMS."""
 
-from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal, get_args
 
 import typer
 
@@ -10,16 +9,7 @@ from grader.cli.options import DueOption, GradebookOption
 from grader.cli.output import warn
 from grader.usecases.writing import write_stdout
 
-
-class Target(StrEnum):
-    """The formats of exported grades."""
-
-    CSV = "csv"
-    CANVAS = "canvas"
-    MOODLE = "moodle"
-    JSON = "json"
-
-
+Target = Literal["csv", "canvas", "moodle", "json"]
 _INTO = "The gradebook or worksheet that the LMS exported."
 _STRICT = "Write nothing if a row or a grade is unmatched."
 _PENDING = "Also export grades with points that need manual grading."
@@ -27,7 +17,7 @@ _MAXIMUM = "Export points as they are, even if the LMS has another maximum."
 
 
 def export(
-    target: Annotated[Target, typer.Argument(metavar="|".join(Target), help="The format of the grades.")],
+    target: Annotated[Target, typer.Argument(metavar="|".join(get_args(Target)), help="The format of the grades.")],
     gradebook: GradebookOption,
     into: Annotated[Path | None, typer.Option(metavar="LMS-FILE", help=_INTO)] = None,
     output: Annotated[
@@ -56,7 +46,7 @@ def export(
     from grader.usecases.export import export as export_grades
 
     request = ExportRequest(
-        target.value, gradebook, into, output, strict, due, column, feedback_column, pending_as_zero, any_maximum
+        target, gradebook, into, output, strict, due, column, feedback_column, pending_as_zero, any_maximum
     )
     exported = export_grades(request, warn)
     write_stdout(exported.data)

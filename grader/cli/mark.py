@@ -6,7 +6,6 @@ import typer
 
 from grader.cli.options import ByOption, GradebookOption
 from grader.cli.output import warn
-from grader.usecases.writing import write_stdout
 
 
 def mark(
@@ -16,7 +15,7 @@ def mark(
     gradebook: GradebookOption,
     comment: Annotated[str, typer.Option(metavar="TEXT", help="A reason, which the student reads.")] = "",
     by: ByOption = "",
-) -> int:
+) -> str:
     """Give a manual mark for one criterion of a submission.
 
     It is for what needs manual grading, or overrides the result of a check. Grading again keeps it. A later mark replaces it; the
@@ -32,5 +31,4 @@ def mark(
     """
     from grader.usecases.manual_marks import give_mark
 
-    write_stdout(give_mark(gradebook, submission, criterion, points, by, comment, warn) + "\n")
-    return 0
+    return give_mark(gradebook, submission, criterion, points, by, comment, warn) + "\n"

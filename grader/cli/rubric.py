@@ -7,7 +7,6 @@ import typer
 from grader.cli.output import warn
 from grader.cli.suggestions import rubric_ids
 from grader.usecases import rubrics
-from grader.usecases.writing import write_stdout
 
 _HELP = """List, show and check rubrics, and list the checks.
 
@@ -26,22 +25,21 @@ RubricArgument = Annotated[
 
 
 @rubric.command("list")
-def list_rubrics() -> int:
+def list_rubrics() -> str:
     """List the rubrics that come with the grader.
 
     Examples:
 
       grader rubric list
     """
-    write_stdout(rubrics.listed())
-    return 0
+    return rubrics.listed()
 
 
 @rubric.command("show")
 def show_rubric(
     name: RubricArgument,
     answers: Annotated[bool, typer.Option("--answers", help="Also show the model answers.")] = False,
-) -> int:
+) -> str:
     """Show the parts and criteria of a rubric with their points.
 
     Examples:
@@ -54,12 +52,11 @@ def show_rubric(
     """
     from grader.report.rubrics import rubric_text
 
-    write_stdout(rubric_text(rubrics.load(name, warn, answers=answers)))
-    return 0
+    return rubric_text(rubrics.load(name, warn, answers=answers))
 
 
 @rubric.command("checks")
-def list_checks() -> int:
+def list_checks() -> str:
     """List the checks for rubrics, with their arguments.
 
     `grader explain` describes one of them in detail.
@@ -70,14 +67,13 @@ def list_checks() -> int:
     """
     from grader.report.rubrics import checks_text
 
-    write_stdout(checks_text())
-    return 0
+    return checks_text()
 
 
 @rubric.command("check")
 def check_rubric(
     file: RubricArgument,
-) -> int:
+) -> str:
     """Check a rubric and its reference solution.
 
     Exits 2 if there are mistakes, and lists all of them with their lines.
@@ -86,5 +82,4 @@ def check_rubric(
 
       grader rubric check my_lab.toml
     """
-    write_stdout(rubrics.check(file, warn) + "\n")
-    return 0
+    return rubrics.check(file, warn) + "\n"

@@ -1,26 +1,15 @@
 """grader schema: the JSON Schemas of what the grader reads and writes."""
 
-from enum import StrEnum
-from typing import Annotated
+from typing import Annotated, Literal, get_args
 
 import typer
 
-from grader.usecases.writing import write_stdout
-
-
-class SchemaName(StrEnum):
-    """What has a schema."""
-
-    REPORT = "report"
-    RUBRIC = "rubric"
-    INSPECT = "inspect"
-    CLASS = "class"
-    DIFF = "diff"
+SchemaName = Literal["report", "rubric", "inspect", "class", "diff"]
 
 
 def schema(
-    name: Annotated[SchemaName, typer.Argument(metavar="|".join(SchemaName), help="The schema to print.")],
-) -> int:
+    name: Annotated[SchemaName, typer.Argument(metavar="|".join(get_args(SchemaName)), help="The schema to print.")],
+) -> str:
     """Print a JSON Schema of the grader's input or output.
 
     These are reports, rubrics, inspections, classes (batch, stats, export json) and diffs.
@@ -34,5 +23,4 @@ def schema(
     from grader.report.json_data import to_json
     from grader.report.schemas import json_schema
 
-    write_stdout(to_json(json_schema(name.value)))
-    return 0
+    return to_json(json_schema(name))

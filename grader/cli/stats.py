@@ -3,12 +3,11 @@
 from grader.cli.options import DueOption, FormatOption, GradebookOption
 from grader.cli.output import screen
 from grader.report.formats import OutputFormat
-from grader.usecases.writing import write_stdout
 
 
 def stats(
     gradebook: GradebookOption, due: DueOption = None, output_format: FormatOption = OutputFormat.TERMINAL
-) -> int:
+) -> str:
     """Show statistics of a class: grades, criteria, common mistakes.
 
     They include manual marks, but not late penalties: --format json has these in the students' totals. A criterion's difficulty is
@@ -22,5 +21,4 @@ def stats(
     """
     from grader.usecases.class_summary import class_statistics
 
-    write_stdout(class_statistics(gradebook, due, output_format, screen()))
-    return 0
+    return class_statistics(gradebook, due, output_format, screen())

@@ -8,12 +8,7 @@ import typer
 if TYPE_CHECKING:
     from grader.grading.rubric import Rubric
 
-SHELLS = ("bash", "zsh", "fish")
-
-
-def shells() -> list[str]:
-    """Return the shells that completion supports."""
-    return list(SHELLS)
+SHELLS = ["bash", "zsh", "fish"]
 
 
 def rubric_ids() -> list[str]:

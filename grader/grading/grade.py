@@ -113,7 +113,9 @@ class _Grading:
         if first != criterion.id:
             return Result(criterion, _skipped(first), first)
         at = missing.location if isinstance(missing.location, Location | LazyLocation) else None
-        outcome = Outcome("failed", str(missing), location=location_of(at), mistake=missing.mistake)
+        outcome = Outcome(
+            "failed", str(missing), location=location_of(at), mistake=missing.mistake, problem=missing.problem
+        )
         return Result(criterion, self._explained(outcome, missing.name if missing.kind == "visual" else None))
 
     def _explained(self, outcome: Outcome, link: str | None = None) -> Outcome:
@@ -122,11 +124,13 @@ class _Grading:
         for problem in self.problems:
             if link is not None and problem.kind in _DROPPING and problem.subject == link:
                 message = f"{outcome.message}: {problem.message}"
-                return outcome._replace(message=message, location=problem.location, mistake=mistake)
+                return outcome._replace(
+                    message=message, location=problem.location, mistake=mistake, problem=problem.message
+                )
             explains = problem.kind in _EXPLAINING or (problem.kind is catalogue.DEFAULT_AXIS and outcome.unit == "deg")
             if link is None and explains and problem.location == outcome.location:
                 message = f"{outcome.message} ({problem.code}: {problem.message})"
-                return outcome._replace(message=message, mistake=mistake)
+                return outcome._replace(message=message, mistake=mistake, problem=problem.message)
         return outcome
 
 

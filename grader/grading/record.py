@@ -13,7 +13,7 @@ from grader.problems import Kind, Problem
 from grader.source import Location
 from grader.submission.urdf import OtherCandidate
 
-_STORED_FIELDS = 7  # of an outcome: its mistake is in a column of its own
+_VALUES = 7  # of an outcome: its mistake is in a column of its own, and few have a problem
 
 
 class Template:
@@ -83,21 +83,25 @@ def from_record(text: str, rubric: Rubric, quote: Quote | None = None, template:
 
 def _result(same: dict[str, Outcome], result: Result) -> Any:
     criterion, outcome, because, traceback, _ = result
-    stored = outcome[:_STORED_FIELDS]
+    stored = _stored(outcome)
     if because is None and not traceback:
         template = same.get(criterion.id)
-        return criterion.position if template and template[:_STORED_FIELDS] == stored else (criterion.position, stored)
+        return criterion.position if template and _stored(template) == stored else (criterion.position, stored)
     return criterion.position, stored, because, traceback
+
+
+def _stored(outcome: Outcome) -> tuple[Any, ...]:
+    return (*outcome[:_VALUES], outcome.problem) if outcome.problem else outcome[:_VALUES]
 
 
 def _read_result(rubric: Rubric, same: dict[str, Outcome], entry: Any) -> Result:
     if isinstance(entry, int):
         return Result(rubric.criteria[entry], same[rubric.criteria[entry].id])
-    index, (status, message, measured, expected, tolerance, unit, place), *rest = entry
+    index, (status, message, measured, expected, tolerance, unit, place, *problem), *rest = entry
     location = Location(*place) if place is not None else None
     if rubric.criteria[index].check.function is answered:
         expected = None  # records of earlier development versions hold the model answer here
-    outcome = Outcome(status, message, _value(measured), _value(expected), tolerance, unit, location)
+    outcome = Outcome(status, message, _value(measured), _value(expected), tolerance, unit, location, "", *problem)
     return Result(rubric.criteria[index], outcome, *rest)
 
 

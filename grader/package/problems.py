@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator
 
 from grader.package import catalogue
 from grader.package.launch.model import Launch
-from grader.package.launch.places import HOME, is_of_one_machine
+from grader.package.launch.places import is_of_one_machine, one_machine_only
 from grader.package.package import RESOURCE_INDEX, Package
 from grader.package.setup_py import Setup
 from grader.problems import Problem
@@ -72,5 +72,4 @@ def _launch_problems(launch: Launch) -> Iterator[Problem]:
         yield from (Problem(kind, fault.message, fault.location) for fault in faults)
     for reference in launch.references:
         if reference.path is not None and is_of_one_machine(reference.path):
-            message = f"{reference.path.replace(HOME, '~')}, which exists on one machine only"
-            yield Problem(catalogue.HARD_CODED, message, reference.location)
+            yield Problem(catalogue.HARD_CODED, one_machine_only(reference.path), reference.location)

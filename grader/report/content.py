@@ -145,15 +145,10 @@ def _lines(text: object) -> tuple[str, ...]:
 
 
 def other_problems(report: Report) -> Iterator[Problem]:
-    """Yield the problems that no failed criterion has reported."""
-    reported = [
-        (result.outcome.location, result.outcome.message)
-        for result in report.results
-        if result.outcome.status == "failed"
-    ]
-    for problem in report.problems:
-        if not any(where == problem.location and problem.message in message for where, message in reported):
-            yield problem
+    """Return the problems that no failed criterion has reported."""
+    failed = (result.outcome for result in report.results if result.outcome.status == "failed")
+    reported = {(outcome.location, outcome.problem or outcome.message) for outcome in failed}
+    return (problem for problem in report.problems if (problem.location, problem.message) not in reported)
 
 
 def other_problems_title(report: Report) -> str:

@@ -35,6 +35,11 @@ def launch_stem(name: str) -> str:
     return base.split(".launch")[0] if ".launch" in base else base.rpartition("_launch.")[0] or base
 
 
+def one_machine_only(path: str) -> str:
+    """Return the words for a path that leads to one machine."""
+    return f"{path.replace(HOME, '~')}, which exists on one machine only"
+
+
 def is_of_one_machine(path: str) -> bool:
     """Return whether a path leads into a user's home folder, or to a disk of one machine."""
     if path.startswith(HOME) or path[1:3] in (":\\", ":/"):
