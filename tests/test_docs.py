@@ -2,9 +2,11 @@
 
 import re
 import runpy
+import tomllib
 from pathlib import Path
 
 import pytest
+import yaml
 
 from grader import __version__
 
@@ -49,6 +51,13 @@ def test_codes_and_criteria_exist(page: Path) -> None:
     assert all(f"## {code}" in GENERATED["problems.md"] for code in codes)
 
 
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_code_blocks_can_be_parsed(page: Path) -> None:
+    """Every block of YAML or TOML is valid, so it was not wrapped like prose."""
+    for kind, block in re.findall(r"^ *```(yaml|toml)\n(.*?)^ *```", page.read_text(encoding="utf-8"), re.S | re.M):
+        (yaml.safe_load if kind == "yaml" else tomllib.loads)(block)
+
+
 def test_the_lab_page_names_every_criterion() -> None:
     """Each criterion of the rubric has a row; the two wheels share rows."""
     from grader.grading.rubric import load_rubric
@@ -61,8 +70,6 @@ def test_the_lab_page_names_every_criterion() -> None:
 
 def test_every_dependency_has_its_reason() -> None:
     """Each package of pyproject.toml has a line in the decisions."""
-    import tomllib
-
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     decisions = (ROOT / "docs" / "decisions.md").read_text(encoding="utf-8")
     extras = [requirement for group in project["optional-dependencies"].values() for requirement in group]

@@ -1,6 +1,6 @@
 """CLASSROOM/autograders/ASSIGNMENT/autograder.py of a Classroom 50 repository: grades a submission with grader.
 
-Ends with 0 whatever the mark; otherwise the runner takes it that the autograder itself is broken.
+Exits with 0 whatever the score: the runner treats any other exit code as a broken autograder.
 """
 
 import shutil
