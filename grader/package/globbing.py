@@ -99,22 +99,11 @@ class PackageListing:
             found = _bounded(list(dict.fromkeys(chain.from_iterable(steps))))
         return found
 
-    def below(self, folder: str) -> list[str]:
-        """Return the folders below a folder, relative to it."""
-        found: list[str] = []
-        pending = [folder]
-        start = len(folder) + 1 if folder else 0
-        while pending:
-            here = pending.pop()
-            inner = [path for name in self.names(here) if (path := _join(here, name)) in self.folders]
-            pending += inner
-            found += [path[start:] for path in inner]
-        return found
-
     def _path_step(self, real: str, path: str, part: str, *, last: bool) -> list[str]:
         """Return what one part of a pathlib pattern matches in a folder."""
         if part == "**":
-            return [path, *(_join(path, folder) for folder in self.below(real))]
+            folders = _GlobSearch(self, hidden=True).descendants(real, folders_only=True)
+            return [path, *(_join(path, folder) for folder in folders)]
         matches = _matcher(part) if _MAGIC.search(part) else part.__eq__
         names = [name for name in self.names(real) if matches(name)]
         return [_join(path, name) for name in names if last or _join(real, name) in self.folders]
@@ -125,9 +114,9 @@ class _GlobSearch:
     """One call of glob.glob, with the algorithm of Python's own; paths are relative to the start of the search."""
 
     listing: PackageListing
-    start: str
-    recursive: bool
-    hidden: bool
+    start: str = ""
+    recursive: bool = False
+    hidden: bool = False
 
     def find(self, pattern: str, *, folders_only: bool) -> list[str]:
         """Return the paths that match a pattern; only folders for the part before the last one."""
@@ -152,12 +141,13 @@ class _GlobSearch:
                 yield part
         elif part == "**" and self.recursive:
             yield ""
-            yield from self._descendants(real, folders_only=folders_only)
+            yield from self.descendants(real, folders_only=folders_only)
         else:
             matches = _matcher(part)
             yield from (name for name in self._visible(real, folders_only, part.startswith(".")) if matches(name))
 
-    def _descendants(self, folder: str, *, folders_only: bool) -> Iterator[str]:
+    def descendants(self, folder: str, *, folders_only: bool) -> Iterator[str]:
+        """Yield the paths below a folder, relative to it."""
         pending = [("", folder)]
         while pending:
             path, real = pending.pop()

@@ -18,8 +18,13 @@ class Display:
     package: str
     kind: str
     name: str
-    enabled: bool
+    group_enabled: bool
     node: Node
+
+    @property
+    def enabled(self) -> bool:
+        """Whether it is enabled, and its groups as well."""
+        return self.group_enabled and self.is_enabled
 
     def is_on(self, setting: str) -> bool:
         """Return whether one of its own settings is on; a missing one is."""
@@ -28,7 +33,7 @@ class Display:
     @property
     def is_enabled(self) -> bool:
         """Whether it is enabled itself, whatever its group is; Enabled overrides Value."""
-        return _is_enabled(self.node)
+        return switched_on(self.node.get("Enabled"), default=switched_on(self.node.get("Value"), default=False))
 
     @property
     def location(self) -> Location:
@@ -92,10 +97,6 @@ def switched_on(node: Node | None, *, default: bool) -> bool:
     return node.text.lower() not in ("false", "0", "")
 
 
-def _is_enabled(display: Node) -> bool:
-    return switched_on(display.get("Enabled"), default=switched_on(display.get("Value"), default=False))
-
-
 def _displays(listed: Node | None) -> Iterator[Display]:
     """Yield the displays of a list and of its groups; in a disabled group they are disabled."""
     pending = [(node, True) for node in listed.items] if listed is not None else []
@@ -105,8 +106,8 @@ def _displays(listed: Node | None) -> Iterator[Display]:
         node, group_enabled = pending.pop(0)
         named, title = node.get("Class"), node.get("Name")
         package, _, kind = (named.text or "" if named else "").rpartition("/")
-        enabled = group_enabled and _is_enabled(node)
-        yield Display(package, kind, title.text or "" if title else "", enabled, node)
+        display = Display(package, kind, title.text or "" if title else "", group_enabled, node)
+        yield display
         inner = node.get("Displays")
         if inner is not None and len(pending) < _MAX_DISPLAYS:
-            pending += [(display, enabled) for display in inner.items]
+            pending += [(item, display.enabled) for item in inner.items]

@@ -70,16 +70,12 @@ def read_setup(code: Code | SyntaxFault, tree: Tree) -> Setup:
     if isinstance(code, SyntaxFault):
         return Setup(code.source.path, code.source, code)
     setup, order_matters = _evaluate(code, tree, ORDERS[0])
-    if order_matters:
-        others = (_evaluate(code, tree, order)[0] for order in ORDERS[1:])
-        if any(_outcome(other) != _outcome(setup) for other in others):
-            doubt = Unknown("the result depends on the order in which folders are listed", START)
-            return replace(setup, copies=(), stops=(), unknown=(*setup.unknown, doubt))
-    return setup
-
-
-def _outcome(setup: Setup) -> tuple[set[InstalledFile], set[InstallError], set[PythonError]]:
-    return set(setup.copies), set(setup.stops), set(setup.faults)
+    others = [_evaluate(code, tree, order)[0] for order in ORDERS[1:]] if order_matters else []
+    results = {(frozenset(it.copies), frozenset(it.stops), frozenset(it.faults)) for it in (setup, *others)}
+    if len(results) == 1:
+        return setup
+    doubt = Unknown("the result depends on the order in which folders are listed", START)
+    return replace(setup, copies=(), stops=(), unknown=(*setup.unknown, doubt))
 
 
 def _evaluate(code: Code, tree: Tree, order: str) -> tuple[Setup, bool]:

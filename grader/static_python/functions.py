@@ -9,6 +9,7 @@ from typing import Any
 from grader.static_python.evaluation import Evaluation, FunctionTable
 from grader.static_python.inspection import (
     MAX_ITEMS,
+    MAX_PATH,
     as_text,
     distinct,
     items_of,
@@ -20,7 +21,6 @@ from grader.static_python.methods import in_order
 from grader.static_python.operators import extend
 from grader.static_python.values import Call, Unknown, Value, unknown_in
 
-_MAX_PATH = 4_096
 _MAX_NUMBER = 10**9
 
 
@@ -59,7 +59,7 @@ def _join(evaluation: Evaluation, call: Call) -> Value:
     if any(isinstance(value, list | tuple | dict | int | float | None) for value in call.args):
         evaluation.error("os.path.join takes strings, and one argument is none: is a bracket misplaced?", call.at)
     paths = [path for value in call.args if (path := path_text(value)) is not None]
-    if paths and len(paths) == len(call.args) and sum(map(len, paths)) <= _MAX_PATH:
+    if paths and len(paths) == len(call.args) and sum(map(len, paths)) <= MAX_PATH:
         return posixpath.join(*paths)
     if unknown_in(call.args) is None and any(isinstance(value, Call) for value in call.args):
         return Call("os.path.join", call.args, call.kwargs, call.at)

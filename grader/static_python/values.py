@@ -102,12 +102,10 @@ class Scope:
 
     def find(self, name: str) -> Value:
         """Return the value of a name; raises KeyError."""
-        scope: Scope | None = self.declared.get(name, self)
-        while scope is not None:
-            if name in scope.names:
-                return scope.names[name]
+        scope = self.declared.get(name, self)
+        while name not in scope.names and scope.outer is not None:
             scope = scope.outer
-        raise KeyError(name)
+        return scope.names[name]
 
     def bind(self, name: str, value: Value) -> None:
         """Give a name a value, in the scope that it belongs to."""
@@ -115,11 +113,9 @@ class Scope:
 
     def holder(self, name: str) -> "Scope":
         """Return the nearest scope around this one that binds a name, else the outermost."""
-        scope = self
-        while scope.outer is not None:
+        scope = self.outer or self
+        while name not in scope.names and scope.outer is not None:
             scope = scope.outer
-            if name in scope.names:
-                break
         return scope
 
 

@@ -98,9 +98,8 @@ def find_urdf_launch(findings: Findings, name: str, call: Call, context: Context
                 findings.refer("urdf", unknown, call)
     if name != "display":
         return (STATE_PUBLISHER,)
-    config = context.arguments.get("rviz_config")
-    opened = resolve(config, context) if config is not None else None
-    if isinstance(opened, str | Unknown):
+    opened = resolve(context.arguments.get("rviz_config", Contents("", "")), context)
+    if not isinstance(opened, Contents):
         findings.refer("rviz", opened, call)
     else:
         message = "urdf_launch is included without rviz_config, so it opens its own configuration, not the lab's"

@@ -10,13 +10,12 @@ from grader.package.launch.commands import PART_UNKNOWN, file_read
 from grader.package.launch.model import Contents, Context, Resolved
 from grader.package.launch.places import HOME, PREFIX, SHARE
 from grader.static_python.expressions import evaluate_text
-from grader.static_python.inspection import as_text
+from grader.static_python.inspection import MAX_TEXT, as_text
 from grader.static_python.parse import START
 from grader.static_python.values import Call, Unknown, Value
 
 COMMAND_LINE = "launch.frontend.command line"  # a line that is split into words, as in XML and YAML
 _MAX_DEPTH = 40
-_MAX_TEXT = 100_000
 _PERFORMED = (".perform", ".find")  # methods of substitutions that return a string
 # Methods whose result is the text, or the contents, of the object that they are called on.
 _OF_OWNER = ("perform", "read", "toxml", "toprettyxml", "documentElement", "decode", "strip")
@@ -58,7 +57,7 @@ def _texts(parts: list[Value] | tuple[Value, ...], context: Context, depth: int)
             return text if isinstance(text, Unknown) else Unknown("the content of a file is part of a text", START)
         texts.append(text)
         length += len(text)
-        if length > _MAX_TEXT:
+        if length > MAX_TEXT:
             return Unknown("a text grows too long", START)
     return texts
 
@@ -164,7 +163,7 @@ class _Substitution:
         parts = self.call.argument(0, "command")
         pieces = parts if isinstance(parts, list | tuple) else [parts]
         texts = [self.resolve(piece) for piece in pieces]
-        command = "".join(text if isinstance(text, str) else PART_UNKNOWN for text in texts).strip()[:_MAX_TEXT]
+        command = "".join(text if isinstance(text, str) else PART_UNKNOWN for text in texts).strip()[:MAX_TEXT]
         errors: list[str] = []
         by, path = file_read(command, errors)
         self.context.errors += [(message, self.call.at) for message in errors]
