@@ -8,8 +8,11 @@ from dataclasses import dataclass
 from fnmatch import translate
 from functools import lru_cache
 from itertools import chain
+from typing import NamedTuple
 
 from grader.files.tree import Tree
+from grader.static_python.parse import Position
+from grader.static_python.values import Value
 
 # The file system lists a folder in any order: a result that depends on the order differs between these.
 ORDERS = ("sorted", "reversed", "rotated")
@@ -17,12 +20,20 @@ _MAGIC = re.compile(r"[*?\[]")
 _OUTSIDE = "it searches for files outside of the package"
 _COMPILED = "__pycache__"  # its files are made by Python
 _MAX_FOUND = 20_000
+_MAX_RECORDED = 200  # paths of one search whose position is kept
 _MAX_PATTERN = 1_024
 _MAX_PARTS = 50
 
 
 class SearchError(Exception):
     """A search that the list of a package's files does not answer."""
+
+
+class EmptyGlob(NamedTuple):
+    """A pattern that matches no file."""
+
+    pattern: str
+    at: Position
 
 
 class PackageListing:
@@ -37,12 +48,21 @@ class PackageListing:
         self._unseen = {path for path in tree.unseen if path.rpartition("/")[2] != _COMPILED}
         self.names_read = 0
         self.order_matters = False  # whether a search has returned several names
+        self.positions: dict[str, Position] = {}  # of the searches that found a path
+        self.empty: dict[EmptyGlob, None] = {}  # in the order of the searches
         self._children: dict[str, list[str]] = {}
         for path in sorted([*tree.files, *tree.folders, *tree.unseen], reverse=order == "reversed"):
             folder, _, name = path.rpartition("/")
             self._children.setdefault(folder, []).append(name)
         if order == "rotated":
             self._children = {folder: [*names[1:], names[0]] for folder, names in self._children.items()}
+
+    def record(self, pattern: str, found: list[Value], at: Position) -> list[Value]:
+        """Keep the position of a search for each path that it found, up to a limit, and return the paths."""
+        self.positions |= dict.fromkeys(map(str, found[:_MAX_RECORDED]), at)
+        if not found:
+            self.empty[EmptyGlob(pattern, at)] = None
+        return found
 
     def names(self, folder: str) -> list[str]:
         """Return the names in a folder. Raises SearchError for an ignored folder."""

@@ -8,7 +8,7 @@ import ast
 import builtins
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from grader.static_python.imports import USUAL_NAMES
 from grader.static_python.inspection import MAX_ITEMS
@@ -69,7 +69,6 @@ class Evaluation:
         self.functions = functions
         self.module = Scope(dict(names))
         self.errors: list[PythonError] = []
-        self.records: list[Any] = []  # data that functions of the table keep for their caller
         self.calls: list[Call] = []  # every call that is not evaluated, in order
         self.uncertainty: Unknown | None = None  # set while it is unknown whether a statement is reached
         self.handlers = 0  # how many blocks around this place catch errors
