@@ -67,14 +67,11 @@ _NUMBERED = re.compile(r"^\(?([1-9]\d)[.):]\s+")
 
 
 class Heading(NamedTuple):
-    """A line that names a task or step: its index, what it names, and the index of the line that ends its passage.
-
-    `task` is that of the label, or of the headings above.
-    """
+    """A line that names a task or step: its index, what it names, and the index of the line that ends its passage."""
 
     start: int
     label: Label
-    task: int | None
+    task: int | None  # that of the label, or of the headings above
     end: int
 
 

@@ -58,15 +58,12 @@ class InstallError(NamedTuple):
 
 @dataclass(slots=True)
 class DataFiles:
-    """Installs the files of data_files as setuptools' install_data does, without touching any.
-
-    `root` is the absolute path that stands for the package's folder; `positions` has the origin of each path.
-    """
+    """Installs the files of data_files as setuptools' install_data does, without touching any."""
 
     tree: Tree
     listing: PackageListing
-    root: str
-    positions: Mapping[str, Position]
+    root: str  # the absolute path that stands for the package's folder
+    positions: Mapping[str, Position]  # the origin of each path
     copies: list[InstalledFile] = field(default_factory=list)
     stops: list[InstallError] = field(default_factory=list)
     unknown: list[Unknown] = field(default_factory=list)

@@ -37,16 +37,13 @@ class EmptyGlob(NamedTuple):
 
 
 class PackageListing:
-    """The folders of a file tree, listed in one of the possible orders.
-
-    Paths are relative to the tree's root. `names_read` counts the names that searches have read.
-    """
+    """The folders of a file tree, listed in one of the possible orders. Paths are relative to the tree's root."""
 
     def __init__(self, tree: Tree, order: str = ORDERS[0]) -> None:
         self.files = tree.files
         self.folders = tree.folders | tree.unseen | {""}
         self._unseen = {path for path in tree.unseen if path.rpartition("/")[2] != _COMPILED}
-        self.names_read = 0
+        self.names_read = 0  # by searches
         self.order_matters = False  # whether a search has returned several names
         self.positions: dict[str, Position] = {}  # of the searches that found a path
         self.empty: dict[EmptyGlob, None] = {}  # in the order of the searches

@@ -32,15 +32,12 @@ _MAX_NAMED = 3  # files that a message names
 
 @dataclass(frozen=True)
 class Package:
-    """One package; `folder` is its path in the submission, and `tree` has its files by their paths in the package.
-
-    `packages` has every package of the submission by its name, this one included.
-    """
+    """One package; `folder` is its path in the submission, and `tree` has its files by their paths in the package."""
 
     folder: str
     tree: Tree = field(repr=False)
     manifest: "Manifest | None" = field(repr=False)
-    packages: dict[str, "Package"] = field(repr=False, compare=False)
+    packages: dict[str, "Package"] = field(repr=False, compare=False)  # all of the submission, by their names
     _launches: "dict[str, Launch]" = field(default_factory=dict, init=False, repr=False, compare=False)
     _rviz_files: "dict[str, RvizFile]" = field(default_factory=dict, init=False, repr=False, compare=False)
 

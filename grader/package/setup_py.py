@@ -27,10 +27,7 @@ _CHANGES = (
 
 @dataclass(frozen=True, slots=True)
 class Setup:
-    """The result of a setup.py. `fault` is set where Python cannot read it: nothing else is known then.
-
-    `unknown` has what cannot be determined: a file that is not among `copies` may be installed all the same.
-    """
+    """The result of a setup.py. `fault` is set where Python cannot read it: nothing else is known then."""
 
     path: str
     source: Source
@@ -40,7 +37,7 @@ class Setup:
     stops: tuple[InstallError, ...] = ()
     empty: tuple[EmptyGlob, ...] = ()
     faults: tuple[PythonError, ...] = ()
-    unknown: tuple[Unknown, ...] = ()
+    unknown: tuple[Unknown, ...] = ()  # with any of these, a file that is not among the copies may be installed as well
     is_called: bool = True
     called_at: Position = START
 

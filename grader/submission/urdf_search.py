@@ -181,13 +181,12 @@ def _distance(package: Package, wanted: str) -> int:
 
 def _read_package(tree: Tree, folder: str, known: dict[str, Package]) -> Package:
     own = tree.below(folder)
-    file = own.files.get(MANIFEST)
-    if file is None:
-        return Package(folder, own, None, known)
     path = f"{folder}/{MANIFEST}" if folder else MANIFEST
+    start = Location(path, 1, 1)
+    manifest = None
     try:
-        manifest = read_manifest(file.read(_MAX_MANIFEST_SIZE), path)
+        if MANIFEST in own.files:
+            manifest = read_manifest(own.files[MANIFEST].read(_MAX_MANIFEST_SIZE), path)
     except InputError as error:
-        start = Location(path, 1, 1)
         manifest = Manifest(Source(path, ""), None, "", (), start, start, unread=str(error))
     return Package(folder, own, manifest, known)

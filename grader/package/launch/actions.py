@@ -104,7 +104,7 @@ class ActionVisitor:
         """Visit the actions of a description, which may not contain lists."""
         if isinstance(actions, list | tuple) and any(isinstance(action, list | tuple) for action in actions):
             context.add_error("expected an action, and this is a list of actions: write * before it", call.at)
-        self.visit(actions if actions is not None else [], context, when)
+        self.visit(actions, context, when)
 
     def _inner(self, call: Call, actions: Value, context: Context, when: bool | None) -> None:
         """Visit the actions in another action, which have to be a list."""
@@ -128,15 +128,15 @@ class ActionVisitor:
         """Visit the actions for an event. Only the start of another process certainly happens."""
         for value in (value for name, value in call.kwargs.items() if name.startswith("on_") or name == "entities"):
             actions = self.call_function(value, call.at, ()) if isinstance(value, Function) else value
-            self.visit(actions if actions is not None else [], context, when)
+            self.visit(actions, context, when)
 
     def _opaque_function(self, call: Call, context: Context, when: bool | None) -> None:
         function, args = call.argument(0, "function"), call.kwargs.get("args") or []
         if not isinstance(function, Function) or not isinstance(args, list | tuple) or call.kwargs.get("kwargs"):
             self.findings.add_unknown("the result of an OpaqueFunction is known only at run time", call.at)
             return
-        actions = self.call_function(function, call.at, (Call("launch.LaunchContext", [], {}, call.at), *args))
-        self.visit(actions if actions is not None else [], context, when)
+        arguments = (Call("launch.LaunchContext", [], {}, call.at), *args)
+        self.visit(self.call_function(function, call.at, arguments), context, when)
 
     def _include(self, call: Call, context: Context, when: bool | None) -> None:
         if when is False:

@@ -8,10 +8,7 @@ _NO_SPACE = re.compile(r"(xacro|cat)(?=/)")
 
 
 def file_read(command: str, errors: list[str]) -> tuple[str, str]:
-    """Return the program that a command runs, xacro or cat, and the file that it reads; empty strings for other commands.
-
-    What is wrong with the command is added to `errors`.
-    """
+    """Return the program, xacro or cat, of a command and the file that it reads, or empty strings; errors are added."""
     if glued := _NO_SPACE.match(command):
         errors.append(f"a space is missing between {glued[1]} and the path: write '{glued[1]} '")
         command = f"{glued[1]} {command[glued.end() :]}"
