@@ -93,14 +93,10 @@ class Evaluation:
             self._messages.add(message)
             self.errors.append(PythonError(message, at))
 
-    def may_fail(self) -> None:
-        """Record that what happens here may raise an error."""
-        self.may_have_failed = True
-
     def record(self, call: Call) -> Call:
         """Record a call that is not evaluated, and return it as its own result."""
         if not call.name.startswith("builtins.open"):
-            self.may_fail()
+            self.may_have_failed = True
         call.uncertainty = self.uncertainty
         if len(self.calls) < MAX_ITEMS:
             self.calls.append(call)
@@ -112,7 +108,7 @@ class Evaluation:
             if call.args and call.args[0] not in (0, None):
                 self.error("the file exits here with an error", call.at)
             raise ExitFlow
-        self.may_fail()
+        self.may_have_failed = True
 
     def find(self, node: ast.Name, scope: Scope) -> Value:
         """Return the value of a name. An undefined name is an error; its value is what was most likely meant."""

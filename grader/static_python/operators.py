@@ -100,7 +100,7 @@ def subscript(evaluation: Evaluation, owner: Value, key: Value, at: Position) ->
             evaluation.step(len(owner) // 32)
             return owner[key] if key.step != 0 else Unknown("the step of a slice is 0", at)
         return Unknown("this slice is not supported", at)
-    evaluation.may_fail()
+    evaluation.may_have_failed = True
     if isinstance(owner, QualifiedName):
         return Call(f"{owner.name}[]", [key], {}, at)
     if not isinstance(owner, list | tuple) or are_known(evaluation, owner):

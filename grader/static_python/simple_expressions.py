@@ -29,7 +29,7 @@ def call_value(evaluation: Evaluation, function: Value, call: Call) -> Value:
     """Return the value of a call of any value. The call gets its name here; one that is not evaluated is recorded."""
     match function:
         case Unknown():
-            evaluation.may_fail()
+            evaluation.may_have_failed = True
             return function
         case Function():
             return evaluation.call_function(function, call)

@@ -3,7 +3,6 @@
 import re
 
 from grader.names import did_you_mean
-from grader.package.launch.commands import PART_UNKNOWN
 from grader.package.launch.model import Context, Findings, StartedNode
 from grader.package.launch.references import (
     RVIZ,
@@ -13,7 +12,7 @@ from grader.package.launch.references import (
     find_description,
     find_urdf_launch,
 )
-from grader.package.launch.substitutions import resolve
+from grader.package.launch.substitutions import PART_UNKNOWN, resolve
 from grader.static_python.parse import START
 from grader.static_python.values import UNKNOWN_KEYS, Call, Unknown, Value
 

@@ -42,9 +42,7 @@ class _LaunchReader:
 
     opener: Opener
     includes_left: int = _MAX_INCLUDES
-    open: list[str] = field(
-        default_factory=list
-    )  # the launch files that are being read, each included by the one before
+    open: list[str] = field(default_factory=list)  # the files that are being read, each included by the one before
 
     def read(self, data: bytes, path: str, installed: str, context: Context) -> Launch:
         """Return a launch file together with those that it includes."""
@@ -108,18 +106,17 @@ def _python(data: bytes, path: str, installed: str, context: Context, include: I
     match names.get(_ENTRY):
         case Function() as entry:
             description = interpreter.call_from_outside(entry, entry.at)
-            error = _description_error(description)
-            if error:
+            if error := _description_error(description):
                 findings.add_fault(error, entry.at)
             visitor.visit(description, context, context.when)
         case Unknown() | QualifiedName() | Call() as description:
             visitor.visit(description, context, context.when)
         case _ if interpreter.stop_reason or "*" in names:
-            findings.unknown.append(LaunchFault("what it launches is known only at run time", Location(path, 1, 1)))
+            findings.add_unknown("what it launches is known only at run time", START)
         case _:
             findings.add_fault(f"the file does not define the function {_ENTRY}, which ros2 launch calls", START)
     if interpreter.stop_reason:
-        findings.unknown.append(LaunchFault(interpreter.stop_reason, Location(path, 1, 1)))
+        findings.add_unknown(interpreter.stop_reason, START)
     for fault in interpreter.errors:
         findings.add_fault(fault.message, fault.at)
     nodes = [call for call in interpreter.calls if call.name.endswith(".Node") and id(call) not in visitor.visited]

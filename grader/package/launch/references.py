@@ -1,9 +1,11 @@
 """The files that the nodes of a launch file are given: the URDF of robot_state_publisher, the configuration of RViz."""
 
-from grader.package.launch.commands import PART_UNKNOWN, display_config, split_words
+import re
+import shlex
+
 from grader.package.launch.model import Contents, Context, Findings, Reference
 from grader.package.launch.places import SHARE
-from grader.package.launch.substitutions import COMMAND_LINE, resolve
+from grader.package.launch.substitutions import COMMAND_LINE, PART_UNKNOWN, resolve
 from grader.static_python.values import UNKNOWN_KEYS, Call, Unknown, Value
 
 STATE_PUBLISHER = "robot_state_publisher"
@@ -64,7 +66,7 @@ def find_configuration(findings: Findings, call: Call, context: Context) -> None
         findings.refer("rviz", arguments, call)
         return
     words = command_words(arguments, context)
-    path = display_config(words)
+    path = _display_config(words)
     if path is None and PART_UNKNOWN not in words:
         message = (
             "rviz2 is started without -d and a file, so it opens its own default instead of the lab's configuration"
@@ -81,6 +83,15 @@ def find_configuration(findings: Findings, call: Call, context: Context) -> None
         findings.refer("rviz", path, call)
     else:
         findings.refer("rviz", None, call, wrong="rviz2 is given -d without the path of a file")
+
+
+def _display_config(words: list[str]) -> str | None:
+    for index, word in enumerate(words):
+        if word in ("-d", "--display-config"):
+            return "".join(words[index + 1 : index + 2])
+        if option := re.match(r"--display-config=|-d=?", word):
+            return word[option.end() :]
+    return None
 
 
 def find_urdf_launch(findings: Findings, name: str, call: Call, context: Context) -> tuple[str, ...]:
@@ -134,9 +145,12 @@ def _line_words(line: Call, context: Context) -> list[str]:
         if not isinstance(piece, str):
             words[-1] += _word(piece, context)
             continue
-        errors: list[str] = []
-        found = split_words(piece, errors)
-        context.errors += [(message, line.at) for message in errors]
+        try:
+            found = shlex.split(piece)
+        except ValueError:
+            message = "quotes cannot enclose a substitution in a line of arguments: remove them"
+            context.add_error(message, line.at)
+            found = piece.replace("'", " ").replace('"', " ").split()
         if piece[:1].isspace() or not found:
             words.append("")
         words[-1] += "".join(found[:1])
