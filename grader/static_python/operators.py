@@ -48,8 +48,8 @@ def operate(evaluation: Evaluation, op: ast.operator, left: Value, right: Value,
             return [Unknown("the added value is known only at run time", at), *right]
         case ast.Div(), Call(), _:
             return Call("truediv", [left, right], {}, at)
-        case ast.Mod(), str(), _ if not isinstance(right, Unknown):
-            return _percent_format(left, right, at)
+        case ast.Mod(), str(), _:  # str has its own %, which would write out an unknown value
+            return right if isinstance(right, Unknown) else _percent_format(left, right, at)
         case ast.Div(), (str() | PurePosixPath()), (str() | PurePosixPath()) if not type(left) is type(right) is str:
             return join_path([left, right], at)
     for kind in types:
