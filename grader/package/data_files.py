@@ -197,11 +197,8 @@ class DataFiles:
 
 def _configures(tree: Tree, pattern: bytes) -> bool:
     """Return whether setup.cfg or pyproject.toml may contain a key."""
-    for name in ("setup.cfg", "pyproject.toml"):
-        file = tree.files.get(name)
-        try:
-            if file is not None and re.search(pattern, file.read(_MAX_SETTINGS, first=True)):
-                return True
-        except InputError:
-            return True
-    return False
+    files = [tree.files[name] for name in ("setup.cfg", "pyproject.toml") if name in tree.files]
+    try:
+        return any(re.search(pattern, file.read(_MAX_SETTINGS, first=True)) for file in files)
+    except InputError:
+        return True
