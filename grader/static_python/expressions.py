@@ -10,6 +10,8 @@ from grader.static_python.parse import START, Position, SyntaxFault, parse, posi
 from grader.static_python.simple_expressions import SimpleEvaluator
 from grader.static_python.values import BoundMethod, Function, QualifiedName, Scope, Unknown, Value
 
+_MAX_LENGTH = 1_000  # of a text
+
 
 class ExpressionEvaluator(SimpleEvaluator):
     """Adds the expressions that bind names: comprehensions, lambdas and assignment expressions."""
@@ -101,9 +103,6 @@ class ExpressionEvaluator(SimpleEvaluator):
                     yield False
                 elif all(conditions):
                     yield from self._rounds(nested, scope, unknown)
-
-
-_MAX_LENGTH = 1_000
 
 
 def evaluate_text(text: str, functions: FunctionTable, names: Mapping[str, Value]) -> Value:

@@ -22,6 +22,7 @@ from grader.static_python.values import (
 )
 
 _BINDS_NAMES = ("builtins.exec", "builtins.globals", "builtins.locals", "builtins.vars")
+_RUN_TIME = "its value is known only at run time"
 
 
 def call_value(evaluation: Evaluation, function: Value, call: Call) -> Value:
@@ -52,9 +53,6 @@ def call_value(evaluation: Evaluation, function: Value, call: Call) -> Value:
     if call.name in _BINDS_NAMES:
         evaluation.module.names["*"] = Unknown("names may be bound here", call.at)
     return evaluation.record(call)
-
-
-_RUN_TIME = "its value is known only at run time"
 
 
 class SimpleEvaluator(Evaluation):

@@ -14,6 +14,8 @@ from grader.submission.urdf import OtherCandidate
 _SNIFFED_SIZE = 4096  # bytes in which <robot has to be
 _MAX_SNIFFED = 400  # files
 _MAX_GENERATED = 20
+_MAX_PACKAGES = 40
+_MAX_MANIFEST_SIZE = 256 * 1024  # bytes
 _TEXT_SUFFIXES = frozenset({"", ".urdf", ".xacro", ".xml", ".txt", ".sdf"})
 _NEVER_URDF = frozenset({"package.xml", "CMakeLists.txt", "requirements.txt", "COLCON_IGNORE", "LICENSE"})
 _ROBOT = re.compile(rb"<\s*robot[\s>/]")
@@ -118,10 +120,6 @@ def _reason(best: _Candidate, other: _Candidate, wanted: str) -> str:
     if other.outside != best.outside:
         return _OUTSIDE
     return DEEPER if other.depth != best.depth else LATER
-
-
-_MAX_PACKAGES = 40
-_MAX_MANIFEST_SIZE = 256 * 1024  # bytes
 
 
 def find_packages(tree: Tree, wanted: str) -> list[str]:

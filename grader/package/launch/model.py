@@ -9,6 +9,7 @@ from grader.static_python.parse import Position
 from grader.static_python.values import Call, Unknown, Value
 
 _MAX_STEPS = 50_000
+Purpose = Literal["urdf", "rviz", "include"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,9 +36,6 @@ class Context:
     def add_error(self, message: str, at: Position) -> None:
         """Add an error that stops the launch if it certainly executes the current action."""
         self.errors.append((message, at))
-
-
-Purpose = Literal["urdf", "rviz", "include"]
 
 
 @dataclass(frozen=True, slots=True)

@@ -108,8 +108,7 @@ def _refer_description(findings: Findings, value: Value, call: Call, context: Co
     if isinstance(value, Call) and value.name in _UNFINISHED:
         findings.refer("urdf", None, call, value, wrong=_UNFINISHED[value.name])
         return
-    description = resolve(value, context)
-    match description:
+    match description := resolve(value, context):
         case Contents(path=path, by=by) if by != "xacro" and path.endswith(".xacro"):
             name = path.rpartition("/")[2]
             message = f"{name} is read without xacro; if it uses xacro, write Command(['xacro ', ...])"

@@ -25,6 +25,8 @@ _ENTRY = "generate_launch_description"
 _MODULE = "python_launch_file"  # the __name__ of a launch file
 _MAX_INCLUDES = 10
 _JOINED = ("nodes", "references", "faults", "unknown")  # what a launch file shares with those that it includes
+_AMENT_INDEX = ("ament_index_python", "ament_index_python.packages")
+_FIND = [f"launch_ros.substitutions.{module}FindPackageShare.find" for module in ("", "find_package.")]
 
 # Returns the bytes of an installed file and its path in the submission, by its path below the prefix; None for other files.
 Opener = Callable[[str], "tuple[bytes, str] | None"]
@@ -153,10 +155,6 @@ def _launch(path: str, source: Source, findings: Findings, forgotten: tuple[Star
         unknown=tuple(dict.fromkeys(findings.unknown)),
         forgotten=forgotten,
     )
-
-
-_AMENT_INDEX = ("ament_index_python", "ament_index_python.packages")
-_FIND = [f"launch_ros.substitutions.{module}FindPackageShare.find" for module in ("", "find_package.")]
 
 
 def launch_functions() -> FunctionTable:
