@@ -144,7 +144,7 @@ class Package:
             installed = self.target(path) or f"share/{self.name}/{path}"
             launch = read_launch(data, own, installed, self._open_installed)
         except InputError as error:
-            launch = Launch(own, Source(own, ""), unread=str(error))
+            launch = Launch(Source(own, ""), unread=str(error))
         return self._launches.setdefault(path, launch)
 
     def rviz(self, path: str) -> "RvizFile":
@@ -157,7 +157,7 @@ class Package:
         try:
             rviz = read_rviz(self.tree.files[path].read(_RVIZ_LIMIT), own)
         except InputError as error:
-            rviz = RvizFile(own, Source(own, ""), None, None, Location(own, 1, 1), (), unread=str(error))
+            rviz = RvizFile(Source(own, ""), None, None, Location(own, 1, 1), (), unread=str(error))
         return self._rviz_files.setdefault(path, rviz)
 
     def robot_readers(self, name: str) -> set[str]:

@@ -45,7 +45,6 @@ class Display:
 class RvizFile:
     """The content of an RViz file. `fault` is set where it cannot be read: nothing else is known then."""
 
-    path: str
     source: Source
     fault: Problem | None
     fixed_frame: str | None
@@ -67,7 +66,8 @@ class RvizFile:
                 message = f"rviz/{kind} is a class of ROS 1; in ROS 2 it is rviz_default_plugins/{kind}"
                 found.append(Problem(catalogue.ROS1_CLASS, message, display.location))
         if not any(display.kind == "TF" and display.enabled for display in self.displays):
-            found.append(Problem(catalogue.NO_TF, "the file has no enabled TF display", Location(self.path, 1, 1)))
+            start = Location(self.source.path, 1, 1)
+            found.append(Problem(catalogue.NO_TF, "the file has no enabled TF display", start))
         return tuple(found)
 
 
@@ -83,11 +83,11 @@ def read_rviz(data: bytes, path: str) -> RvizFile:
         manager = None
         problem = Problem(catalogue.BAD_RVIZ, f"not readable as YAML: {fault}", fault.location)
     if manager is None:
-        return RvizFile(path, source, problem, None, start, ())
+        return RvizFile(source, problem, None, start, ())
     frame = manager.get("Global Options", "Fixed Frame")
     displays = tuple(_displays(manager.get("Displays")))
     location = frame.location if frame else manager.location
-    return RvizFile(path, source, None, frame.text if frame else None, location, displays)
+    return RvizFile(source, None, frame.text if frame else None, location, displays)
 
 
 def switched_on(node: Node | None, *, default: bool) -> bool:

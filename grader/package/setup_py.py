@@ -29,7 +29,6 @@ _CHANGES = (
 class Setup:
     """The result of a setup.py. `fault` is set where Python cannot read it: nothing else is known then."""
 
-    path: str
     source: Source
     fault: SyntaxFault | None = None
     name: str | None = None
@@ -64,7 +63,7 @@ def read_setup(code: Code | SyntaxFault, tree: Tree) -> Setup:
     differs between them is unknown.
     """
     if isinstance(code, SyntaxFault):
-        return Setup(code.source.path, code.source, code)
+        return Setup(code.source, code)
     setup, order_matters = _evaluate(code, tree, ORDERS[0])
     others = [_evaluate(code, tree, order)[0] for order in ORDERS[1:]] if order_matters else []
     results = {(frozenset(it.copies), frozenset(it.stops), frozenset(it.faults)) for it in (setup, *others)}
@@ -94,7 +93,6 @@ def _evaluate(code: Code, tree: Tree, order: str) -> tuple[Setup, bool]:
     if interpreter.stop_reason:
         data_files.unknown.append(Unknown(interpreter.stop_reason, START))
     setup = Setup(
-        path=code.source.path,
         source=code.source,
         name=name if isinstance(name, str) else None,
         copies=tuple(data_files.copies),

@@ -72,7 +72,6 @@ class LaunchFault:
 class Launch:
     """The result of a launch file and of those that it includes."""
 
-    path: str
     source: Source
     syntax: LaunchFault | None = None  # set where the file itself cannot be read
     nodes: tuple[StartedNode, ...] = ()

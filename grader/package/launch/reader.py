@@ -88,19 +88,19 @@ def _frontend(data: bytes, path: str, context: Context, include: Include, *, is_
     findings = Findings(lambda position: Location(path, position.line, position.column))
     root = read_frontend(data, source, findings, is_yaml=is_yaml)
     if isinstance(root, LaunchFault):
-        return Launch(path, source, root)
+        return Launch(source, root)
     actions = actions_of(root, findings)
     unsupported, findings.unknown = findings.unknown, []
     visitor = ActionVisitor(findings, include, lambda _, at, __: Unknown("a function is not supported here", at))
     visitor.visit(Call("launch.LaunchDescription", [actions], {}, root.at), context, context.when)
     findings.unknown += unsupported
-    return _launch(path, source, findings, ())
+    return _launch(source, findings, ())
 
 
 def _python(data: bytes, path: str, installed: str, context: Context, include: Include) -> Launch:
     code = parse(data, path)
     if isinstance(code, SyntaxFault):
-        return Launch(path, code.source, LaunchFault(f"Python cannot read the file: {code.message}", code.location))
+        return Launch(code.source, LaunchFault(f"Python cannot read the file: {code.message}", code.location))
     interpreter = Interpreter(launch_functions(), {"__file__": f"{PREFIX}/{installed}", "__name__": _MODULE})
     names = interpreter.run(code).names
     findings = Findings(lambda position: location_in(code.source, position))
@@ -122,7 +122,7 @@ def _python(data: bytes, path: str, installed: str, context: Context, include: I
     for fault in interpreter.errors:
         findings.add_fault(fault.message, fault.at)
     nodes = [call for call in interpreter.calls if call.name.endswith(".Node") and id(call) not in visitor.visited]
-    return _launch(path, code.source, findings, tuple(_forgotten(node, findings) for node in nodes))
+    return _launch(code.source, findings, tuple(_forgotten(node, findings) for node in nodes))
 
 
 def _description_error(value: Value) -> str:
@@ -144,10 +144,9 @@ def _forgotten(node: Call, findings: Findings) -> StartedNode:
     return StartedNode(package, executable, False, findings.locate(node.at))
 
 
-def _launch(path: str, source: Source, findings: Findings, forgotten: tuple[StartedNode, ...]) -> Launch:
+def _launch(source: Source, findings: Findings, forgotten: tuple[StartedNode, ...]) -> Launch:
     order = attrgetter("location.line", "location.column", "message")
     return Launch(
-        path=path,
         source=source,
         nodes=tuple(findings.nodes),
         references=tuple(findings.references),
