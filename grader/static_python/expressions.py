@@ -1,4 +1,4 @@
-"""The value of any Python expression, without running it and without statements or files."""
+"""The value of any Python expression, also of one given as text, without running it and without statements or files."""
 
 import ast
 from collections.abc import Callable, Iterator, Mapping

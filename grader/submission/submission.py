@@ -167,7 +167,7 @@ def submission_of(
         reason = f": {tree.ignored[0]}" if tree.ignored else " (hidden files and build folders are ignored)"
         raise InputError(f"{shown or identity} is empty{reason}")
     # Late: a URDF on its own needs no search.
-    from grader.submission.urdf_search import find_urdf, read_packages, why_not
+    from grader.submission.search import find_urdf, read_packages, why_not
 
     packages = read_packages(tree, package, wanted)
     graded = packages[0] if packages else None

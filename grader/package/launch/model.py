@@ -1,4 +1,4 @@
-"""The model of a launch file: the nodes that it starts, and the files that it names."""
+"""The nodes that a launch file starts and the files that it names, and the state while its actions are visited."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field

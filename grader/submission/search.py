@@ -1,4 +1,4 @@
-"""The search for the URDF that is graded, and the reasons against the other candidates."""
+"""The search for the URDF and the package that are graded, and the reasons against the other candidates."""
 
 import re
 from typing import NamedTuple
