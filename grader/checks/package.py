@@ -13,7 +13,7 @@ from grader.submission.submission import Submission
 from grader.text import enumerated, first_lines
 
 if TYPE_CHECKING:
-    from grader.package.file_functions import EmptyGlob
+    from grader.package.globbing import EmptyGlob
     from grader.package.manifest import Manifest
     from grader.package.setup_py import Setup
 

@@ -11,6 +11,13 @@ _TASKS = frozenset({"task", "tasks", "t", "tsk", "tast", "aufgabe", "teil"})
 _STEPS = {"step", "steps", "s", "st", "stp", "question", "questions", "q", "que", "no", "nr", "schritt", "frage"}
 _KEYWORDS = _TASKS | _STEPS
 _MAX_LENGTH = 300
+_MAX_LINE = 1000  # characters of a line in which a label is searched
+_MAX_WORDS = 6  # the first words of a line, which contain the label of a heading
+_MARKUP = re.compile(r"^[\s#>*\-_+|`]+")
+_DIGIT = re.compile(r"\d")
+# Numbers that name a step: 1.15, and 15) or 15. with two digits, because one digit numbers the items of a list.
+_DOTTED = re.compile(r"^\(?([1-9])\.(\d{1,2})\b[.):]?\s*")
+_NUMBERED = re.compile(r"^\(?([1-9]\d)[.):]\s+")
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,24 +64,12 @@ def _in_order(wanted: tuple[str, ...], found: tuple[str, ...]) -> bool:
     )
 
 
-_MAX_LINE = 1000  # characters of a line in which a label is searched
-_MAX_WORDS = 6  # the first words of a line, which contain the label of a heading
-_MARKUP = re.compile(r"^[\s#>*\-_+|`]+")
-_DIGIT = re.compile(r"\d")
-# Numbers that name a step: 1.15, and 15) or 15. with two digits, because one digit numbers the items of a list.
-_DOTTED = re.compile(r"^\(?([1-9])\.(\d{1,2})\b[.):]?\s*")
-_NUMBERED = re.compile(r"^\(?([1-9]\d)[.):]\s+")
-
-
 class Heading(NamedTuple):
-    """A line that names a task or step: its index, what it names, and the index of the line that ends its passage.
-
-    `task` is that of the label, or of the headings above.
-    """
+    """A line that names a task or step: its index, what it names, and the index of the line that ends its passage."""
 
     start: int
     label: Label
-    task: int | None
+    task: int | None  # that of the label, or of the headings above
     end: int
 
 

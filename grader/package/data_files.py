@@ -14,7 +14,7 @@ from grader.files.tree import Tree
 from grader.names import did_you_mean
 from grader.package.globbing import PackageListing, SearchError
 from grader.static_python.evaluation import EvaluationStopped
-from grader.static_python.inspection import PACKAGE_FOLDER, names_package_folder
+from grader.static_python.inspection import MAX_PATH, PACKAGE_FOLDER, names_package_folder
 from grader.static_python.parse import Position
 from grader.static_python.values import UNKNOWN_KEYS, Call, Unknown, Value, unknown_in
 from grader.text import enumerated
@@ -31,7 +31,6 @@ _NO_PACKAGES = frozenset(
 _SET_PACKAGES = rb"(?m)^\s*(packages|package[_-]dir|py[_-]modules|ext[_-]modules)\b|setuptools\.packages"
 _MAX_GUESSES = 10
 _MAX_COPIES = 20_000
-_MAX_PATH = 4_096
 _MAX_SETTINGS = 64 * 1024  # bytes
 
 
@@ -59,15 +58,12 @@ class InstallError(NamedTuple):
 
 @dataclass(slots=True)
 class DataFiles:
-    """Installs the files of data_files as setuptools' install_data does, without touching any.
-
-    `root` is the absolute path that stands for the package's folder; `positions` has the origin of each path.
-    """
+    """Installs the files of data_files as setuptools' install_data does, without touching any."""
 
     tree: Tree
     listing: PackageListing
-    root: str
-    positions: Mapping[str, Position]
+    root: str  # the absolute path that stands for the package's folder
+    positions: Mapping[str, Position]  # the origin of each path
     copies: list[InstalledFile] = field(default_factory=list)
     stops: list[InstallError] = field(default_factory=list)
     unknown: list[Unknown] = field(default_factory=list)
@@ -128,7 +124,7 @@ class DataFiles:
     def _folder(self, folder: str, files: Value, at: Position) -> None:
         if ".." in folder.split("/") or names_package_folder(folder) or folder.startswith(self.root):
             self._give_up(None, f"the target {folder.replace(PACKAGE_FOLDER, '...')} is not supported", at)
-        elif len(folder) > _MAX_PATH:
+        elif len(folder) > MAX_PATH:
             self._give_up(None, "a folder in data_files is too long", at)
         elif isinstance(files, str) and files:
             self._stop(files, "the files of an entry are a string, not a list: write [...] around it", at)
@@ -150,7 +146,7 @@ class DataFiles:
 
     def _path(self, file: str | PurePosixPath, folder: str, at: Position) -> None:
         text = str(file).removeprefix(self.root + "/")
-        if len(text) > _MAX_PATH:
+        if len(text) > MAX_PATH:
             self._give_up(None, "the path of a file is too long", at)
             return
         try:
@@ -201,11 +197,8 @@ class DataFiles:
 
 def _configures(tree: Tree, pattern: bytes) -> bool:
     """Return whether setup.cfg or pyproject.toml may contain a key."""
-    for name in ("setup.cfg", "pyproject.toml"):
-        file = tree.files.get(name)
-        try:
-            if file is not None and re.search(pattern, file.read(_MAX_SETTINGS, first=True)):
-                return True
-        except InputError:
-            return True
-    return False
+    files = [tree.files[name] for name in ("setup.cfg", "pyproject.toml") if name in tree.files]
+    try:
+        return any(re.search(pattern, file.read(_MAX_SETTINGS, first=True)) for file in files)
+    except InputError:
+        return True

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import PurePosixPath
-from typing import NamedTuple
 
 from grader.files.ignore_rules import ignored_part
 from grader.package.globbing import PackageListing, SearchError
@@ -19,21 +18,6 @@ from grader.static_python.values import Call, Unknown, Value, unknown_in
 WRITING = "builtins.open(w)"  # the name of a call that opens a file to write into it
 _OUTSIDE = "it reads files outside of the package"
 _GLOB_OPTIONS = {"pathname", "root_dir", "recursive", "include_hidden"}
-_MAX_RECORDED = 200  # paths of one search whose position is kept
-
-
-class EmptyGlob(NamedTuple):
-    """A pattern that matches no file."""
-
-    pattern: str
-    at: Position
-
-
-class FoundPaths(NamedTuple):
-    """The paths that a search for files returned."""
-
-    paths: tuple[str | PurePosixPath, ...]
-    at: Position
 
 
 def file_functions(listing: PackageListing, root: str) -> FunctionTable:
@@ -124,23 +108,21 @@ class _PackageFolder:
         pattern = pattern.removeprefix(above)
         recursive, hidden = map(bool, options)
         found = self.listing.glob(pattern, recursive=recursive, hidden=hidden, start=folder, above=above)
-        self._record(evaluation, posixpath.join(folder, pattern), found, call.at)
-        return found
+        return self.listing.record(posixpath.join(folder, pattern), found, call.at)
 
     def escape(self, _: Evaluation, call: Call) -> Value:
         if len(call.args) == 1 and isinstance(call.args[0], str):
             return re.sub(r"([*?\[])", r"[\1]", call.args[0])
         return call.unknown("the pattern is known only at run time")
 
-    def path_glob(self, evaluation: Evaluation, call: Call, prefix: str = "") -> Value:
+    def path_glob(self, _: Evaluation, call: Call, prefix: str = "") -> Value:
         pattern = call.argument(1, "pattern")
         is_supported = call.kwargs.keys() <= {"pattern"} and len(call.args) + len(call.kwargs) == 2
         if not isinstance(pattern, str) or not is_supported:
             return call.unknown("this search for files is not supported")
         folder = self.inside(call.args[0])
         found = [call.args[0] / path for path in self.listing.path_glob(folder, prefix + pattern)]
-        self._record(evaluation, str(PurePosixPath(folder) / pattern), found, call.at)
-        return found
+        return self.listing.record(str(PurePosixPath(folder) / pattern), found, call.at)
 
     def test(self, answer: Callable[[str | None], bool], _: Evaluation, call: Call) -> Value:
         if len(call.args) != 1 or call.kwargs:
@@ -181,12 +163,12 @@ class _PackageFolder:
         path, mode = call.argument(0, "file"), call.argument(1, "mode")
         if mode is not None and (not isinstance(mode, str) or set(mode) & set("wax+")):
             evaluation.calls.append(Call(WRITING, call.args, call.kwargs, call.at))
-            evaluation.may_fail()
+            evaluation.may_have_failed = True
             return opened
         try:
             real = self.real(path)
         except SearchError:
-            evaluation.may_fail()
+            evaluation.may_have_failed = True
             return opened
         if real is None:
             evaluation.error(f"there is no file {str(path)!r}", call.at, FileNotFoundError)
@@ -204,8 +186,3 @@ class _PackageFolder:
         else:
             evaluation.error(f"{str(path)!r} is a file, not a folder", at, NotADirectoryError)
         return []
-
-    def _record(self, evaluation: Evaluation, pattern: str, found: list[Value], at: Position) -> None:
-        if not found:
-            evaluation.records.append(EmptyGlob(pattern, at))
-        evaluation.records.append(FoundPaths(tuple(found[:_MAX_RECORDED]), at))

@@ -8,8 +8,11 @@ from dataclasses import dataclass
 from fnmatch import translate
 from functools import lru_cache
 from itertools import chain
+from typing import NamedTuple
 
 from grader.files.tree import Tree
+from grader.static_python.parse import Position
+from grader.static_python.values import Value
 
 # The file system lists a folder in any order: a result that depends on the order differs between these.
 ORDERS = ("sorted", "reversed", "rotated")
@@ -17,6 +20,7 @@ _MAGIC = re.compile(r"[*?\[]")
 _OUTSIDE = "it searches for files outside of the package"
 _COMPILED = "__pycache__"  # its files are made by Python
 _MAX_FOUND = 20_000
+_MAX_RECORDED = 200  # paths of one search whose position is kept
 _MAX_PATTERN = 1_024
 _MAX_PARTS = 50
 
@@ -25,24 +29,37 @@ class SearchError(Exception):
     """A search that the list of a package's files does not answer."""
 
 
-class PackageListing:
-    """The folders of a file tree, listed in one of the possible orders.
+class EmptyGlob(NamedTuple):
+    """A pattern that matches no file."""
 
-    Paths are relative to the tree's root. `names_read` counts the names that searches have read.
-    """
+    pattern: str
+    at: Position
+
+
+class PackageListing:
+    """The folders of a file tree, listed in one of the possible orders. Paths are relative to the tree's root."""
 
     def __init__(self, tree: Tree, order: str = ORDERS[0]) -> None:
         self.files = tree.files
         self.folders = tree.folders | tree.unseen | {""}
         self._unseen = {path for path in tree.unseen if path.rpartition("/")[2] != _COMPILED}
-        self.names_read = 0
+        self.names_read = 0  # by searches
         self.order_matters = False  # whether a search has returned several names
+        self.positions: dict[str, Position] = {}  # of the searches that found a path
+        self.empty: dict[EmptyGlob, None] = {}  # in the order of the searches
         self._children: dict[str, list[str]] = {}
         for path in sorted([*tree.files, *tree.folders, *tree.unseen], reverse=order == "reversed"):
             folder, _, name = path.rpartition("/")
             self._children.setdefault(folder, []).append(name)
         if order == "rotated":
             self._children = {folder: [*names[1:], names[0]] for folder, names in self._children.items()}
+
+    def record(self, pattern: str, found: list[Value], at: Position) -> list[Value]:
+        """Keep the position of a search for each path that it found, up to a limit, and return the paths."""
+        self.positions |= dict.fromkeys(map(str, found[:_MAX_RECORDED]), at)
+        if not found:
+            self.empty[EmptyGlob(pattern, at)] = None
+        return found
 
     def names(self, folder: str) -> list[str]:
         """Return the names in a folder. Raises SearchError for an ignored folder."""
@@ -99,22 +116,11 @@ class PackageListing:
             found = _bounded(list(dict.fromkeys(chain.from_iterable(steps))))
         return found
 
-    def below(self, folder: str) -> list[str]:
-        """Return the folders below a folder, relative to it."""
-        found: list[str] = []
-        pending = [folder]
-        start = len(folder) + 1 if folder else 0
-        while pending:
-            here = pending.pop()
-            inner = [path for name in self.names(here) if (path := _join(here, name)) in self.folders]
-            pending += inner
-            found += [path[start:] for path in inner]
-        return found
-
     def _path_step(self, real: str, path: str, part: str, *, last: bool) -> list[str]:
         """Return what one part of a pathlib pattern matches in a folder."""
         if part == "**":
-            return [path, *(_join(path, folder) for folder in self.below(real))]
+            folders = _GlobSearch(self, hidden=True).descendants(real, folders_only=True)
+            return [path, *(_join(path, folder) for folder in folders)]
         matches = _matcher(part) if _MAGIC.search(part) else part.__eq__
         names = [name for name in self.names(real) if matches(name)]
         return [_join(path, name) for name in names if last or _join(real, name) in self.folders]
@@ -125,9 +131,9 @@ class _GlobSearch:
     """One call of glob.glob, with the algorithm of Python's own; paths are relative to the start of the search."""
 
     listing: PackageListing
-    start: str
-    recursive: bool
-    hidden: bool
+    start: str = ""
+    recursive: bool = False
+    hidden: bool = False
 
     def find(self, pattern: str, *, folders_only: bool) -> list[str]:
         """Return the paths that match a pattern; only folders for the part before the last one."""
@@ -152,12 +158,13 @@ class _GlobSearch:
                 yield part
         elif part == "**" and self.recursive:
             yield ""
-            yield from self._descendants(real, folders_only=folders_only)
+            yield from self.descendants(real, folders_only=folders_only)
         else:
             matches = _matcher(part)
             yield from (name for name in self._visible(real, folders_only, part.startswith(".")) if matches(name))
 
-    def _descendants(self, folder: str, *, folders_only: bool) -> Iterator[str]:
+    def descendants(self, folder: str, *, folders_only: bool) -> Iterator[str]:
+        """Yield the paths below a folder, relative to it."""
         pending = [("", folder)]
         while pending:
             path, real = pending.pop()

@@ -32,15 +32,12 @@ _MAX_NAMED = 3  # files that a message names
 
 @dataclass(frozen=True)
 class Package:
-    """One package; `folder` is its path in the submission, and `tree` has its files by their paths in the package.
-
-    `packages` has every package of the submission by its name, this one included.
-    """
+    """One package; `folder` is its path in the submission, and `tree` has its files by their paths in the package."""
 
     folder: str
     tree: Tree = field(repr=False)
     manifest: "Manifest | None" = field(repr=False)
-    packages: dict[str, "Package"] = field(repr=False, compare=False)
+    packages: dict[str, "Package"] = field(repr=False, compare=False)  # all of the submission, by their names
     _launches: "dict[str, Launch]" = field(default_factory=dict, init=False, repr=False, compare=False)
     _rviz_files: "dict[str, RvizFile]" = field(default_factory=dict, init=False, repr=False, compare=False)
 
@@ -147,7 +144,7 @@ class Package:
             installed = self.target(path) or f"share/{self.name}/{path}"
             launch = read_launch(data, own, installed, self._open_installed)
         except InputError as error:
-            launch = Launch(own, Source(own, ""), unread=str(error))
+            launch = Launch(Source(own, ""), unread=str(error))
         return self._launches.setdefault(path, launch)
 
     def rviz(self, path: str) -> "RvizFile":
@@ -160,7 +157,7 @@ class Package:
         try:
             rviz = read_rviz(self.tree.files[path].read(_RVIZ_LIMIT), own)
         except InputError as error:
-            rviz = RvizFile(own, Source(own, ""), None, None, Location(own, 1, 1), (), unread=str(error))
+            rviz = RvizFile(Source(own, ""), None, None, Location(own, 1, 1), (), unread=str(error))
         return self._rviz_files.setdefault(path, rviz)
 
     def robot_readers(self, name: str) -> set[str]:

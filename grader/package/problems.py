@@ -66,7 +66,7 @@ def _setup_problems(package: Package, setup: Setup) -> Iterator[Problem]:
 def _launch_problems(launch: Launch) -> Iterator[Problem]:
     if launch.unread:
         message = f"the launch file is not read: {launch.unread}"
-        yield Problem(catalogue.LAUNCH_UNKNOWN, message, Location(launch.path, 1, 1))
+        yield Problem(catalogue.LAUNCH_UNKNOWN, message, Location(launch.source.path, 1, 1))
     kinds = (catalogue.LAUNCH_SYNTAX, catalogue.LAUNCH_FAULT, catalogue.LAUNCH_UNKNOWN)
     for kind, faults in zip(kinds, (filter(None, [launch.syntax]), launch.faults, launch.unknown), strict=True):
         yield from (Problem(kind, fault.message, fault.location) for fault in faults)

@@ -18,8 +18,13 @@ class Display:
     package: str
     kind: str
     name: str
-    enabled: bool
+    group_enabled: bool
     node: Node
+
+    @property
+    def enabled(self) -> bool:
+        """Whether it is enabled, and its groups as well."""
+        return self.group_enabled and self.is_enabled
 
     def is_on(self, setting: str) -> bool:
         """Return whether one of its own settings is on; a missing one is."""
@@ -28,7 +33,7 @@ class Display:
     @property
     def is_enabled(self) -> bool:
         """Whether it is enabled itself, whatever its group is; Enabled overrides Value."""
-        return _is_enabled(self.node)
+        return switched_on(self.node.get("Enabled"), default=switched_on(self.node.get("Value"), default=False))
 
     @property
     def location(self) -> Location:
@@ -40,7 +45,6 @@ class Display:
 class RvizFile:
     """The content of an RViz file. `fault` is set where it cannot be read: nothing else is known then."""
 
-    path: str
     source: Source
     fault: Problem | None
     fixed_frame: str | None
@@ -62,7 +66,8 @@ class RvizFile:
                 message = f"rviz/{kind} is a class of ROS 1; in ROS 2 it is rviz_default_plugins/{kind}"
                 found.append(Problem(catalogue.ROS1_CLASS, message, display.location))
         if not any(display.kind == "TF" and display.enabled for display in self.displays):
-            found.append(Problem(catalogue.NO_TF, "the file has no enabled TF display", Location(self.path, 1, 1)))
+            start = Location(self.source.path, 1, 1)
+            found.append(Problem(catalogue.NO_TF, "the file has no enabled TF display", start))
         return tuple(found)
 
 
@@ -78,11 +83,11 @@ def read_rviz(data: bytes, path: str) -> RvizFile:
         manager = None
         problem = Problem(catalogue.BAD_RVIZ, f"not readable as YAML: {fault}", fault.location)
     if manager is None:
-        return RvizFile(path, source, problem, None, start, ())
+        return RvizFile(source, problem, None, start, ())
     frame = manager.get("Global Options", "Fixed Frame")
     displays = tuple(_displays(manager.get("Displays")))
     location = frame.location if frame else manager.location
-    return RvizFile(path, source, None, frame.text if frame else None, location, displays)
+    return RvizFile(source, None, frame.text if frame else None, location, displays)
 
 
 def switched_on(node: Node | None, *, default: bool) -> bool:
@@ -90,10 +95,6 @@ def switched_on(node: Node | None, *, default: bool) -> bool:
     if node is None or node.text is None:
         return default
     return node.text.lower() not in ("false", "0", "")
-
-
-def _is_enabled(display: Node) -> bool:
-    return switched_on(display.get("Enabled"), default=switched_on(display.get("Value"), default=False))
 
 
 def _displays(listed: Node | None) -> Iterator[Display]:
@@ -105,8 +106,8 @@ def _displays(listed: Node | None) -> Iterator[Display]:
         node, group_enabled = pending.pop(0)
         named, title = node.get("Class"), node.get("Name")
         package, _, kind = (named.text or "" if named else "").rpartition("/")
-        enabled = group_enabled and _is_enabled(node)
-        yield Display(package, kind, title.text or "" if title else "", enabled, node)
+        display = Display(package, kind, title.text or "" if title else "", group_enabled, node)
+        yield display
         inner = node.get("Displays")
         if inner is not None and len(pending) < _MAX_DISPLAYS:
-            pending += [(display, enabled) for display in inner.items]
+            pending += [(item, display.enabled) for item in inner.items]

@@ -1,13 +1,12 @@
 """The files that a build installs by a package's setup.py, which is evaluated, never run."""
 
 import ast
-from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 from grader.files.tree import Tree
 from grader.package.data_files import DataFiles, InstalledFile, InstallError
-from grader.package.file_functions import WRITING, EmptyGlob, FoundPaths, file_functions
-from grader.package.globbing import ORDERS, PackageListing
+from grader.package.file_functions import WRITING, file_functions
+from grader.package.globbing import ORDERS, EmptyGlob, PackageListing
 from grader.source import Location, Source
 from grader.static_python.evaluation import EvaluationStopped, PythonError
 from grader.static_python.functions import standard_functions
@@ -28,12 +27,8 @@ _CHANGES = (
 
 @dataclass(frozen=True, slots=True)
 class Setup:
-    """The result of a setup.py. `fault` is set where Python cannot read it: nothing else is known then.
+    """The result of a setup.py. `fault` is set where Python cannot read it: nothing else is known then."""
 
-    `unknown` has what cannot be determined: a file that is not among `copies` may be installed all the same.
-    """
-
-    path: str
     source: Source
     fault: SyntaxFault | None = None
     name: str | None = None
@@ -41,7 +36,7 @@ class Setup:
     stops: tuple[InstallError, ...] = ()
     empty: tuple[EmptyGlob, ...] = ()
     faults: tuple[PythonError, ...] = ()
-    unknown: tuple[Unknown, ...] = ()
+    unknown: tuple[Unknown, ...] = ()  # with any of these, a file that is not among the copies may be installed as well
     is_called: bool = True
     called_at: Position = START
 
@@ -68,18 +63,14 @@ def read_setup(code: Code | SyntaxFault, tree: Tree) -> Setup:
     differs between them is unknown.
     """
     if isinstance(code, SyntaxFault):
-        return Setup(code.source.path, code.source, code)
+        return Setup(code.source, code)
     setup, order_matters = _evaluate(code, tree, ORDERS[0])
-    if order_matters:
-        others = (_evaluate(code, tree, order)[0] for order in ORDERS[1:])
-        if any(_outcome(other) != _outcome(setup) for other in others):
-            doubt = Unknown("the result depends on the order in which folders are listed", START)
-            return replace(setup, copies=(), stops=(), unknown=(*setup.unknown, doubt))
-    return setup
-
-
-def _outcome(setup: Setup) -> tuple[set[InstalledFile], set[InstallError], set[PythonError]]:
-    return set(setup.copies), set(setup.stops), set(setup.faults)
+    others = [_evaluate(code, tree, order)[0] for order in ORDERS[1:]] if order_matters else []
+    results = {(frozenset(it.copies), frozenset(it.stops), frozenset(it.faults)) for it in (setup, *others)}
+    if len(results) == 1:
+        return setup
+    doubt = Unknown("the result depends on the order in which folders are listed", START)
+    return replace(setup, copies=(), stops=(), unknown=(*setup.unknown, doubt))
 
 
 def _evaluate(code: Code, tree: Tree, order: str) -> tuple[Setup, bool]:
@@ -89,7 +80,9 @@ def _evaluate(code: Code, tree: Tree, order: str) -> tuple[Setup, bool]:
     interpreter = Interpreter(functions, {"__file__": f"{_ROOT}/setup.py"})
     interpreter.run(code)
     calls = [call for call in interpreter.calls if call.name in _SETUPS]
-    data_files = DataFiles(tree, listing, _ROOT, _positions(code, interpreter.records))
+    strings = [node for node in ast.walk(code.tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)]
+    written = {str(node.value): position_of(node) for node in reversed(strings)}  # the first of several counts
+    data_files = DataFiles(tree, listing, _ROOT, written | listing.positions)
     name = calls[0].kwargs.get("name") if calls else None
     try:
         for call in calls:
@@ -100,27 +93,14 @@ def _evaluate(code: Code, tree: Tree, order: str) -> tuple[Setup, bool]:
     if interpreter.stop_reason:
         data_files.unknown.append(Unknown(interpreter.stop_reason, START))
     setup = Setup(
-        path=code.source.path,
         source=code.source,
         name=name if isinstance(name, str) else None,
         copies=tuple(data_files.copies),
         stops=tuple(data_files.stops),
-        empty=tuple(dict.fromkeys(record for record in interpreter.records if isinstance(record, EmptyGlob))),
+        empty=tuple(listing.empty),
         faults=tuple(sorted(interpreter.errors, key=lambda error: error.at)),
         unknown=tuple(data_files.unknown),
         is_called=bool(calls) or bool(interpreter.stop_reason),
         called_at=calls[0].at if calls else START,
     )
     return setup, listing.order_matters and not interpreter.stop_reason
-
-
-def _positions(code: Code, records: Iterable[object]) -> dict[str, Position]:
-    """Return where each path of data_files comes from: the search that found it, or the string that it is written as."""
-    positions: dict[str, Position] = {}
-    for record in records:
-        if isinstance(record, FoundPaths):
-            positions |= dict.fromkeys(map(str, record.paths), record.at)
-    for node in ast.walk(code.tree):
-        if isinstance(node, ast.Constant) and isinstance(node.value, str):
-            positions.setdefault(node.value, position_of(node))
-    return positions

@@ -22,14 +22,11 @@ class YamlFault(Exception):
 
 @dataclass(eq=False, slots=True)
 class Node:
-    """A value with its location: a text, a list or a mapping. An alias is the same object as its anchor.
-
-    `quoted` is True for a text in quotes, which is a string even if it is true or 1.
-    """
+    """A value with its location: a text, a list or a mapping. An alias is the same object as its anchor."""
 
     location: Location
     value: "str | list[Node] | dict[str, Node]"
-    quoted: bool = False
+    quoted: bool = False  # a text in quotes, which is a string even if it is true or 1
 
     def get(self, *keys: str) -> "Node | None":
         """Return the node at a path of keys, None where there is none."""

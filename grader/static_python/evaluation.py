@@ -8,7 +8,7 @@ import ast
 import builtins
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from grader.static_python.imports import USUAL_NAMES
 from grader.static_python.inspection import MAX_ITEMS
@@ -56,6 +56,7 @@ class EvaluationStopped(Exception):
 # The functions that are evaluated, by their full names: each takes its call, with the arguments, and returns its value.
 FunctionTable = Mapping[str, Callable[["Evaluation", Call], Value]]
 
+_EXITS = ("sys.exit", "os._exit", "builtins.exit", "builtins.quit")
 _MAX_STEPS = 100_000
 _MAX_DEPTH = 30
 _MAX_ERRORS = 200
@@ -69,7 +70,6 @@ class Evaluation:
         self.functions = functions
         self.module = Scope(dict(names))
         self.errors: list[PythonError] = []
-        self.records: list[Any] = []  # data that functions of the table keep for their caller
         self.calls: list[Call] = []  # every call that is not evaluated, in order
         self.uncertainty: Unknown | None = None  # set while it is unknown whether a statement is reached
         self.handlers = 0  # how many blocks around this place catch errors
@@ -94,26 +94,18 @@ class Evaluation:
             self._messages.add(message)
             self.errors.append(PythonError(message, at))
 
-    def may_fail(self) -> None:
-        """Record that what happens here may raise an error."""
-        self.may_have_failed = True
-
     def record(self, call: Call) -> Call:
-        """Record a call that is not evaluated, and return it as its own result."""
+        """Record a call that is not evaluated, and return it as its own result. Raises ExitFlow if it certainly exits."""
+        if call.name in _EXITS and self.uncertainty is None and not self.handlers:
+            if call.args and call.args[0] not in (0, None):
+                self.error("the file exits here with an error", call.at)
+            raise ExitFlow
         if not call.name.startswith("builtins.open"):
-            self.may_fail()
+            self.may_have_failed = True
         call.uncertainty = self.uncertainty
         if len(self.calls) < MAX_ITEMS:
             self.calls.append(call)
         return call
-
-    def exit(self, call: Call) -> None:
-        """End the program, as sys.exit does; raises ExitFlow if this place is certainly reached."""
-        if self.uncertainty is None and not self.handlers:
-            if call.args and call.args[0] not in (0, None):
-                self.error("the file exits here with an error", call.at)
-            raise ExitFlow
-        self.may_fail()
 
     def find(self, node: ast.Name, scope: Scope) -> Value:
         """Return the value of a name. An undefined name is an error; its value is what was most likely meant."""

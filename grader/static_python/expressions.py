@@ -1,4 +1,4 @@
-"""The value of any Python expression, without running it and without statements or files."""
+"""The value of any Python expression, also of one given as text, without running it and without statements or files."""
 
 import ast
 from collections.abc import Callable, Iterator, Mapping
@@ -9,6 +9,8 @@ from grader.static_python.operators import store
 from grader.static_python.parse import START, Position, SyntaxFault, parse, position_of
 from grader.static_python.simple_expressions import SimpleEvaluator
 from grader.static_python.values import BoundMethod, Function, QualifiedName, Scope, Unknown, Value
+
+_MAX_LENGTH = 1_000  # of a text
 
 
 class ExpressionEvaluator(SimpleEvaluator):
@@ -101,9 +103,6 @@ class ExpressionEvaluator(SimpleEvaluator):
                     yield False
                 elif all(conditions):
                     yield from self._rounds(nested, scope, unknown)
-
-
-_MAX_LENGTH = 1_000
 
 
 def evaluate_text(text: str, functions: FunctionTable, names: Mapping[str, Value]) -> Value:

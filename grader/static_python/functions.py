@@ -9,6 +9,7 @@ from typing import Any
 from grader.static_python.evaluation import Evaluation, FunctionTable
 from grader.static_python.inspection import (
     MAX_ITEMS,
+    MAX_PATH,
     as_text,
     distinct,
     items_of,
@@ -20,7 +21,6 @@ from grader.static_python.methods import in_order
 from grader.static_python.operators import extend
 from grader.static_python.values import Call, Unknown, Value, unknown_in
 
-_MAX_PATH = 4_096
 _MAX_NUMBER = 10**9
 
 
@@ -59,7 +59,7 @@ def _join(evaluation: Evaluation, call: Call) -> Value:
     if any(isinstance(value, list | tuple | dict | int | float | None) for value in call.args):
         evaluation.error("os.path.join takes strings, and one argument is none: is a bracket misplaced?", call.at)
     paths = [path for value in call.args if (path := path_text(value)) is not None]
-    if paths and len(paths) == len(call.args) and sum(map(len, paths)) <= _MAX_PATH:
+    if paths and len(paths) == len(call.args) and sum(map(len, paths)) <= MAX_PATH:
         return posixpath.join(*paths)
     if unknown_in(call.args) is None and any(isinstance(value, Call) for value in call.args):
         return Call("os.path.join", call.args, call.kwargs, call.at)
@@ -77,31 +77,25 @@ def _text(_: Evaluation, call: Call) -> Value:
     return text if text is not None else call.unknown("the text is known only at run time")
 
 
-def _of_items(function: Callable[[list[Value]], Value], _: Evaluation, call: Call) -> Value:
+def _of_items(function: Callable[[Evaluation, list[Value], Call], Value], evaluation: Evaluation, call: Call) -> Value:
     """Run a function of the items of its first argument."""
     items = items_of(call.args[0]) if call.args else []
-    return function(items) if items is not None else call.unknown("the items of this value are known only at run time")
+    if items is None:
+        return call.unknown("the items of this value are known only at run time")
+    return function(evaluation, items, call)
 
 
-def _sorted(evaluation: Evaluation, call: Call) -> Value:
-    return _of_items(lambda items: in_order(evaluation, items, call), evaluation, call)
-
-
-def _chain(evaluation: Evaluation, call: Call) -> Value:
+def _joined(evaluation: Evaluation, items: list[Value], call: Call) -> Value:
     joined: list[Value] = []
-    for value in call.args:
+    for value in items:
         extend(evaluation, joined, value, call.at)
     return joined
-
-
-def _chain_from_iterable(evaluation: Evaluation, call: Call) -> Value:
-    return _of_items(lambda items: _chain(evaluation, Call("", items, {}, call.at)), evaluation, call)
 
 
 def _sum(evaluation: Evaluation, call: Call) -> Value:
     items = items_of(call.args[0]) if call.args else []
     if (len(call.args) == 2 and isinstance(call.args[1], list)) or (items and isinstance(items[0], list)):
-        return _chain_from_iterable(evaluation, call)
+        return _of_items(_joined, evaluation, call)
     return call.unknown("a sum of this kind is not supported")
 
 
@@ -158,18 +152,19 @@ def _range(evaluation: Evaluation, call: Call) -> Value:
     return list(numbers) if len(numbers) <= MAX_ITEMS else Unknown("the range is too long", call.at)
 
 
-_OF_ITEMS: dict[tuple[str, ...], Callable[[list[Value]], Any]] = {
-    ("builtins.list", "builtins.tuple", "builtins.iter"): list,
-    ("builtins.set", "builtins.frozenset"): distinct,
-    ("builtins.reversed",): lambda items: items[::-1],
-    ("builtins.enumerate",): lambda items: list(enumerate(items)),
+_OF_ITEMS: dict[tuple[str, ...], Callable[[Evaluation, list[Value], Call], Any]] = {
+    ("builtins.list", "builtins.tuple", "builtins.iter"): lambda _, items, __: items,
+    ("builtins.set", "builtins.frozenset"): lambda _, items, __: distinct(items),
+    ("builtins.reversed",): lambda _, items, __: items[::-1],
+    ("builtins.enumerate",): lambda _, items, __: list(enumerate(items)),
+    ("builtins.sorted",): in_order,
+    ("itertools.chain.from_iterable",): _joined,
 }
 _FUNCTIONS: FunctionTable = {
     **{name: partial(_of_items, run) for names, run in _OF_ITEMS.items() for name in names},
     **dict.fromkeys(("builtins.str", "os.fspath"), _text),
     **{f"pathlib.{name}": _path for name in ("Path", "PurePath", "PosixPath", "PurePosixPath")},
     "os.path.join": _join,
-    "builtins.sorted": _sorted,
     "builtins.dict": _dict,
     "builtins.len": _len,
     "builtins.bool": _bool,
@@ -179,6 +174,5 @@ _FUNCTIONS: FunctionTable = {
     "builtins.zip": _zip,
     "builtins.range": _range,
     "builtins.sum": _sum,
-    "itertools.chain": _chain,
-    "itertools.chain.from_iterable": _chain_from_iterable,
+    "itertools.chain": lambda evaluation, call: _joined(evaluation, call.args, call),
 }

@@ -91,19 +91,14 @@ def is_always_installed(module: str) -> bool:
 def imported_names(module: str, alias: ast.alias) -> dict[str, QualifiedName]:
     """Return what `import name` or `from module import name` binds; the name * stands for names that are not known."""
     if alias.name == "*":
-        names = _public_names(module) or ["", *_LAUNCH_NAMES.get(module, ())]
+        names: Sequence[str] = ["", *_LAUNCH_NAMES.get(module, ())]
+        if module == "setuptools":
+            names = _SETUPTOOLS_PUBLIC
+        elif module in _INSPECTED:
+            found = import_module(module)
+            names = getattr(found, "__all__", [name for name in dir(found) if not name.startswith("_")])
         return {name or "*": QualifiedName(f"{module}.{name or '*'}") for name in names}
     if module:
         return {alias.asname or alias.name: QualifiedName(f"{module}.{alias.name}")}
     top = alias.name.split(".")[0]
     return {alias.asname: QualifiedName(alias.name)} if alias.asname else {top: QualifiedName(top)}
-
-
-def _public_names(module: str) -> Sequence[str] | None:
-    """Return the names that `from module import *` binds; None where they are not known."""
-    if module == "setuptools":
-        return _SETUPTOOLS_PUBLIC
-    if module not in _INSPECTED:
-        return None
-    found = import_module(module)
-    return getattr(found, "__all__", [name for name in dir(found) if not name.startswith("_")])

@@ -130,7 +130,7 @@ def _format(text: str, call: Call, unknown: Unknown) -> Value:
 
 
 def _list(evaluation: Evaluation, items: list[Value], name: str, call: Call) -> Value:
-    evaluation.may_fail()
+    evaluation.may_have_failed = True
     is_known = evaluation.uncertainty is None and not any(isinstance(item, Unknown) for item in items)
     unknown = Unknown(f"this use of the list method {name} is not supported", call.at)
     if isinstance(items, WalkFolders) and name not in ("copy", "index", "count"):
@@ -156,7 +156,7 @@ def _list(evaluation: Evaluation, items: list[Value], name: str, call: Call) -> 
 
 
 def _dict(evaluation: Evaluation, table: dict[Any, Value], name: str, call: Call) -> Value:
-    evaluation.may_fail()
+    evaluation.may_have_failed = True
     is_complete = UNKNOWN_KEYS not in table
     if name in ("items", "keys", "values") and not call.args:
         return list(getattr(table, name)())
@@ -212,5 +212,5 @@ def _path(evaluation: Evaluation, path: PurePosixPath, name: str, call: Call) ->
         case _:
             if name in _WRITES:
                 evaluation.calls.append(given)
-            evaluation.may_fail()
+            evaluation.may_have_failed = True
             return Unknown(f"the path method {name} is not supported", call.at)

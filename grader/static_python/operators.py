@@ -7,7 +7,7 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from grader.static_python.evaluation import Evaluation, EvaluationStopped
-from grader.static_python.inspection import MAX_ITEMS, MAX_TEXT, as_text, items_of, names_package_folder, size
+from grader.static_python.inspection import MAX_ITEMS, MAX_PATH, MAX_TEXT, as_text, items_of, names_package_folder, size
 from grader.static_python.parse import Position
 from grader.static_python.values import UNKNOWN_KEYS, Call, QualifiedName, Unknown, Value
 
@@ -15,7 +15,6 @@ _TYPE_NAMES: dict[type, str] = {
     str: "a string", list: "a list", tuple: "a tuple", dict: "a dict", type(None): "None", PurePosixPath: "a path",
     int: "a number", float: "a number",
 }  # fmt: skip
-_MAX_PATH = 4_096
 _RUN_TIME = "its value is known only at run time"
 # The operators that are run, and the types of both operands for which they are.
 _OPERATORS: dict[type[ast.operator], tuple[Callable[[Any, Any], Any], tuple[Any, ...]]] = {
@@ -49,8 +48,8 @@ def operate(evaluation: Evaluation, op: ast.operator, left: Value, right: Value,
             return [Unknown("the added value is known only at run time", at), *right]
         case ast.Div(), Call(), _:
             return Call("truediv", [left, right], {}, at)
-        case ast.Mod(), str(), _ if not isinstance(right, Unknown):
-            return _percent_format(left, right, at)
+        case ast.Mod(), str(), _:  # str has its own %, which would write out an unknown value
+            return right if isinstance(right, Unknown) else _percent_format(left, right, at)
         case ast.Div(), (str() | PurePosixPath()), (str() | PurePosixPath()) if not type(left) is type(right) is str:
             return join_path([left, right], at)
     for kind in types:
@@ -101,7 +100,7 @@ def subscript(evaluation: Evaluation, owner: Value, key: Value, at: Position) ->
             evaluation.step(len(owner) // 32)
             return owner[key] if key.step != 0 else Unknown("the step of a slice is 0", at)
         return Unknown("this slice is not supported", at)
-    evaluation.may_fail()
+    evaluation.may_have_failed = True
     if isinstance(owner, QualifiedName):
         return Call(f"{owner.name}[]", [key], {}, at)
     if not isinstance(owner, list | tuple) or are_known(evaluation, owner):
@@ -115,7 +114,7 @@ def subscript(evaluation: Evaluation, owner: Value, key: Value, at: Position) ->
 
 def join_path(parts: list[Value], at: Position) -> Value:
     """Return the path that is joined from texts and paths."""
-    if sum(len(str(part)) for part in parts) > _MAX_PATH:
+    if sum(len(str(part)) for part in parts) > MAX_PATH:
         return Unknown("a path grows too long", at)
     return PurePosixPath(*parts)
 

@@ -57,7 +57,7 @@ class StatementEvaluator(ExpressionEvaluator):
         module = "" if isinstance(node, ast.Import) else "." * node.level + (node.module or "")
         for alias in node.names:
             if not is_always_installed(module or alias.name):
-                self.may_fail()
+                self.may_have_failed = True
             error = import_error(module, alias.name)
             if error is not None:
                 self.error(error, position_of(node), ImportError)
@@ -80,7 +80,7 @@ class StatementEvaluator(ExpressionEvaluator):
         name = raised.id if isinstance(raised, ast.Name) else "an error"
         if node.exc is not None:
             self.evaluate(node.exc, scope)
-        self.may_fail()
+        self.may_have_failed = True
         kind = getattr(builtins, name, Exception)
         if self.uncertainty is None:
             self.error(f"the file raises {name} here", position_of(node), kind if isinstance(kind, type) else Exception)

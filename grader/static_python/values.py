@@ -51,19 +51,15 @@ class BoundMethod:
 
 @dataclass(eq=False, slots=True)
 class Call:
-    """A call of something by its full name; as a value, the result of a call that is not evaluated.
-
-    `owner` is the call whose result it is a method of; `method_calls` are the methods that were called on its own result.
-    `uncertainty` is set where the call may not be reached.
-    """
+    """A call of something by its full name; as a value, the result of a call that is not evaluated."""
 
     name: str
     args: list[Value]
     kwargs: dict[str, Value]
     at: Position
-    owner: "Call | None" = None
-    method_calls: list["Call"] = field(default_factory=list)
-    uncertainty: Unknown | None = None
+    owner: "Call | None" = None  # the call whose result it is a method of
+    method_calls: list["Call"] = field(default_factory=list)  # the methods that were called on its own result
+    uncertainty: Unknown | None = None  # set where the call may not be reached
 
     def argument(self, position: int, *names: str) -> Value:
         """Return an argument by its position or by one of its names; None where it is missing."""
@@ -90,24 +86,19 @@ class Function:
 
 @dataclass(eq=False, slots=True)
 class Scope:
-    """The names that are bound in a scope, and the scope around it.
-
-    `declared` has the scopes of names that are global or nonlocal here; `is_loop` marks the scope of a comprehension.
-    """
+    """The names that are bound in a scope, and the scope around it."""
 
     names: dict[str, Value] = field(default_factory=dict)
     outer: "Scope | None" = None
-    declared: "dict[str, Scope]" = field(default_factory=dict)
-    is_loop: bool = False
+    declared: "dict[str, Scope]" = field(default_factory=dict)  # the scopes of names that are global or nonlocal here
+    is_loop: bool = False  # the scope of a comprehension
 
     def find(self, name: str) -> Value:
         """Return the value of a name; raises KeyError."""
-        scope: Scope | None = self.declared.get(name, self)
-        while scope is not None:
-            if name in scope.names:
-                return scope.names[name]
+        scope = self.declared.get(name, self)
+        while name not in scope.names and scope.outer is not None:
             scope = scope.outer
-        raise KeyError(name)
+        return scope.names[name]
 
     def bind(self, name: str, value: Value) -> None:
         """Give a name a value, in the scope that it belongs to."""
@@ -115,11 +106,9 @@ class Scope:
 
     def holder(self, name: str) -> "Scope":
         """Return the nearest scope around this one that binds a name, else the outermost."""
-        scope = self
-        while scope.outer is not None:
+        scope = self.outer or self
+        while name not in scope.names and scope.outer is not None:
             scope = scope.outer
-            if name in scope.names:
-                break
         return scope
 
 

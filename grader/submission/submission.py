@@ -30,19 +30,15 @@ _WANTED = "give a .urdf file, or the folder or archive that was submitted"
 
 @dataclass(frozen=True)
 class Submission:
-    """The work that a student submitted. `packages` begins with the one that is graded.
-
-    `is_single` is whether it is a URDF on its own, not a folder or archive. `no_documents` says why no document is read, where
-    grading ran out of memory with them.
-    """
+    """The work that a student submitted. `packages` begins with the one that is graded."""
 
     id: str
     urdf: Urdf
     other_candidates: tuple[OtherCandidate, ...] = ()
     tree: Tree = field(default=_NO_FILES, repr=False)
     packages: tuple[Package, ...] = field(default=(), repr=False)
-    is_single: bool = True
-    no_documents: str = ""
+    is_single: bool = True  # whether it is a URDF on its own, not a folder or archive
+    no_documents: str = ""  # why no document is read, where grading ran out of memory with them
 
     @cached_property
     def documents(self) -> "DocumentCollection":
@@ -171,7 +167,7 @@ def submission_of(
         reason = f": {tree.ignored[0]}" if tree.ignored else " (hidden files and build folders are ignored)"
         raise InputError(f"{shown or identity} is empty{reason}")
     # Late: a URDF on its own needs no search.
-    from grader.submission.urdf_search import find_urdf, read_packages, why_not
+    from grader.submission.search import find_urdf, read_packages, why_not
 
     packages = read_packages(tree, package, wanted)
     graded = packages[0] if packages else None

@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 
 from grader.static_python.evaluation import Evaluation
 from grader.static_python.expressions import evaluate_text
+from grader.static_python.parse import START
 from grader.static_python.values import Call, QualifiedName, Unknown, Value
 
 
@@ -60,6 +61,12 @@ def test_any_other_text_is_unknown(text: str) -> None:
     """What is no expression, names something that is not there or takes too long has no value, and raises nothing."""
     value = evaluate_text(text, {}, {})
     assert isinstance(value, Unknown | Call)
+
+
+def test_a_text_with_an_unknown_value_is_unknown() -> None:
+    """An unknown value is never written into a text."""
+    unknown = Unknown("it depends on the machine", START)
+    assert evaluate_text("'%s' % x", {}, {"x": unknown}) == unknown
 
 
 @given(text=st.text(max_size=60))

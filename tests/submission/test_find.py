@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from grader.errors import InputError
 from grader.files.tree import File, Tree, make_tree
 from grader.package.package import Package
+from grader.submission.search import UrdfChoice, find_packages, find_urdf, read_packages
 from grader.submission.submission import submission_of
 from grader.submission.urdf import OtherCandidate
-from grader.submission.urdf_search import UrdfChoice, find_packages, find_urdf, read_packages
 from tests.patience import processor_time
 
 WANTED = "urdf/my_robot.urdf"

@@ -29,8 +29,7 @@ from grader.submission.urdf import Absent, Unreadable
 PRELOAD = (
     "grader.classroom.run.worker",
     "grader.robot.edge_overlap",
-    "grader.submission.urdf_search",
-    "grader.submission.urdf_search",
+    "grader.submission.search",
     "grader.package.problems",
 )
 

@@ -51,7 +51,8 @@ class ActionVisitor:
                 self.findings.add_unknown(f"the value of {value.name} is known only at run time", START)
             case Call():
                 start = len(context.errors)
-                executed = _executed(value, context, when)
+                is_certain = value.uncertainty is None and UNKNOWN_KEYS not in value.kwargs
+                executed = _both(when if is_certain else when and None, holds(value.kwargs.get("condition"), context))
                 self.findings.add_errors(context, start, is_certain=when is True)  # launch evaluates the condition
                 self.visited.add(id(value))
                 self._action(value, context, executed)
@@ -103,7 +104,7 @@ class ActionVisitor:
         """Visit the actions of a description, which may not contain lists."""
         if isinstance(actions, list | tuple) and any(isinstance(action, list | tuple) for action in actions):
             context.add_error("expected an action, and this is a list of actions: write * before it", call.at)
-        self.visit(actions if actions is not None else [], context, when)
+        self.visit(actions, context, when)
 
     def _inner(self, call: Call, actions: Value, context: Context, when: bool | None) -> None:
         """Visit the actions in another action, which have to be a list."""
@@ -125,18 +126,17 @@ class ActionVisitor:
 
     def _event_handler(self, call: Call, context: Context, when: bool | None) -> None:
         """Visit the actions for an event. Only the start of another process certainly happens."""
-        for name, value in call.kwargs.items():
-            if name.startswith("on_") or name == "entities":
-                actions = self.call_function(value, call.at, ()) if isinstance(value, Function) else value
-                self.visit(actions if actions is not None else [], context, when)
+        for value in (value for name, value in call.kwargs.items() if name.startswith("on_") or name == "entities"):
+            actions = self.call_function(value, call.at, ()) if isinstance(value, Function) else value
+            self.visit(actions, context, when)
 
     def _opaque_function(self, call: Call, context: Context, when: bool | None) -> None:
         function, args = call.argument(0, "function"), call.kwargs.get("args") or []
         if not isinstance(function, Function) or not isinstance(args, list | tuple) or call.kwargs.get("kwargs"):
             self.findings.add_unknown("the result of an OpaqueFunction is known only at run time", call.at)
             return
-        actions = self.call_function(function, call.at, (Call("launch.LaunchContext", [], {}, call.at), *args))
-        self.visit(actions if actions is not None else [], context, when)
+        arguments = (Call("launch.LaunchContext", [], {}, call.at), *args)
+        self.visit(self.call_function(function, call.at, arguments), context, when)
 
     def _include(self, call: Call, context: Context, when: bool | None) -> None:
         if when is False:
@@ -159,18 +159,9 @@ class ActionVisitor:
         context.arguments.update(inner.arguments)  # an included file shares its arguments with the actions that follow
 
 
-def _executed(call: Call, context: Context, when: bool | None) -> bool | None:
-    """Return whether an action is executed; `when` is whether the action around it is."""
-    if when and (call.uncertainty is not None or UNKNOWN_KEYS in call.kwargs):
-        when = None
-    return _both(when, holds(call.kwargs.get("condition"), context))
-
-
 def _both(one: bool | None, other: bool | None) -> bool | None:
     """Return whether two conditions hold, each of which may be unknown."""
-    if one is False or other is False:
-        return False
-    return None if one is None or other is None else True
+    return min(one, other, key=(False, None, True).index)
 
 
 def _set_argument(call: Call, context: Context, when: bool | None, *, declares: bool) -> None:

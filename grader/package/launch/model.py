@@ -1,4 +1,4 @@
-"""The model of a launch file: the nodes that it starts, and the files that it names."""
+"""The nodes that a launch file starts and the files that it names, and the state while its actions are visited."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -9,6 +9,7 @@ from grader.static_python.parse import Position
 from grader.static_python.values import Call, Unknown, Value
 
 _MAX_STEPS = 50_000
+Purpose = Literal["urdf", "rviz", "include"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,23 +25,17 @@ Resolved = str | Contents | Unknown
 
 @dataclass(slots=True)
 class Context:
-    """The folder of the installed launch file, the launch arguments so far, and the errors of the current action.
-
-    `when` is whether the file is launched at all; `steps_left` counts down, also for included files.
-    """
+    """The folder of the installed launch file, the launch arguments so far, and the errors of the current action."""
 
     folder: str
     arguments: dict[str, Value] = field(default_factory=dict)
     errors: list[tuple[str, Position]] = field(default_factory=list)
-    when: bool | None = True
-    steps_left: list[int] = field(default_factory=lambda: [_MAX_STEPS])
+    when: bool | None = True  # whether the file is launched at all
+    steps_left: list[int] = field(default_factory=lambda: [_MAX_STEPS])  # counts down, also for included files
 
     def add_error(self, message: str, at: Position) -> None:
         """Add an error that stops the launch if it certainly executes the current action."""
         self.errors.append((message, at))
-
-
-Purpose = Literal["urdf", "rviz", "include"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,16 +50,13 @@ class StartedNode:
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """A file that the launch file names. `path` begins with a stand-in where a folder depends on the machine.
-
-    Where it is None, `reason` says why it is unknown (`sure` is False) or what is wrong with it.
-    """
+    """A file that the launch file names. `path` begins with a stand-in where a folder depends on the machine."""
 
     purpose: Purpose
     path: str | None
     location: Location
-    reason: str = ""
-    sure: bool = True
+    reason: str = ""  # why the path is unknown, or what is wrong with it
+    sure: bool = True  # False where it is unknown
     by: str = ""  # the program that reads it, if there is one: xacro, cat or open
 
 
@@ -78,18 +70,14 @@ class LaunchFault:
 
 @dataclass(frozen=True, slots=True)
 class Launch:
-    """The result of a launch file and of those that it includes.
+    """The result of a launch file and of those that it includes."""
 
-    `syntax` is set where the file itself cannot be read; `unknown` has what cannot be determined.
-    """
-
-    path: str
     source: Source
-    syntax: LaunchFault | None = None
+    syntax: LaunchFault | None = None  # set where the file itself cannot be read
     nodes: tuple[StartedNode, ...] = ()
     references: tuple[Reference, ...] = ()
     faults: tuple[LaunchFault, ...] = ()
-    unknown: tuple[LaunchFault, ...] = ()
+    unknown: tuple[LaunchFault, ...] = ()  # what cannot be determined
     forgotten: tuple[StartedNode, ...] = ()  # created in the file, but not part of its LaunchDescription
     unread: str = ""  # why the file was not read at all: too large, damaged
 

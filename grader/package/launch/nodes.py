@@ -1,20 +1,12 @@
-"""The nodes that a launch file starts: by Node, by a command, or by urdf_launch."""
+"""The nodes that a launch file starts, by Node, a command or urdf_launch, and the files that they are given."""
 
 import re
+import shlex
 
 from grader.names import did_you_mean
-from grader.package.launch.commands import PART_UNKNOWN
-from grader.package.launch.model import Context, Findings, StartedNode
-from grader.package.launch.references import (
-    RVIZ,
-    STATE_PUBLISHER,
-    command_words,
-    find_configuration,
-    find_description,
-    find_urdf_launch,
-)
-from grader.package.launch.substitutions import resolve
-from grader.static_python.parse import START
+from grader.package.launch.model import Contents, Context, Findings, Reference, StartedNode
+from grader.package.launch.places import SHARE
+from grader.package.launch.substitutions import COMMAND_LINE, PART_UNKNOWN, resolve
 from grader.static_python.values import UNKNOWN_KEYS, Call, Unknown, Value
 
 # The arguments of launch_ros.actions.Node, and those that it passes on to launch.actions.ExecuteProcess (ROS 2 Jazzy).
@@ -24,7 +16,13 @@ _NODE_ARGUMENTS = frozenset(
      "output_format", "cached_output", "log_cmd", "on_exit", "respawn", "respawn_delay", "respawn_max_retries", "condition",
      "autostart", UNKNOWN_KEYS}
 )  # fmt: skip
-_NO_PACKAGE = Unknown("a node without a package is a program of the machine", START)
+_STATE_PUBLISHER = "robot_state_publisher"
+_RVIZ = "rviz2"
+# The errors where robot_description is given a call whose last method is missing.
+_UNFINISHED = {
+    "xacro.process_file": "robot_description is given a document, not its text: add .toxml() to xacro.process_file(...)",
+    "builtins.open": "robot_description is given an open file, not its contents: add .read() to open(...)",
+}
 # The launch files of the ROS 2 package urdf_launch; what they start is known.
 _URDF_LAUNCH = re.compile(r".*/share/urdf_launch/launch/(?P<name>display|description)\.launch\.py")
 
@@ -37,7 +35,8 @@ def start_node(findings: Findings, call: Call, context: Context, when: bool | No
         context.add_error("Node takes its arguments by name: package=..., executable=...", call.at)
     if call.kwargs.keys().isdisjoint(("executable", "node_executable", UNKNOWN_KEYS)):
         context.add_error("a node has no executable: add executable=...", call.at)
-    package = resolve(call.kwargs.get("package", _NO_PACKAGE), context)
+    no_package = Unknown("a node without a package is a program of the machine", call.at)
+    package = resolve(call.kwargs.get("package", no_package), context)
     executable = resolve(call.kwargs.get("executable", call.kwargs.get("node_executable")), context)
     if isinstance(package, str) and isinstance(executable, str):
         _start(findings, package, executable, call, context, when)
@@ -49,7 +48,7 @@ def start_node(findings: Findings, call: Call, context: Context, when: bool | No
 
 def start_process(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
     """Add the node that a command starts: ros2 run, or rviz2."""
-    words = command_words(call.argument(0, "cmd"), context)
+    words = _command_words(call.argument(0, "cmd"), context)
     if call.kwargs.get("shell") is True:
         words = " ".join(words).split()
     match words:
@@ -61,16 +60,6 @@ def start_process(findings: Findings, call: Call, context: Context, when: bool |
             findings.add_unknown("it starts another ros2 launch", call.at)
 
 
-def start_urdf_launch(findings: Findings, path: str, call: Call, context: Context) -> bool:
-    """Add what an included launch file of urdf_launch starts; return whether the path is one of these files."""
-    known = _URDF_LAUNCH.fullmatch(path)
-    if known is None:
-        return False
-    for node in find_urdf_launch(findings, known["name"], call, context):
-        findings.nodes.append(StartedNode(node, node, context.when, findings.locate(call.at)))
-    return True
-
-
 def _start(findings: Findings, package: str, executable: str, call: Call, context: Context, when: bool | None) -> None:
     findings.nodes.append(StartedNode(package, executable, when, findings.locate(call.at)))
     if when is False:
@@ -78,10 +67,10 @@ def _start(findings: Findings, package: str, executable: str, call: Call, contex
     for name in ("parameters", "arguments", "remappings"):
         if isinstance(call.kwargs.get(name), str | dict):
             context.add_error(f"{name} has to be a list: put [ ] around it", call.at)
-    if executable == STATE_PUBLISHER:
-        find_description(findings, call, context)
-    elif executable == RVIZ:
-        find_configuration(findings, call, context)
+    if executable == _STATE_PUBLISHER:
+        _find_description(findings, call, context)
+    elif executable == _RVIZ:
+        _find_configuration(findings, call, context)
 
 
 def _as_node(call: Call, words: list[str]) -> Call:
@@ -89,3 +78,143 @@ def _as_node(call: Call, words: list[str]) -> Call:
     unknown = Unknown("a part of the command is known only at run time", call.at)
     arguments: list[Value] = [unknown if word == PART_UNKNOWN else word for word in words]
     return Call(call.name, [], {"arguments": arguments}, call.at)
+
+
+def _find_description(findings: Findings, call: Call, context: Context) -> None:
+    """Add the file that robot_state_publisher gets the robot from."""
+    parameters = _pieces(call.kwargs.get("parameters"))
+    tables = [table for table in parameters if isinstance(table, dict)]
+    descriptions = [table["robot_description"] for table in tables if "robot_description" in table]
+    if descriptions:
+        _refer_description(findings, descriptions[-1], call, context)
+        return
+    unclear = next((value for value in parameters if not isinstance(value, dict) or UNKNOWN_KEYS in value), None)
+    words = _command_words(call.kwargs.get("arguments"), context)
+    end = words.index("--ros-args") if "--ros-args" in words else len(words)
+    files = [word for word in words[:end] if not word.startswith("-")]
+    others = words or unclear is not None or {UNKNOWN_KEYS, "ros_arguments"} & call.kwargs.keys()
+    if isinstance(unclear, Unknown):
+        findings.refer("urdf", unclear, call)
+    elif files and files[0] != PART_UNKNOWN:
+        findings.refer("urdf", files[0], call)
+    elif others or findings.sets_parameters:
+        findings.refer("urdf", Unknown("its parameters are known only at run time", call.at), call)
+    else:
+        message = "robot_state_publisher is started without robot_description: it has no robot to publish"
+        findings.refer("urdf", None, call, wrong=message)
+
+
+def _refer_description(findings: Findings, value: Value, call: Call, context: Context) -> None:
+    if isinstance(value, Call) and value.name in _UNFINISHED:
+        findings.refer("urdf", None, call, value, wrong=_UNFINISHED[value.name])
+        return
+    match description := resolve(value, context):
+        case Contents(path=path, by=by) if by != "xacro" and path.endswith(".xacro"):
+            name = path.rpartition("/")[2]
+            message = f"{name} is read without xacro; if it uses xacro, write Command(['xacro ', ...])"
+            findings.references.append(Reference("urdf", path, findings.locate(call.at), message, sure=False, by=by))
+        case str() if "<robot" not in description:
+            message = "robot_description is given the path of the URDF, not its contents: read the file first"
+            findings.refer("urdf", None, call, value, wrong=message)
+        case Contents() | Unknown():
+            findings.refer("urdf", description, call, value)
+
+
+def _find_configuration(findings: Findings, call: Call, context: Context) -> None:
+    """Add the configuration that RViz opens."""
+    arguments = call.kwargs.get("arguments", call.kwargs.get(UNKNOWN_KEYS))
+    if isinstance(arguments, Unknown):
+        findings.refer("rviz", arguments, call)
+        return
+    words = _command_words(arguments, context)
+    path = _display_config(words)
+    if path is None and PART_UNKNOWN not in words:
+        message = (
+            "rviz2 is started without -d and a file, so it opens its own default instead of the lab's configuration"
+        )
+        findings.refer("rviz", None, call, wrong=message)
+    elif path is None or PART_UNKNOWN in path:
+        pieces = (resolve(piece, context) for piece in _pieces(arguments))
+        unknown = (piece for piece in pieces if isinstance(piece, Unknown))
+        unnamed = Unknown("the file that it opens is known only at run time", call.at)
+        findings.refer("rviz", next(unknown, unnamed), call)
+    elif path != path.lstrip():
+        findings.refer("rviz", None, call, wrong="'-d' and the path have to be two items of arguments: ['-d', path]")
+    elif path:
+        findings.refer("rviz", path, call)
+    else:
+        findings.refer("rviz", None, call, wrong="rviz2 is given -d without the path of a file")
+
+
+def _display_config(words: list[str]) -> str | None:
+    for index, word in enumerate(words):
+        if word in ("-d", "--display-config"):
+            return "".join(words[index + 1 : index + 2])
+        if option := re.match(r"--display-config=|-d=?", word):
+            return word[option.end() :]
+    return None
+
+
+def start_urdf_launch(findings: Findings, path: str, call: Call, context: Context) -> bool:
+    """Add what an included launch file of urdf_launch starts; return whether the path is one of these files."""
+    known = _URDF_LAUNCH.fullmatch(path)
+    if known is None:
+        return False
+    nodes = [_STATE_PUBLISHER]
+    given = [context.arguments.get(key) for key in ("urdf_package", "urdf_package_path")]
+    match [resolve(value, context) for value in given]:
+        case [str() as package, str() as urdf]:
+            findings.refer("urdf", Contents(f"{SHARE}/{package}/{urdf}", "xacro"), call)
+        case values:
+            unknown = next(value for value in values if not isinstance(value, str))
+            is_missing = None in given or isinstance(unknown, Contents)
+            message = "urdf_launch needs the arguments urdf_package and urdf_package_path"
+            findings.refer("urdf", None if is_missing else unknown, call, wrong=message)
+    if known["name"] == "display":
+        nodes += ["joint_state_publisher_gui", _RVIZ]
+        opened = resolve(context.arguments.get("rviz_config", Contents("", "")), context)
+        if not isinstance(opened, Contents):
+            findings.refer("rviz", opened, call)
+        else:
+            message = "urdf_launch is included without rviz_config, so it opens its own configuration, not the lab's"
+            findings.refer("rviz", None, call, wrong=message)
+    findings.nodes += [StartedNode(node, node, context.when, findings.locate(call.at)) for node in nodes]
+    return True
+
+
+def _command_words(value: Value, context: Context) -> list[str]:
+    """Return the words of a command: each item of a list is one word, a line of XML or YAML is split."""
+    words: list[str] = []
+    for piece in _pieces(value):
+        is_line = isinstance(piece, Call) and piece.name == COMMAND_LINE
+        words += _line_words(piece, context) if is_line else [_word(piece, context)]
+    return words
+
+
+def _pieces(value: Value) -> list[Value] | tuple[Value, ...]:
+    return value if isinstance(value, list | tuple) else [value] if value is not None else []
+
+
+def _word(value: Value, context: Context) -> str:
+    text = resolve(value, context)
+    return text if isinstance(text, str) else PART_UNKNOWN
+
+
+def _line_words(line: Call, context: Context) -> list[str]:
+    """Return the words of a line as launch splits it: its strings are split, the values of substitutions are not."""
+    words = [""]
+    for piece in line.args:
+        if not isinstance(piece, str):
+            words[-1] += _word(piece, context)
+            continue
+        try:
+            found = shlex.split(piece)
+        except ValueError:
+            message = "quotes cannot enclose a substitution in a line of arguments: remove them"
+            context.add_error(message, line.at)
+            found = piece.replace("'", " ").replace('"', " ").split()
+        if piece[:1].isspace() or not found:
+            words.append("")
+        words[-1] += "".join(found[:1])
+        words += [*found[1:], *([""] if piece[-1:].isspace() else [])]
+    return [word for word in words if word]

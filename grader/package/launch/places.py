@@ -1,5 +1,6 @@
 """Stand-ins for folders that depend on the machine, and the names of launch files."""
 
+import re
 from pathlib import PurePosixPath
 
 # Paths below these are compared as strings.
@@ -7,19 +8,14 @@ PREFIX = "/<prefix>"  # the folder that a build installs to
 WORKING_FOLDER = "/<current folder>"
 HOME = "/<home>"
 SHARE = f"{PREFIX}/share"
-
-# Top-level folders that belong to one user or one machine.
-_OWN = frozenset({"home", "Users", "root", "mnt", "media"})
-
 ENDINGS = (".launch.py", ".launch.xml", ".launch.yaml", ".launch.yml", "_launch.py", "_launch.xml", "_launch.yaml")
-_LANGUAGES = (".py", ".xml", ".yaml", ".yml")
 
 
 def is_in_launch_folder(path: str) -> bool:
     """Return whether a file is a launch file because it is in a folder named launch, whatever its own name."""
     folder, _, name = path.rpartition("/")
     suffix = PurePosixPath(name).suffix
-    known = suffix in ("", ".launch", *_LANGUAGES) or (suffix == ".txt" and ".launch." in name)
+    known = suffix in ("", ".launch", ".py", ".xml", ".yaml", ".yml") or (suffix == ".txt" and ".launch." in name)
     return folder.rpartition("/")[2] == "launch" and name != "__init__.py" and known
 
 
@@ -42,7 +38,4 @@ def one_machine_only(path: str) -> str:
 
 def is_of_one_machine(path: str) -> bool:
     """Return whether a path leads into a user's home folder, or to a disk of one machine."""
-    if path.startswith(HOME) or path[1:3] in (":\\", ":/"):
-        return True
-    top, _, rest = path.removeprefix("/").partition("/")
-    return path.startswith("/") and top in _OWN and bool(rest)
+    return path.startswith(HOME) or bool(re.match(r".:[\\/]|/(home|Users|root|mnt|media)/.", path, re.DOTALL))

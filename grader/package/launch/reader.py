@@ -25,6 +25,8 @@ _ENTRY = "generate_launch_description"
 _MODULE = "python_launch_file"  # the __name__ of a launch file
 _MAX_INCLUDES = 10
 _JOINED = ("nodes", "references", "faults", "unknown")  # what a launch file shares with those that it includes
+_AMENT_INDEX = ("ament_index_python", "ament_index_python.packages")
+_FIND = [f"launch_ros.substitutions.{module}FindPackageShare.find" for module in ("", "find_package.")]
 
 # Returns the bytes of an installed file and its path in the submission, by its path below the prefix; None for other files.
 Opener = Callable[[str], "tuple[bytes, str] | None"]
@@ -42,9 +44,7 @@ class _LaunchReader:
 
     opener: Opener
     includes_left: int = _MAX_INCLUDES
-    open: list[str] = field(
-        default_factory=list
-    )  # the launch files that are being read, each included by the one before
+    open: list[str] = field(default_factory=list)  # the files that are being read, each included by the one before
 
     def read(self, data: bytes, path: str, installed: str, context: Context) -> Launch:
         """Return a launch file together with those that it includes."""
@@ -88,19 +88,19 @@ def _frontend(data: bytes, path: str, context: Context, include: Include, *, is_
     findings = Findings(lambda position: Location(path, position.line, position.column))
     root = read_frontend(data, source, findings, is_yaml=is_yaml)
     if isinstance(root, LaunchFault):
-        return Launch(path, source, root)
+        return Launch(source, root)
     actions = actions_of(root, findings)
     unsupported, findings.unknown = findings.unknown, []
     visitor = ActionVisitor(findings, include, lambda _, at, __: Unknown("a function is not supported here", at))
     visitor.visit(Call("launch.LaunchDescription", [actions], {}, root.at), context, context.when)
     findings.unknown += unsupported
-    return _launch(path, source, findings, ())
+    return _launch(source, findings, ())
 
 
 def _python(data: bytes, path: str, installed: str, context: Context, include: Include) -> Launch:
     code = parse(data, path)
     if isinstance(code, SyntaxFault):
-        return Launch(path, code.source, LaunchFault(f"Python cannot read the file: {code.message}", code.location))
+        return Launch(code.source, LaunchFault(f"Python cannot read the file: {code.message}", code.location))
     interpreter = Interpreter(launch_functions(), {"__file__": f"{PREFIX}/{installed}", "__name__": _MODULE})
     names = interpreter.run(code).names
     findings = Findings(lambda position: location_in(code.source, position))
@@ -108,22 +108,21 @@ def _python(data: bytes, path: str, installed: str, context: Context, include: I
     match names.get(_ENTRY):
         case Function() as entry:
             description = interpreter.call_from_outside(entry, entry.at)
-            error = _description_error(description)
-            if error:
+            if error := _description_error(description):
                 findings.add_fault(error, entry.at)
             visitor.visit(description, context, context.when)
         case Unknown() | QualifiedName() | Call() as description:
             visitor.visit(description, context, context.when)
         case _ if interpreter.stop_reason or "*" in names:
-            findings.unknown.append(LaunchFault("what it launches is known only at run time", Location(path, 1, 1)))
+            findings.add_unknown("what it launches is known only at run time", START)
         case _:
             findings.add_fault(f"the file does not define the function {_ENTRY}, which ros2 launch calls", START)
     if interpreter.stop_reason:
-        findings.unknown.append(LaunchFault(interpreter.stop_reason, Location(path, 1, 1)))
+        findings.add_unknown(interpreter.stop_reason, START)
     for fault in interpreter.errors:
         findings.add_fault(fault.message, fault.at)
     nodes = [call for call in interpreter.calls if call.name.endswith(".Node") and id(call) not in visitor.visited]
-    return _launch(path, code.source, findings, tuple(_forgotten(node, findings) for node in nodes))
+    return _launch(code.source, findings, tuple(_forgotten(node, findings) for node in nodes))
 
 
 def _description_error(value: Value) -> str:
@@ -145,10 +144,9 @@ def _forgotten(node: Call, findings: Findings) -> StartedNode:
     return StartedNode(package, executable, False, findings.locate(node.at))
 
 
-def _launch(path: str, source: Source, findings: Findings, forgotten: tuple[StartedNode, ...]) -> Launch:
+def _launch(source: Source, findings: Findings, forgotten: tuple[StartedNode, ...]) -> Launch:
     order = attrgetter("location.line", "location.column", "message")
     return Launch(
-        path=path,
         source=source,
         nodes=tuple(findings.nodes),
         references=tuple(findings.references),
@@ -156,10 +154,6 @@ def _launch(path: str, source: Source, findings: Findings, forgotten: tuple[Star
         unknown=tuple(dict.fromkeys(findings.unknown)),
         forgotten=forgotten,
     )
-
-
-_AMENT_INDEX = ("ament_index_python", "ament_index_python.packages")
-_FIND = [f"launch_ros.substitutions.{module}FindPackageShare.find" for module in ("", "find_package.")]
 
 
 def launch_functions() -> FunctionTable:

@@ -1,23 +1,23 @@
 """The values of launch's substitutions, with the defaults of the launch arguments."""
 
 import posixpath
+import re
+import shlex
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
 from grader.package.launch.booleans import BOOLEAN_SUBSTITUTIONS, boolean_substitution, operands_of
-from grader.package.launch.commands import PART_UNKNOWN, file_read
 from grader.package.launch.model import Contents, Context, Resolved
 from grader.package.launch.places import HOME, PREFIX, SHARE
 from grader.static_python.expressions import evaluate_text
-from grader.static_python.inspection import as_text
+from grader.static_python.inspection import MAX_TEXT, as_text
 from grader.static_python.parse import START
 from grader.static_python.values import Call, Unknown, Value
 
+PART_UNKNOWN = "\0"  # stands in a command for a part that is unknown
 COMMAND_LINE = "launch.frontend.command line"  # a line that is split into words, as in XML and YAML
 _MAX_DEPTH = 40
-_MAX_TEXT = 100_000
-_PERFORMED = (".perform", ".find")  # methods of substitutions that return a string
 # Methods whose result is the text, or the contents, of the object that they are called on.
 _OF_OWNER = ("perform", "read", "toxml", "toprettyxml", "documentElement", "decode", "strip")
 _PACKAGE_FOLDERS = (
@@ -58,7 +58,7 @@ def _texts(parts: list[Value] | tuple[Value, ...], context: Context, depth: int)
             return text if isinstance(text, Unknown) else Unknown("the content of a file is part of a text", START)
         texts.append(text)
         length += len(text)
-        if length > _MAX_TEXT:
+        if length > MAX_TEXT:
             return Unknown("a text grows too long", START)
     return texts
 
@@ -124,7 +124,8 @@ class _Substitution:
     def needs_texts(self, message: str, count: int | None = None) -> None:
         """Add an error if a function of Python gets a substitution, which has no text before the launch runs."""
         names = [value.name for value in self.call.args[:count] if isinstance(value, Call)]
-        if any(name.startswith(("launch.", "launch_ros.")) and not name.endswith(_PERFORMED) for name in names):
+        performed = (".perform", ".find")  # methods that return a string
+        if any(name.startswith(("launch.", "launch_ros.")) and not name.endswith(performed) for name in names):
             self.context.add_error(message, self.call.at)
 
     def path(self, parts: Value) -> Resolved:
@@ -162,18 +163,28 @@ class _Substitution:
     def command(self) -> Resolved:
         """Return the contents of the file that a command prints, for xacro and cat."""
         parts = self.call.argument(0, "command")
-        pieces = parts if isinstance(parts, list | tuple) else [parts]
-        texts = [self.resolve(piece) for piece in pieces]
-        command = "".join(text if isinstance(text, str) else PART_UNKNOWN for text in texts).strip()[:_MAX_TEXT]
-        errors: list[str] = []
-        by, path = file_read(command, errors)
-        self.context.errors += [(message, self.call.at) for message in errors]
-        if path:
-            return Contents(path, by)
-        if errors:
-            return Unknown(errors[-1], self.call.at)
-        unknown = (text for text in texts if isinstance(text, Unknown))
-        return next(unknown, Unknown("the output of this command is known only at run time", self.call.at))
+        texts = [self.resolve(piece) for piece in (parts if isinstance(parts, list | tuple) else [parts])]
+        command = "".join(text if isinstance(text, str) else PART_UNKNOWN for text in texts).strip()[:MAX_TEXT]
+        unknown = [text for text in texts if isinstance(text, Unknown)]
+        if glued := re.match(r"(xacro|cat)(?=/)", command):
+            message = f"a space is missing between {glued[1]} and the path: write '{glued[1]} '"
+            self.context.add_error(message, self.call.at)
+            unknown.insert(0, Unknown(message, self.call.at))
+            command = f"{glued[1]} {command[glued.end() :]}"
+        try:
+            words = shlex.split(command)
+        except ValueError:
+            message = "the quotes in this command are not closed"
+            self.context.add_error(message, self.call.at)
+            return Unknown(message, self.call.at)
+        if words[:3] == ["ros2", "run", "xacro"]:
+            words = words[3:]
+        program = words[0].rpartition("/")[2].removesuffix(".py") if words else ""
+        files = [word for word in words[1:] if not word.startswith("-") and ":=" not in word]
+        is_read = program in ("xacro", "cat", "type") and "-o" not in words
+        if is_read and len(files) == 1 and files[0] and PART_UNKNOWN not in files[0]:
+            return Contents(files[0], "xacro" if program == "xacro" else "cat")
+        return next(iter(unknown), Unknown("the output of this command is known only at run time", self.call.at))
 
     def expression(self) -> Resolved:
         """Return the value of a Python expression that contains plain values only."""

@@ -1,4 +1,4 @@
-"""The search for the URDF that is graded, and the reasons against the other candidates."""
+"""The search for the URDF and the package that are graded, and the reasons against the other candidates."""
 
 import re
 from typing import NamedTuple
@@ -14,6 +14,8 @@ from grader.submission.urdf import OtherCandidate
 _SNIFFED_SIZE = 4096  # bytes in which <robot has to be
 _MAX_SNIFFED = 400  # files
 _MAX_GENERATED = 20
+_MAX_PACKAGES = 40
+_MAX_MANIFEST_SIZE = 256 * 1024  # bytes
 _TEXT_SUFFIXES = frozenset({"", ".urdf", ".xacro", ".xml", ".txt", ".sdf"})
 _NEVER_URDF = frozenset({"package.xml", "CMakeLists.txt", "requirements.txt", "COLCON_IGNORE", "LICENSE"})
 _ROBOT = re.compile(rb"<\s*robot[\s>/]")
@@ -120,10 +122,6 @@ def _reason(best: _Candidate, other: _Candidate, wanted: str) -> str:
     return DEEPER if other.depth != best.depth else LATER
 
 
-_MAX_PACKAGES = 40
-_MAX_MANIFEST_SIZE = 256 * 1024  # bytes
-
-
 def find_packages(tree: Tree, wanted: str) -> list[str]:
     """Return the folders of packages: those with a package.xml, and those of the wanted name with at least a setup.py."""
     with_manifest, with_setup = (
@@ -181,13 +179,12 @@ def _distance(package: Package, wanted: str) -> int:
 
 def _read_package(tree: Tree, folder: str, known: dict[str, Package]) -> Package:
     own = tree.below(folder)
-    file = own.files.get(MANIFEST)
-    if file is None:
-        return Package(folder, own, None, known)
     path = f"{folder}/{MANIFEST}" if folder else MANIFEST
+    start = Location(path, 1, 1)
+    manifest = None
     try:
-        manifest = read_manifest(file.read(_MAX_MANIFEST_SIZE), path)
+        if MANIFEST in own.files:
+            manifest = read_manifest(own.files[MANIFEST].read(_MAX_MANIFEST_SIZE), path)
     except InputError as error:
-        start = Location(path, 1, 1)
         manifest = Manifest(Source(path, ""), None, "", (), start, start, unread=str(error))
     return Package(folder, own, manifest, known)
