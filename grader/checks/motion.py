@@ -2,7 +2,7 @@
 
 from math import atan2, degrees, hypot
 
-from grader.checks.outcome import SLACK, Outcome, judged, place, point, quantity, size
+from grader.checks.outcome import SLACK, Outcome, in_degrees, in_millimetres, judged, place, point
 from grader.checks.toml_types import Direction, NonNegative
 from grader.checks.visuals import main_visual, visual_pose, visuals
 from grader.errors import MissingElement
@@ -63,7 +63,7 @@ def axis_along(
     message = f"{_axis_name(axis)} of the frame {link!r} points along {point(actual)} in {relative_to!r}"
     fine = off <= tolerance + SLACK
     if not fine:
-        message += f"; it should point along {point(expected)} ({quantity(off, 'deg')} off)"
+        message += f"; it should point along {point(expected)} ({in_degrees(off)} off)"
     joint = robot.parent_joints.get(link)
     at = place(joint.origin.location if joint and joint.origin else None, "rpy") or place(robot.link(link).location)
     return judged(fine, message, actual, expected, tolerance, "deg", at=at)
@@ -85,12 +85,14 @@ def turns_about_itself(
     away = hypot(*cross(turning, T_joint_wheel.translation))
     at, detail = place(joint.axis_location, "xyz") or joint.location, f" (joint {joint.name!r})"
     if tilt > angle + SLACK:
-        message = f"{link!r} wobbles: its joint axis is {quantity(tilt, 'deg')} off the cylinder's axis; it should be along it"
+        message = (
+            f"{link!r} wobbles: its joint axis is {in_degrees(tilt)} off the cylinder's axis; it should be along it"
+        )
         return judged(False, message, tilt, 0.0, angle, "deg", at=at, detail=detail)
     fine = away <= tolerance + SLACK
     message = f"{link!r} turns about its own axis"
     if not fine:
-        message = f"{link!r} turns off centre: its joint axis is {size(away, 'm')} beside the cylinder's axis; it should be on it"
+        message = f"{link!r} turns off centre: its joint axis is {in_millimetres(away)} beside the cylinder's axis; it should be on it"
     at = place(visual.origin.location, "xyz") or at
     return judged(fine, message, away, 0.0, tolerance, "m", at=at, detail="" if fine else detail)
 
@@ -129,7 +131,7 @@ def _flat(vector: Vector, up: Vector) -> Vector:
 
 def _heading(off: float, travel: Vector, base: str) -> str:
     if off <= 45.0:
-        slant = f", {quantity(off, 'deg')} off straight ahead" if off > 0.05 else ""
+        slant = f", {in_degrees(off)} off straight ahead" if off > 0.05 else ""
         return f"drives {base!r} forward{slant}"
     if off >= 135.0:
         return f"drives {base!r} backward"

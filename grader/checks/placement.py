@@ -7,13 +7,13 @@ from grader.checks.outcome import (
     Outcome,
     difference,
     failed,
+    in_degrees,
+    in_millimetres,
     judged,
     measured,
     measured_point,
     place,
     point,
-    quantity,
-    size,
     within,
 )
 from grader.checks.toml_types import NonNegative
@@ -83,7 +83,7 @@ def bottom_at_height(
         lowest, _ = extent(visual.geometry, visual_pose(robot, link, visual, relative_to), _UP)
     what = f"the bottom of {link!r} in the frame {relative_to!r} is at z ="
     at = place(visual.origin.location, "xyz") or visual.location
-    return measured(what, lowest, height, tolerance, "m", sides=("too high", "too low"), at=at)
+    return measured(what, lowest, height, tolerance, sides=("too high", "too low"), at=at)
 
 
 def bottoms_at_height(
@@ -99,7 +99,7 @@ def bottoms_at_height(
     names = enumerated([repr(link) for link in lowest])
     message = f"the bottoms of {names} are at z = {point(actual)} m in {relative_to!r}"
     if wrong:
-        off = [f"{link!r} {difference(value - height, 'm', 'too high', 'too low')}" for link, value in wrong.items()]
+        off = [f"{link!r} {difference(value - height, 'too high', 'too low')}" for link, value in wrong.items()]
         message += f"; they should be at {height:g} m ({', '.join(off)})"
     at = _common_place(robot, wrong, lowest, relative_to, tolerance) if wrong else None
     return judged(not wrong, message, actual, height, tolerance, "m", at=at)
@@ -121,10 +121,10 @@ def under_the_base(
     if not (within(x, 0.0, tolerance) and within(y, 0.0, tolerance)):
         faults.append(f"{base!r} is at x, y = {point((x, y))} m in it and should be at 0 0")
     if turned > angle:
-        faults.append(f"{base!r} is turned by {quantity(turned, 'deg')} in it and should not be turned")
+        faults.append(f"{base!r} is turned by {in_degrees(turned)} in it and should not be turned")
     for wheel, value in off.items():
         side = "above" if value > 0 else "below"
-        faults.append(f"the lowest point of {wheel!r} is {size(value, 'm')} {side} it")
+        faults.append(f"the lowest point of {wheel!r} is {in_millimetres(value)} {side} it")
     if missing is not None and not faults:
         raise missing
     verb, found = ("should be", f": {'; '.join(faults)}") if faults else ("is", "")
