@@ -100,17 +100,14 @@ class Frames:
 
 def undefined_pose(joint: Joint) -> MissingElement:
     """Return the error for a pose that is undefined because of this joint."""
-    location, attribute, inside = joint.axis_location, "xyz", ""
+    at = joint.axis_location and joint.axis_location._replace(attribute="xyz")
     if joint.origin is None:
-        reason = "its origin cannot be read"
-        location, attribute, inside = joint.location, "", "origin"
+        reason, at = "its origin cannot be read", joint.location and joint.location._replace(inside="origin")
     elif joint.axis is None:
         reason = "its axis cannot be read"
     elif unit(joint.axis) is None:
         reason = "its axis is 0 0 0"
     else:
-        reason = "its numbers are too large"
-        location, attribute = joint.location, ""
+        reason, at = "its numbers are too large", joint.location
     message, detail = f"the pose of a joint's child is undefined: {reason}", f" (joint {quoted(joint.name)})"
-    at = location._replace(attribute=attribute or None, inside=inside or None) if location is not None else None
     return MissingElement("pose below joint", joint.name, message=message, detail=detail, location=at)
