@@ -48,7 +48,10 @@ class Frames:
         name = link
         while name not in known and name in parents:
             if name in self._loops or name in joints:
-                raise self._on_loop(link, name, joints)
+                loop = self._loops.get(name) or min(joints)
+                self._loops.update(dict.fromkeys(joints, loop))
+                message = f"link {quoted(link)} is on or below a loop of joints, so it is in no tree"
+                raise MissingElement("connection", loop, message=message, location=self._robot.link(link).location)
             joints[name] = parents[name]
             name = parents[name].parent
         frame = known.get(name) or known.setdefault(name, Frame(name, name, IDENTITY, 0))
@@ -61,23 +64,12 @@ class Frames:
             known[joint.child] = frame
         return frame
 
-    def _on_loop(self, link: str, name: str, joints: Mapping[str, Joint]) -> MissingElement:
-        loop = self._loops.get(name) or min(joints)
-        self._loops.update(dict.fromkeys(joints, loop))
-        message = f"link {quoted(link)} is on or below a loop of joints, so it is in no tree"
-        return MissingElement("connection", loop, message=message, location=self._robot.link(link).location)
-
     def position(self, joint: Joint) -> Position:
         """Return the position of a joint: its own, that of the joint that it mimics, or 0."""
         if joint.mimic is None or joint.name in self._given:
             return self._given.get(joint.name, 0.0)
-        return self._follow(joint)
-
-    def _follow(self, joint: Joint) -> float:
-        """Return a mimic joint's position, keeping those of the joints between: long chains are followed once.
-
-        It is 0 if the chain of mimics ends at a joint that does not exist or has no single number, or forms a loop.
-        """
+        # It is 0 if the chain of mimics ends at a joint that does not exist or has no single number, or forms a loop. The
+        # positions of the joints between are kept: long chains are followed once.
         followers: dict[str, Joint] = {}
         value = 0.0
         while joint.name not in followers:
