@@ -104,8 +104,7 @@ def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:
         is_required = parameter.default is parameter.empty
         default = None if is_required else parameter.default
         parameters[parameter.name] = Parameter(parameter.name, hints[parameter.name], is_required, default)
-    known: tuple[Subject, ...] = get_args(Subject)
-    examined: Subject = next((name for name in known if name == subject.name), "robot")
+    examined: Subject = next((name for name in get_args(Subject) if name == subject.name), "robot")
     return Check(function.__name__, function, examined, parameters, distribution)
 
 
