@@ -116,7 +116,7 @@ def undefined_pose(joint: Joint) -> MissingElement:
 def placed_by(T_frame_parent: Transform, origin: Origin) -> Transform:
     """Return T_frame_child: the frame that an origin places in its parent."""
     if origin.rpy == (0.0, 0.0, 0.0):
-        return T_frame_parent.shifted(origin.xyz)
+        return Transform(T_frame_parent.rotation, T_frame_parent.apply(origin.xyz))
     return T_frame_parent @ Transform(rotation_from_rpy(origin.rpy), origin.xyz)
 
 
