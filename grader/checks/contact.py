@@ -33,8 +33,8 @@ def stands_on(robot: Configuration, *, link: str, on: str, tolerance: NonNegativ
     touches = within(bottom, top, tolerance)
     fine = touches and beyond <= tolerance + SLACK
     if not touches:
-        off = difference(bottom - top, "too high", "too low")
-        message = f"the bottom of {link!r} is at z = {point((bottom,))} m in {on!r}; it should be at the top of {on!r}, {point((top,))} m ({off})"
+        message = f"the bottom of {link!r} is at z = {point((bottom,))} m in {on!r}; it should be at the top of {on!r}"
+        message += f", {point((top,))} m ({difference(bottom - top, 'too high', 'too low')})"
     elif not fine:
         message = f"{link!r} reaches {in_millimetres(beyond)} beyond the edge of the top of {on!r}"
     at = origin_place(robot, link) if touches else None  # either of the two may be wrong
