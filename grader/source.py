@@ -3,6 +3,7 @@
 import re
 from bisect import bisect_right
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import accumulate
 from typing import NamedTuple
 
@@ -24,20 +25,21 @@ class Location:
 class Source:
     """The text of one file, in which locations are computed on demand: most never are."""
 
-    __slots__ = ("_lines", "_tags", "path", "text")
-
     def __init__(self, path: str, text: str, tags: list[int] | None = None) -> None:
         """`tags` holds the offset of each start tag in document order; without it the text must be well-formed XML."""
-        self.path = path
-        self.text = text
-        self._tags = tags
-        self._lines: list[int] | None = None
+        self.path, self.text, self._given_tags = path, text, tags
+
+    @cached_property
+    def _lines(self) -> list[int]:
+        return list(accumulate((len(line) + 1 for line in self.text.split("\n")), initial=0))
+
+    @cached_property
+    def _tags(self) -> list[int]:
+        tags = _START_TAG.finditer(self.text)
+        return self._given_tags or [match.start() for match in tags if len(match[0]) == 1]
 
     def at(self, offset: int) -> Location:
         """Return the location of a character offset."""
-        if self._lines is None:
-            lengths = (len(line) for line in self.text.split("\n"))
-            self._lines = list(accumulate((length + 1 for length in lengths), initial=0))
         line = bisect_right(self._lines, offset)
         start = self._lines[line - 1]
         if line == 1 and offset > 0 and self.text.startswith("\ufeff"):
@@ -46,19 +48,14 @@ class Source:
 
     def tag(self, index: int, attribute: str | None = None) -> Location:
         """Return the location of the start tag with this index in document order, or of an attribute if it has it."""
-        start = self._start_tags()[index]
+        start = self._tags[index]
         return self.at(start if attribute is None else self._attribute(start, attribute))
-
-    def _start_tags(self) -> list[int]:
-        if self._tags is None:
-            self._tags = [match.start() for match in _START_TAG.finditer(self.text) if len(match[0]) == 1]
-        return self._tags
 
     def next_tag(self, index: int, name: str) -> int:
         """Return the index of the first start tag of this name after another one; that one if there is none."""
         opening = re.compile(rf"<\s*{re.escape(name)}(?![^\s=/>])")
-        tags = self._start_tags()
-        return next((other for other in range(index + 1, len(tags)) if opening.match(self.text, tags[other])), index)
+        others = range(index + 1, len(self._tags))
+        return next((other for other in others if opening.match(self.text, self._tags[other])), index)
 
     def line(self, number: int) -> str:
         """Return the text of a line, counted from 1, without its line break."""

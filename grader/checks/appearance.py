@@ -52,7 +52,7 @@ def shows_sphere(robot: Configuration, *, link: str, radius: NonNegative, tolera
     spheres = (sphere for _, sphere in _shown(robot, link, Sphere))
     best = min(spheres, key=lambda sphere: abs(abs(sphere.radius) - radius))
     what = f"the radius of the sphere that {link!r} shows is"
-    return measured(what, abs(best.radius), radius, tolerance, "m", at=place(best.location, "radius"))
+    return measured(what, abs(best.radius), radius, tolerance, at=place(best.location, "radius"))
 
 
 def shows_colour(

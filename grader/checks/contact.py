@@ -3,7 +3,7 @@
 from itertools import product
 from operator import itemgetter
 
-from grader.checks.outcome import SLACK, Outcome, difference, judged, pending, place, point, size, within
+from grader.checks.outcome import SLACK, Outcome, difference, in_millimetres, judged, pending, place, point, within
 from grader.checks.toml_types import NonNegative
 from grader.checks.visuals import ShapeName, main_visual, origin_place, visual_pose, visuals
 from grader.robot.kinematics import Configuration
@@ -33,10 +33,10 @@ def stands_on(robot: Configuration, *, link: str, on: str, tolerance: NonNegativ
     touches = within(bottom, top, tolerance)
     fine = touches and beyond <= tolerance + SLACK
     if not touches:
-        off = difference(bottom - top, "m", "too high", "too low")
-        message = f"the bottom of {link!r} is at z = {point((bottom,))} m in {on!r}; it should be at the top of {on!r}, {point((top,))} m ({off})"
+        message = f"the bottom of {link!r} is at z = {point((bottom,))} m in {on!r}; it should be at the top of {on!r}"
+        message += f", {point((top,))} m ({difference(bottom - top, 'too high', 'too low')})"
     elif not fine:
-        message = f"{link!r} reaches {size(beyond, 'm')} beyond the edge of the top of {on!r}"
+        message = f"{link!r} reaches {in_millimetres(beyond)} beyond the edge of the top of {on!r}"
     at = origin_place(robot, link) if touches else None  # either of the two may be wrong
     return judged(fine, message, bottom, top, tolerance, "m", at=at)
 
@@ -60,7 +60,9 @@ def clear_of(robot: Configuration, *, link: str, of: str, tolerance: NonNegative
     fine = deepest <= tolerance
     if fine and unknown is not None:
         raise UnknownShape(unknown)
-    message = f"{link!r} does not cut into {of!r}" if fine else f"{link!r} cuts {size(deepest, 'm')} deep into {of!r}"
+    message = (
+        f"{link!r} does not cut into {of!r}" if fine else f"{link!r} cuts {in_millimetres(deepest)} deep into {of!r}"
+    )
     at = place(culprit.origin.location, "xyz") or place(culprit.location)
     return judged(fine, message, round(deepest, 4), 0.0, tolerance, "m", at=at)
 

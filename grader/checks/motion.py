@@ -2,7 +2,7 @@
 
 from math import atan2, degrees, hypot
 
-from grader.checks.outcome import SLACK, Outcome, judged, place, point, quantity, size
+from grader.checks.outcome import SLACK, Outcome, in_degrees, in_millimetres, judged, place, point
 from grader.checks.toml_types import Direction, NonNegative
 from grader.checks.visuals import main_visual, visual_pose, visuals
 from grader.errors import MissingElement
@@ -36,7 +36,10 @@ def rolls_forward(
     """
     joint = _turning_joint(robot, link, base)
     ahead, upward = unit(forward) or forward, unit(up) or up
-    low, high = _lowest_and_highest(robot, link, base, upward)
+    poses = [(visual.geometry, visual_pose(robot, link, visual, base)) for visual in visuals(robot, link)]
+    lowest = min(poses, key=lambda shape: extent(shape[0], shape[1], upward)[0])
+    highest = max(poses, key=lambda shape: extent(shape[0], shape[1], upward)[1])
+    low, high = farthest(*lowest, minus((0.0, 0.0, 0.0), upward)), farthest(*highest, upward)
     displaced = robot.displacement(link, joint, _SMALL_ANGLE, relative_to=base)
     moved_low = _flat(minus(displaced.apply(low), low), upward)
     moved_high = _flat(minus(displaced.apply(high), high), upward)
@@ -60,10 +63,11 @@ def axis_along(
     pose = robot.pose(link, relative_to=relative_to)
     actual, expected = pose.rotate(unit(axis) or axis), unit(direction) or direction
     off = _angle(actual, expected)
-    message = f"{_axis_name(axis)} of the frame {link!r} points along {point(actual)} in {relative_to!r}"
+    names = {(1.0, 0.0, 0.0): "the x axis", (0.0, 1.0, 0.0): "the y axis", _Z_AXIS: "the z axis"}
+    message = f"{names.get(axis, f'the direction {point(axis)}')} of the frame {link!r} points along {point(actual)} in {relative_to!r}"
     fine = off <= tolerance + SLACK
     if not fine:
-        message += f"; it should point along {point(expected)} ({quantity(off, 'deg')} off)"
+        message += f"; it should point along {point(expected)} ({in_degrees(off)} off)"
     joint = robot.parent_joints.get(link)
     at = place(joint.origin.location if joint and joint.origin else None, "rpy") or place(robot.link(link).location)
     return judged(fine, message, actual, expected, tolerance, "deg", at=at)
@@ -85,12 +89,14 @@ def turns_about_itself(
     away = hypot(*cross(turning, T_joint_wheel.translation))
     at, detail = place(joint.axis_location, "xyz") or joint.location, f" (joint {joint.name!r})"
     if tilt > angle + SLACK:
-        message = f"{link!r} wobbles: its joint axis is {quantity(tilt, 'deg')} off the cylinder's axis; it should be along it"
+        message = (
+            f"{link!r} wobbles: its joint axis is {in_degrees(tilt)} off the cylinder's axis; it should be along it"
+        )
         return judged(False, message, tilt, 0.0, angle, "deg", at=at, detail=detail)
     fine = away <= tolerance + SLACK
     message = f"{link!r} turns about its own axis"
     if not fine:
-        message = f"{link!r} turns off centre: its joint axis is {size(away, 'm')} beside the cylinder's axis; it should be on it"
+        message = f"{link!r} turns off centre: its joint axis is {in_millimetres(away)} beside the cylinder's axis; it should be on it"
     at = place(visual.origin.location, "xyz") or at
     return judged(fine, message, away, 0.0, tolerance, "m", at=at, detail="" if fine else detail)
 
@@ -113,14 +119,6 @@ def _turning_joint(robot: Configuration, link: str, base: str) -> Joint:
     return moving[-1]
 
 
-def _lowest_and_highest(robot: Configuration, link: str, base: str, up: Vector) -> tuple[Vector, Vector]:
-    """Return the lowest and the highest point of a link's visuals, in the base's frame; of a face or edge its middle."""
-    poses = [(visual.geometry, visual_pose(robot, link, visual, base)) for visual in visuals(robot, link)]
-    lowest = min(poses, key=lambda shape: extent(shape[0], shape[1], up)[0])
-    highest = max(poses, key=lambda shape: extent(shape[0], shape[1], up)[1])
-    return farthest(*lowest, (-up[0], -up[1], -up[2])), farthest(*highest, up)
-
-
 def _flat(vector: Vector, up: Vector) -> Vector:
     """Return the part of a vector in the plane across a unit direction."""
     lifted = dot(vector, up)
@@ -129,16 +127,11 @@ def _flat(vector: Vector, up: Vector) -> Vector:
 
 def _heading(off: float, travel: Vector, base: str) -> str:
     if off <= 45.0:
-        slant = f", {quantity(off, 'deg')} off straight ahead" if off > 0.05 else ""
+        slant = f", {in_degrees(off)} off straight ahead" if off > 0.05 else ""
         return f"drives {base!r} forward{slant}"
     if off >= 135.0:
         return f"drives {base!r} backward"
     return f"drives {base!r} sideways, along {point(travel)}"
-
-
-def _axis_name(axis: Vector) -> str:
-    names = {(1.0, 0.0, 0.0): "the x axis", (0.0, 1.0, 0.0): "the y axis", (0.0, 0.0, 1.0): "the z axis"}
-    return names.get(axis, f"the direction {point(axis)}")
 
 
 def _angle(one: Vector, other: Vector) -> float:

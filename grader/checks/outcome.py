@@ -14,7 +14,7 @@ AnyPlace = Location | LazyLocation | None
 
 # A tolerance includes its end: 0.152 is within 0.002 of 0.15, although the floats differ by slightly more.
 SLACK = 1e-9
-_AXES = "xyz"
+SIDES = ("too large", "too small")
 _FEW, _MANY = 100.0, 1e7  # from here on: no decimals, an exponent
 
 
@@ -82,9 +82,9 @@ def passed(message: str) -> Outcome:
     return Outcome("passed", message)
 
 
-def pending(message: str, at: Location | None = None) -> Outcome:
+def pending(message: str) -> Outcome:
     """Return the outcome for a fact that needs manual grading."""
-    return Outcome("pending", message, location=at)
+    return Outcome("pending", message)
 
 
 def failed(message: str, at: AnyPlace = None, *, detail: str = "", problem: str = "") -> Outcome:
@@ -121,56 +121,42 @@ def within(actual: float, expected: float, tolerance: float) -> bool:
 
 
 def measured(
-    what: str,
-    actual: float,
-    expected: float,
-    tolerance: float,
-    unit: str,
-    *,
-    sides: tuple[str, str] = ("too large", "too small"),
-    at: LazyLocation | None = None,
+    what: str, actual: float, expected: float, tolerance: float, *, sides: tuple[str, str] = SIDES, at: AnyPlace = None
 ) -> Outcome:
-    """Compare one number: "the radius of 'wheel' is 0.2 m; it should be 0.1 m (100 mm too large)"."""
+    """Compare one length in metres: "the radius of 'wheel' is 0.2 m; it should be 0.1 m (100 mm too large)"."""
     fine = within(actual, expected, tolerance)
-    message = f"{what} {quantity(actual, unit)}"
+    message = f"{what} {point((actual,))} m"
     if not fine:
-        message += f"; it should be {quantity(expected, unit)} ({difference(actual - expected, unit, *sides)})"
-    return judged(fine, message, actual, expected, tolerance, unit, at=at)
+        message += f"; it should be {point((expected,))} m ({difference(actual - expected, *sides)})"
+    return judged(fine, message, actual, expected, tolerance, "m", at=at)
 
 
 def measured_point(
-    what: str, actual: Vector, expected: Vector, tolerance: float, frame: str, *, at: LazyLocation | None = None
+    what: str, actual: Vector, expected: Vector, tolerance: float, frame: str, *, at: AnyPlace = None
 ) -> Outcome:
     """Compare a point in a frame, in metres; each coordinate must be within the tolerance."""
-    off = [
-        f"{axis} {difference(a - b, 'm')}"
-        for axis, a, b in zip(_AXES, actual, expected, strict=True)
-        if not within(a, b, tolerance)
-    ]
+    pairs = zip("xyz", actual, expected, strict=True)
+    off = [f"{axis} {difference(a - b)}" for axis, a, b in pairs if not within(a, b, tolerance)]
     message = f"{what} is at {point(actual)} m in {frame!r}"
     if off:
         message += f"; it should be at {point(expected)} m ({', '.join(off)})"
     return judged(not off, message, actual, expected, tolerance, "m", at=at)
 
 
-def difference(off: float, unit: str, over: str = "too large", under: str = "too small") -> str:
-    """Return how far a value is off, and to which side."""
-    return f"{size(off, unit)} {over if off > 0 else under}"
+def difference(off: float, over: str = SIDES[0], under: str = SIDES[1]) -> str:
+    """Return how far a length in metres is off, and to which side."""
+    return f"{in_millimetres(off)} {over if off > 0 else under}"
 
 
-def size(value: float, unit: str) -> str:
-    """Return the size of a difference in the unit that reads best: millimetres for lengths."""
-    if unit != "m":
-        return quantity(abs(value), unit)
-    millimetres = abs(value) * 1000
+def in_millimetres(length: float) -> str:
+    """Return the size of a difference in metres, rounded for reading: 25 mm."""
+    millimetres = abs(length) * 1000
     return f"{millimetres:.0f} mm" if _FEW <= millimetres < _MANY else f"{millimetres:.3g} mm"
 
 
-def quantity(value: float, unit: str) -> str:
-    """Return a value with its unit, rounded for reading."""
-    if unit != "deg":
-        return f"{_short(value)} {unit}".rstrip()
-    return f"{value:.3g} degree{'' if f'{value:.3g}' == '1' else 's'}"
+def in_degrees(angle: float) -> str:
+    """Return an angle in degrees, rounded for reading: 1.5 degrees."""
+    return f"{angle:.3g} degree{'' if f'{angle:.3g}' == '1' else 's'}"
 
 
 @lru_cache(maxsize=4096)

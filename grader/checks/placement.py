@@ -7,13 +7,12 @@ from grader.checks.outcome import (
     Outcome,
     difference,
     failed,
+    in_degrees,
     judged,
     measured,
     measured_point,
     place,
     point,
-    quantity,
-    size,
     within,
 )
 from grader.checks.toml_types import NonNegative
@@ -22,12 +21,10 @@ from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Mesh, Visual
 from grader.robot.shapes import UnknownShape, extent
-from grader.robot.transforms import Transform, Vector, dot, minus, unit
+from grader.robot.transforms import Vector, dot, minus, unit
 from grader.source import LazyLocation
 from grader.text import enumerated
 
-_AHEAD: Vector = (1.0, 0.0, 0.0)
-_LEFT: Vector = (0.0, 1.0, 0.0)
 _ALONG = 0.9  # the least cosine of the angle between two vectors that count as one direction
 _UP: Vector = (0.0, 0.0, 1.0)
 
@@ -83,7 +80,7 @@ def bottom_at_height(
         lowest, _ = extent(visual.geometry, visual_pose(robot, link, visual, relative_to), _UP)
     what = f"the bottom of {link!r} in the frame {relative_to!r} is at z ="
     at = place(visual.origin.location, "xyz") or visual.location
-    return measured(what, lowest, height, tolerance, "m", sides=("too high", "too low"), at=at)
+    return measured(what, lowest, height, tolerance, sides=("too high", "too low"), at=at)
 
 
 def bottoms_at_height(
@@ -99,7 +96,7 @@ def bottoms_at_height(
     names = enumerated([repr(link) for link in lowest])
     message = f"the bottoms of {names} are at z = {point(actual)} m in {relative_to!r}"
     if wrong:
-        off = [f"{link!r} {difference(value - height, 'm', 'too high', 'too low')}" for link, value in wrong.items()]
+        off = [f"{link!r} {difference(value - height, 'too high', 'too low')}" for link, value in wrong.items()]
         message += f"; they should be at {height:g} m ({', '.join(off)})"
     at = _common_place(robot, wrong, lowest, relative_to, tolerance) if wrong else None
     return judged(not wrong, message, actual, height, tolerance, "m", at=at)
@@ -114,17 +111,17 @@ def under_the_base(
     """
     T_link_base = robot.pose(base, relative_to=link)
     x, y, _ = T_link_base.translation
-    turned = _turned(T_link_base)
+    cosine = (sum(T_link_base.rotation[::4]) - 1.0) / 2.0  # the trace of a rotation matrix is 1 + 2 cos(angle)
+    turned = degrees(acos(max(-1.0, min(1.0, cosine))))
     lowest, missing = _measured(wheels, lambda wheel: span(robot, wheel, link, _UP)[0])
     off = {wheel: value for wheel, value in lowest.items() if not within(value, 0.0, tolerance)}
     faults = []
     if not (within(x, 0.0, tolerance) and within(y, 0.0, tolerance)):
         faults.append(f"{base!r} is at x, y = {point((x, y))} m in it and should be at 0 0")
     if turned > angle:
-        faults.append(f"{base!r} is turned by {quantity(turned, 'deg')} in it and should not be turned")
-    for wheel, value in off.items():
-        side = "above" if value > 0 else "below"
-        faults.append(f"the lowest point of {wheel!r} is {size(value, 'm')} {side} it")
+        faults.append(f"{base!r} is turned by {in_degrees(turned)} in it and should not be turned")
+    heights = {wheel: difference(value, "above", "below") for wheel, value in off.items()}
+    faults += [f"the lowest point of {wheel!r} is {height} it" for wheel, height in heights.items()]
     if missing is not None and not faults:
         raise missing
     verb, found = ("should be", f": {'; '.join(faults)}") if faults else ("is", "")
@@ -140,10 +137,9 @@ def _loose_joint(robot: Configuration, link: str, relative_to: str) -> Outcome |
     """Return the failure of a link that moves in another link's frame; None where only fixed joints lie between."""
     path = robot.between(relative_to, link)
     loose = next((joint for joint in path if joint.type != "fixed"), None)
-    own = robot.parent_joints.get(link)
     if loose is None:
         return None
-    detail = f" (joint {loose.name!r})"
+    own, detail = robot.parent_joints.get(link), f" (joint {loose.name!r})"
     if own is not None and own in path and loose is not own:
         reason = f"which moves: a joint above it is {loose.type}; it should be fixed"
         at = place(own.location, "link", "parent")
@@ -164,12 +160,6 @@ def _measured(
         except (MissingElement, UnknownShape) as error:
             missing = missing or error.with_traceback(None)  # a traceback keeps this frame and its values alive
     return found, missing
-
-
-def _turned(pose: Transform) -> float:
-    """Return the angle of a rotation in degrees."""
-    a, e, i = pose.rotation[0], pose.rotation[4], pose.rotation[8]
-    return degrees(acos(max(-1.0, min(1.0, (a + e + i - 1.0) / 2.0))))
 
 
 def _moved_by(robot: Configuration, link: str, visual: Visual, relative_to: str, off: Vector) -> LazyLocation | None:

@@ -100,12 +100,10 @@ def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:
         if parameter.name not in hints:
             raise InputError(f"its argument {parameter.name} has no annotation")
     parameters = {}
-    for parameter in rest:
-        is_required = parameter.default is parameter.empty
-        default = None if is_required else parameter.default
-        parameters[parameter.name] = Parameter(parameter.name, hints[parameter.name], is_required, default)
-    known: tuple[Subject, ...] = get_args(Subject)
-    examined: Subject = next((name for name in known if name == subject.name), "robot")
+    for name, default in ((parameter.name, parameter.default) for parameter in rest):
+        is_required = default is inspect.Parameter.empty
+        parameters[name] = Parameter(name, hints[name], is_required, None if is_required else default)
+    examined: Subject = next((name for name in get_args(Subject) if name == subject.name), "robot")
     return Check(function.__name__, function, examined, parameters, distribution)
 
 
@@ -129,8 +127,8 @@ def find_check(name: str) -> Check | None:
         raise
     except BaseException as error:  # noqa: BLE001  a fault of another package, which may even exit
         reason = str(error) if isinstance(error, InputError) else f"{type(error).__name__}: {error}"
-        place = entry.value.replace(":", ".")
-        raise InputError(f"the check {name} of the package {distribution} ({place}) cannot be used: {reason}") from None
+        source = f"{distribution} ({entry.value.replace(':', '.')})"
+        raise InputError(f"the check {name} of the package {source} cannot be used: {reason}") from None
 
 
 def _entry_points() -> dict[str, Any]:

@@ -5,9 +5,9 @@ from typing import Literal
 
 from grader.checks.outcome import place
 from grader.errors import MissingElement
+from grader.robot.frames import placed_by
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Cylinder, Geometry, Mesh, Sphere, Visual
-from grader.robot.motion import placed_by
 from grader.robot.shapes import extent, is_empty, volume
 from grader.robot.transforms import Transform, Vector
 from grader.source import LazyLocation

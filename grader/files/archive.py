@@ -61,11 +61,10 @@ def tree_of(members: Iterable[ArchiveMember], name: str, limit: int = limits.MAX
     generated: set[str] = set()
     unseen: set[str] = set()
     for member in _bounded(members, name, min(limit, limits.MAX_UNPACKED_SIZE)):
-        path = safe_path(member.path) if len(member.path) <= MAX_NAME_LENGTH else None
         if len(member.path) > MAX_NAME_LENGTH:
             shown = f"{printable_path(member.path[:40])}..."
             ignored.append(IgnoredFile(shown, "has a name that is too long, and was not read"))
-        elif path is None:
+        elif (path := safe_path(member.path)) is None:
             reason = "has a name that leads out of the archive, and was not read"
             ignored.append(IgnoredFile(printable_path(member.path), reason))
         elif part := ignored_part(path):
@@ -73,8 +72,7 @@ def tree_of(members: Iterable[ArchiveMember], name: str, limit: int = limits.MAX
             unseen |= {part} - {path}
         elif path:
             found[path] = member
-    environments = {path.rpartition("/")[0] for path in found if path.endswith("/pyvenv.cfg")}
-    if environments:
+    if environments := {path.rpartition("/")[0] for path in found if path.endswith("/pyvenv.cfg")}:
         found = {path: member for path, member in found.items() if environments.isdisjoint(parents(path))}
     folders = {path for path, member in found.items() if member.kind == "folder"} | folders_above(found, name)
     links = _Links(found, folders, name)
@@ -83,10 +81,9 @@ def tree_of(members: Iterable[ArchiveMember], name: str, limit: int = limits.MAX
             ignored.append(IgnoredFile(path, member.reason))
         elif member.kind == "link" and not links.add(path):
             ignored.append(IgnoredFile(path, "is a link that leads nowhere in the archive, and was not followed"))
-    real = {path: path for path, member in found.items() if member.kind == "file"}
-    files = [
-        File(path, found[at].size, partial(_read, found[at], path)) for path, at in {**links.files, **real}.items()
-    ]
+    members_at = {path: found[real] for path, real in links.files.items()}
+    members_at |= {path: member for path, member in found.items() if member.kind == "file"}
+    files = [File(path, member.size, partial(_read, member, path)) for path, member in members_at.items()]
     return make_tree(name, files, folders | links.folders, sorted(ignored), sorted(generated), unseen)
 
 

@@ -4,6 +4,7 @@ import errno
 import os
 import stat
 import sys
+from contextlib import suppress
 from itertools import islice
 from pathlib import Path
 
@@ -27,8 +28,8 @@ def read_capped(
     `shown` is its name in messages (default: the path), and `advice` ends the one about a file that is too large. Below the
     folder `top` no symlink is followed.
     """
-    data = read_start(path, limit + 1, shown, top)
-    return data if len(data) <= limit else capped(data, limit, shown or shown_below(path, top), advice)
+    shown = shown or shown_below(path, top)
+    return capped(read_start(path, limit + 1, shown, top), limit, shown, advice)
 
 
 def read_start(path: Path | str, count: int, shown: str = "", top: str = "") -> bytes:
@@ -127,18 +128,16 @@ def not_there(path: Path) -> InputError:
     wrong = path
     while wrong.name and not os.path.lexists(wrong.parent):
         wrong = wrong.parent
-    try:
+    siblings: list[str] = []
+    with suppress(OSError, ValueError):
         siblings = [printable_path(sibling.name) for sibling in islice(wrong.parent.iterdir(), _MAX_SIBLINGS)]
-    except (OSError, ValueError):
-        siblings = []
     guess = closest(printable_path(wrong.name), siblings)
-    if guess is None:
-        here = "" if path.is_absolute() else " (relative to the current folder)"
-        return InputError(f"{printable_path(path)} does not exist{here}")
-    right = wrong.parent / guess
-    whole = right / path.relative_to(wrong)
-    meant = printable_path(whole if os.path.lexists(whole) else right)
-    return InputError(f"{printable_path(path)} does not exist; did you mean {meant!r}?")
+    hint = "" if path.is_absolute() else " (relative to the current folder)"
+    if guess is not None:
+        right = wrong.parent / guess
+        whole = right / path.relative_to(wrong)
+        hint = f"; did you mean {printable_path(whole if os.path.lexists(whole) else right)!r}?"
+    return InputError(f"{printable_path(path)} does not exist{hint}")
 
 
 def advice_for(path: str) -> str:

@@ -74,15 +74,12 @@ class Tree:
         if not folder:
             return self
         start = folder + "/"
-        files = {
-            path.removeprefix(start): File(path.removeprefix(start), file.size, file.read)
-            for path, file in self.files.items()
-            if path.startswith(start)
-        }
-        folders, unseen = (
-            frozenset(path.removeprefix(start) for path in paths if path.startswith(start))
-            for paths in (self.folders, self.unseen)
-        )
+
+        def inside(paths: Iterable[str]) -> dict[str, str]:
+            return {path.removeprefix(start): path for path in paths if path.startswith(start)}
+
+        files = {inner: replace(self.files[path], path=inner) for inner, path in inside(self.files).items()}
+        folders, unseen = frozenset(inside(self.folders)), frozenset(inside(self.unseen))
         return Tree(folder.rpartition("/")[2], files, folders, unseen=unseen, kept=(self,))
 
 
@@ -100,17 +97,17 @@ def make_tree(
     A file that is too large is ignored: it is named, and never read.
     """
     by_path = {file.path: file for file in sorted(files, key=lambda file: file.path)}
-    large = [IgnoredFile(path, _too_large(file)) for path, file in by_path.items() if file.size > limits.MAX_FILE_SIZE]
+    large = [_too_large(file) for file in by_path.values() if file.size > limits.MAX_FILE_SIZE]
     by_path |= {file.path: replace(by_path[file.path], read=partial(_refuse, file)) for file in large}
-    everything = frozenset(folders)
-    everything |= folders_above([*by_path, *everything], name)
-    unseen = frozenset(unseen) - everything
-    return Tree(name, by_path, everything, tuple(dict.fromkeys([*ignored, *large])), tuple(generated), unseen, kept)
+    named = frozenset(folders)
+    everything = named | folders_above([*by_path, *named], name)
+    ignored = tuple(dict.fromkeys([*ignored, *large]))
+    return Tree(name, by_path, everything, ignored, tuple(generated), frozenset(unseen) - everything, kept)
 
 
-def _too_large(file: File) -> str:
-    megabytes = f"({file.size / 1e6:.0f} MB)"
-    return f"{megabytes} is larger than {limits.MAX_FILE_SIZE >> 20} MiB, the limit for one file, and was ignored"
+def _too_large(file: File) -> IgnoredFile:
+    limit = f"{limits.MAX_FILE_SIZE >> 20} MiB, the limit for one file"
+    return IgnoredFile(file.path, f"({file.size / 1e6:.0f} MB) is larger than {limit}, and was ignored")
 
 
 def _refuse(file: IgnoredFile, limit: int, *, first: bool = False) -> bytes:

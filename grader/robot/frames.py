@@ -1,14 +1,19 @@
-"""The position of each joint and the frame of each link: forward kinematics down the tree, and why a pose is undefined."""
+"""The motion of each joint and the frame of each link: forward kinematics down the tree, and why a pose is undefined."""
 
-from collections.abc import Mapping
-from math import isfinite
+from collections.abc import Mapping, Sequence
+from math import atan2, isfinite
 from typing import NamedTuple
 
 from grader.errors import MissingElement
-from grader.robot.model import Joint, Robot
-from grader.robot.motion import Position, after_joint
-from grader.robot.transforms import IDENTITY, Transform, unit
-from grader.text import quoted
+from grader.robot.joints import MOVING_TYPES
+from grader.robot.model import Joint, Origin, Robot
+from grader.robot.transforms import IDENTITY, Transform, Vector, cross, dot, rotation_about, rotation_from_rpy, unit
+from grader.text import counted, quoted
+
+Position = float | Sequence[float]
+
+# The number of coordinates of a joint's position; the other types do not move.
+DEGREES_OF_FREEDOM = {"continuous": 1, "revolute": 1, "prismatic": 1, "planar": 3, "floating": 6}
 
 
 class Frame(NamedTuple):
@@ -48,12 +53,18 @@ class Frames:
         name = link
         while name not in known and name in parents:
             if name in self._loops or name in joints:
-                raise self._on_loop(link, name, joints)
+                loop = self._loops.get(name) or min(joints)
+                self._loops.update(dict.fromkeys(joints, loop))
+                message = f"link {quoted(link)} is on or below a loop of joints, so it is in no tree"
+                raise MissingElement("connection", loop, message=message, location=self._robot.link(link).location)
             joints[name] = parents[name]
             name = parents[name].parent
         frame = known.get(name) or known.setdefault(name, Frame(name, name, IDENTITY, 0))
         for joint in reversed(joints.values()):
-            pose = after_joint(frame.pose, joint, self.position(joint))
+            motion, pose = motion_of(joint, self.position(joint)), None
+            if joint.origin is not None and motion is not None:
+                pose = placed_by(frame.pose, joint.origin)
+                pose = pose if motion is IDENTITY else pose @ motion
             if pose is not None and isfinite(sum(pose.translation)):
                 frame = Frame(frame.root, frame.group, pose, frame.depth)
             else:
@@ -61,23 +72,12 @@ class Frames:
             known[joint.child] = frame
         return frame
 
-    def _on_loop(self, link: str, name: str, joints: Mapping[str, Joint]) -> MissingElement:
-        loop = self._loops.get(name) or min(joints)
-        self._loops.update(dict.fromkeys(joints, loop))
-        message = f"link {quoted(link)} is on or below a loop of joints, so it is in no tree"
-        return MissingElement("connection", loop, message=message, location=self._robot.link(link).location)
-
     def position(self, joint: Joint) -> Position:
         """Return the position of a joint: its own, that of the joint that it mimics, or 0."""
         if joint.mimic is None or joint.name in self._given:
             return self._given.get(joint.name, 0.0)
-        return self._follow(joint)
-
-    def _follow(self, joint: Joint) -> float:
-        """Return a mimic joint's position, keeping those of the joints between: long chains are followed once.
-
-        It is 0 if the chain of mimics ends at a joint that does not exist or has no single number, or forms a loop.
-        """
+        # It is 0 if the chain of mimics ends at a joint that does not exist or has no single number, or forms a loop. The
+        # positions of the joints between are kept: long chains are followed once.
         followers: dict[str, Joint] = {}
         value = 0.0
         while joint.name not in followers:
@@ -100,17 +100,75 @@ class Frames:
 
 def undefined_pose(joint: Joint) -> MissingElement:
     """Return the error for a pose that is undefined because of this joint."""
-    location, attribute, inside = joint.axis_location, "xyz", ""
+    at = joint.axis_location and joint.axis_location._replace(attribute="xyz")
     if joint.origin is None:
-        reason = "its origin cannot be read"
-        location, attribute, inside = joint.location, "", "origin"
+        reason, at = "its origin cannot be read", joint.location and joint.location._replace(inside="origin")
     elif joint.axis is None:
         reason = "its axis cannot be read"
     elif unit(joint.axis) is None:
         reason = "its axis is 0 0 0"
     else:
-        reason = "its numbers are too large"
-        location, attribute = joint.location, ""
+        reason, at = "its numbers are too large", joint.location
     message, detail = f"the pose of a joint's child is undefined: {reason}", f" (joint {quoted(joint.name)})"
-    at = location._replace(attribute=attribute or None, inside=inside or None) if location is not None else None
     return MissingElement("pose below joint", joint.name, message=message, detail=detail, location=at)
+
+
+def placed_by(T_frame_parent: Transform, origin: Origin) -> Transform:
+    """Return T_frame_child: the frame that an origin places in its parent."""
+    if origin.rpy == (0.0, 0.0, 0.0):
+        return Transform(T_frame_parent.rotation, T_frame_parent.apply(origin.xyz))
+    return T_frame_parent @ Transform(rotation_from_rpy(origin.rpy), origin.xyz)
+
+
+def motion_of(joint: Joint, position: Position) -> Transform | None:
+    """Return T_origin_child; None if it is undefined, as it is for every position about a zero axis (KDL)."""
+    if joint.type not in MOVING_TYPES:
+        return IDENTITY
+    if isinstance(position, int | float) and not isfinite(position):
+        return None  # a chain of mimic joints can overflow
+    if joint.type == "floating":
+        if isinstance(position, int | float):
+            return IDENTITY
+        x, y, z, roll, pitch, yaw = position
+        return Transform(rotation_from_rpy((roll, pitch, yaw)), (x, y, z))
+    direction = unit(joint.axis) if joint.axis is not None else None
+    if direction is None:
+        # KDL divides by the axis' length before it uses the position. An unreadable axis matters only if the joint moves.
+        return IDENTITY if joint.axis is None and not position else None
+    if joint.type == "planar":
+        return _planar(direction, position)
+    if not position:
+        return IDENTITY
+    assert isinstance(position, int | float)  # check_position has made sure
+    if joint.type == "prismatic":
+        x, y, z = direction
+        return Transform(translation=(x * position, y * position, z * position))
+    return Transform(rotation_about(direction, position))
+
+
+def _planar(normal: Vector, position: Position) -> Transform:
+    """Return a motion in the plane across `normal`, then about it; x and y are the frame's if the normal is its z axis."""
+    if isinstance(position, int | float):
+        return IDENTITY
+    x, y, angle = position
+    around = cross((0.0, 0.0, 1.0), normal)
+    turn = unit(around)
+    if turn is None:
+        slide: Vector = (x, y, 0.0) if normal[2] > 0 else (x, -y, 0.0)
+    else:
+        tilt = rotation_about(turn, atan2(dot(turn, around), normal[2]))
+        slide = Transform(tilt).rotate((x, y, 0.0))
+    return Transform(rotation_about(normal, angle), slide)
+
+
+def check_position(joint: Joint, position: Position) -> None:
+    """Raise ValueError for a position that a joint of this type cannot have."""
+    wanted = DEGREES_OF_FREEDOM.get(joint.type, 0)
+    values = (position,) if isinstance(position, int | float) else position
+    if wanted == 0:
+        raise ValueError(f"joint {quoted(joint.name)} is {joint.type or 'without type'}: it cannot move")
+    if not all(map(isfinite, values)):
+        raise ValueError(f"joint {quoted(joint.name)} cannot be at {position}")
+    if len(values) != wanted:
+        takes = f"its position takes {counted(wanted, 'number')}, not {len(values)}"
+        raise ValueError(f"joint {quoted(joint.name)} is {joint.type}: {takes}")

@@ -27,39 +27,30 @@ _EXTRAS = {
 
 def read_joint(element: Element, problems: Problems) -> Joint:
     """Read one joint; a value that cannot be read is a problem, and None in the joint."""
-    name, kind = element.get("name"), element.get("type")
-    label = quoted(name or "")
-    if name is None:
+    name, kind = element.get("name", ""), element.get("type", "")
+    label = quoted(name)
+    if element.get("name") is None:
         problems.add(catalogue.JOINT_WITHOUT_NAME, f"this joint has no name; {_REJECTED}", element)
     _check_type(element, kind, label, problems)
     inside = first_children(element)
+    parent, child = (_linked(element, inside, role, label, problems) for role in ("parent", "child"))
     reader = ElementReader(problems, catalogue.BAD_JOINT_ORIGIN)
     origin = reader.origin(inside.get("origin"))
-    axis = _read_axis(element, inside.get("axis"), kind or "", problems)
-    limit = _read_limit(element, inside.get("limit"), kind or "", problems)
+    axis = _read_axis(element, inside.get("axis"), kind, problems)
+    limit = _read_limit(element, inside.get("limit"), kind, problems)
     mimic = _read_mimic(inside["mimic"], problems) if "mimic" in inside else None
     _check_extras(inside, problems)
     if kind in ("floating", "planar"):
         how = "does not publish it" if kind == "floating" else "treats it as fixed"
-        problems.add(
-            catalogue.UNPUBLISHED_JOINT, f"joint {label} is {kind}: robot_state_publisher {how}", element, "type"
-        )
-    return Joint(
-        name or "",
-        kind or "",
-        _linked(element, inside, "parent", label, problems),
-        _linked(element, inside, "child", label, problems),
-        None if reader.failed else origin,
-        axis,
-        limit,
-        mimic,
-        problems.location(element),
-        problems.location(inside["axis"]) if "axis" in inside else None,
-    )
+        message = f"joint {label} is {kind}: robot_state_publisher {how}"
+        problems.add(catalogue.UNPUBLISHED_JOINT, message, element, "type")
+    axis_at = problems.location(inside["axis"]) if "axis" in inside else None
+    frame = None if reader.failed else origin
+    return Joint(name, kind, parent, child, frame, axis, limit, mimic, problems.location(element), axis_at)
 
 
-def _check_type(element: Element, kind: str | None, label: str, problems: Problems) -> None:
-    if kind is None:
+def _check_type(element: Element, kind: str, label: str, problems: Problems) -> None:
+    if element.get("type") is None:
         problems.add(catalogue.TYPE_MISSING, f"joint {label} has no type; {_REJECTED}", element)
     elif kind not in JOINT_TYPES:
         guess = problems.did_you_mean(kind.strip(), JOINT_TYPES)

@@ -5,9 +5,8 @@ from itertools import takewhile
 from math import isfinite
 
 from grader.errors import MissingElement
-from grader.robot.frames import Frames, undefined_pose
+from grader.robot.frames import Frames, Position, check_position, motion_of, undefined_pose
 from grader.robot.model import Joint, Link, Robot, Visual
-from grader.robot.motion import Position, check_position, motion_of
 from grader.robot.transforms import IDENTITY, Transform, Vector, unit
 from grader.robot.tree import parent_joints
 from grader.text import quoted

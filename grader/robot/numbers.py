@@ -5,8 +5,10 @@ white space is allowed before a number and rejected after it; nan, inf, hex and 
 """
 
 import re
-from functools import lru_cache
+from collections.abc import Callable
+from functools import lru_cache, wraps
 from math import isinf
+from typing import TypeVar
 
 from grader.robot.transforms import Vector
 from grader.text import counted, quoted
@@ -16,14 +18,28 @@ _MAX_CACHED_LENGTH = 64  # characters: longer texts would make the cache large
 _VERSION = re.compile(r"[ \t\n\v\f\r]*([+-]?[0-9]+)")
 _MAX_LONG = 2**63 - 1
 
+Value = TypeVar("Value")
+
 
 class NumberError(ValueError):
     """Text that ROS 2 does not read as a number; the message says why."""
 
 
+def _cached(read: Callable[[str], Value]) -> Callable[[str], Value]:
+    """Return a reader that keeps values: the files of a class contain the same few texts thousands of times."""
+    cached = lru_cache(maxsize=4096)(read)
+    return wraps(read)(lambda text: cached(text) if len(text) <= _MAX_CACHED_LENGTH else read(text))
+
+
+@_cached
 def number(text: str) -> float:
     """Return the value of one number as urdfdom's strToDouble does; raises NumberError."""
-    return _cached_number(text) if len(text) <= _MAX_CACHED_LENGTH else _number(text)
+    if _NUMBER.fullmatch(text) is None:
+        raise NumberError(_reason(text))
+    value = float(text)
+    if isinf(value):
+        raise NumberError(f"{quoted(text.strip())} is too large for a number")
+    return value
 
 
 def numbers(text: str) -> list[float]:
@@ -31,9 +47,13 @@ def numbers(text: str) -> list[float]:
     return [number(piece) for piece in text.split(" ") if piece]
 
 
+@_cached
 def vector(text: str) -> Vector:
     """Return three numbers as urdfdom's Vector3::init does; raises NumberError."""
-    return _cached_vector(text) if len(text) <= _MAX_CACHED_LENGTH else _vector(text)
+    values = numbers(text)
+    if len(values) != 3:
+        raise NumberError(f"it has {counted(len(values), 'number')}, expected 3")
+    return (values[0], values[1], values[2])
 
 
 def rgba(text: str) -> tuple[float, float, float, float] | None:
@@ -52,27 +72,6 @@ def is_version_one(text: str) -> bool:
     parsed = [_VERSION.fullmatch(piece) for piece in text.removesuffix(".").split(".")]
     values = [_strtol(match[1]) for match in parsed if match]
     return len(values) == len(parsed) and min(values) >= 0 and [value % 2**32 for value in values] == [1, 0]
-
-
-def _number(text: str) -> float:
-    if _NUMBER.fullmatch(text) is None:
-        raise NumberError(_reason(text))
-    value = float(text)
-    if isinf(value):
-        raise NumberError(f"{quoted(text.strip())} is too large for a number")
-    return value
-
-
-def _vector(text: str) -> Vector:
-    values = numbers(text)
-    if len(values) != 3:
-        raise NumberError(f"it has {counted(len(values), 'number')}, expected 3")
-    return (values[0], values[1], values[2])
-
-
-# The files of a class contain the same few texts thousands of times.
-_cached_number = lru_cache(maxsize=4096)(_number)
-_cached_vector = lru_cache(maxsize=4096)(_vector)
 
 
 def _strtol(digits: str) -> int:

@@ -113,6 +113,28 @@ def straight_edges(geometry: Geometry) -> list[Vector]:
     return [(0.0, 0.0, 1.0)] if isinstance(geometry, Cylinder) else []
 
 
+def bounding_radius(shape: Shape) -> float:
+    """Return the radius of the smallest ball about a shape's centre that contains it."""
+    if isinstance(shape, Box):
+        x, y, z = shape.size
+        return hypot(x / 2.0, y / 2.0, z / 2.0)
+    if isinstance(shape, Cylinder):
+        return hypot(shape.radius, shape.length / 2.0)
+    return half_width(shape, (0.0, 0.0, 1.0))
+
+
+def shrunk(shape: Shape, scale: float) -> Shape:
+    """Return a shape with its lengths divided by a scale."""
+    if scale == 1.0:
+        return shape
+    if isinstance(shape, Box):
+        x, y, z = shape.size
+        return Box((x / scale, y / scale, z / scale))
+    if isinstance(shape, Cylinder):
+        return Cylinder(shape.radius / scale, shape.length / scale)
+    return Sphere(shape.radius / scale)
+
+
 def _end(size: float, component: float, tie: float) -> float:
     if abs(component) <= tie:
         return 0.0

@@ -1,37 +1,34 @@
 """Unknown names that look like misspelt ones, which ROS 2 silently ignores, and repeated elements."""
 
+from collections.abc import Set as AbstractSet
+
 from grader.robot import catalogue
 from grader.robot.diagnostics import Problems
 from grader.text import quoted
 from grader.xml.parsing import Element
 
 # What urdfdom reads: the attributes of each element, and the elements that may be in it.
-_ATTRIBUTES: dict[str, tuple[str, ...]] = {
-    "robot": ("name", "version"),
-    "link": ("name",),
-    "joint": ("name", "type"),
-    "material": ("name",),
-    "visual": ("name",),
-    "collision": ("name",),
-    "inertial": (),
-    "geometry": (),
-    "origin": ("xyz", "rpy"),
-    "box": ("size",),
-    "cylinder": ("radius", "length"),
-    "sphere": ("radius",),
-    "mesh": ("filename", "scale"),
-    "color": ("rgba",),
-    "texture": ("filename",),
-    "mass": ("value",),
-    "inertia": ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"),
-    "parent": ("link",),
-    "child": ("link",),
-    "axis": ("xyz",),
-    "limit": ("lower", "upper", "effort", "velocity"),
-    "dynamics": ("damping", "friction"),
-    "mimic": ("joint", "multiplier", "offset"),
-    "safety_controller": ("soft_lower_limit", "soft_upper_limit", "k_position", "k_velocity"),
-    "calibration": ("rising", "falling"),
+_ATTRIBUTES: dict[str, AbstractSet[str]] = {
+    "robot": {"name", "version"},
+    **dict.fromkeys(("link", "material", "visual", "collision"), frozenset({"name"})),
+    "joint": {"name", "type"},
+    **dict.fromkeys(("inertial", "geometry"), frozenset[str]()),
+    **dict.fromkeys(("parent", "child"), frozenset({"link"})),
+    "origin": {"xyz", "rpy"},
+    "box": {"size"},
+    "cylinder": {"radius", "length"},
+    "sphere": {"radius"},
+    "mesh": {"filename", "scale"},
+    "color": {"rgba"},
+    "texture": {"filename"},
+    "mass": {"value"},
+    "inertia": {"ixx", "ixy", "ixz", "iyy", "iyz", "izz"},
+    "axis": {"xyz"},
+    "limit": {"lower", "upper", "effort", "velocity"},
+    "dynamics": {"damping", "friction"},
+    "mimic": {"joint", "multiplier", "offset"},
+    "safety_controller": {"soft_lower_limit", "soft_upper_limit", "k_position", "k_velocity"},
+    "calibration": {"rising", "falling"},
 }
 _CHILDREN: dict[str, tuple[str, ...]] = {
     "robot": ("link", "joint", "material"),
@@ -52,12 +49,11 @@ _SINGLE = frozenset(
     {"origin", "geometry", "parent", "child", "axis", "limit", "inertial", "mass", "inertia", "mimic", "dynamics"}
 )
 _SWAPPED = {("cylinder", "height"): "length", ("color", "rgb"): "rgba", ("origin", "pos"): "xyz"}
-_KNOWN_ATTRIBUTES = {tag: frozenset(names) for tag, names in _ATTRIBUTES.items()}
 
 
 def check_spelling(root: Element, problems: Problems) -> None:
     """Report misspelt names and repeated elements in what urdfdom reads; extensions of other tools are skipped."""
-    if not _KNOWN_ATTRIBUTES["robot"].issuperset(root.keys()):
+    if not _ATTRIBUTES["robot"] >= set(root.keys()):
         _check_attributes(root, problems)
     waiting = [root]
     while waiting:
@@ -68,7 +64,7 @@ def check_spelling(root: Element, problems: Problems) -> None:
             tag = child.tag
             tags.append(tag)
             if tag in allowed:
-                if not _KNOWN_ATTRIBUTES[tag].issuperset(child.keys()):
+                if not _ATTRIBUTES[tag] >= set(child.keys()):
                     _check_attributes(child, problems)
                 if tag in _CHILDREN and len(child):
                     waiting.append(child)
@@ -79,17 +75,15 @@ def check_spelling(root: Element, problems: Problems) -> None:
 
 
 def _check_attributes(element: Element, problems: Problems) -> None:
-    known, given = _KNOWN_ATTRIBUTES[element.tag], list(map(str, element.keys()))
-    missing = known.difference(given)
+    known, given = _ATTRIBUTES[element.tag], list(map(str, element.keys()))
+    missing = known - set(given)
     for name in given:
         if name in known or name.startswith("{"):
             continue
         meant = _SWAPPED.get((element.tag, name)) or problems.closest(name, missing)
         if meant:
-            message = (
-                f"ROS 2 ignores the unknown attribute {quoted(name)} of <{element.tag}>; did you mean {quoted(meant)}?"
-            )
-            problems.add(catalogue.MISSPELT, message, element, name)
+            message = f"ROS 2 ignores the unknown attribute {quoted(name)} of <{element.tag}>"
+            problems.add(catalogue.MISSPELT, f"{message}; did you mean {quoted(meant)}?", element, name)
 
 
 def _check_tag(child: Element, parent: str, allowed: tuple[str, ...], problems: Problems) -> None:

@@ -65,10 +65,6 @@ class Transform:
         x, y, z = direction
         return (a * x + d * y + g * z, b * x + e * y + h * z, c * x + f * y + i * z)
 
-    def shifted(self, offset: Vector) -> "Transform":
-        """Return T_a_c for a frame c at `offset` in b, with the orientation of b."""
-        return Transform(self.rotation, self.apply(offset))
-
     def inverse(self) -> "Transform":
         """Return T_b_a."""
         a, b, c, d, e, f, g, h, i = self.rotation

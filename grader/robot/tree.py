@@ -47,11 +47,6 @@ def _complete_joints(robot: Robot) -> list[Joint]:
     ]
 
 
-def _implausibility(joint: Joint) -> tuple[bool, bool]:
-    names_child = joint.child in joint.name
-    return (joint.parent in joint.name and not names_child, not names_child)
-
-
 def _most_plausible(joints: list[Joint]) -> dict[str, Joint]:
     parents: dict[str, Joint] = {}
     above: dict[str, str] = {}  # some link further up; a path is shortened whenever it is followed
@@ -64,7 +59,10 @@ def _most_plausible(joints: list[Joint]) -> dict[str, Joint]:
         above.update(dict.fromkeys(passed, link))
         return link
 
-    for joint in sorted(joints, key=_implausibility):
+    by_plausibility = sorted(
+        joints, key=lambda joint: (joint.child not in joint.name) * (1 + (joint.parent in joint.name))
+    )
+    for joint in by_plausibility:
         if joint.child not in parents and root(joint.parent) != joint.child:
             parents[joint.child] = joint
             above[joint.child] = joint.parent

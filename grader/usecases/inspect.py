@@ -10,8 +10,8 @@ from grader.usecases import Warn
 
 if TYPE_CHECKING:
     from grader.report.inspection import Inspection
+    from grader.robot.frames import Position
     from grader.robot.kinematics import Configuration
-    from grader.robot.motion import Position
     from grader.robot.reader import Reading
 
 _ANY_URDF = "robot.urdf"

@@ -5,7 +5,7 @@ import re
 _ENTITIES = {b"quot;": b'"', b"amp;": b"&", b"apos;": b"'", b"lt;": b"<", b"gt;": b">"}
 _REFERENCE = re.compile(rb"&(?:(quot;|amp;|apos;|lt;|gt;)|#)")
 _DECIMAL, _HEXADECIMAL = b"0123456789", b"0123456789abcdefABCDEF"
-_FIRST_SURROGATE, _LAST_SURROGATE, _LAST_CODE_POINT, _FIVE_BYTES = 0xD800, 0xDFFF, 0x10FFFF, 0x200000
+_LAST_CODE_POINT, _FIVE_BYTES = 0x10FFFF, 0x200000
 _ESCAPES = str.maketrans(
     {"&": "&amp;", "<": "&lt;", '"': "&quot;", "\t": "&#9;", "\n": "&#10;", "\r": "&#13;", "\v": "&#9;", "\f": "&#9;"}
 )
@@ -94,9 +94,7 @@ class _References:
 
 def _encoded(code: int) -> bytes:
     """Return a code point as UTF-8, as TinyXML2 does for surrogates and past the last one; nothing beyond four bytes."""
-    if code < _FIRST_SURROGATE or _LAST_SURROGATE < code <= _LAST_CODE_POINT:
-        return chr(code).encode()
-    if code < _LAST_CODE_POINT:
+    if code <= _LAST_CODE_POINT:
         return chr(code).encode("utf-8", "surrogatepass")
     if code < _FIVE_BYTES:
         return bytes((0xF0 | code >> 18, 0x80 | code >> 12 & 0x3F, 0x80 | code >> 6 & 0x3F, 0x80 | code & 0x3F))
