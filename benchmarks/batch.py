@@ -22,7 +22,7 @@ from class_generator import make_class
 from run import check_urdf, in_turn, once
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.intake.intake import read_class
+from grader.classroom.intake.reading import read_class
 from grader.classroom.run.batch import Batch, Progress, RunSettings
 from grader.classroom.run.pool import Processes, processors
 from grader.classroom.run.worker import PRELOAD, ClassContext, Task, grade_all, prepare

@@ -10,7 +10,8 @@ from pathlib import Path
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.intake.intake import Intake, read_class
+from grader.classroom.intake.intake import Intake
+from grader.classroom.intake.reading import read_class
 from grader.classroom.intake.roster import Roster, roster_from_json
 from grader.classroom.intake.roster_file import read_roster
 from grader.classroom.run.batch import Batch, Progress, RunSettings

@@ -12,7 +12,7 @@ import re
 from collections import defaultdict
 from typing import NamedTuple
 
-from grader.classroom.intake.layouts.layout import IgnoredFiles, SubmissionList, submission_list
+from grader.classroom.intake.layouts.layout import IgnoredFiles, Submissions
 from grader.classroom.intake.listing import Children, ClassListing
 from grader.classroom.intake.names import ending_of
 from grader.classroom.students import ClassSubmission, Student
@@ -42,7 +42,7 @@ def is_layout(children: Children) -> bool:
     return 2 * fitting >= len(children.folders) + sum(1 for name in children.files if ending_of(name) or _parsed(name))
 
 
-def find_submissions(listing: ClassListing, children: Children, start: str, ignored: IgnoredFiles) -> SubmissionList:
+def find_submissions(listing: ClassListing, children: Children, start: str, ignored: IgnoredFiles) -> Submissions:
     """Return the submissions of a download, one for each participant."""
     folders = set(children.folders)
     by_participant: dict[str, list[_MoodleFile]] = defaultdict(list)
@@ -55,7 +55,7 @@ def find_submissions(listing: ClassListing, children: Children, start: str, igno
     ignored.add_all(start, children.refused)
     names = {file.name for files in by_participant.values() for file in files}
     are_hidden = names <= _HIDDEN or (len(names) == 1 and len(by_participant) > 1)
-    return submission_list(
+    return Submissions(
         _submission(listing, sorted(files, key=_files_first), start, folders, ignored, are_hidden=are_hidden)
         for files in by_participant.values()
     )

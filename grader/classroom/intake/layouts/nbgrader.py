@@ -5,7 +5,7 @@ nbgrader writes that time as `%Y-%m-%d %H:%M:%S.%f %Z`, in UTC unless it is conf
 
 from collections import defaultdict
 
-from grader.classroom.intake.layouts.layout import IgnoredFiles, SubmissionList, submission_list
+from grader.classroom.intake.layouts.layout import IgnoredFiles, Submissions
 from grader.classroom.intake.listing import Children, ClassListing
 from grader.classroom.intake.names import utc_time
 from grader.classroom.students import ClassSubmission, Student
@@ -35,7 +35,7 @@ def find_course(listing: ClassListing, children: Children, start: str, top: str,
 
 def find_submissions(
     listing: ClassListing, start: str, ignored: IgnoredFiles, assignment: str, rubric_id: str
-) -> SubmissionList:
+) -> Submissions:
     """Return the submissions for one assignment; raises InputError if it is not clear which one."""
     found = _assignments(listing, start)
     name = _chosen(found, assignment, rubric_id)
@@ -52,7 +52,7 @@ def find_submissions(
     times = {
         path: utc_time(stamps.get(f"{path}/{_TIMESTAMP}", b"").decode("utf-8", "replace")) for path in paths.values()
     }
-    return submission_list(
+    return Submissions(
         (ClassSubmission(Student(key, login=key), (path,), submitted=times[path]) for key, path in paths.items()),
         assignments=frozenset({f"nbgrader {printable_path(name)}"}),
     )

@@ -8,8 +8,8 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 
-from grader.classroom.intake.layouts import folders
-from grader.classroom.intake.layouts.layout import IgnoredFiles, SubmissionList, submission_list
+from grader.classroom.intake.layouts.folders import FolderSubmissions
+from grader.classroom.intake.layouts.layout import IgnoredFiles, Submissions
 from grader.classroom.intake.listing import Children, ClassListing
 from grader.classroom.intake.names import stems_of
 from grader.classroom.students import ClassSubmission
@@ -70,16 +70,16 @@ def find_submissions(
     rubric_id: str,
     knows: Callable[[str], bool] | None,
     labs: dict[str, str],
-) -> SubmissionList:
+) -> Submissions:
     """Return the submissions of the students in these lab folders, and of the teams without one."""
     teams = set(labs.values())
     rest = children._replace(folders=[name for name in children.folders if name not in teams])
-    alone = folders.find_submissions(listing, rest, start, ignored, rubric_id, knows)
+    alone = FolderSubmissions(listing, rest, start, ignored, rubric_id, knows)
     found = [alone.submission(index) for index in range(len(alone))]
     for lab, team in labs.items():
-        members = folders.find_submissions(listing, listing.children(lab), f"{lab}/", ignored)
+        members = FolderSubmissions(listing, listing.children(lab), f"{lab}/", ignored)
         found += (_of_team(members.submission(index), team) for index in range(len(members)))
-    return submission_list(found, contested=alone.contested)
+    return Submissions(found, contested=alone.contested)
 
 
 def _of_team(submission: ClassSubmission, team: str) -> ClassSubmission:

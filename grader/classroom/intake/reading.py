@@ -1,17 +1,25 @@
-"""Detect the layout of a class folder or zip, and find the submissions in it."""
+"""Read a class folder or zip: detect its layout, and find the submission of each student. No submission is opened."""
 
-from grader.classroom.intake.layouts import canvas, folders, moodle, nbgrader, teams
+import os
+from pathlib import Path
+
+from grader.classroom.intake.intake import Intake, assign
+from grader.classroom.intake.layouts import canvas, moodle, nbgrader, teams
+from grader.classroom.intake.layouts.folders import FolderSubmissions
 from grader.classroom.intake.layouts.layout import IgnoredFiles, Submissions
-from grader.classroom.intake.listing import Children, ClassListing
+from grader.classroom.intake.listing import Children, ClassListing, FolderListing, ZipListing
 from grader.classroom.intake.names import ending_of, stems_of
 from grader.classroom.intake.roster import Roster
-from grader.classroom.intake.zip_listing import ZipListing
+from grader.errors import InputError
+from grader.files.opening import archive_kind
+from grader.files.reading import not_there, read_start
+from grader.text import printable_path
 
 LAYOUTS = ("folders", "canvas", "moodle", "teams", "nbgrader")
 _MAX_NAMES = 1_000  # in one folder
 
 
-class ClassLayout:
+class _ClassLayout:
     """The names in a class, and what the roster knows about them. `top` is the name of the class folder."""
 
     def __init__(self, listing: ClassListing, top: str, roster: Roster | None, assignment: str, rubric_id: str) -> None:
@@ -23,7 +31,6 @@ class ClassLayout:
         self._rubric_id = rubric_id
         self._start = ""
         self.children = listing.children("")
-        self.is_empty = not any(self.children)
         if isinstance(listing, ZipListing):
             self._enter_only_folder()
 
@@ -54,7 +61,7 @@ class ClassLayout:
                 knows = self._knows_submission
                 return teams.find_submissions(listing, children, start, ignored, rubric_id, knows, labs)
             case _:
-                return folders.find_submissions(listing, children, start, ignored, rubric_id, self._knows_submission)
+                return FolderSubmissions(listing, children, start, ignored, rubric_id, self._knows_submission)
 
     def holds_students(self, path: str) -> bool:
         """Return whether a folder holds submissions of at least two students: then it is a section, and not a team's submission."""
@@ -86,3 +93,61 @@ def _is_one_submission(children: Children) -> bool:
     robots = [name for name in children.files if name.lower().endswith((".urdf", ".xacro"))]
     several = len(children.folders) + sum(1 for name in children.files if ending_of(name))
     return teams.is_package(children) or several == 0 or (len(robots) == 1 and several == 1)
+
+
+def read_class(
+    path: Path, roster: Roster | None = None, layout: str = "auto", assignment: str = "", rubric_id: str = "lab6"
+) -> Intake:
+    """Return the submissions in a class folder or zip; raises InputError if there are none.
+
+    `assignment` is the one to grade in nbgrader; `rubric_id` is the name of the lab in names of folders.
+    """
+    if layout not in ("auto", *LAYOUTS):
+        raise InputError(f"there is no layout {layout!r}; the layouts are: auto, {', '.join(LAYOUTS)}")
+    shown = printable_path(path)
+    class_layout = _ClassLayout(_listing(path), _top_name(path), roster, assignment, rubric_id)
+    if not any(class_layout.children):
+        raise InputError(f"{shown} is empty: name the folder that holds the class's submissions")
+    chosen = class_layout.detected() if layout == "auto" else layout
+    if assignment and chosen != "nbgrader":
+        raise InputError(
+            f"--assignment is only for the layout nbgrader, and {shown} has the layout {chosen}: remove it, or add"
+            " --layout nbgrader"
+        )
+    if layout == "auto" and chosen == "folders" and "package.xml" in class_layout.children.files:
+        raise InputError(
+            f"{shown} is one submission and not a class: it holds a package.xml (grade it with grader grade {shown})"
+        )
+    ignored = IgnoredFiles()
+    submissions = class_layout.find_submissions(chosen, ignored, is_explicit=layout != "auto")
+    if not len(submissions):
+        example = "".join(f": {line}" for line in ignored.lines()[:1])
+        advice = f" (without --layout {layout} the layout is detected)" if layout != "auto" else ""
+        raise InputError(f"there is no submission in {shown}{example}{advice}")
+    return assign(chosen, ignored.lines(), submissions, roster, class_layout.holds_students)
+
+
+def _top_name(path: Path) -> str:
+    try:
+        return path.resolve().name
+    except OSError:
+        return path.name
+
+
+def _listing(path: Path) -> ClassListing:
+    """Return the listing of a class folder or zip; raises InputError if it is neither."""
+    shown = printable_path(path)
+    try:
+        if path.is_dir():
+            return FolderListing(path)
+        exists = os.path.lexists(path)
+    except (OSError, ValueError) as error:
+        raise InputError(f"cannot read {shown}: {error}") from None
+    if not exists:
+        raise not_there(path)
+    if archive_kind(read_start(path, 512)) != "zip":
+        raise InputError(
+            f"{shown} is neither a folder nor a zip: name the folder that holds the class's submissions"
+            " (grader grade grades a single one)"
+        )
+    return ZipListing(path)
