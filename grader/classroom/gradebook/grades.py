@@ -11,9 +11,8 @@ from grader.checks.outcome import Outcome
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.lateness import Lateness, SubmissionTimes, lateness, read_time
 from grader.classroom.gradebook.result import UNITS_PER_POINT, criterion_points
-from grader.classroom.gradebook.sources import SubmissionSources
 from grader.classroom.gradebook.stored import storable
-from grader.classroom.gradebook.student_grade import COLUMNS, StudentGrade, grade_from_row
+from grader.classroom.gradebook.student_grade import COLUMNS, StudentGrade, SubmissionSources, grade_from_row
 from grader.classroom.matching import People, clues_of
 from grader.errors import InputError
 from grader.grading.record import Template, from_record

@@ -14,6 +14,7 @@ from grader.errors import InputError
 from grader.grading.report import Result
 from grader.grading.rubric import Criterion, Rubric
 from grader.names import did_you_mean
+from grader.text import format_points
 
 TAKE_BACK = "-"  # in place of points: the automatic result counts again
 
@@ -56,7 +57,7 @@ def read_points(text: str, criterion: Criterion) -> Decimal | None:
     """Return the points in a text, None for `-`, which takes a mark back; raises InputError, which names the range."""
     if text.strip() == TAKE_BACK:
         return None
-    maximum = format(criterion.points.normalize(), "f") if criterion.points else "0"
+    maximum = format_points(criterion.points)
     try:
         points = Decimal(text.strip().replace(",", "."))
     except InvalidOperation:
