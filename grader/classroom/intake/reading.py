@@ -1,12 +1,13 @@
 """Read a class folder or zip: detect its layout, and find the submission of each student. No submission is opened."""
 
 import os
+from dataclasses import replace
 from pathlib import Path
 
 from grader.classroom.intake.intake import Intake, assign
 from grader.classroom.intake.layouts import canvas, moodle, nbgrader, teams
 from grader.classroom.intake.layouts.folders import FolderSubmissions
-from grader.classroom.intake.layouts.layout import IgnoredFiles, Submissions
+from grader.classroom.intake.layouts.layout import ClassFolder, IgnoredFiles, Submissions
 from grader.classroom.intake.listing import Children, ClassListing, FolderListing, ZipListing
 from grader.classroom.intake.names import ending_of, stems_of
 from grader.classroom.intake.roster import Roster
@@ -22,46 +23,41 @@ _MAX_NAMES = 1_000  # in one folder
 class _ClassLayout:
     """The names in a class, and what the roster knows about them. `top` is the name of the class folder."""
 
-    def __init__(self, listing: ClassListing, top: str, roster: Roster | None, assignment: str, rubric_id: str) -> None:
+    def __init__(self, listing: ClassListing, top: str, roster: Roster | None, rubric_id: str) -> None:
         self._listing = listing
         self._top = top
         self._roster = roster
-        self._knows_submission = roster.knows_submission if roster else None
-        self._assignment = assignment
-        self._rubric_id = rubric_id
-        self._start = ""
-        self.children = listing.children("")
+        knows = roster.knows_submission if roster else None
+        self.folder = ClassFolder(listing, listing.children(""), "", IgnoredFiles(), rubric_id, knows)
         if isinstance(listing, ZipListing):
             self._enter_only_folder()
 
     def detected(self) -> str:
         """Return the layout that the names prove, else `folders`."""
-        if moodle.is_layout(self.children):
+        if moodle.is_layout(self.folder.children):
             return "moodle"
-        if canvas.is_layout(self.children):
+        if canvas.is_layout(self.folder.children):
             return "canvas"
-        if self._course() is not None:
+        if nbgrader.find_course(self.folder, self._top) is not None:
             return "nbgrader"
         return "teams" if self._labs(is_explicit=False) else "folders"
 
-    def find_submissions(self, layout: str, ignored: IgnoredFiles, *, is_explicit: bool) -> Submissions:
+    def find_submissions(self, layout: str, assignment: str, *, is_explicit: bool) -> Submissions:
         """Return the submissions in this layout; `is_explicit` if the user has named it."""
-        listing, children, start, rubric_id = self._listing, self.children, self._start, self._rubric_id
         match layout:
             case "moodle":
-                return moodle.find_submissions(listing, children, start, ignored)
+                return moodle.find_submissions(self.folder)
             case "canvas":
-                return canvas.find_submissions(children, start, ignored)
+                return canvas.find_submissions(self.folder)
             case "nbgrader":
-                course = self._course()
-                top = start if course is None else course
-                return nbgrader.find_submissions(listing, top, ignored, self._assignment, rubric_id)
+                course = nbgrader.find_course(self.folder, self._top)
+                return nbgrader.find_submissions(
+                    self.folder, self.folder.start if course is None else course, assignment
+                )
             case "teams":
-                labs = self._labs(is_explicit=is_explicit)
-                knows = self._knows_submission
-                return teams.find_submissions(listing, children, start, ignored, rubric_id, knows, labs)
+                return teams.find_submissions(self.folder, self._labs(is_explicit=is_explicit))
             case _:
-                return FolderSubmissions(listing, children, start, ignored, rubric_id, self._knows_submission)
+                return FolderSubmissions(self.folder)
 
     def holds_students(self, path: str) -> bool:
         """Return whether a folder holds submissions of at least two students: then it is a section, and not a team's submission."""
@@ -70,22 +66,19 @@ class _ClassLayout:
 
     def _enter_only_folder(self) -> None:
         """Enter the one folder that holds everything in a zip, unless it is itself a submission."""
-        folders, files, _ = self.children
+        folders, files, _ = self.folder.children
         if len(folders) != 1 or files or folders[0] == "submitted" or self.detected() != "folders":
             return
         if self._roster is not None and self._roster.knows(folders[0]):
             return
         inner = self._listing.children(folders[0])
         if not _is_one_submission(inner):
-            self._top, self._start, self.children = folders[0], f"{folders[0]}/", inner
-
-    def _course(self) -> str | None:
-        return nbgrader.find_course(self._listing, self.children, self._start, self._top, self._rubric_id)
+            self._top = folders[0]
+            self.folder = replace(self.folder, children=inner, start=f"{self._top}/")
 
     def _labs(self, *, is_explicit: bool) -> dict[str, str]:
-        knows = self._roster.knows_surname if self._roster else None
         return teams.find_labs(
-            self._listing, self.children, self._start, self._rubric_id, knows, is_explicit=is_explicit
+            self.folder, self._roster.knows_surname if self._roster else None, is_explicit=is_explicit
         )
 
 
@@ -105,8 +98,8 @@ def read_class(
     if layout not in ("auto", *LAYOUTS):
         raise InputError(f"there is no layout {layout!r}; the layouts are: auto, {', '.join(LAYOUTS)}")
     shown = printable_path(path)
-    class_layout = _ClassLayout(_listing(path), _top_name(path), roster, assignment, rubric_id)
-    if not any(class_layout.children):
+    class_layout = _ClassLayout(_listing(path), _top_name(path), roster, rubric_id)
+    if not any(class_layout.folder.children):
         raise InputError(f"{shown} is empty: name the folder that holds the class's submissions")
     chosen = class_layout.detected() if layout == "auto" else layout
     if assignment and chosen != "nbgrader":
@@ -114,17 +107,17 @@ def read_class(
             f"--assignment is only for the layout nbgrader, and {shown} has the layout {chosen}: remove it, or add"
             " --layout nbgrader"
         )
-    if layout == "auto" and chosen == "folders" and "package.xml" in class_layout.children.files:
+    if layout == "auto" and chosen == "folders" and "package.xml" in class_layout.folder.children.files:
         raise InputError(
             f"{shown} is one submission and not a class: it holds a package.xml (grade it with grader grade {shown})"
         )
-    ignored = IgnoredFiles()
-    submissions = class_layout.find_submissions(chosen, ignored, is_explicit=layout != "auto")
+    submissions = class_layout.find_submissions(chosen, assignment, is_explicit=layout != "auto")
+    ignored = class_layout.folder.ignored.lines()
     if not len(submissions):
-        example = "".join(f": {line}" for line in ignored.lines()[:1])
+        example = "".join(f": {line}" for line in ignored[:1])
         advice = f" (without --layout {layout} the layout is detected)" if layout != "auto" else ""
         raise InputError(f"there is no submission in {shown}{example}{advice}")
-    return assign(chosen, ignored.lines(), submissions, roster, class_layout.holds_students)
+    return assign(chosen, ignored, submissions, roster, class_layout.holds_students)
 
 
 def _top_name(path: Path) -> str:

@@ -11,8 +11,7 @@ from collections.abc import Callable, Iterable, Sequence
 from itertools import groupby
 
 from grader.classroom.intake.layouts.attempts import Attempts, attempts_in, last_copy
-from grader.classroom.intake.layouts.layout import IgnoredFiles, Submissions, path_key
-from grader.classroom.intake.listing import Children, ClassListing
+from grader.classroom.intake.layouts.layout import ClassFolder, Submissions, path_key
 from grader.classroom.intake.names import ending_of, stems_of, without_copy
 from grader.classroom.students import ClassSubmission, Student
 from grader.files.ignore_rules import BUILD_FOLDERS
@@ -21,36 +20,26 @@ _LAB = re.compile(r"lab-?\d+-", re.IGNORECASE)
 
 
 class FolderSubmissions(Submissions):
-    """Submissions of which only the names are kept in memory; everything else is computed on demand.
+    """Submissions of which only the names are kept in memory; everything else is computed on demand."""
 
-    `knows` says whether a name is on the roster.
-    """
-
-    def __init__(
-        self,
-        listing: ClassListing,
-        children: Children,
-        start: str,
-        ignored: IgnoredFiles,
-        rubric_id: str = "",
-        knows: Callable[[str], bool] | None = None,
-    ) -> None:
+    def __init__(self, folder: ClassFolder) -> None:
         super().__init__(())
-        self._listing = listing
-        self._start = start
+        self._listing, self._start, self._knows = folder.listing, folder.start, folder.knows
+        self._ignored = folder.ignored
         self._names: list[str] = []
         self._stems: dict[str, str] = {}  # of the last of several copies, without its number
         self._copies: dict[str, Attempts] = {}
         self._keys: dict[str, str] = {}  # of names that cannot be keys
-        folders = [name for name in children.folders if name not in BUILD_FOLDERS]
-        files = [name for name in children.files if ending_of(name)]
-        ignored.add_all(start, ((name, "is a build folder") for name in children.folders if name in BUILD_FOLDERS))
+        start, ignored, (names, files, refused) = folder.start, folder.ignored, folder.children
+        ignored.add_all(start, ((name, "is a build folder") for name in names if name in BUILD_FOLDERS))
         unsupported = "is not a folder, an archive or a URDF"
-        ignored.add_all(start, ((name, unsupported) for name in children.files if not ending_of(name)))
-        ignored.add_all(start, children.refused)
-        self._prefix = class_prefix(folders or stems_of([], files), rubric_id, knows)
+        ignored.add_all(start, ((name, unsupported) for name in files if not ending_of(name)))
+        ignored.add_all(start, refused)
+        folders = [name for name in names if name not in BUILD_FOLDERS]
+        files = [name for name in files if ending_of(name)]
+        self._prefix = class_prefix(folders or stems_of([], files), folder.rubric_id, folder.knows)
         self._folders = frozenset(name for name in folders if ending_of(name))  # those that are named like a file
-        self._add(folders + files, knows, ignored)
+        self._add(folders + files)
 
     def __len__(self) -> int:
         return len(self._names)
@@ -76,7 +65,7 @@ class FolderSubmissions(Submissions):
         """Return the path of the student's folder or file; of several copies that of the last one."""
         return self._start + self._names[index]
 
-    def _add(self, names: list[str], knows: Callable[[str], bool] | None, ignored: IgnoredFiles) -> None:
+    def _add(self, names: list[str]) -> None:
         """Add all names, one for each student, in the order of their keys."""
         names.sort(key=self._group)
         for _, group in groupby(names, key=self._group):
@@ -86,23 +75,21 @@ class FolderSubmissions(Submissions):
                 self._names.append(same[0])
                 continue
             folders = {name for name in same if not self._ending(name)}
-            for stem, copies in self._by_student(plain, same, knows):
-                attempts = last_copy(copies, folders, ignored, self._start)
+            for stem, copies in self._by_student(plain, same):
+                attempts = last_copy(copies, folders, self._ignored, self._start)
                 self._names.append(attempts.last)
                 self._stems[attempts.last], self._copies[attempts.last] = stem, attempts
         if self._prefix or self._copies or not all(map(str.isprintable, self._names)):
             self._make_keys_unique()
             self._names.sort(key=self._key)
 
-    def _by_student(
-        self, plain: str, names: Iterable[str], knows: Callable[[str], bool] | None
-    ) -> Iterable[tuple[str, list[tuple[int, str]]]]:
+    def _by_student(self, plain: str, names: Iterable[str]) -> Iterable[tuple[str, list[tuple[int, str]]]]:
         """Group names that may belong to one student, with the numbers of copies.
 
         `alice (1)` belongs to alice if there is an `alice`, or the roster has her; otherwise it may be a team's own name.
         """
         numbered = [(without_copy(self._without_prefix(name), self._ending(name))[1], name) for name in names]
-        if any(number == 0 for number, _ in numbered) or (knows is not None and knows(plain)):
+        if any(number == 0 for number, _ in numbered) or (self._knows is not None and self._knows(plain)):
             return [(plain, numbered)]
         by_stem: dict[str, list[tuple[int, str]]] = {}
         for number, name in numbered:

@@ -2,10 +2,11 @@
 
 import os
 from collections import Counter
-from collections.abc import Iterable
-from dataclasses import replace
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, replace
 from hashlib import sha256
 
+from grader.classroom.intake.listing import Children, ClassListing
 from grader.classroom.students import ClassSubmission, Student
 from grader.text import printable_path
 
@@ -65,6 +66,21 @@ def path_key(path: str) -> str:
 def is_path_key(key: str) -> bool:
     """Return whether a key was made by `path_key`."""
     return key.startswith(_PATH_KEY)
+
+
+@dataclass(frozen=True, slots=True)
+class ClassFolder:
+    """The folder that holds the submissions of a class: its names, and its path in the listing, `start`, empty or with a slash.
+
+    `knows` says whether a name is on the roster, `rubric_id` is the name of the lab in names of folders.
+    """
+
+    listing: ClassListing
+    children: Children
+    start: str
+    ignored: "IgnoredFiles"
+    rubric_id: str = ""
+    knows: Callable[[str], bool] | None = None
 
 
 class IgnoredFiles:
