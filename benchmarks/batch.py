@@ -22,10 +22,10 @@ from class_generator import make_class
 from run import check_urdf, in_turn, once
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.intake.intake import read_class
+from grader.classroom.intake.reading import read_class
 from grader.classroom.run.batch import Batch, Progress, RunSettings
 from grader.classroom.run.pool import Processes, processors
-from grader.classroom.run.worker import PRELOAD, ClassContext, Task, grade_all, prepare
+from grader.classroom.run.worker import ClassContext, Task, grade_all
 from grader.grading.rubric import load_rubric
 
 _TIMEOUT = 60.0  # seconds for one submission
@@ -179,7 +179,7 @@ FIGURES: dict[str, Callable[[Bench], None]] = {
 @contextmanager
 def workers(bench: Bench, jobs: int) -> Iterator[Executor]:
     """Workers, each of which has graded a few dozen submissions that are in no class."""
-    executor = Processes(jobs, _TIMEOUT, prepare, preload=PRELOAD)
+    executor = Processes(jobs, _TIMEOUT)
     folder, rubric = bench.folder(_WARMING), load_rubric("lab6")
     common = ClassContext(str(folder), rubric.data, str(rubric.path))
     tasks = [Task(name, (name,)) for name in names_in(folder)]

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from grader.classroom.gradebook.result import GradingResult
-from grader.classroom.intake.intake import read_class
+from grader.classroom.intake.reading import read_class
 from grader.classroom.intake.roster_file import read_roster
 from grader.classroom.run.worker import ClassContext, Task, grade_all
 from grader.grading.grade import grade

@@ -4,7 +4,7 @@ from contextlib import ExitStack
 from functools import partial
 from pathlib import Path
 
-from grader.classroom.gradebook.changes import changes, last_two, newest
+from grader.classroom.gradebook.changes import Snapshot, changes, last_two
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.errors import GraderError
 from grader.report.changes import render_changes, render_changes_json
@@ -23,7 +23,7 @@ def diff(
         if other is None:
             sides = last_two(book, before, after)
         else:
-            sides = newest(book), newest(opened.enter_context(Gradebook(other)))
+            sides = Snapshot(book), Snapshot(opened.enter_context(Gradebook(other)))
         found = changes(*sides)
         runs = sides[0].newest_run, sides[1].newest_run
     if kind is OutputFormat.JSON:

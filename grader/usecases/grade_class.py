@@ -10,12 +10,12 @@ from pathlib import Path
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
-from grader.classroom.intake.intake import Intake, read_class
+from grader.classroom.intake.intake import Intake
+from grader.classroom.intake.reading import read_class
 from grader.classroom.intake.roster import Roster, roster_from_json
 from grader.classroom.intake.roster_file import read_roster
 from grader.classroom.run.batch import Batch, Progress, RunSettings
 from grader.classroom.run.pool import Processes, processors
-from grader.classroom.run.worker import PRELOAD, prepare
 from grader.errors import InputError
 from grader.grading.answers import load_with_answers
 from grader.report.formats import Format, OutputFormat
@@ -118,7 +118,7 @@ def _executor(request: ClassRequest) -> Iterator[tuple[Executor, int]]:
 
 
 def _processes(jobs: int | None, timeout: float) -> Executor:
-    return Processes(jobs or processors(), timeout, prepare, preload=PRELOAD)
+    return Processes(jobs or processors(), timeout)
 
 
 def _run(batch: Batch, intake: Intake, warn: Warn) -> Progress:

@@ -30,8 +30,8 @@ from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import mark
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.intake.fingerprint import is_zip
-from grader.classroom.intake.intake import read_class
 from grader.classroom.intake.opening import open_submission
+from grader.classroom.intake.reading import read_class
 from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.run.batch import Batch, RunSettings
 from grader.classroom.students import Student

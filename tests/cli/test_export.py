@@ -20,7 +20,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import criterion_of
 from grader.classroom.gradebook.marks import mark as add_mark
-from grader.classroom.intake.intake import read_class
+from grader.classroom.intake.reading import read_class
 from grader.classroom.intake.roster_file import read_roster
 from grader.classroom.lms.filling import Conflict, Preflight, RowNote
 from grader.classroom.students import ClassSubmission

@@ -3,12 +3,12 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from decimal import Decimal
+from functools import cache
 from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook, Run
 from grader.classroom.gradebook.result import UNITS_PER_POINT, criterion_points
 from grader.errors import InputError
-from grader.grading.rubric import Rubric
 
 _STATES = """
 SELECT student.id, student.key, result.statuses, result.verdict, result.digest, result.rubric, result.version
@@ -27,7 +27,7 @@ class Snapshot(NamedTuple):
     """One of the two states that are compared: a gradebook after a run, with the manual marks up to `last_mark`."""
 
     book: Gradebook
-    run: int
+    run: int = _NEWEST
     last_mark: int = _NEWEST
 
     @property
@@ -91,29 +91,22 @@ def last_two(book: Gradebook, before: int | None = None, after: int | None = Non
     return Snapshot(book, older, runs[older].last_mark), Snapshot(book, newer, min(later, default=_NEWEST))
 
 
-def newest(book: Gradebook) -> Snapshot:
-    """Return the current state of a gradebook."""
-    return Snapshot(book, _NEWEST)
-
-
 def changes(before: Snapshot, after: Snapshot) -> list[Change]:
     """Return the students for whom something changed, in the order of their keys."""
     old, new = _states(before), _states(after)
-    found = (_change(key, old.get(key), new.get(key)) for key in sorted(old.keys() | new.keys()))
-    return [change for change in found if change is not None]
+    keys = sorted(old.keys() | new.keys())
+    return [change for key in keys if (change := _change(key, old.get(key), new.get(key))) is not None]
 
 
 def _states(snapshot: Snapshot) -> dict[str, _StudentState]:
     marks: dict[int, dict[str, Decimal]] = {}
     for student, criterion, units in snapshot.book.rows(_MARKS, snapshot.last_mark):
         marks.setdefault(student, {})[criterion] = Decimal(units) / UNITS_PER_POINT
-    rubrics: dict[str, Rubric] = {}
+    rubric_of = cache(snapshot.book.rubric)
     states: dict[str, _StudentState] = {}
     for student, key, statuses, verdict, digest, rubric, version in snapshot.book.rows(_STATES, snapshot.run):
-        if rubric not in rubrics:
-            rubrics[rubric] = snapshot.book.rubric(rubric)
         own = marks.get(student, {})
-        points = criterion_points(rubrics[rubric], statuses, own)
+        points = criterion_points(rubric_of(rubric), statuses, own)
         states[key] = _StudentState(verdict, digest, rubric, version, points, own)
     return states
 

@@ -1,20 +1,22 @@
 """The gradebook: one SQLite file with the results of the checks and the manual marks, which no run changes."""
 
 import sqlite3
+import time
 import zlib
 from collections.abc import Iterator
-from contextlib import closing
+from contextlib import AbstractContextManager, closing, contextmanager, suppress
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from grader.classroom.gradebook.database import BUSY_TIMEOUT, Database
+from grader.classroom.gradebook.schema import APPLICATION_ID, STEPS
 from grader.classroom.gradebook.stored import STORED_SUBMISSIONS, STUDENT_COLUMNS, StoredSubmission
 from grader.classroom.students import Student
 from grader.errors import GraderError, InputError
 from grader.grading.answers import with_answers
 from grader.grading.rubric import Rubric, read_rubric
+from grader.text import printable_path
 
-_RUN_COLUMNS = "id, started, coalesce(finished, ''), source, layout, rubric, version, last_mark, deadline"
+_BUSY_TIMEOUT = 60.0  # seconds in which another process may finish its transaction
 
 
 class Run(NamedTuple):
@@ -31,8 +33,63 @@ class Run(NamedTuple):
     deadline: str
 
 
-class Gradebook(Database):
-    """An open gradebook, for reading; `RunWriter` and `marks` write into it."""
+class Gradebook(AbstractContextManager["Gradebook"]):
+    """An open gradebook; `RunWriter` and `marks` write into it.
+
+    Raises InputError for a file that is not a gradebook or that cannot be written.
+    """
+
+    def __init__(self, path: Path, *, create: bool = False) -> None:
+        self.path = path
+        self.shown = printable_path(path)
+        if not create and not path.exists():
+            command = f"grader batch PATH --gradebook {self.shown}"
+            raise InputError(f"there is no gradebook {self.shown}: create it with {command}")
+        if not path.parent.exists():
+            folder = printable_path(path.parent)
+            raise InputError(
+                f"cannot create the gradebook {self.shown}: there is no folder {folder} (mkdir -p {folder} makes it)"
+            )
+        with self.input_errors():
+            self.connection = sqlite3.connect(path, timeout=_BUSY_TIMEOUT, isolation_level=None)
+            try:
+                _prepare(self.connection, self.shown)
+            except BaseException:
+                self.connection.close()
+                raise
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the file; what was not committed is lost."""
+        with suppress(sqlite3.Error):
+            self.connection.close()
+
+    @contextmanager
+    def input_errors(self) -> Iterator[None]:
+        """Turn errors of SQLite into InputError."""
+        try:
+            yield
+        except sqlite3.DatabaseError as error:
+            is_other_file = error.sqlite_errorcode in (sqlite3.SQLITE_NOTADB, sqlite3.SQLITE_CANTOPEN)
+            advice = "; name another file" if is_other_file else ""
+            raise InputError(f"the gradebook {self.shown}: {error}{advice}") from None
+
+    @contextmanager
+    def transaction(self) -> Iterator[None]:
+        """Commit everything that is written inside, or nothing."""
+        with self.input_errors(), _transaction(self.connection):
+            yield
+
+    def rows(self, query: str, *values: Any) -> Iterator[tuple[Any, ...]]:
+        """Yield the rows of a query."""
+        with self.input_errors():
+            yield from self.connection.execute(query, values)
+
+    def first(self, query: str, *values: Any) -> tuple[Any, ...] | None:
+        """Return the first row of a query, or None."""
+        return next(self.rows(query, *values), None)
 
     def nothing_graded(self) -> InputError:
         """Return the error for a gradebook without a run."""
@@ -41,12 +98,12 @@ class Gradebook(Database):
 
     def runs(self) -> list[Run]:
         """Return all runs, the oldest first."""
-        return [Run(*row) for row in self.rows(f"SELECT {_RUN_COLUMNS} FROM run ORDER BY id")]
+        columns = "id, started, coalesce(finished, ''), source, layout, rubric, version, last_mark, deadline"
+        return [Run(*row) for row in self.rows(f"SELECT {columns} FROM run ORDER BY id")]
 
     def newest_run(self) -> Run | None:
         """Return the newest run, or None."""
-        row = self.first(f"SELECT {_RUN_COLUMNS} FROM run ORDER BY id DESC LIMIT 1")
-        return None if row is None else Run(*row)
+        return next(reversed(self.runs()), None)
 
     def roster_entries(self) -> Iterator[str]:
         """Yield the rows of the newest roster, as JSON, in the order of the keys."""
@@ -61,9 +118,9 @@ class Gradebook(Database):
 
     def stored_submissions(self) -> Iterator[StoredSubmission]:
         """Yield the newest submission of each student, in the order of the keys, unaffected by later writes."""
-        with self.input_errors(), closing(sqlite3.connect(self.path, timeout=BUSY_TIMEOUT)) as snapshot:
+        with self.input_errors(), closing(sqlite3.connect(self.path, timeout=_BUSY_TIMEOUT)) as snapshot:
             for row in snapshot.execute(STORED_SUBMISSIONS):
-                yield StoredSubmission.from_row(row)
+                yield StoredSubmission._make((*row[:12], row[12:]))
 
     def rubric(self, sha256: str, *, answers: bool = False) -> Rubric:
         """Return a stored rubric, with or without model answers; raises RubricError if this grader cannot read it."""
@@ -71,14 +128,78 @@ class Gradebook(Database):
         if row is None:
             raise GraderError(f"the gradebook {self.shown} has no rubric {sha256[:12]}")
         rubric = read_rubric(row[0], Path(row[1]), answers=answers)
-        if not answers:
-            return rubric
-        return with_answers(
-            rubric, dict(self.rows("SELECT criterion, text FROM model_answer WHERE rubric = ?", sha256))
-        )
+        query = "SELECT criterion, text FROM model_answer WHERE rubric = ?"
+        return with_answers(rubric, dict(self.rows(query, sha256))) if answers else rubric
 
     def record(self, result: int) -> tuple[str, str]:
         """Return the record of a result and the template that it is stored against (empty without one)."""
         query = "SELECT record, coalesce(text, '') FROM result LEFT JOIN template ON sha256 = template WHERE id = ?"
         ((record, template),) = self.rows(query, result)
         return zlib.decompress(record).decode(), str(template)
+
+
+def _prepare(connection: sqlite3.Connection, shown: str) -> None:
+    """Configure a connection and create or upgrade the tables; raises InputError for a file of another kind or version."""
+    connection.execute("BEGIN")  # another process may be creating the file: read all three at one moment
+    queries = ("PRAGMA application_id", "PRAGMA user_version", "SELECT count(*) FROM sqlite_master")
+    kind, version, tables = (int(connection.execute(query).fetchone()[0]) for query in queries)
+    connection.execute("COMMIT")
+    if tables and kind != APPLICATION_ID:
+        raise InputError(f"{shown} is a database, but not a gradebook: name another file")
+    if version > len(STEPS):
+        raise InputError(f"{shown} was made by a newer grader: install that version, or name another file")
+    _enable_wal(connection)
+    connection.execute("PRAGMA synchronous = NORMAL")
+    connection.execute("PRAGMA foreign_keys = ON")
+    if version < len(STEPS):
+        _migrate(connection)
+
+
+def _enable_wal(connection: sqlite3.Connection) -> None:
+    """Switch to a write-ahead log, so that readers and a writer do not block each other.
+
+    SQLite does not apply its busy timeout to this pragma, so it is retried here.
+    """
+    until = time.monotonic() + _BUSY_TIMEOUT
+    while True:
+        try:
+            connection.execute("PRAGMA journal_mode = WAL")
+        except sqlite3.OperationalError as error:
+            if "locked" not in str(error) or time.monotonic() > until:
+                raise
+            time.sleep(0.01)
+        else:
+            return
+
+
+def _migrate(connection: sqlite3.Connection) -> None:
+    """Apply all missing steps, or, if one fails, none."""
+    with _transaction(connection):
+        (version,) = connection.execute("PRAGMA user_version").fetchone()  # another process may have migrated meanwhile
+        for step in STEPS[version:]:
+            for statement in _statements(step):
+                connection.execute(statement)
+        connection.execute(f"PRAGMA user_version = {len(STEPS)}")
+        connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+
+
+@contextmanager
+def _transaction(connection: sqlite3.Connection) -> Iterator[None]:
+    connection.execute("BEGIN IMMEDIATE")
+    try:
+        yield
+    except BaseException:
+        if connection.in_transaction:
+            connection.execute("ROLLBACK")
+        raise
+    connection.execute("COMMIT")
+
+
+def _statements(script: str) -> Iterator[str]:
+    """Yield the statements of a script: `executescript` would commit the open transaction first."""
+    statement = ""
+    for line in script.splitlines(keepends=True):
+        statement += line
+        if sqlite3.complete_statement(statement):
+            yield statement
+            statement = ""

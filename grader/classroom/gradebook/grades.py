@@ -4,16 +4,15 @@ from collections.abc import Iterator
 from dataclasses import replace
 from datetime import datetime
 from decimal import Decimal
-from functools import cache, cached_property, partial
+from functools import cache, partial
 from typing import Any, NamedTuple
 
 from grader.checks.outcome import Outcome
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.lateness import Lateness, SubmissionTimes, lateness, read_time
 from grader.classroom.gradebook.result import UNITS_PER_POINT, criterion_points
-from grader.classroom.gradebook.sources import SubmissionSources
 from grader.classroom.gradebook.stored import storable
-from grader.classroom.gradebook.student_grade import COLUMNS, StudentGrade, grade_from_row
+from grader.classroom.gradebook.student_grade import COLUMNS, StudentGrade, SubmissionSources, grade_from_row
 from grader.classroom.matching import People, clues_of
 from grader.errors import InputError
 from grader.grading.record import Template, from_record
@@ -46,15 +45,10 @@ class Grades:
     def __init__(self, book: Gradebook, deadline: datetime | None = None, *, answers: bool = False) -> None:
         self.book = book
         newest = book.newest_run()
-        stored = newest.deadline if newest is not None and deadline is None else ""
-        self._deadline = read_time(stored) if stored else deadline
+        self._newest_sha256 = newest.rubric if newest is not None else ""
+        self._deadline = read_time(newest.deadline) if newest and newest.deadline and deadline is None else deadline
         self.rubric = cache(partial(book.rubric, answers=answers))
         self._template = cache(lambda rubric, text: Template(text, self.rubric(rubric)))
-
-    @cached_property
-    def _newest_sha256(self) -> str:
-        run = self.book.newest_run()
-        return run.rubric if run is not None else ""
 
     def newest_rubric(self) -> Rubric:
         """Return the rubric of the newest run; raises InputError if there is no run."""

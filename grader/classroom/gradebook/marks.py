@@ -14,6 +14,7 @@ from grader.errors import InputError
 from grader.grading.report import Result
 from grader.grading.rubric import Criterion, Rubric
 from grader.names import did_you_mean
+from grader.text import format_points
 
 TAKE_BACK = "-"  # in place of points: the automatic result counts again
 
@@ -56,7 +57,7 @@ def read_points(text: str, criterion: Criterion) -> Decimal | None:
     """Return the points in a text, None for `-`, which takes a mark back; raises InputError, which names the range."""
     if text.strip() == TAKE_BACK:
         return None
-    maximum = format(criterion.points.normalize(), "f") if criterion.points else "0"
+    maximum = format_points(criterion.points)
     try:
         points = Decimal(text.strip().replace(",", "."))
     except InvalidOperation:
@@ -89,16 +90,9 @@ def mark(
 ) -> Mark | None:
     """Add a mark to a student's newest result; return the mark that was the newest before, if there was one.
 
-    Args:
-        book: The gradebook.
-        grade: The student; raises InputError for one who has submitted nothing.
-        criterion: What is marked.
-        points: The points, or None to take the newest mark back.
-        by: The name that reports show; the user account is stored for the audit only.
-        why: The comment.
-        shown: The id of the newest mark that the person has seen, 0 for none. If there is a newer one, nothing is written and
-            NewerMarkError holds it. Without `shown` the mark is always added.
-
+    `points` are None to take the newest mark back; `by` is the name that reports show, `why` the comment. `shown` is the id of the
+    newest mark that the person has seen, 0 for none: if there is a newer one, nothing is written and NewerMarkError holds it.
+    Raises InputError for a student who has submitted nothing.
     """
     if grade.result is None:
         raise InputError(f"{grade.student.key} has submitted nothing that could be marked")
@@ -143,26 +137,23 @@ def manual_grading_queue(grades: Grades, criterion: str = "") -> list[QueuedCrit
     Unreadable submissions are not in it: they need a fix, not points.
     """
     rubric = grades.newest_rubric()
+    query = (
+        "SELECT key FROM grade WHERE verdict <> 'unreadable' AND rubric = ? AND substr(statuses, ?, 1) = '?' AND NOT EXISTS"
+        " (SELECT 1 FROM manual_mark WHERE student = grade.id AND criterion = ?) ORDER BY key"
+    )
     return [
         QueuedCriterion(str(key), row.id)
         for position, row in enumerate(rubric.criteria)
         if criterion in ("", row.id)
-        for (key,) in grades.book.rows(_QUEUE, rubric.sha256, position + 1, row.id)
+        for (key,) in grades.book.rows(query, rubric.sha256, position + 1, row.id)
     ]
-
-
-_QUEUE = (
-    "SELECT key FROM grade WHERE verdict <> 'unreadable' AND rubric = ? AND substr(statuses, ?, 1) = '?' AND NOT EXISTS"
-    " (SELECT 1 FROM manual_mark WHERE student = grade.id AND criterion = ?) ORDER BY key"
-)
 
 
 def pending_criterion(grades: Grades, queued: QueuedCriterion) -> PendingCriterion | None:
     """Return a queued criterion in its current state; None if somebody has marked it meanwhile."""
     grade = grades.find(queued.key)
-    newest = newest_mark(
-        grades.book, grade.id, queued.criterion
-    )  # before the report, so that no later mark counts as shown
+    # Before the report, so that no later mark counts as shown.
+    newest = newest_mark(grades.book, grade.id, queued.criterion)
     for result in grades.report(grade).results:
         if result.criterion.id == queued.criterion and result.is_open:
             return PendingCriterion(grade, result, newest.id if newest is not None else 0)

@@ -1,19 +1,17 @@
 """Write the results of one run into a gradebook."""
 
 from datetime import UTC, datetime
-from functools import cache
 from typing import Any
 
 from grader import __version__
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.result import UNITS_PER_POINT, GradingResult
 from grader.classroom.gradebook.stored import (
-    NO_ROSTER,
     PROFILE_COLUMNS,
     Enrolment,
-    Profile,
     StoredSubmission,
     files_json,
+    profile_of,
     storable,
 )
 from grader.classroom.students import ClassSubmission, Student
@@ -99,40 +97,30 @@ def save_student(book: Gradebook, student: Student, enrolment: Enrolment | None)
     """Add or update a student; return the id. Empty fields, and an `enrolment` of None, keep what is stored."""
     found = book.connection.execute(_FIND, (student.key,)).fetchone()
     if found is None:
-        row = Profile(student, enrolment or NO_ROSTER).columns()
-        return _insert(book, "student", dict(zip(PROFILE_COLUMNS, row, strict=True)))
-    identity, before = int(found[0]), Profile.from_columns(found[1:])
-    after = before.updated(student, enrolment)
-    if after != before:
-        book.connection.execute(_UPDATE, (*after.columns(), identity))
-    return identity
+        return _insert(book, "student", dict(zip(PROFILE_COLUMNS, profile_of(student, enrolment), strict=True)))
+    number, *before = found
+    after = profile_of(student, enrolment, before)
+    if after != tuple(before):
+        book.connection.execute(_UPDATE, (*after, number))
+    return int(number)
 
 
 def _save_rubric(book: Gradebook, rubric: Rubric) -> None:
-    sha256 = rubric.sha256
+    sha256, execute = rubric.sha256, book.connection.execute
     row = (sha256, rubric.id, rubric.title, storable(str(rubric.path)), rubric.data)
-    book.connection.execute("INSERT OR IGNORE INTO rubric VALUES (?, ?, ?, ?, ?)", row)
-    book.connection.executemany(
-        "INSERT OR IGNORE INTO criterion VALUES (?, ?, ?, ?)",
-        [
-            (sha256, criterion.id, position, int(criterion.points * UNITS_PER_POINT))
-            for position, criterion in enumerate(rubric.criteria)
-        ],
-    )
-    book.connection.executemany(
-        "INSERT OR REPLACE INTO model_answer VALUES (?, ?, ?)",
-        [(sha256, criterion.id, storable(criterion.answer)) for criterion in rubric.criteria if criterion.answer],
-    )
+    execute("INSERT OR IGNORE INTO rubric VALUES (?, ?, ?, ?, ?)", row)
+    for position, criterion in enumerate(rubric.criteria):
+        units = int(criterion.points * UNITS_PER_POINT)
+        execute("INSERT OR IGNORE INTO criterion VALUES (?, ?, ?, ?)", (sha256, criterion.id, position, units))
+        if criterion.answer:
+            answer = (sha256, criterion.id, storable(criterion.answer))
+            execute("INSERT OR REPLACE INTO model_answer VALUES (?, ?, ?)", answer)
 
 
 def _insert(book: Gradebook, table: str, values: dict[str, Any]) -> int:
     """Insert a row and return its id."""
-    return int(book.connection.execute(_insert_query(table, tuple(values)), tuple(values.values())).lastrowid or 0)
-
-
-@cache
-def _insert_query(table: str, columns: tuple[str, ...]) -> str:
-    return f"INSERT INTO {table} ({', '.join(columns)}) VALUES ({', '.join('?' * len(columns))})"
+    query = f"INSERT INTO {table} ({', '.join(values)}) VALUES ({', '.join('?' * len(values))})"
+    return int(book.connection.execute(query, tuple(values.values())).lastrowid or 0)
 
 
 def _now() -> str:

@@ -2,7 +2,76 @@
 
 APPLICATION_ID = 0x47524452  # "GRDR": the type of the file in its SQLite header
 
-_FIRST = """
+# What protects the manual marks, and the views on the tables below, whose names have changed with version 4.
+_PROTECTION = """
+CREATE TRIGGER mark_stays BEFORE DELETE ON mark
+BEGIN SELECT raise(ABORT, 'a manual mark is never deleted'); END;
+CREATE TRIGGER mark_unchanged BEFORE UPDATE ON mark
+BEGIN SELECT raise(ABORT, 'a manual mark is never changed: add another'); END;
+CREATE TRIGGER mark_not_replaced BEFORE INSERT ON mark WHEN EXISTS (SELECT 1 FROM mark WHERE id = new.id)
+BEGIN SELECT raise(ABORT, 'a manual mark is never changed: add another'); END;
+"""
+_VIEWS = """
+-- The manual marks that count: the newest of each student and criterion, unless it takes the mark back.
+CREATE VIEW {manual_mark} AS
+SELECT * FROM mark WHERE points IS NOT NULL
+AND id = (SELECT max(id) FROM mark AS newer WHERE newer.student = mark.student AND newer.criterion = mark.criterion);
+
+-- What the manual marks change in each student's newest result. CROSS JOIN makes SQLite start from the few marks. A mark is
+-- older where it was given for another submission, or when the criterion had another maximum.
+CREATE VIEW {override} AS
+SELECT student,
+    count(*) AS marks,
+    sum(points - iif(status = 'p', maximum, 0)) AS score,
+    sum(iif(status = '-', maximum, 0)) AS out_of,
+    sum(iif(status = '?', maximum, 0)) AS pending,
+    sum(status = '!') AS faults,
+    sum(is_older) AS older, sum(points > maximum) AS over
+FROM (
+    SELECT {manual_mark}.student, {manual_mark}.points, criterion.points AS maximum,
+        substr(result.{statuses}, criterion.position + 1, 1) AS status,
+        marked.id <> result.id AND (
+            marked.digest = '' OR marked.digest <> result.digest OR before.points IS NOT criterion.points
+        ) AS is_older
+    FROM {manual_mark}
+    CROSS JOIN result AS marked ON marked.id = {manual_mark}.result
+    LEFT JOIN criterion AS before ON before.rubric = marked.rubric AND before.id = {manual_mark}.criterion
+    CROSS JOIN {submission} ON {submission}.student = {manual_mark}.student
+        AND {submission}.run = (SELECT max(run) FROM {submission} AS newer WHERE newer.student = {manual_mark}.student)
+    CROSS JOIN result ON result.id = {submission}.result
+    CROSS JOIN criterion ON criterion.rubric = result.rubric AND criterion.id = {manual_mark}.criterion
+)
+GROUP BY student;
+
+-- The current grade of every student: the automatic points with the manual marks.
+CREATE VIEW grade AS
+SELECT student.*, {submission}.run, {submission}.result, result.rubric, result.version, result.digest,
+    coalesce(result.verdict, 'missing') AS verdict, coalesce(result.reason, '') AS reason,
+    result.score + coalesce({override}.score, 0) AS score,
+    result.out_of + coalesce({override}.out_of, 0) AS out_of,
+    result.pending - coalesce({override}.pending, 0) AS pending,
+    length({statuses}) - length(replace({statuses}, '!', '')) - coalesce({override}.faults, 0) AS faults,
+    coalesce({override}.marks, 0) AS marks, coalesce({override}.older, 0) AS older_marks,
+    coalesce({override}.over, 0) AS over_marks,
+    coalesce({submission}.is_gone, 0) AS is_gone,
+    result.{statuses}, coalesce(result.{failures}, '[]') AS {failures},
+    coalesce({submission}.{files}, '[[], [], 0, []]') AS {files}, {submission}.fingerprint,
+    coalesce({submission}.is_late, 0) AS is_late, coalesce({submission}.submitted, '') AS submitted,
+    run.source
+FROM student
+LEFT JOIN {submission} ON {submission}.student = student.id
+    AND {submission}.run = (SELECT max(run) FROM {submission} AS newer WHERE newer.student = student.id)
+LEFT JOIN result ON result.id = {submission}.result
+LEFT JOIN run ON run.id = {submission}.run
+LEFT JOIN {override} ON {override}.student = student.id;
+"""
+_FIRST_NAMES = {
+    "manual_mark": "ruling", "override": "ruled", "submission": "seen", "files": "place", "statuses": "signs",
+    "failures": "misses",
+}  # fmt: skip
+
+_FIRST = (
+    """
 CREATE TABLE rubric (
     sha256 TEXT PRIMARY KEY,
     id TEXT NOT NULL,
@@ -94,71 +163,17 @@ CREATE TABLE mark (
 );
 CREATE INDEX mark_of_student ON mark (student, criterion);
 
-CREATE TRIGGER mark_stays BEFORE DELETE ON mark
-BEGIN SELECT raise(ABORT, 'a mark by hand is never deleted'); END;
-CREATE TRIGGER mark_unchanged BEFORE UPDATE ON mark
-BEGIN SELECT raise(ABORT, 'a mark by hand is never changed: add another'); END;
 CREATE TRIGGER result_stays BEFORE DELETE ON result
 BEGIN SELECT raise(ABORT, 'a result is never deleted'); END;
 CREATE TRIGGER result_unchanged BEFORE UPDATE ON result
 BEGIN SELECT raise(ABORT, 'a result is never changed: add another'); END;
--- INSERT OR REPLACE deletes what it replaces without asking the triggers above.
-CREATE TRIGGER mark_not_replaced BEFORE INSERT ON mark WHEN EXISTS (SELECT 1 FROM mark WHERE id = new.id)
-BEGIN SELECT raise(ABORT, 'a mark by hand is never changed: add another'); END;
+-- INSERT OR REPLACE deletes what it replaces without asking the trigger above.
 CREATE TRIGGER result_not_replaced BEFORE INSERT ON result WHEN EXISTS (SELECT 1 FROM result WHERE id = new.id)
 BEGIN SELECT raise(ABORT, 'a result is never changed: add another'); END;
-
--- The marks by hand that count: the newest of each student and criterion, unless it was taken back.
-CREATE VIEW ruling AS
-SELECT * FROM mark WHERE points IS NOT NULL
-AND id = (SELECT max(id) FROM mark AS newer WHERE newer.student = mark.student AND newer.criterion = mark.criterion);
-
--- What the marks by hand change of a student's newest result. CROSS JOIN keeps the few marks in front. A mark is older where
--- it was given on another submission, or when the criterion was worth something else.
-CREATE VIEW ruled AS
-SELECT ruling.student,
-    count(*) AS marks,
-    sum(ruling.points - iif(sign = 'p', criterion_points, 0)) AS score,
-    sum(iif(sign = '-', criterion_points, 0)) AS out_of,
-    sum(iif(sign = '?', criterion_points, 0)) AS pending,
-    sum(sign = '!') AS faults,
-    sum(is_older) AS older, sum(ruling.points > criterion_points) AS over
-FROM (
-    SELECT ruling.student, ruling.points, criterion.points AS criterion_points,
-        substr(result.signs, criterion.position + 1, 1) AS sign,
-        marked.id <> result.id AND (
-            marked.digest = '' OR marked.digest <> result.digest OR before.points IS NOT criterion.points
-        ) AS is_older
-    FROM ruling
-    CROSS JOIN result AS marked ON marked.id = ruling.result
-    LEFT JOIN criterion AS before ON before.rubric = marked.rubric AND before.id = ruling.criterion
-    CROSS JOIN seen ON seen.student = ruling.student
-        AND seen.run = (SELECT max(run) FROM seen AS newer WHERE newer.student = ruling.student)
-    CROSS JOIN result ON result.id = seen.result
-    CROSS JOIN criterion ON criterion.rubric = result.rubric AND criterion.id = ruling.criterion
-) AS ruling
-GROUP BY ruling.student;
-
--- The current grade of everyone: what the checks have found, with the marks by hand.
-CREATE VIEW grade AS
-SELECT student.*, seen.run, seen.result, result.rubric, result.version, result.digest,
-    coalesce(result.verdict, 'missing') AS verdict, coalesce(result.reason, '') AS reason,
-    result.score + coalesce(ruled.score, 0) AS score,
-    result.out_of + coalesce(ruled.out_of, 0) AS out_of,
-    result.pending - coalesce(ruled.pending, 0) AS pending,
-    length(signs) - length(replace(signs, '!', '')) - coalesce(ruled.faults, 0) AS faults,
-    coalesce(ruled.marks, 0) AS marks, coalesce(ruled.older, 0) AS older_marks, coalesce(ruled.over, 0) AS over_marks,
-    coalesce(seen.is_gone, 0) AS is_gone,
-    result.signs, coalesce(result.misses, '[]') AS misses, coalesce(seen.place, '[[], [], 0, []]') AS place,
-    seen.fingerprint, coalesce(seen.is_late, 0) AS is_late, coalesce(seen.submitted, '') AS submitted,
-    run.source
-FROM student
-LEFT JOIN seen ON seen.student = student.id
-    AND seen.run = (SELECT max(run) FROM seen AS newer WHERE newer.student = student.id)
-LEFT JOIN result ON result.id = seen.result
-LEFT JOIN run ON run.id = seen.run
-LEFT JOIN ruled ON ruled.student = student.id;
 """
+    + _PROTECTION
+    + _VIEWS.format_map(_FIRST_NAMES)
+)
 
 _ROSTER_AND_ASSIGNMENT = """
 ALTER TABLE student ADD COLUMN entry TEXT NOT NULL DEFAULT '';     -- the row of the roster as JSON, empty for one who is not on it
@@ -180,7 +195,8 @@ CREATE TABLE model_answer (
 
 # Version 4 names tables, columns and views by standard terms. SQLite rewrites the triggers that refer to what it renames; the
 # views are made anew because the names of their columns change as well.
-_STANDARD_NAMES = """
+_STANDARD_NAMES = (
+    """
 DROP VIEW grade;
 DROP VIEW ruled;
 DROP VIEW ruling;
@@ -198,66 +214,10 @@ ALTER TABLE mark RENAME COLUMN signed TO grader_name;
 DROP TRIGGER mark_stays;
 DROP TRIGGER mark_unchanged;
 DROP TRIGGER mark_not_replaced;
-CREATE TRIGGER mark_stays BEFORE DELETE ON mark
-BEGIN SELECT raise(ABORT, 'a manual mark is never deleted'); END;
-CREATE TRIGGER mark_unchanged BEFORE UPDATE ON mark
-BEGIN SELECT raise(ABORT, 'a manual mark is never changed: add another'); END;
-CREATE TRIGGER mark_not_replaced BEFORE INSERT ON mark WHEN EXISTS (SELECT 1 FROM mark WHERE id = new.id)
-BEGIN SELECT raise(ABORT, 'a manual mark is never changed: add another'); END;
-
--- The manual marks that count: the newest of each student and criterion, unless it takes the mark back.
-CREATE VIEW manual_mark AS
-SELECT * FROM mark WHERE points IS NOT NULL
-AND id = (SELECT max(id) FROM mark AS newer WHERE newer.student = mark.student AND newer.criterion = mark.criterion);
-
--- What the manual marks change in each student's newest result. CROSS JOIN makes SQLite start from the few marks. A mark is
--- older where it was given for another submission, or when the criterion had another maximum.
-CREATE VIEW override AS
-SELECT student,
-    count(*) AS marks,
-    sum(points - iif(status = 'p', maximum, 0)) AS score,
-    sum(iif(status = '-', maximum, 0)) AS out_of,
-    sum(iif(status = '?', maximum, 0)) AS pending,
-    sum(status = '!') AS faults,
-    sum(is_older) AS older, sum(points > maximum) AS over
-FROM (
-    SELECT manual_mark.student, manual_mark.points, criterion.points AS maximum,
-        substr(result.statuses, criterion.position + 1, 1) AS status,
-        marked.id <> result.id AND (
-            marked.digest = '' OR marked.digest <> result.digest OR before.points IS NOT criterion.points
-        ) AS is_older
-    FROM manual_mark
-    CROSS JOIN result AS marked ON marked.id = manual_mark.result
-    LEFT JOIN criterion AS before ON before.rubric = marked.rubric AND before.id = manual_mark.criterion
-    CROSS JOIN submission ON submission.student = manual_mark.student
-        AND submission.run = (SELECT max(run) FROM submission AS newer WHERE newer.student = manual_mark.student)
-    CROSS JOIN result ON result.id = submission.result
-    CROSS JOIN criterion ON criterion.rubric = result.rubric AND criterion.id = manual_mark.criterion
-)
-GROUP BY student;
-
--- The current grade of every student: the automatic points with the manual marks.
-CREATE VIEW grade AS
-SELECT student.*, submission.run, submission.result, result.rubric, result.version, result.digest,
-    coalesce(result.verdict, 'missing') AS verdict, coalesce(result.reason, '') AS reason,
-    result.score + coalesce(override.score, 0) AS score,
-    result.out_of + coalesce(override.out_of, 0) AS out_of,
-    result.pending - coalesce(override.pending, 0) AS pending,
-    length(statuses) - length(replace(statuses, '!', '')) - coalesce(override.faults, 0) AS faults,
-    coalesce(override.marks, 0) AS marks, coalesce(override.older, 0) AS older_marks,
-    coalesce(override.over, 0) AS over_marks,
-    coalesce(submission.is_gone, 0) AS is_gone,
-    result.statuses, coalesce(result.failures, '[]') AS failures,
-    coalesce(submission.files, '[[], [], 0, []]') AS files, submission.fingerprint,
-    coalesce(submission.is_late, 0) AS is_late, coalesce(submission.submitted, '') AS submitted,
-    run.source
-FROM student
-LEFT JOIN submission ON submission.student = student.id
-    AND submission.run = (SELECT max(run) FROM submission AS newer WHERE newer.student = student.id)
-LEFT JOIN result ON result.id = submission.result
-LEFT JOIN run ON run.id = submission.run
-LEFT JOIN override ON override.student = student.id;
 """
+    + _PROTECTION
+    + _VIEWS.format_map({name: name for name in _FIRST_NAMES})
+)
 
 # The first step makes version 1; each later one brings a gradebook to the next version. A step that was released never changes.
 STEPS = (_FIRST, _ROSTER_AND_ASSIGNMENT, _ANSWERS_AND_NAMES, _STANDARD_NAMES)

@@ -2,9 +2,10 @@
 
 import json
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
+from itertools import chain
 from math import sqrt
 from typing import NamedTuple
 
@@ -70,56 +71,28 @@ class ClassStatistics:
     failures: tuple[Failure, ...]
 
 
-class _Tally:
-    """Sums over students of a criterion's points x and the points r of all other criteria, as integers without rounding."""
-
-    def __init__(self, criterion: Criterion) -> None:
-        self.criterion = criterion
-        self.units = int(criterion.points * UNITS_PER_POINT)
-        self.weight = self.units or 1  # a criterion without points has a share and a discrimination as well
-        self.statuses: Counter[str] = Counter()
-        self.count = self.x = self.r = self.xx = self.rr = self.xr = 0
-
-    def add(self, status: str, earned: int | None, rest: int, count: int) -> None:
-        self.statuses[status] += count
-        if earned is None:
-            return
-        self.count += count
-        self.x += earned * count
-        self.r += rest * count
-        self.xx += earned * earned * count
-        self.rr += rest * rest * count
-        self.xr += earned * rest * count
-
-    def result(self) -> CriterionStatistics:
-        variances = (self.count * self.xx - self.x * self.x) * (self.count * self.rr - self.r * self.r)
-        correlation = (self.count * self.xr - self.x * self.r) / sqrt(variances) if variances else None
-        share = self.x / (self.count * self.weight) if self.count else None
-        passed, marked, failed, skipped, pending, errored = (self.statuses[status] for status in f"p{_MARKED}fs?!")
-        return CriterionStatistics(
-            self.criterion, self.count, passed, marked, failed, skipped, pending, errored, share, correlation
-        )
-
-
 class _Pattern(NamedTuple):
-    """A combination of results, and how many students have it; `marks` are manual points in ten-thousandths."""
+    """A combination of results, and how many students have it.
+
+    `marks` are manual points in ten-thousandths, `earned` those of each criterion, None where it is not decided; a criterion without
+    points has 1 if it passed, so that it has a share and a discrimination as well. `total` is the sum over the others.
+    """
 
     statuses: str
     score: int
     is_pending: int
     students: int
     marks: Mapping[str, int]
+    earned: Sequence[int | None]
+    total: int
 
 
 def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
     """Return the statistics of the newest submissions that were graded with this rubric, with their manual marks."""
     scores: Counter[int] = Counter()
-    tallies = [_Tally(criterion) for criterion in rubric.criteria]
-    pending = 0
-    for pattern in _patterns(book, rubric):
+    patterns = list(_patterns(book, rubric))
+    for pattern in patterns:
         scores[pattern.score] += pattern.students
-        pending += pattern.students * pattern.is_pending
-        _count(tallies, pattern)
     failures: Counter[tuple[int, str]] = Counter()
     for index, message, count in _failures(book, rubric):
         failures[index, message] += count
@@ -132,25 +105,34 @@ def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
         verdicts={str(verdict): int(count) for verdict, count in book.rows(_VERDICTS)},
         out_of=rubric.points,
         graded=graded,
-        pending=pending,
+        pending=sum(pattern.students * pattern.is_pending for pattern in patterns),
         mean=mean,
         deviation=sqrt(squares / graded) if graded else 0.0,
         lowest=_ranked_score(values, 0),
         median=(_ranked_score(values, (graded - 1) // 2) + _ranked_score(values, graded // 2)) / 2,
         highest=_ranked_score(values, graded - 1),
         bins=_bins(values, rubric.points),
-        criteria=tuple(tally.result() for tally in tallies),
+        criteria=tuple(_criterion(criterion, patterns) for criterion in rubric.criteria),
         failures=tuple(Failure(rubric.criteria[index], message, count) for (index, message), count in ranked),
     )
 
 
 def _patterns(book: Gradebook, rubric: Rubric) -> Iterator[_Pattern]:
     columns = "statuses, score, pending > 0"
-    query = f"SELECT {columns}, count(*) {_GRADED} AND marks = 0 GROUP BY {columns}"
-    for row in book.rows(query, rubric.sha256):
-        yield _Pattern._make((*row, {}))
-    for *results, student in book.rows(f"SELECT {columns}, 1, id {_GRADED} AND marks", rubric.sha256):
-        yield _Pattern._make((*results, _marks(book, student)))
+    unmarked = book.rows(f"SELECT {columns}, count(*), 0 {_GRADED} AND marks = 0 GROUP BY {columns}", rubric.sha256)
+    marked = book.rows(f"SELECT {columns}, 1, id {_GRADED} AND marks", rubric.sha256)
+    for statuses, score, is_pending, students, student in chain(unmarked, marked):
+        marks = _marks(book, student) if student else {}
+        earned = [
+            marks.get(criterion.id, {"p": _units(criterion) or 1, "f": 0, "s": 0}.get(status))
+            for criterion, status in zip(rubric.criteria, statuses, strict=True)
+        ]
+        total = sum(units or 0 for units, criterion in zip(earned, rubric.criteria, strict=True) if criterion.points)
+        yield _Pattern(statuses, score, is_pending, students, marks, earned, total)
+
+
+def _units(criterion: Criterion) -> int:
+    return int(criterion.points * UNITS_PER_POINT)
 
 
 def _marks(book: Gradebook, student: int) -> dict[str, int]:
@@ -158,15 +140,27 @@ def _marks(book: Gradebook, student: int) -> dict[str, int]:
     return {str(name): int(points) for name, points in book.rows(query, student)}
 
 
-def _count(tallies: list[_Tally], pattern: _Pattern) -> None:
-    earned: list[int | None] = []
-    for tally, status in zip(tallies, pattern.statuses, strict=True):
-        automatic = {"p": tally.weight, "f": 0, "s": 0}.get(status)
-        earned.append(pattern.marks.get(tally.criterion.id, automatic))
-    own = [points or 0 if tally.units else 0 for tally, points in zip(tallies, earned, strict=True)]
-    for tally, status, points, part in zip(tallies, pattern.statuses, earned, own, strict=True):
-        shown = _MARKED if tally.criterion.id in pattern.marks else status
-        tally.add(shown, points, sum(own) - part, pattern.students)
+def _criterion(criterion: Criterion, patterns: Iterable[_Pattern]) -> CriterionStatistics:
+    """Return the statistics from sums over its points x and the points r of all other criteria, integers without rounding."""
+    statuses: Counter[str] = Counter()
+    count = x = r = xx = rr = xr = 0
+    for pattern in patterns:
+        number = pattern.students
+        statuses[_MARKED if criterion.id in pattern.marks else pattern.statuses[criterion.position]] += number
+        earned = pattern.earned[criterion.position]
+        if earned is not None:
+            rest = pattern.total - (earned if criterion.points else 0)
+            count += number
+            x += earned * number
+            r += rest * number
+            xx += earned * earned * number
+            rr += rest * rest * number
+            xr += earned * rest * number
+    variances = (count * xx - x * x) * (count * rr - r * r)
+    correlation = (count * xr - x * r) / sqrt(variances) if variances else None
+    share = x / (count * (_units(criterion) or 1)) if count else None
+    passed, marked, failed, skipped, pending, errored = (statuses[status] for status in f"p{_MARKED}fs?!")
+    return CriterionStatistics(criterion, count, passed, marked, failed, skipped, pending, errored, share, correlation)
 
 
 def _ranked_score(values: list[tuple[int, int]], rank: int) -> Decimal:
@@ -188,12 +182,10 @@ def _bins(values: list[tuple[int, int]], out_of: Decimal) -> tuple[int, ...]:
 
 def _failures(book: Gradebook, rubric: Rubric) -> Iterator[tuple[int, str, int]]:
     """Yield the position of a criterion, the failure and a count, except where a manual mark gives all points."""
-    query = f"SELECT failures, count(*) {_GRADED} AND marks = 0 GROUP BY failures"
-    for failures, count in book.rows(query, rubric.sha256):
-        yield from ((index, message, count) for index, message in json.loads(failures))
-    for student, failures in book.rows(f"SELECT id, failures {_GRADED} AND marks", rubric.sha256):
-        marks = _marks(book, student)
+    unmarked = book.rows(f"SELECT failures, count(*), 0 {_GRADED} AND marks = 0 GROUP BY failures", rubric.sha256)
+    marked = book.rows(f"SELECT failures, 1, id {_GRADED} AND marks", rubric.sha256)
+    for failures, count, student in chain(unmarked, marked):
+        marks = _marks(book, student) if student else {}
         for index, message in json.loads(failures):
-            criterion = rubric.criteria[index]
-            if marks.get(criterion.id) != criterion.points * UNITS_PER_POINT:
-                yield index, message, 1
+            if marks.get(rubric.criteria[index].id) != _units(rubric.criteria[index]):
+                yield index, message, count

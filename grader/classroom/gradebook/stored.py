@@ -11,14 +11,13 @@ from grader.classroom.students import ClassSubmission, Student
 class Enrolment(NamedTuple):
     """What the roster says about a student. The fields are columns of the table `student`."""
 
-    is_on_roster: int | None  # None where there is no roster
+    is_on_roster: int | None = None  # None where there is no roster
     deadline: str = ""  # the student's own deadline, ISO 8601
     extension: float = 0.0  # days
     days_late: float | None = None
     roster_entry: str = ""  # the row of the roster as JSON, for a later run without --roster
 
 
-NO_ROSTER = Enrolment(None)
 STUDENT_COLUMNS = ("key", "name", "email", "login", "sis", "canvas", "moodle")
 PROFILE_COLUMNS = (*STUDENT_COLUMNS, *Enrolment._fields)
 _COUNT = len(STUDENT_COLUMNS)
@@ -33,31 +32,6 @@ JOIN result ON result.id = submission.result
 JOIN run ON run.id = submission.run
 ORDER BY student.key
 """
-
-
-class Profile(NamedTuple):
-    """A student with the enrolment."""
-
-    student: Student
-    enrolment: Enrolment
-
-    @classmethod
-    def from_columns(cls, values: Sequence[Any]) -> "Profile":
-        """Return the profile in a row of PROFILE_COLUMNS."""
-        return cls(Student(*values[:_COUNT]), Enrolment(*values[_COUNT:]))
-
-    def columns(self) -> tuple[Any, ...]:
-        """Return a row of PROFILE_COLUMNS."""
-        return (*_student_columns(self.student), *self.enrolment)
-
-    def updated(self, student: Student, enrolment: Enrolment | None) -> "Profile":
-        """Return the profile with new data: empty fields of `student`, and an `enrolment` of None, keep the old values."""
-        enrolment = self.enrolment if enrolment is None else enrolment
-        new, old = _student_columns(student), _VALUES(self.student)
-        if new == old:  # a shortcut for most students
-            return Profile(self.student, enrolment)
-        values: tuple[Any, ...] = tuple(value or before for value, before in zip(new, old, strict=True))
-        return Profile(Student(*values), enrolment)
 
 
 class StoredSubmission(NamedTuple):
@@ -75,27 +49,27 @@ class StoredSubmission(NamedTuple):
     submitted: str
     is_gone: int
     source: str
-    profile: Profile
+    profile: tuple[Any, ...]  # PROFILE_COLUMNS
 
-    @classmethod
-    def from_row(cls, row: Sequence[Any]) -> "StoredSubmission":
-        """Return the submission in a row of STORED_SUBMISSIONS."""
-        return cls._make((*row[:12], Profile.from_columns(row[12:])))
+    @property
+    def student(self) -> Student:
+        """The student."""
+        return Student(*self.profile[:_COUNT])
+
+    @property
+    def enrolment(self) -> Enrolment:
+        """What the roster said about the student."""
+        return Enrolment(*self.profile[_COUNT:])
 
     @property
     def key(self) -> str:
         """The student's key."""
-        return self.profile.student.key
+        return str(self.profile[0])
 
     @property
     def paths(self) -> list[str]:
         """The paths of the submission below the class."""
         return list(json.loads(self.files)[0])
-
-    @property
-    def is_on_roster(self) -> bool:
-        """Whether the student was on the roster."""
-        return bool(self.profile.enrolment.is_on_roster)
 
     def is_same(self, submission: ClassSubmission, enrolment: Enrolment | None) -> bool:
         """Return whether a submission has the same files, times, student and enrolment; the contents are not compared."""
@@ -104,7 +78,7 @@ class StoredSubmission(NamedTuple):
             and self.files == files_json(submission)
             and self.is_late == submission.is_late
             and self.submitted == submission.submitted
-            and self.profile.updated(submission.student, enrolment) == self.profile
+            and profile_of(submission.student, enrolment, self.profile) == self.profile
         )
 
 
@@ -118,6 +92,11 @@ def files_json(submission: ClassSubmission) -> str:
     return json.dumps((submission.paths, submission.names, submission.attempt, submission.earlier))
 
 
-def _student_columns(student: Student) -> tuple[str, ...]:
+def profile_of(student: Student, enrolment: Enrolment | None, before: Sequence[Any] = ()) -> tuple[Any, ...]:
+    """Return a row of PROFILE_COLUMNS: empty fields of the student, and an enrolment of None, are as they were `before`."""
     values: tuple[str, ...] = _VALUES(student)
-    return values if "".join(values).isascii() else tuple(map(storable, values))
+    if not "".join(values).isascii():
+        values = tuple(map(storable, values))
+    if before:
+        values = tuple(value or old for value, old in zip(values, before[:_COUNT], strict=True))
+    return (*values, *(enrolment or before[_COUNT:] or Enrolment()))

@@ -1,23 +1,61 @@
 """The current grade of one student: automatic points, manual marks, late penalty, and whether it is final."""
 
 import json
+import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from decimal import Decimal
-from typing import Any
+from functools import cached_property
+from typing import Any, NamedTuple
 
 from grader.classroom.gradebook.lateness import Lateness, SubmissionTimes
 from grader.classroom.gradebook.result import UNITS_PER_POINT
-from grader.classroom.gradebook.sources import SubmissionFiles
 from grader.classroom.gradebook.stored import STUDENT_COLUMNS
+from grader.classroom.intake.fingerprint import fingerprint
+from grader.classroom.intake.opening import open_submission
 from grader.classroom.students import Student
-from grader.text import counted
+from grader.errors import InputError
+from grader.grading.rubric import Rubric
+from grader.source import Source
+from grader.submission.submission import Submission
+from grader.text import counted, counted_points
 
 _COUNTS = ("id", "run", "result", "faults", "marks", "older_marks", "over_marks")  # columns that are taken as they are
 _POINTS = ("score", "out_of", "pending")
 _TEXTS = ("rubric", "digest", "verdict", "reason", "statuses", "submitted")
 _OTHERS = ("deadline", "extension", "days_late", "is_on_roster", "is_gone", "is_late", "files", "source", "fingerprint")
 COLUMNS = (*_COUNTS, *_POINTS, *_TEXTS, *_OTHERS, *STUDENT_COLUMNS)
+
+
+class SubmissionFiles(NamedTuple):
+    """Where a submission was when it was graded: paths below the class `root`, and the fingerprint of the files."""
+
+    root: str
+    paths: tuple[str, ...]
+    names: tuple[str, ...]
+    key: str
+    fingerprint: str
+
+
+class SubmissionSources:
+    """Opens a submission when one of its files is first asked for."""
+
+    def __init__(self, files: SubmissionFiles, rubric: Rubric) -> None:
+        self._files, self._rubric = files, rubric
+
+    def __call__(self, path: str) -> Source | None:
+        """Return the text of one file; None if it cannot be read or has changed."""
+        return self._submission.source(path) if self._submission is not None else None
+
+    @cached_property
+    def _submission(self) -> Submission | None:
+        root, paths, names, key, stored = self._files
+        if not stored or fingerprint(root, paths, time.time_ns()) != stored:
+            return None
+        try:
+            return open_submission(root, paths, names, key).submission(self._rubric)
+        except InputError:
+            return None
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,42 +101,32 @@ class StudentGrade:
     @property
     def why_not_final(self) -> str:
         """Why this grade must not be exported yet; empty if it is final."""
-        if self.verdict == "missing":
-            return "nothing was submitted"
-        if self.faults:
-            return f"the grader failed: {self.reason}" if self.reason else "the grader failed on a criterion"
-        if self.verdict == "unreadable" and self.pending:
-            return f"it could not be graded: {self.reason}"
-        if self.is_gone:
-            return "it is no longer in the class folder"
-        if self.is_outdated:
-            return "it was graded with an earlier version of the rubric: run grader batch again"
-        if self.over_marks:
-            return "a manual mark exceeds the criterion's maximum"
-        if self.pending:
-            points = format(self.pending.normalize(), "f")
-            return "1 point needs manual grading" if self.pending == 1 else f"{points} points need manual grading"
-        return ""
+        reasons = (
+            (self.verdict == "missing", "nothing was submitted"),
+            (self.faults and self.reason, f"the grader failed: {self.reason}"),
+            (self.faults, "the grader failed on a criterion"),
+            (self.verdict == "unreadable" and self.pending, f"it could not be graded: {self.reason}"),
+            (self.is_gone, "it is no longer in the class folder"),
+            (self.is_outdated, "it was graded with an earlier version of the rubric: run grader batch again"),
+            (self.over_marks, "a manual mark exceeds the criterion's maximum"),
+            (self.pending, f"{counted_points(self.pending)} need{'s' * (self.pending == 1)} manual grading"),
+        )
+        return next((reason for holds, reason in reasons if holds), "")
 
     @property
     def why_attention(self) -> str:
         """Why an instructor should look at this grade."""
-        reasons = []
-        if self.verdict != "graded" or self.faults:
-            reasons.append(self.why_not_final or "it could not be graded, and was marked manually")
-        if self.is_gone:
-            reasons.append("no longer in the class folder")
-        if self.is_outdated:
-            reasons.append("graded with an earlier version of the rubric")
-        if self.over_marks:
-            reasons.append("a manual mark exceeds the criterion's maximum")
-        if self.is_on_roster is False:
-            reasons.append("not on the roster")
-        if self.older_marks:
-            verb = "is" if self.older_marks == 1 else "are"
-            marks = counted(self.older_marks, "manual mark")
-            reasons.append(f"{marks} {verb} from before the submission or the points changed")
-        return "; ".join(reasons)
+        is_ungraded = self.verdict != "graded" or self.faults
+        older = f"{counted(self.older_marks, 'manual mark')} {'is' if self.older_marks == 1 else 'are'}"
+        reasons = (
+            (is_ungraded, self.why_not_final or "it could not be graded, and was marked manually"),
+            (self.is_gone, "no longer in the class folder"),
+            (self.is_outdated, "graded with an earlier version of the rubric"),
+            (self.over_marks, "a manual mark exceeds the criterion's maximum"),
+            (self.is_on_roster is False, "not on the roster"),
+            (self.older_marks, f"{older} from before the submission or the points changed"),
+        )
+        return "; ".join(reason for holds, reason in reasons if holds)
 
 
 def grade_from_row(

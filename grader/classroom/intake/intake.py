@@ -1,118 +1,206 @@
-"""Read a class folder or zip: its layout, and the submission of each student. No submission is opened."""
+"""The submissions of a class, each assigned to a student on the roster: which are unmatched, and who has submitted nothing."""
 
-import os
-from collections.abc import Iterator
-from pathlib import Path
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
-from grader.classroom.intake.assigning import Assigned, assign
-from grader.classroom.intake.class_layout import LAYOUTS, ClassLayout
-from grader.classroom.intake.layouts.layout import IgnoredFiles, Submissions
-from grader.classroom.intake.listing import ClassListing, FolderListing
+from grader.classroom.intake.layouts.layout import Submissions, path_key
 from grader.classroom.intake.roster import Roster
-from grader.classroom.intake.zip_listing import ZipListing
+from grader.classroom.matching import CERTAIN, Clue, plain_word
 from grader.classroom.students import ClassSubmission, Student
-from grader.errors import InputError
-from grader.files.opening import archive_kind
-from grader.files.reading import not_there, read_start
-from grader.text import printable_path
+from grader.text import first_lines
+
+_UNMATCHED = -1
+_MAX_NOTES = 200
 
 
+class _Placed(NamedTuple):
+    """A submission, by its number in `found`, with the key and the roster's entry of its student; a shared one counts for several."""
+
+    key: str
+    number: int
+    owner: int = _UNMATCHED
+    is_shared: bool = False
+    is_certain: bool = True
+
+
+@dataclass(frozen=True, slots=True)
 class Intake:
     """The submissions of a class. `ignored` says in lines what in the folder is not a submission, and why.
 
     With a roster, `unmatched` are the keys of submissions of nobody on it (they are graded all the same), `absent` are students
-    without a submission, `contested` students with several possible submissions, and `notes` says which submissions are ambiguous.
-    A submission that is named like a group of the roster, and like nobody on it, counts once for each member of the group.
-    `assignments` are the names of the assignment in nbgrader or Canvas.
+    without a submission, `contested` students with several possible submissions: none is assigned, and the gradebook keeps the
+    earlier one. `notes` says which submissions are ambiguous. `assignments` are the names of the assignment in nbgrader or Canvas.
     """
 
-    def __init__(
-        self, layout: str, submissions: Submissions, ignored: IgnoredFiles, roster: Roster | None, assigned: Assigned
-    ) -> None:
-        self.layout = layout
-        self.ignored = ignored.lines()
-        self.unmatched = assigned.unmatched
-        self.absent = assigned.absent
-        self.contested = assigned.contested
-        self.assignments = submissions.assignments | (roster.assignments if roster is not None else frozenset())
-        self.notes = (*(roster.notes if roster else ()), *assigned.notes)
-        self._submissions = submissions
-        self._roster = roster
-        self._assigned = assigned
+    layout: str
+    ignored: tuple[str, ...]
+    found: Submissions
+    roster: Roster | None = None
+    placed: Sequence[_Placed] = ()
+    unmatched: tuple[str, ...] = ()
+    absent: tuple[Student, ...] = ()
+    contested: tuple[Student, ...] = ()
+    notes: tuple[str, ...] = ()
 
     def __len__(self) -> int:
-        return len(self._assigned.order)
+        return len(self.found) if self.roster is None else len(self.placed)
+
+    @property
+    def assignments(self) -> frozenset[str]:
+        """The names of the assignment."""
+        return self.found.assignments | (self.roster.assignments if self.roster is not None else frozenset())
 
     def keys(self) -> Iterator[str]:
         """Yield the keys of the submissions, in order."""
-        for position, index in enumerate(self._assigned.order):
-            submission = ClassSubmission(self._submissions.student(index), ())
-            yield self._assigned.final(self._roster, position, submission).student.key
+        if self.roster is None:
+            return (student.key for student in self.named_students())
+        return (placed.key for placed in self.placed)
 
     def named_students(self) -> Iterator[Student]:
         """Yield the students as the names of the submissions tell."""
-        yield from map(self._submissions.student, range(len(self._submissions)))
+        return map(self.found.student, range(len(self.found)))
 
     def submissions(self) -> Iterator[ClassSubmission]:
         """Yield the submissions in the order of their students' keys."""
-        for position, index in enumerate(self._assigned.order):
-            yield self._assigned.final(self._roster, position, self._submissions.submission(index))
+        if self.roster is None:
+            yield from map(self.found.submission, range(len(self.found)))
+        for key, index, owner, is_shared, is_certain in self.placed:
+            submission = self.found.submission(index)
+            if self.roster is None or owner == _UNMATCHED:
+                yield replace(submission, student=replace(submission.student, key=key))
+                continue
+            if is_shared:  # the names and ids are the team's, not its member's
+                submission = replace(submission, student=self.roster.entries[owner].student)
+            yield replace(self.roster.complete(owner, submission), is_certain=is_certain)
 
 
-def read_class(
-    path: Path, roster: Roster | None = None, layout: str = "auto", assignment: str = "", rubric_id: str = "lab6"
+def assign(
+    layout: str,
+    ignored: tuple[str, ...],
+    submissions: Submissions,
+    roster: Roster | None,
+    holds_students: Callable[[str], bool],
 ) -> Intake:
-    """Return the submissions in a class folder or zip; raises InputError if there are none.
+    """Assign each submission to a student.
 
-    `assignment` is the one to grade in nbgrader; `rubric_id` is the name of the lab in names of folders.
+    Of several submissions that may belong to one student, the only one with the student's own id, key or login exactly counts; without
+    such a one none does, and the student is contested. An unmatched submission that is named like a group counts for each member
+    without another submission, unless its folder `holds_students`: then the group is a section.
     """
-    if layout not in ("auto", *LAYOUTS):
-        raise InputError(f"there is no layout {layout!r}; the layouts are: auto, {', '.join(LAYOUTS)}")
-    shown = printable_path(path)
-    class_layout = ClassLayout(_listing(path), _top_name(path), roster, assignment, rubric_id)
-    if class_layout.is_empty:
-        raise InputError(f"{shown} is empty: name the folder that holds the class's submissions")
-    chosen = class_layout.detected() if layout == "auto" else layout
-    if assignment and chosen != "nbgrader":
-        raise InputError(
-            f"--assignment is only for the layout nbgrader, and {shown} has the layout {chosen}: remove it, or add"
-            " --layout nbgrader"
+    if roster is None:
+        return Intake(layout, ignored, submissions, contested=submissions.contested)
+    entries = roster.entries
+    matches = _match(submissions, roster)
+    shared = _share(submissions, roster, matches, holds_students)
+    taken = {plain_word(entry.student.key) for entry in entries}
+    keys = {
+        index: submissions.student(index).key
+        for index in range(len(submissions))
+        if index not in matches.owners and index not in shared
+    }
+    # An unmatched submission must not get the key of a student on the roster.
+    keys |= {index: path_key(submissions.path(index)) for index, key in keys.items() if plain_word(key) in taken}
+    owners = matches.owners.items()
+    placed = [
+        _Placed(entries[owner].student.key, i, owner, is_certain=i not in matches.uncertain) for i, owner in owners
+    ]
+    placed += [_Placed(key, index) for index, key in keys.items()]
+    placed += [
+        _Placed(entries[owner].student.key, i, owner, is_shared=True) for i, of in shared.items() for owner in of
+    ]
+    present = {owner for _, _, owner, *_ in placed} | matches.contested
+    return Intake(
+        layout,
+        ignored,
+        submissions,
+        roster,
+        sorted(placed),
+        tuple(sorted(keys.values())),
+        tuple(entry.student for index, entry in enumerate(entries) if index not in present),
+        tuple(entries[index].student for index in sorted(matches.contested)),
+        (*roster.notes, *first_lines(sorted(matches.notes), _MAX_NOTES)),
+    )
+
+
+class _Matches(NamedTuple):
+    """The owners of submissions by index, the unmatched submissions, the contested students, the uncertain submissions."""
+
+    owners: dict[int, int]
+    unmatched: list[int]
+    contested: set[int]
+    uncertain: set[int]
+    notes: list[str]
+
+
+def _match(submissions: Submissions, roster: Roster) -> _Matches:
+    matches = _Matches({}, [], set(), set(), [])
+    claims: dict[int, list[tuple[Clue, int]]] = {}  # by owner, the submissions that may be theirs
+    for index in range(len(submissions)):
+        student = submissions.student(index)
+        match = roster.match(student)
+        if match.position is not None:
+            claims.setdefault(match.position, []).append((match.clue, index))
+        elif match.doubt:
+            matches.notes.append(f"{student.key} {match.doubt}: left unassigned")
+            matches.contested.update(match.several)
+        else:
+            matches.unmatched.append(index)
+    for owner, claimants in claims.items():
+        clues, indices = zip(*sorted(claimants), strict=True)
+        first, *others = (submissions.student(index).key for index in indices)
+        key = roster.entries[owner].student.key
+        if others and (clues[0] > CERTAIN or clues[1] == clues[0]):
+            names = ", ".join((first, *others))
+            matches.contested.add(owner)
+            matches.notes.append(
+                f"{names} may each belong to {key}: left unassigned; {key} keeps an earlier submission"
+            )
+            continue
+        matches.owners[indices[0]] = owner
+        if clues[0] > CERTAIN:
+            matches.uncertain.add(indices[0])
+        matches.notes.extend(
+            f"{other} may belong to {key} as well, but {first} counts: left unassigned" for other in others
         )
-    if layout == "auto" and chosen == "folders" and "package.xml" in class_layout.children.files:
-        raise InputError(
-            f"{shown} is one submission and not a class: it holds a package.xml (grade it with grader grade {shown})"
+    for student in submissions.contested:
+        matches.contested.update(roster.candidates(student))
+    matches.contested.difference_update(matches.owners.values())
+    return matches
+
+
+def _share(
+    submissions: Submissions, roster: Roster, matches: _Matches, holds_students: Callable[[str], bool]
+) -> dict[int, list[int]]:
+    """Return the members that each team's submission counts for: those without another submission."""
+    own = {owner: index for index, owner in matches.owners.items()}
+    by_group: dict[tuple[int, ...], list[int]] = {}
+    for index in matches.unmatched:
+        if members := roster.members(submissions.student(index)):
+            by_group.setdefault(tuple(members), []).append(index)
+    shared: dict[int, list[int]] = {}
+    for members, claimants in by_group.items():
+        alone = [index for index in claimants if not any(map(holds_students, submissions.submission(index).paths))]
+        keys = {index: submissions.student(index).key for index in claimants}
+        matches.notes.extend(
+            f"{keys[index]} is named like a group, but holds submissions of several students"
+            for index in claimants
+            if index not in alone
         )
-    ignored = IgnoredFiles()
-    submissions = class_layout.find_submissions(chosen, ignored, is_explicit=layout != "auto")
-    if not len(submissions):
-        example = "".join(f": {line}" for line in ignored.lines()[:1])
-        advice = f" (without --layout {layout} the layout is detected)" if layout != "auto" else ""
-        raise InputError(f"there is no submission in {shown}{example}{advice}")
-    assigned = assign(submissions, roster, holds_students=class_layout.holds_students)
-    return Intake(chosen, submissions, ignored, roster, assigned)
-
-
-def _top_name(path: Path) -> str:
-    try:
-        return path.resolve().name
-    except OSError:
-        return path.name
-
-
-def _listing(path: Path) -> ClassListing:
-    """Return the listing of a class folder or zip; raises InputError if it is neither."""
-    shown = printable_path(path)
-    try:
-        if path.is_dir():
-            return FolderListing(path)
-        exists = os.path.lexists(path)
-    except (OSError, ValueError) as error:
-        raise InputError(f"cannot read {shown}: {error}") from None
-    if not exists:
-        raise not_there(path)
-    if archive_kind(read_start(path, 512)) != "zip":
-        raise InputError(
-            f"{shown} is neither a folder nor a zip: name the folder that holds the class's submissions"
-            " (grader grade grades a single one)"
-        )
-    return ZipListing(path)
+        without = [member for member in members if member not in own and member not in matches.contested]
+        if len(alone) > 1:
+            names = ", ".join(keys[index] for index in alone)
+            matches.notes.append(f"{names} are each named like one group: left unassigned")
+            matches.contested.update(without)
+        elif alone:
+            matches.notes.extend(
+                f"{roster.entries[member].student.key} has submitted {submissions.student(own[member]).key}, which counts for them,"
+                f" not {keys[alone[0]]} of their group"
+                for member in members
+                if member in own
+            )
+            if without:
+                shared[alone[0]] = without
+    if shared:
+        matches.notes.append(f"group submissions that count for each member: {len(shared)}")
+    return shared

@@ -1,15 +1,22 @@
-"""The names in a class folder. Symlinks are not followed: whose a file is depends on where it really is."""
+"""The names in a class folder, or in a zip that an LMS has exported. Nothing is extracted.
+
+Symlinks are not followed: whose a file is depends on where it really is.
+"""
 
 import os
 from collections.abc import Iterable
 from contextlib import suppress
+from itertools import islice
 from pathlib import Path
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 from grader.errors import InputError
+from grader.files.members import ARCHIVE_ERRORS, ArchiveMember, error_text, safe_path, zip_members
 from grader.files.reading import read_start
 from grader.text import printable_path
 
+MAX_MEMBERS = 200_000  # of a zip
+_MAX_DEPTH = 20  # folders in a zip: names below do not tell whose a file is
 _LITTER = frozenset({"__MACOSX", "__pycache__", "node_modules", "site-packages", "Thumbs.db", "desktop.ini", "Icon\r"})
 
 
@@ -21,38 +28,23 @@ class Children(NamedTuple):
     refused: list[tuple[str, str]]
 
 
-class ClassListing(Protocol):
-    """A class folder or zip. Paths are relative to its top, with forward slashes; the top itself is the empty path."""
-
-    def children(self, folder: str, limit: int | None = None) -> Children:
-        """Return the names in a folder, or the first `limit`; nothing if it cannot be opened."""
-
-    def first(self, folder: str) -> str | None:
-        """Return one name in a folder; None if it is empty or cannot be opened."""
-
-    def starts(self, paths: Iterable[str], count: int) -> dict[str, bytes]:
-        """Return the first bytes of those files that can be read."""
-
-
 def is_litter(name: str) -> bool:
     """Return whether a file is not worth reporting: hidden, or left by an operating system or a tool."""
     return name.startswith(".") or name in _LITTER
 
 
 class FolderListing:
-    """A class folder on disk. Names that are not UTF-8 keep their bytes as os.fsdecode writes them."""
+    """A class folder on disk, which is the empty path. Names that are not UTF-8 keep their bytes as os.fsdecode writes them."""
 
     def __init__(self, top: Path) -> None:
         self._top = os.fspath(top)
 
     def children(self, folder: str, limit: int | None = None) -> Children:
-        """Return the names in a folder; raises InputError if it is the top and cannot be opened."""
+        """Return the names in a folder, or the first `limit`; none if it cannot be opened, but InputError for the top."""
         found = Children([], [], [])
         try:
             with os.scandir(f"{self._top}/{folder}" if folder else self._top) as entries:
-                for count, entry in enumerate(entries):
-                    if count == limit:
-                        break
+                for entry in islice(entries, limit):
                     if not is_litter(entry.name):
                         _add(entry, found)
         except OSError as error:
@@ -89,3 +81,72 @@ def _add(entry: "os.DirEntry[str]", found: Children) -> None:
             found.refused.append((entry.name, "is not a regular file"))
     except OSError as error:
         found.refused.append((entry.name, f"cannot be read: {error.strerror}"))
+
+
+class ZipListing:
+    """A class zip. A path in it is a member's name as `safe_path` writes it: decoded, printable, without `..`."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._folders: dict[str, dict[str, str]] = {"": {}}  # of each folder the kinds of its children by name
+        try:
+            with path.open("rb") as file:
+                for count, member in enumerate(zip_members(file)):
+                    if count >= MAX_MEMBERS or len(self._folders) > MAX_MEMBERS:
+                        raise InputError(f"{printable_path(path)} holds more than {MAX_MEMBERS} files, the limit")
+                    self._add(member)
+        except ARCHIVE_ERRORS as error:
+            raise InputError(f"{printable_path(path)} cannot be read as a zip: {error_text(error)}") from None
+
+    def _add(self, member: ArchiveMember) -> None:
+        path = safe_path(member.path)
+        if path is None:
+            shown = printable_path(member.path[:100])
+            self._folders[""][shown] = "has a path that leads out of the archive, and was not read"
+            return
+        names = path.split("/") if path else []
+        folder = ""
+        for index, name in enumerate(names[:_MAX_DEPTH]):
+            if is_litter(name):
+                return
+            child = f"{folder}/{name}" if folder else name
+            if index + 1 < len(names) or member.kind == "folder":
+                self._folders[folder][name] = "folder"
+                self._folders.setdefault(child, {})
+            else:
+                kind = "is a symlink in an archive, and was not followed" if member.kind == "link" else "file"
+                self._folders[folder].setdefault(name, kind)
+            folder = child
+
+    def children(self, folder: str, limit: int | None = None) -> Children:
+        """Return the names in a folder."""
+        names = list(islice(self._folders.get(folder, {}).items(), limit))
+        return Children(
+            [name for name, kind in names if kind == "folder"],
+            [name for name, kind in names if kind == "file"],
+            [(name, kind) for name, kind in names if kind not in ("folder", "file")],
+        )
+
+    def first(self, folder: str) -> str | None:
+        """Return one name in a folder."""
+        return next(iter(self._folders.get(folder, ())), None)
+
+    def starts(self, paths: Iterable[str], count: int) -> dict[str, bytes]:
+        """Return the first bytes of those files that can be read."""
+        wanted = set(paths)
+        starts: dict[str, bytes] = {}
+        if not wanted:
+            return starts
+        with self._path.open("rb") as file:
+            for member in zip_members(file):
+                path = safe_path(member.path)
+                if path in wanted and member.kind == "file":
+                    try:
+                        with member.open() as opened:
+                            starts[path] = opened.read(count)
+                    except ARCHIVE_ERRORS:
+                        continue
+        return starts
+
+
+ClassListing = FolderListing | ZipListing

@@ -15,9 +15,8 @@ from grader.classroom.intake.fingerprint import fingerprint
 from grader.classroom.intake.intake import Intake
 from grader.classroom.intake.roster import Roster, entry_to_json
 from grader.classroom.run.class_check import assignments_text, check_same_class
-from grader.classroom.run.identity import Identities
 from grader.classroom.run.queue import Queue
-from grader.classroom.run.stored_students import StoredStudents
+from grader.classroom.run.stored_students import Identities, StoredStudents
 from grader.classroom.run.worker import ClassContext, Task
 from grader.classroom.students import ClassSubmission, Student
 from grader.errors import InputError
@@ -127,7 +126,11 @@ class Batch:
             for stored in students.gone():
                 if stored.key not in contested:
                     writer.add_gone(stored)
-                if stored.is_on_roster and settings.roster is not None and settings.roster.entry(stored.key) is None:
+                if (
+                    stored.enrolment.is_on_roster
+                    and settings.roster is not None
+                    and settings.roster.entry(stored.key) is None
+                ):
                     writer.remove_from_roster(stored.student_id)
             for student in (*intake.absent, *(intake.contested if settings.roster is not None else ())):
                 save_student(book, student, self._enrolment(student))

@@ -6,7 +6,7 @@ from json import dumps, loads
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.intake.intake import Intake
-from grader.classroom.run.identity import Identities
+from grader.classroom.run.stored_students import Identities
 from grader.errors import InputError
 
 _MAX_NAMED = 3

@@ -13,7 +13,6 @@ from typing import Any
 
 from grader import __version__
 from grader.classroom.run.pool import Processes, WorkerError
-from grader.classroom.run.worker import PRELOAD, prepare
 from grader.errors import InputError
 from grader.text import printable_path
 
@@ -141,6 +140,6 @@ def _processes() -> Processes:
 
     # Dask starts its workers as daemons, which may not have processes of their own; those that pebble starts end with it.
     multiprocessing.current_process().daemon = False
-    processes = Processes(get_worker().state.nthreads, _NO_TIMEOUT, prepare, preload=PRELOAD)
+    processes = Processes(get_worker().state.nthreads, _NO_TIMEOUT)
     Finalize(None, processes.shutdown, exitpriority=1)  # before a worker that ends waits for its processes
     return processes

@@ -1,26 +1,37 @@
-"""Worker processes on this machine: an executor as in `concurrent.futures` whose tasks end in any case."""
+"""Worker processes on this machine: an executor as in `concurrent.futures` whose tasks end in any case.
 
+Workers start from a fork server that has loaded everything once, and end with their parent.
+"""
+
+import gc
+import multiprocessing
 import os
+import signal
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from concurrent.futures import CancelledError, Executor, Future
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import suppress
 from typing import Any
 
-from pebble import ProcessExpired, ProcessPool
+from pebble import CONSTS, ProcessExpired, ProcessPool
 
-from grader.classroom.run.worker_process import (
-    EXIT_CHANNEL_BLOCKED,
-    exit_words,
-    start_server,
-    start_worker,
-    worker_context,
-)
 from grader.errors import GraderError
 
+# The modules that a process loads before it forks, late imports included.
+_PRELOAD = (
+    "grader.classroom.run.worker",
+    "grader.robot.edge_overlap",
+    "grader.submission.search",
+    "grader.package.problems",
+    "grader.classroom.run.fork_server",
+)
 MAX_MEMORY = 2 * 1024**3  # bytes for each worker
 NO_MEMORY = f"grading it needs more memory than a worker may use ({MAX_MEMORY // 1024**3} GiB)"
 _POOL_ENDED = "the worker processes ended"
+_EXIT_CHANNEL_BLOCKED = 1  # the exit code of a worker that waited too long for the channel to its parent
+_EXIT_ENDED = 70  # the exit code of a worker that was ended at work with exit code 0
+_CHANNEL_TIMEOUT = 3.0  # seconds to wait for the channel: a worker that is killed while it sends never releases it
 _CHECK_INTERVAL = 0.5  # seconds
 _MAX_TRIES = 3  # to submit a task to a pool, which may break at any moment
 
@@ -37,19 +48,12 @@ class Processes(Executor):
     """Worker processes. A task that takes longer than `timeout` seconds, or ends its worker, raises WorkerError from its future.
 
     Another worker then replaces the one that ended. All of them end with the process that started them, however that ends.
-    `prepare` runs in each worker when it starts; the modules in `preload` are loaded once for all, where the system can fork.
+    `memory` is the limit for each worker, in bytes.
     """
 
-    def __init__(
-        self,
-        workers: int,
-        timeout: float,
-        prepare: Callable[[int], None],
-        memory: int = MAX_MEMORY,
-        preload: Sequence[str] = (),
-    ) -> None:
-        self._workers, self._timeout, self._prepare, self._memory = workers, timeout, prepare, memory
-        self._context = worker_context(preload)
+    def __init__(self, workers: int, timeout: float, memory: int = MAX_MEMORY) -> None:
+        self._workers, self._timeout, self._memory = workers, timeout, memory
+        self._context = _worker_context()
         self._lock = threading.RLock()
         self._pending: set[Future[Any]] = set()
         self._is_shut = threading.Event()
@@ -68,25 +72,20 @@ class Processes(Executor):
         """Run a function in a worker with a timeout of its own, in seconds."""
         outer: Future[Any] = Future()
         with self._lock:
-            inner = self._schedule(timeout, function, arguments, named)
+            if not self._has_begun:
+                self._has_begun = True
+                _start_server(self._context)
+            for tries_left in reversed(range(_MAX_TRIES)):
+                self._replace_broken_pool()
+                try:
+                    inner = self._pool.schedule(function, arguments, named, timeout)
+                    break
+                except (RuntimeError, BrokenProcessPool):  # it broke just now
+                    if not tries_left or self._is_shut.is_set():
+                        raise
             self._pending.add(outer)
         inner.add_done_callback(lambda future: self._pass_on(future, outer, timeout))
         return outer
-
-    def _schedule(
-        self, timeout: float, function: Callable[..., Any], arguments: tuple[Any, ...], named: dict[str, Any]
-    ) -> "Future[Any]":
-        if not self._has_begun:
-            self._has_begun = True
-            start_server(self._context)
-        for tries_left in reversed(range(_MAX_TRIES)):
-            self._replace_broken_pool()
-            try:
-                return self._pool.schedule(function, arguments, named, timeout)
-            except (RuntimeError, BrokenProcessPool):  # it broke just now
-                if not tries_left or self._is_shut.is_set():
-                    raise
-        raise AssertionError
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """End the workers at once, whatever they do."""
@@ -98,8 +97,7 @@ class Processes(Executor):
             self._watch.join()
 
     def _new_pool(self) -> ProcessPool:
-        arguments = (self._prepare, self._memory)
-        return ProcessPool(self._workers, initializer=start_worker, initargs=arguments, context=self._context)
+        return ProcessPool(self._workers, 0, _start_worker, (self._memory,), self._context)
 
     def _watch_pool(self) -> None:
         """Replace a broken pool: one breaks if a worker is killed while it sends, and then never completes its futures."""
@@ -125,8 +123,8 @@ class Processes(Executor):
                 outer, WorkerError(f"grading it took longer than {timeout:g} s (--timeout raises the limit)")
             )
         except ProcessExpired as error:
-            is_own_fault = error.exitcode != EXIT_CHANNEL_BLOCKED
-            reason = f"the process that graded it {exit_words(error.exitcode)}"
+            is_own_fault = error.exitcode != _EXIT_CHANNEL_BLOCKED
+            reason = f"the process that graded it {_exit_words(error.exitcode)}"
             self._complete(outer, WorkerError(reason, is_own_fault=is_own_fault))
         except (BrokenProcessPool, CancelledError):
             self._complete(outer, WorkerError(_POOL_ENDED, is_own_fault=False))
@@ -151,3 +149,59 @@ def processors() -> int:
     """Return the number of processors that this process may use."""
     affinity = getattr(os, "sched_getaffinity", None)
     return len(affinity(0)) if affinity is not None else os.cpu_count() or 1
+
+
+def _worker_context() -> Any:
+    """Return the multiprocessing context of workers: a fork server with the grader's modules, else spawned processes."""
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # each worker is one thread; there are enough of them
+    # Python looks for modules in the current folder first, which may be a class's: nothing there may be imported.
+    os.environ["PYTHONSAFEPATH"] = "1"
+    is_forked = "forkserver" in multiprocessing.get_all_start_methods()
+    context: Any = multiprocessing.get_context("forkserver" if is_forked else "spawn")
+    if is_forked:
+        context.set_forkserver_preload(list(_PRELOAD))
+    return context
+
+
+def _start_server(context: Any) -> None:
+    """Start the fork server with Ctrl-C blocked: while it loads modules it would print a traceback of its own."""
+    if context.get_start_method() == "forkserver":
+        from multiprocessing import forkserver, resource_tracker
+
+        resource_tracker.ensure_running()  # first, because it unblocks signals when it has started
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            forkserver.ensure_running()
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _start_worker(memory: int) -> None:
+    """Prepare a worker process, whose memory is limited; it ignores Ctrl-C, and ends with its parent, whatever it does."""
+    leave = os._exit
+    # pebble does not notice a worker that ends with exit code 0.
+    os._exit = lambda status: leave(status or _EXIT_ENDED)
+    CONSTS.channel_lock_timeout = _CHANNEL_TIMEOUT
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent process handles it
+    with suppress(ImportError, ValueError, OSError):
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+    gc.collect()
+    gc.freeze()  # loaded modules are not garbage: do not examine them again
+    gc.set_threshold(10_000, 10, 20)
+    parent = multiprocessing.parent_process()
+    with suppress(ImportError, AttributeError, OSError):
+        import fcntl
+
+        # Ask for a signal (SIGIO) when the pipe to the parent closes: a thread could not stop an interpreter that is stuck.
+        assert parent is not None
+        fcntl.fcntl(parent.sentinel, fcntl.F_SETOWN, os.getpid())
+        fcntl.fcntl(parent.sentinel, fcntl.F_SETFL, fcntl.fcntl(parent.sentinel, fcntl.F_GETFL) | os.O_ASYNC)
+
+
+def _exit_words(code: int) -> str:
+    """Return how a worker ended, in words."""
+    if code == _EXIT_ENDED:
+        return "ended at work"
+    return f"was ended by signal {-code}" if code < 0 else f"ended with exit code {code}"

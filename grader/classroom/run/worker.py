@@ -1,11 +1,9 @@
 """The work of a worker process: grade submissions one by one. Everything here is plain data that can be sent to any process."""
 
-import gc
 import json
 import time
 import zlib
 from collections.abc import Sequence
-from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
@@ -24,14 +22,6 @@ from grader.grading.report import GradedSubmission, Report, Result
 from grader.grading.rubric import Rubric, read_rubric
 from grader.submission.submission import Submission
 from grader.submission.urdf import Absent, Unreadable
-
-# The modules that a process loads before it forks, late imports included.
-PRELOAD = (
-    "grader.classroom.run.worker",
-    "grader.robot.edge_overlap",
-    "grader.submission.search",
-    "grader.package.problems",
-)
 
 MAX_MISTAKE = 200  # characters of a mistake that statistics count
 
@@ -62,20 +52,6 @@ class Task(NamedTuple):
 def grade_all(context: ClassContext, tasks: Sequence[Task]) -> list[GradingResult]:
     """Grade submissions one after the other, in isolation: an error affects only its own submission."""
     return [_grade_one(context, task) for task in tasks]
-
-
-def prepare(memory: int) -> None:
-    """Prepare a process for grading: limit its memory (bytes), and ignore Ctrl-C, which the parent process handles."""
-    import signal
-
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    with suppress(ImportError, ValueError, OSError):
-        import resource
-
-        resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
-    gc.collect()
-    gc.freeze()  # loaded modules are not garbage: do not examine them again
-    gc.set_threshold(10_000, 10, 20)
 
 
 def _grade_one(context: ClassContext, task: Task) -> GradingResult:

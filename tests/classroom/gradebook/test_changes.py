@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grader.classroom.gradebook import run_writer as module
-from grader.classroom.gradebook.changes import Change, PointsChange, changes, last_two, newest
+from grader.classroom.gradebook.changes import Change, PointsChange, Snapshot, changes, last_two
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import criterion_of, mark
@@ -137,7 +137,7 @@ def test_who_came_and_who_went(tmp_path: Path) -> None:
     with Gradebook(tmp_path / "a.db", create=True) as one, Gradebook(tmp_path / "b.db", create=True) as two:
         run(one, anna="ppppp", ben="ppppp")
         run(two, anna="ppppp", cleo="fffff")
-        assert changes(newest(one), newest(two)) == [
+        assert changes(Snapshot(one), Snapshot(two)) == [
             Change("ben", LAB.points, None, (), ("no longer there",)),
             Change("cleo", None, Decimal(0), (), ("first submission",)),
         ]

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.intake.intake import read_class
+from grader.classroom.intake.reading import read_class
 from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.matching import canvas_name
 from grader.classroom.students import ClassSubmission, Student

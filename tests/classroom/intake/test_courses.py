@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.intake.intake import read_class
 from grader.classroom.intake.layouts.teams import lab_folder
+from grader.classroom.intake.reading import read_class
 from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.students import ClassSubmission, Student
 from grader.errors import InputError

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.intake.intake import read_class
-from grader.classroom.intake.layouts.prefix import class_prefix
+from grader.classroom.intake.layouts.folders import class_prefix
 from grader.classroom.intake.names import ENDINGS, ending_of, without_copy
+from grader.classroom.intake.reading import read_class
 from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.students import ClassSubmission, Student
 from grader.files.opening import ARCHIVES

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from grader.classroom.intake.intake import read_class
+from grader.classroom.intake.reading import read_class
 from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.intake.roster_file import read_roster
 from grader.classroom.students import Student

@@ -11,9 +11,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.classroom.intake.class_layout import LAYOUTS
-from grader.classroom.intake.intake import read_class
 from grader.classroom.intake.layouts.layout import MAX_LINES
+from grader.classroom.intake.reading import LAYOUTS, read_class
 from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.students import Student
 from grader.errors import InputError
@@ -117,7 +116,7 @@ def test_one_folder_around_everything_is_stepped_into(tmp_path: Path) -> None:
 
 def test_a_zip_of_too_many_members_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The number of members is bounded."""
-    monkeypatch.setattr("grader.classroom.intake.zip_listing.MAX_MEMBERS", 3)
+    monkeypatch.setattr("grader.classroom.intake.listing.MAX_MEMBERS", 3)
     assert len(read_class(pack(tmp_path / "a.zip", ["a.zip", "b.zip", "c.zip"]))) == 3
     with pytest.raises(InputError, match="holds more than 3 files"):
         read_class(pack(tmp_path / "b.zip", ["a.zip", "b.zip", "c.zip", "d.zip"]))

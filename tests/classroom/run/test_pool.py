@@ -12,7 +12,6 @@ from typing import Any
 import pytest
 
 from grader.classroom.run.pool import Processes, WorkerError, processors
-from grader.classroom.run.worker import prepare
 from tests.command_line import PATIENCE
 
 MEMORY = 512 * 1024**2
@@ -21,7 +20,7 @@ MEMORY = 512 * 1024**2
 @pytest.fixture(scope="module")
 def pool() -> Iterator[Processes]:
     """Two workers, each with half a gigabyte."""
-    with Processes(2, PATIENCE, prepare, MEMORY) as processes:
+    with Processes(2, PATIENCE, MEMORY) as processes:
         yield processes
 
 
@@ -127,7 +126,7 @@ def _pid_after(seconds: float) -> int:
 
 def test_shut_in_the_midst_of_work() -> None:
     """Whoever leaves does not wait for what hangs."""
-    processes = Processes(1, 10 * PATIENCE, prepare)
+    processes = Processes(1, 10 * PATIENCE)
     pid = processes.submit(os.getpid).result(PATIENCE)
     processes.submit(time.sleep, 10 * PATIENCE)
     began = time.monotonic()
@@ -140,7 +139,7 @@ def test_shut_in_the_midst_of_work() -> None:
 def test_shut_before_any_work() -> None:
     """Where nothing was asked nothing is started."""
     before = multiprocessing.active_children()
-    with Processes(2, PATIENCE, prepare) as processes:
+    with Processes(2, PATIENCE) as processes:
         assert not processes._has_begun
         assert multiprocessing.active_children() == before
 

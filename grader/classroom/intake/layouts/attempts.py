@@ -1,7 +1,7 @@
 """Several attempts or copies of one student's submission: the last one counts."""
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import NamedTuple
 
 from grader.classroom.intake.layouts.layout import IgnoredFiles
@@ -54,19 +54,17 @@ def _number(name: str) -> int | None:
     return int(found[1]) if found else None
 
 
-def last_copy(
-    names: Iterable[tuple[int, str]], is_folder: Callable[[str], bool], ignored: IgnoredFiles, start: str
-) -> Attempts:
+def last_copy(names: Iterable[tuple[int, str]], folders: set[str], ignored: IgnoredFiles, start: str) -> Attempts:
     """Return the copies with the browser's numbers as attempts; of two with one number, the better ending counts (`folders`)."""
     by_number: dict[int, list[str]] = {}
     for number, name in names:
         by_number.setdefault(number, []).append(name)
     chosen: list[str] = []
     for _, same in sorted(by_number.items()):
-        ranked = sorted(
-            same, key=lambda name: (-1 if is_folder(name) else ENDINGS.index(ending_of(name).lower()), name)
+        first, *others = sorted(
+            same, key=lambda name: (-1 if name in folders else ENDINGS.index(ending_of(name).lower()), name)
         )
-        chosen.append(ranked[0])
-        for other in ranked[1:]:
-            ignored.add(start + other, f"was ignored: {printable_path(ranked[0])} has the same name, and counts")
+        chosen.append(first)
+        reason = f"was ignored: {printable_path(first)} has the same name, and counts"
+        ignored.add_all(start, ((other, reason) for other in others))
     return Attempts(chosen[-1], len(chosen), tuple(chosen[:-1]))

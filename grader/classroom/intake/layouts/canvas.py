@@ -10,7 +10,7 @@ from collections import defaultdict
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from grader.classroom.intake.layouts.layout import IgnoredFiles, SubmissionList, submission_list
+from grader.classroom.intake.layouts.layout import ClassFolder, IgnoredFiles, Submissions
 from grader.classroom.intake.listing import Children
 from grader.classroom.intake.names import ending_of
 from grader.classroom.matching import is_word
@@ -59,20 +59,21 @@ def is_layout(children: Children) -> bool:
     return len(fitting) >= 3 * others
 
 
-def find_submissions(children: Children, start: str, ignored: IgnoredFiles) -> SubmissionList:
+def find_submissions(folder: ClassFolder) -> Submissions:
     """Return the submissions of a download, one for each user. Folders count as files that someone has unpacked."""
+    start, ignored = folder.start, folder.ignored
     by_user: dict[tuple[bool, str], list[_CanvasFile]] = defaultdict(list)
-    for name in (*children.folders, *children.files):
+    for name in (*folder.children.folders, *folder.children.files):
         file = _parsed(name)
         if file is None:
             ignored.add(start + name, "is not named like a submission in Canvas")
         else:
             by_user[file.is_anonymous, file.user].append(file)
-    ignored.add_all(start, children.refused)
+    ignored.add_all(start, folder.children.refused)
     certain = {user: _certain(files, start, ignored) for user, files in by_user.items()}
     contested = dict.fromkeys(_student(file) for user, files in by_user.items() if not certain[user] for file in files)
     found = (_submission(files, start) for files in certain.values() if files)
-    return submission_list(found, contested=tuple(contested))
+    return Submissions(found, contested=tuple(contested))
 
 
 def _certain(files: list[_CanvasFile], start: str, ignored: IgnoredFiles) -> list[_CanvasFile]:

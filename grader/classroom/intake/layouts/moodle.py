@@ -12,7 +12,7 @@ import re
 from collections import defaultdict
 from typing import NamedTuple
 
-from grader.classroom.intake.layouts.layout import IgnoredFiles, SubmissionList, submission_list
+from grader.classroom.intake.layouts.layout import ClassFolder, Submissions
 from grader.classroom.intake.listing import Children, ClassListing
 from grader.classroom.intake.names import ending_of
 from grader.classroom.students import ClassSubmission, Student
@@ -32,6 +32,7 @@ class _MoodleFile(NamedTuple):
     participant: str
     plugin: str
     file: str
+    is_folder: bool
 
 
 def is_layout(children: Children) -> bool:
@@ -42,59 +43,54 @@ def is_layout(children: Children) -> bool:
     return 2 * fitting >= len(children.folders) + sum(1 for name in children.files if ending_of(name) or _parsed(name))
 
 
-def find_submissions(listing: ClassListing, children: Children, start: str, ignored: IgnoredFiles) -> SubmissionList:
+def find_submissions(folder: ClassFolder) -> Submissions:
     """Return the submissions of a download, one for each participant."""
-    folders = set(children.folders)
     by_participant: dict[str, list[_MoodleFile]] = defaultdict(list)
-    for name in (*sorted(folders), *sorted(children.files)):
-        file = _parsed(name)
-        if file is None:
-            ignored.add(start + name, "is not named like a submission in Moodle")
-        else:
-            by_participant[file.participant or f"_{file.name}"].append(file)
-    ignored.add_all(start, children.refused)
-    names = {file.name for files in by_participant.values() for file in files}
-    are_hidden = names <= _HIDDEN or (len(names) == 1 and len(by_participant) > 1)
-    return submission_list(
-        _submission(listing, sorted(files, key=_files_first), start, folders, ignored, are_hidden=are_hidden)
+    for names, is_folder in ((folder.children.folders, True), (folder.children.files, False)):
+        for name in sorted(names):
+            file = _parsed(name, is_folder=is_folder)
+            if file is None:
+                folder.ignored.add(folder.start + name, "is not named like a submission in Moodle")
+            else:
+                by_participant[file.participant or f"_{file.name}"].append(file)
+    folder.ignored.add_all(folder.start, folder.children.refused)
+    full_names = {file.name for files in by_participant.values() for file in files}
+    are_hidden = full_names <= _HIDDEN or (len(full_names) == 1 and len(by_participant) > 1)
+    return Submissions(
+        _submission(folder, sorted(files, key=lambda file: (file.plugin != "file", file.path)), are_hidden=are_hidden)
         for files in by_participant.values()
     )
 
 
-def _parsed(name: str) -> _MoodleFile | None:
+def _parsed(name: str, *, is_folder: bool = False) -> _MoodleFile | None:
     # Names and files are chosen by students: with two such words a name could belong to either of two participants.
     if name.count("_assignsubmission_") != 1:
         return None
     found = _NAME.fullmatch(name)
-    return _MoodleFile(name, found["name"], found["id"] or "", found["plugin"], found["file"]) if found else None
+    if found is None:
+        return None
+    return _MoodleFile(name, found["name"], found["id"] or "", found["plugin"], found["file"], is_folder)
 
 
-def _files_first(file: _MoodleFile) -> tuple[bool, str]:
-    return file.plugin != "file", file.path
-
-
-def _submission(
-    listing: ClassListing,
-    files: list[_MoodleFile],
-    start: str,
-    folders: set[str],
-    ignored: IgnoredFiles,
-    *,
-    are_hidden: bool,
-) -> ClassSubmission:
+def _submission(folder: ClassFolder, files: list[_MoodleFile], *, are_hidden: bool) -> ClassSubmission:
+    listing, start = folder.listing, folder.start
     if len(files) > 1:  # ignore empty folders
-        files = [file for file in files if file.path not in folders or listing.first(start + file.path)] or files[:1]
+        files = [file for file in files if not file.is_folder or listing.first(start + file.path)] or files[:1]
     first = files[0]
     path = start + first.path
     key = f"{first.name}_{first.participant}" if first.participant else first.name
     student = Student(key, "" if are_hidden else first.name, moodle=first.participant)
-    if len(files) == 1 and first.path in folders:
+    if len(files) == 1 and first.is_folder:
         return ClassSubmission(student, (_only_file(listing, path) or path,))
     names: dict[str, str] = {}
     for file in files:
-        names |= _side_by_side(listing, file, start, is_folder=file.path in folders)
+        top, part = start + file.path, "" if file.plugin == "file" else f"{file.plugin}/"
+        if file.is_folder:
+            names |= {inner: part + inner[len(top) + 1 :] for inner in _files_below(listing, top)}
+        else:
+            names[top] = part + (file.file or file.path)
     if len(names) > _MAX_FILES:
-        ignored.add(path, f"has more than {_MAX_FILES} files: the files beside it were not read")
+        folder.ignored.add(path, f"has more than {_MAX_FILES} files: the files beside it were not read")
     if not names or len(names) > _MAX_FILES:
         return ClassSubmission(student, (path,))
     return ClassSubmission(student, tuple(names), names=tuple(names.values()))
@@ -106,15 +102,6 @@ def _only_file(listing: ClassListing, folder: str) -> str | None:
     if children.folders or children.refused or len(children.files) != 1 or not ending_of(children.files[0]):
         return None
     return f"{folder}/{children.files[0]}"
-
-
-def _side_by_side(listing: ClassListing, file: _MoodleFile, start: str, *, is_folder: bool) -> dict[str, str]:
-    """Return the files of one part of a submission by path, each with its name beside the other parts."""
-    folder = "" if file.plugin == "file" else f"{file.plugin}/"
-    top = start + file.path
-    if not is_folder:
-        return {top: folder + (file.file or file.path)}
-    return {path: folder + path[len(top) + 1 :] for path in _files_below(listing, top)}
 
 
 def _files_below(listing: ClassListing, top: str) -> list[str]:

@@ -4,9 +4,10 @@ nbgrader writes that time as `%Y-%m-%d %H:%M:%S.%f %Z`, in UTC unless it is conf
 """
 
 from collections import defaultdict
+from itertools import starmap
 
-from grader.classroom.intake.layouts.layout import IgnoredFiles, SubmissionList, submission_list
-from grader.classroom.intake.listing import Children, ClassListing
+from grader.classroom.intake.layouts.layout import ClassFolder, Submissions
+from grader.classroom.intake.listing import ClassListing
 from grader.classroom.intake.names import utc_time
 from grader.classroom.students import ClassSubmission, Student
 from grader.errors import InputError
@@ -18,27 +19,27 @@ _MAX_TIMESTAMP = 100  # bytes
 _MAX_NAMED = 10
 
 
-def find_course(listing: ClassListing, children: Children, start: str, top: str, rubric_id: str) -> str | None:
+def find_course(folder: ClassFolder, top: str) -> str | None:
     """Return where the students' folders are if this is a course: below `submitted`, or here if `top` is called so."""
-    if _SUBMITTED in children.folders:
+    listing, start = folder.listing, folder.start
+    if _SUBMITTED in folder.children.folders:
         below = f"{start}{_SUBMITTED}/"
         return below if _assignments(listing, below) else None
     if top != _SUBMITTED:
         return None
     found = _assignments(listing, start)
-    has_lab = any(_normalised(name) == _normalised(rubric_id) for name in found)
+    has_lab = any(_normalised(name) == _normalised(folder.rubric_id) for name in found)
     has_timestamp = any(
         _TIMESTAMP in listing.children(f"{start}{students[0]}/{name}").files for name, students in found.items()
     )
     return start if has_lab or has_timestamp else None
 
 
-def find_submissions(
-    listing: ClassListing, start: str, ignored: IgnoredFiles, assignment: str, rubric_id: str
-) -> SubmissionList:
-    """Return the submissions for one assignment; raises InputError if it is not clear which one."""
+def find_submissions(folder: ClassFolder, start: str, assignment: str) -> Submissions:
+    """Return the submissions for one assignment in a course at `start`; raises InputError if it is not clear which one."""
+    listing, ignored = folder.listing, folder.ignored
     found = _assignments(listing, start)
-    name = _chosen(found, assignment, rubric_id)
+    name = _chosen(found, assignment, folder.rubric_id)
     children = listing.children(start.rstrip("/"))
     submitters = set(found[name])
     for student in children.folders:
@@ -49,11 +50,13 @@ def find_submissions(
     ignored.add_all(start, children.refused)
     paths = {student: f"{start}{student}/{name}" for student in found[name]}
     stamps = listing.starts((f"{path}/{_TIMESTAMP}" for path in paths.values()), _MAX_TIMESTAMP)
-    times = {
-        path: utc_time(stamps.get(f"{path}/{_TIMESTAMP}", b"").decode("utf-8", "replace")) for path in paths.values()
-    }
-    return submission_list(
-        (ClassSubmission(Student(key, login=key), (path,), submitted=times[path]) for key, path in paths.items()),
+
+    def submission(key: str, path: str) -> ClassSubmission:
+        time = utc_time(stamps.get(f"{path}/{_TIMESTAMP}", b"").decode("utf-8", "replace"))
+        return ClassSubmission(Student(key, login=key), (path,), submitted=time)
+
+    return Submissions(
+        starmap(submission, paths.items()),
         assignments=frozenset({f"nbgrader {printable_path(name)}"}),
     )
 

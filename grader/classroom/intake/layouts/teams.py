@@ -8,8 +8,8 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 
-from grader.classroom.intake.layouts import folders
-from grader.classroom.intake.layouts.layout import IgnoredFiles, SubmissionList, submission_list
+from grader.classroom.intake.layouts.folders import FolderSubmissions
+from grader.classroom.intake.layouts.layout import ClassFolder, Submissions
 from grader.classroom.intake.listing import Children, ClassListing
 from grader.classroom.intake.names import stems_of
 from grader.classroom.students import ClassSubmission
@@ -40,46 +40,35 @@ def lab_folder(rubric_id: str) -> re.Pattern[str]:
     return re.compile(r"[\s_-]*".join(parts) or r"(?!)", re.IGNORECASE)
 
 
-def find_labs(
-    listing: ClassListing,
-    children: Children,
-    start: str,
-    rubric_id: str,
-    knows: Callable[[str], bool] | None,
-    *,
-    is_explicit: bool = False,
-) -> dict[str, str]:
-    """Return the lab folders that hold students' folders, each with its team; `is_explicit` if the user has named the layout."""
+def find_labs(folder: ClassFolder, knows: Callable[[str], bool] | None, *, is_explicit: bool = False) -> dict[str, str]:
+    """Return the lab folders that hold students' folders, each with its team.
+
+    `knows` says whether a name, or surname, is on the roster; `is_explicit` whether the user has named the layout.
+    """
     labs: dict[str, str] = {}
-    pattern = lab_folder(rubric_id)
-    if len(children.folders) > _MAX_TEAMS and not is_explicit:
+    pattern = lab_folder(folder.rubric_id)
+    if len(folder.children.folders) > _MAX_TEAMS and not is_explicit:
         return labs
-    for team in sorted(children.folders):
-        for name in sorted(listing.children(start + team, _MAX_NAMES).folders):
-            lab = f"{start}{team}/{name}"
-            if pattern.fullmatch(name) and _holds_students(listing, lab, knows, is_explicit=is_explicit):
+    for team in sorted(folder.children.folders):
+        for name in sorted(folder.listing.children(folder.start + team, _MAX_NAMES).folders):
+            lab = f"{folder.start}{team}/{name}"
+            if pattern.fullmatch(name) and _holds_students(folder.listing, lab, knows, is_explicit=is_explicit):
                 labs[lab] = team
     return labs
 
 
-def find_submissions(
-    listing: ClassListing,
-    children: Children,
-    start: str,
-    ignored: IgnoredFiles,
-    rubric_id: str,
-    knows: Callable[[str], bool] | None,
-    labs: dict[str, str],
-) -> SubmissionList:
+def find_submissions(folder: ClassFolder, labs: dict[str, str]) -> Submissions:
     """Return the submissions of the students in these lab folders, and of the teams without one."""
     teams = set(labs.values())
-    rest = children._replace(folders=[name for name in children.folders if name not in teams])
-    alone = folders.find_submissions(listing, rest, start, ignored, rubric_id, knows)
+    rest = folder.children._replace(folders=[name for name in folder.children.folders if name not in teams])
+    alone = FolderSubmissions(replace(folder, children=rest))
     found = [alone.submission(index) for index in range(len(alone))]
     for lab, team in labs.items():
-        members = folders.find_submissions(listing, listing.children(lab), f"{lab}/", ignored)
+        members = FolderSubmissions(
+            ClassFolder(folder.listing, folder.listing.children(lab), f"{lab}/", folder.ignored)
+        )
         found += (_of_team(members.submission(index), team) for index in range(len(members)))
-    return submission_list(found, contested=alone.contested)
+    return Submissions(found, contested=alone.contested)
 
 
 def _of_team(submission: ClassSubmission, team: str) -> ClassSubmission:
