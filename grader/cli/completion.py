@@ -11,7 +11,7 @@ from typing import Any
 import typer
 from typer.main import get_command
 
-from grader.cli.suggestions import SHELLS
+from grader.cli.options import SHELLS
 from grader.errors import GraderError, InputError
 from grader.text import printable_path
 from grader.usecases.writing import save, write_stdout

@@ -4,8 +4,8 @@ from typing import Annotated
 
 import typer
 
+from grader.cli.options import rubric_ids
 from grader.cli.output import warn
-from grader.cli.suggestions import rubric_ids
 from grader.usecases import rubrics
 
 _HELP = """List, show and check rubrics, and list the checks.

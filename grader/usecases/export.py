@@ -24,8 +24,7 @@ from grader.text import printable, printable_path
 from grader.usecases import Warn
 from grader.usecases.class_summary import class_summary, read_deadline
 from grader.usecases.exit_codes import ExitCode
-from grader.usecases.targets import is_same_file, is_stdout, refuse_gradebook, refuse_symlinks
-from grader.usecases.writing import save_bytes
+from grader.usecases.writing import is_same_file, is_stdout, refuse_gradebook, refuse_symlinks, save_bytes
 
 _STUDENT_COLUMNS = (
     "id", "name", "email", "login", "sis", "status", "score", "max_score", "pending", "late_days", "late_points",

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from grader.errors import InputError
 from grader.usecases import Warn
-from grader.usecases.targets import refuse_symlinks
+from grader.usecases.writing import refuse_symlinks
 
 if TYPE_CHECKING:
     from grader.grading.report import Report
@@ -38,7 +38,7 @@ def publish_report(report: "Report", base: "Base", annotate: Annotate | None, wa
 def publish_refusal(reason: str, annotate: Annotate, warn: Warn) -> None:
     """Annotate why nothing was graded, and add it to the job summary."""
     from grader.report.github import command
-    from grader.report.markdown_text import escaped
+    from grader.report.markdown import escaped
     from grader.text import printable
 
     lines = [printable(line) for line in reason.splitlines()]
