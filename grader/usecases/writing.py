@@ -46,14 +46,8 @@ def save(path: Path, text: str, submissions: Sequence[Path | str] = (), mode: in
 def save_bytes(path: Path, data: bytes, submissions: Sequence[Path | str] = (), mode: int | None = None) -> None:
     """Write a file atomically. A path that is not a regular file, such as a pipe or a device, is written to directly.
 
-    Args:
-        path: The file. A symlink is followed unless it is in one of the submissions.
-        data: Its content.
-        submissions: Folders and files that students made.
-        mode: Permissions of a new file; a file that is replaced keeps its own.
-
-    Raises:
-        InputError: The file cannot be written.
+    A symlink is followed unless it is in one of the submissions, which are folders and files that students made. A new file gets
+    the permissions `mode`; one that is replaced keeps its own. Raises InputError if the file cannot be written.
     """
     refuse_symlinks(path, submissions)
     try:
