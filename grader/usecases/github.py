@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.errors import InputError
+from grader.text import printable
 from grader.usecases import Warn
 from grader.usecases.writing import refuse_symlinks
 
@@ -39,7 +40,6 @@ def publish_refusal(reason: str, annotate: Annotate, warn: Warn) -> None:
     """Annotate why nothing was graded, and add it to the job summary."""
     from grader.report.github import command
     from grader.report.markdown import escaped
-    from grader.text import printable
 
     lines = [printable(line) for line in reason.splitlines()]
     annotate(command("error", None, "Nothing was graded", "\n".join(lines)))
