@@ -71,9 +71,7 @@ def list_checks() -> str:
 
 
 @rubric.command("check")
-def check_rubric(
-    file: RubricArgument,
-) -> str:
+def check_rubric(file: RubricArgument) -> str:
     """Check a rubric and its reference solution.
 
     Exits 2 if there are mistakes, and lists all of them with their lines.

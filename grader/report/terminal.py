@@ -124,14 +124,8 @@ def _print_result(result: Result, page: _Page) -> None:
         details = content.result_details(result, page.report)
         name.stylize("dim" if not details.expected else "")
         wrapped(page.console, name if details.expected else title + Text("  ") + name, _INDENT, start)
-        _print_details(details, _sentence_styles(result), page)
-
-
-def _sentence_styles(result: Result) -> tuple[str, ...]:
-    """Return the styles of a criterion's sentences: manual marks and faults of the grader stand out."""
-    if result.manual_mark is not None:
-        return ("bold", "dim")
-    return (_STYLES["errored"] if result.outcome.status == "errored" else "",)
+        styles = (_STYLES["errored"] if result.outcome.status == "errored" else "",)  # faults of the grader stand out
+        _print_details(details, ("bold", "dim") if result.manual_mark is not None else styles, page)
 
 
 def _print_details(details: content.Details, styles: tuple[str, ...], page: _Page) -> None:

@@ -5,6 +5,7 @@ import re
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -12,7 +13,7 @@ from grader.errors import GraderError, InputError
 from grader.report.formats import Format, needed, render
 from grader.text import printable, printable_path
 from grader.usecases import Warn
-from grader.usecases.exit_codes import ExitCode, Threshold, exit_code
+from grader.usecases.exit_codes import ExitCode, exit_code, read_threshold
 from grader.usecases.rubrics import load
 from grader.usecases.writing import CHECKOUTS, ROBOT_FILES, is_same_file, refuse_symlinks, remove_previous, save
 
@@ -40,9 +41,9 @@ class GradeRequest:
     answers: bool = False
 
     @property
-    def threshold(self) -> Threshold | None:
+    def threshold(self) -> tuple[Decimal, bool] | None:
         """The threshold of `--fail-under`, if there is one. Raises GraderError."""
-        return Threshold.read(self.fail_under) if self.fail_under is not None else None
+        return read_threshold(self.fail_under) if self.fail_under is not None else None
 
 
 class GradeResult(NamedTuple):

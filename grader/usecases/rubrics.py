@@ -45,10 +45,6 @@ def check(name: str, warn: Warn) -> str:
         return found
     lost = [result for result in grade_reference(rubric).results if result.outcome.status not in ("passed", "pending")]
     if lost:
-        raise RubricError(
-            tuple(
-                printable(f"the reference does not get {result.criterion.id}: {result.outcome.message}")
-                for result in lost
-            )
-        )
+        lines = (f"the reference does not get {result.criterion.id}: {result.outcome.message}" for result in lost)
+        raise RubricError(tuple(map(printable, lines)))
     return f"{found}; its reference gets full marks"
