@@ -4,13 +4,9 @@ from decimal import Decimal
 from functools import partial
 from pathlib import Path
 
-from rich.console import Console
-from rich.text import Text
-
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import (
-    Mark,
     NewerMarkError,
     PendingCriterion,
     criterion_of,
@@ -20,7 +16,7 @@ from grader.classroom.gradebook.marks import (
     read_points,
 )
 from grader.errors import InputError
-from grader.report.console import wrapped
+from grader.report.review import mark_text, render_pending
 from grader.report.screen import draw
 from grader.text import counted_points, format_points, printable
 from grader.usecases import Terminal, Warn
@@ -39,7 +35,7 @@ def give_mark(gradebook: Path, submission: str, criterion: str, points: str, by:
         before = mark(book, grade, marked, read_points(points, marked), by, comment)
         now = grades.find(grade.student.key)
     if before is not None and before.points is not None:
-        warn(f"this replaces the newest mark of {marked.id}: {_mark_text(before)}")
+        warn(f"this replaces the newest mark of {marked.id}: {mark_text(before)}")
     rest = f"; needs manual grading: {counted_points(now.pending)}" if now.pending else ""
     return printable(f"{now.student.key}: {format_points(now.score)} of {format_points(now.out_of)} points{rest}")
 
@@ -56,7 +52,7 @@ def review(gradebook: Path, criterion: str, by: str, terminal: Terminal) -> str:
             found = pending_criterion(grades, item)
             if found is None:  # somebody else has marked it meanwhile
                 continue
-            page = partial(_render_pending, found, f"{number} of {len(queue)}")
+            page = partial(render_pending, found, f"{number} of {len(queue)}")
             terminal.show(draw(page, terminal.screen()))
             count = _ask(grades, found, by, terminal)
             if count is None:
@@ -98,7 +94,7 @@ def _mark(
             mark(grades.book, item.grade, item.result.criterion, points, by, comment, shown=shown)
         except NewerMarkError as error:
             shown = error.mark.id
-            terminal.warn(f"somebody has marked this since it was shown: {_mark_text(error.mark)}")
+            terminal.warn(f"somebody has marked this since it was shown: {mark_text(error.mark)}")
         else:
             return 1
         answer = _ask_to_keep(terminal)
@@ -112,47 +108,3 @@ def _ask_to_keep(terminal: Terminal) -> str:
         if line.strip().lower() in ("k", "keep", "r", "replace"):
             return line.strip().lower()[0]
     return ""
-
-
-def _render_pending(pending: PendingCriterion, position: str, console: Console) -> None:
-    """Print the answer, the model answer and where the pictures are. Text of the submission is never interpreted as markup."""
-    criterion, outcome = pending.result.criterion, pending.result.outcome
-    student = pending.grade.student
-    who = f"{student.name} ({student.key})" if student.name else student.key
-    console.print()
-    head = f"{position}  {printable(who)}: {printable(criterion.title)}  {format_points(criterion.points)} points"
-    wrapped(console, Text(head, style="bold"), 0)
-    wrapped(console, Text(printable(outcome.message)), 0)
-    if isinstance(outcome.measured, str):
-        _print_block("Found", outcome.measured, console)
-    elif isinstance(outcome.measured, tuple | list):
-        _print_block("Look at", "\n".join(_where(pending, str(file)) for file in outcome.measured), console)
-    if criterion.answer:
-        _print_block("Model answer", criterion.answer, console)
-    if outcome.location is not None:
-        place = f"in {_where(pending, outcome.location.path)}, line {outcome.location.line}"
-        wrapped(console, Text(printable(place), "dim"), 0)
-
-
-def _mark_text(mark: Mark) -> str:
-    """Return a mark in one printable line: points, name, time, comment."""
-    points = "withdrawn" if mark.points is None else counted_points(mark.points)
-    parts = [points, f"by {mark.by}" if mark.by else "by an unnamed person", f"at {mark.at}"]
-    comment = " ".join(mark.comment.split())
-    return printable(f"{' '.join(parts)}: {comment}" if comment else " ".join(parts))
-
-
-def _print_block(title: str, text: str, console: Console) -> None:
-    wrapped(console, Text(f"{title}:", style="bold"), 0)
-    for line in filter(str.strip, text.splitlines()):
-        wrapped(console, Text(printable(line)), 2)
-
-
-def _where(pending: PendingCriterion, path: str) -> str:
-    """Return the path of a file of the submission on this machine."""
-    origin = pending.grade.files
-    if len(origin.paths) == 1:
-        return str(Path(origin.root, origin.paths[0], path))
-    named = dict(zip(origin.names or [name.rpartition("/")[2] for name in origin.paths], origin.paths, strict=True))
-    file = next((name for name in named if path == name or path.startswith(f"{name}/")), path)
-    return str(Path(origin.root, named.get(file, file) + path.removeprefix(file)))

@@ -1,0 +1,56 @@
+"""What `grader review` shows of a criterion: the answer, the model answer, where the pictures are."""
+
+from pathlib import Path
+
+from rich.console import Console
+from rich.text import Text
+
+from grader.classroom.gradebook.marks import Mark, PendingCriterion
+from grader.report.console import wrapped
+from grader.text import counted_points, format_points, printable
+
+_INDENT = 2
+
+
+def render_pending(pending: PendingCriterion, position: str, console: Console) -> None:
+    """Print a criterion of a student, at `position` in the review. Text of the submission is never interpreted as markup."""
+    criterion, outcome = pending.result.criterion, pending.result.outcome
+    student = pending.grade.student
+    who = f"{student.name} ({student.key})" if student.name else student.key
+    console.print()
+    head = f"{position}  {printable(who)}: {printable(criterion.title)}  {format_points(criterion.points)} points"
+    wrapped(console, Text(head, style="bold"), 0)
+    wrapped(console, Text(printable(outcome.message)), 0)
+    if isinstance(outcome.measured, str):
+        _print_block("Found", outcome.measured, console)
+    elif isinstance(outcome.measured, tuple | list):
+        _print_block("Look at", "\n".join(_where(pending, str(file)) for file in outcome.measured), console)
+    if criterion.answer:
+        _print_block("Model answer", criterion.answer, console)
+    if outcome.location is not None:
+        place = f"in {_where(pending, outcome.location.path)}, line {outcome.location.line}"
+        wrapped(console, Text(printable(place), "dim"), 0)
+
+
+def mark_text(mark: Mark) -> str:
+    """Return a mark in one printable line: points, name, time, comment."""
+    points = "withdrawn" if mark.points is None else counted_points(mark.points)
+    parts = [points, f"by {mark.by}" if mark.by else "by an unnamed person", f"at {mark.at}"]
+    comment = " ".join(mark.comment.split())
+    return printable(f"{' '.join(parts)}: {comment}" if comment else " ".join(parts))
+
+
+def _print_block(title: str, text: str, console: Console) -> None:
+    wrapped(console, Text(f"{title}:", style="bold"), 0)
+    for line in filter(str.strip, text.splitlines()):
+        wrapped(console, Text(printable(line)), _INDENT)
+
+
+def _where(pending: PendingCriterion, path: str) -> str:
+    """Return the path of a file of the submission on this machine."""
+    origin = pending.grade.files
+    if len(origin.paths) == 1:
+        return str(Path(origin.root, origin.paths[0], path))
+    named = dict(zip(origin.names or [name.rpartition("/")[2] for name in origin.paths], origin.paths, strict=True))
+    file = next((name for name in named if path == name or path.startswith(f"{name}/")), path)
+    return str(Path(origin.root, named.get(file, file) + path.removeprefix(file)))
