@@ -2,17 +2,21 @@
 
 import io
 import json
+import re
+import tomllib
 import zipfile
-from pathlib import Path
+from importlib.metadata import PackageNotFoundError, requires
+from pathlib import Path, PurePosixPath
 
-from grader.bundle.installed import package_files, requirements
 from grader.errors import InputError
-from grader.grading.rubric import Rubric
+from grader.grading.rubric import Rubric, shipped_rubrics
 
 SECONDS = 300  # of the ten minutes that Gradescope gives
 _SCRIPTS = Path(__file__).resolve().parent / "on_gradescope"
 _EXECUTABLES = ("setup.sh", "run_autograder")
-_EXTRA = "documents"  # reads answers in Word and PDF files
+DISTRIBUTION = "urdf-grader"
+_PACKAGE = Path(__file__).resolve().parent.parent
+_EXTRA = re.compile(r"""(?:\band\s+)?\bextra\s*==\s*["']([\w.-]+)["']""")
 _RUBRIC = "rubric.toml"
 _ZIP_EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time that a zip can hold
 _UNIX = 3
@@ -27,22 +31,16 @@ def autograder_zip(rubric: Rubric) -> bytes:
                 f"{rubric.id}: the criterion {criterion.id} uses a check of the package {package}, which the bundle does not contain"
             )
     files = package_files()
-    files |= {name: _unix_lines(name) for name in (*_EXECUTABLES, "autograder.py")}
-    files["autograder.json"] = _settings(rubric)
-    files["requirements.txt"] = "".join(f"{requirement}\n" for requirement in requirements(_EXTRA)).encode()
+    for name in (*_EXECUTABLES, "autograder.py"):  # a checkout on Windows has line ends that bash does not accept
+        files[name] = (_SCRIPTS / name).read_bytes().replace(b"\r\n", b"\n")
+    name = rubric.id if rubric.is_shipped else f"source/{_RUBRIC}"
+    settings = {"rubric": name, "sha256": rubric.sha256, "seconds": SECONDS}
+    files["autograder.json"] = (json.dumps(settings, indent=1) + "\n").encode()
+    needed = requirements("documents")  # the extra reads answers in Word and PDF files
+    files["requirements.txt"] = "".join(f"{requirement}\n" for requirement in needed).encode()
     if not rubric.is_shipped:
         files[_RUBRIC] = rubric.data
     return _zip_of(files)
-
-
-def _settings(rubric: Rubric) -> bytes:
-    name = rubric.id if rubric.is_shipped else f"source/{_RUBRIC}"
-    return (json.dumps({"rubric": name, "sha256": rubric.sha256, "seconds": SECONDS}, indent=1) + "\n").encode()
-
-
-def _unix_lines(name: str) -> bytes:
-    """Return a script with Unix line endings: a checkout on Windows has others, which bash does not accept."""
-    return (_SCRIPTS / name).read_bytes().replace(b"\r\n", b"\n")
 
 
 def _zip_of(files: dict[str, bytes]) -> bytes:
@@ -58,3 +56,67 @@ def _zip_of(files: dict[str, bytes]) -> bytes:
             entry.external_attr = (0o100755 if path in _EXECUTABLES else 0o100644) << 16
             archive.writestr(entry, data)
     return buffer.getvalue()
+
+
+def package_files() -> dict[str, bytes]:
+    """Return the files of the package by their paths in a wheel: with the rubrics, without their reference solutions."""
+    found = {
+        str(PurePosixPath(_PACKAGE.name, *path.relative_to(_PACKAGE).parts)): path.read_bytes()
+        for path in _PACKAGE.rglob("*")
+        if path.is_file() and _is_in_wheel(path.relative_to(_PACKAGE))
+    }
+    for path in shipped_rubrics().values():
+        found[f"{_PACKAGE.name}/rubrics/{path.name}"] = path.read_bytes()
+    return found
+
+
+def _is_in_wheel(path: Path) -> bool:
+    if path.parts[0] == "rubrics" or path.suffix == ".pyc":
+        return False
+    return not any(part == "__pycache__" or part.startswith(".") for part in path.parts)
+
+
+def requirements(extra: str) -> list[str]:
+    """Return the requirements of the grader with one of its extras, for pip. Raises InputError if they are unknown."""
+    return sorted(map(_normalized, _of_checkout(extra) or _of_installation(extra)))
+
+
+def _normalized(requirement: str) -> str:
+    """Return a requirement with its version bounds sorted, as build tools write them in the metadata."""
+    specifier, semicolon, marker = requirement.partition(";")
+    name = re.split(r"[^\w.\[\]-]", specifier, maxsplit=1)[0]
+    bounds = sorted(bound.strip() for bound in specifier.removeprefix(name).split(","))
+    return f"{name}{','.join(bounds)}" + (f" {semicolon} {marker.strip()}" if semicolon else "")
+
+
+def _of_checkout(extra: str) -> list[str]:
+    """Return the requirements in the pyproject.toml beside the package: the installed metadata may be older."""
+    try:
+        project = tomllib.loads(_PACKAGE.with_name("pyproject.toml").read_text(encoding="utf-8"))["project"]
+    except (OSError, ValueError, KeyError):
+        return []
+    if project.get("name") != DISTRIBUTION:
+        return []
+    return [*project["dependencies"], *project["optional-dependencies"][extra]]
+
+
+def _of_installation(extra: str) -> list[str]:
+    try:
+        declared = requires(DISTRIBUTION) or []
+    except PackageNotFoundError:
+        raise InputError(
+            f"cannot determine the requirements of the grader: {DISTRIBUTION} is not installed; install it with pip"
+        ) from None
+    return [line for requirement in declared if (line := _without_extra(requirement, extra))]
+
+
+def _without_extra(requirement: str, extra: str) -> str:
+    """Return a requirement without its condition on an extra; empty if it belongs to another extra."""
+    name, _, marker = requirement.partition(";")
+    condition = _EXTRA.search(marker)
+    if condition is None:
+        return requirement
+    if condition[1] != extra:
+        return ""
+    rest = _EXTRA.sub("", marker).strip()
+    return f"{name.strip()};{rest}" if rest else name.strip()

@@ -10,8 +10,8 @@ from typing import Annotated
 import typer
 
 from grader import __version__
+from grader.cli.options import SHELLS
 from grader.cli.output import warn
-from grader.cli.suggestions import SHELLS
 from grader.errors import GraderError, RubricError
 from grader.text import printable
 from grader.usecases.exit_codes import ExitCode

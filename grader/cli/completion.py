@@ -11,7 +11,7 @@ from typing import Any
 import typer
 from typer.main import get_command
 
-from grader.cli.suggestions import SHELLS
+from grader.cli.options import SHELLS
 from grader.errors import GraderError, InputError
 from grader.text import printable_path
 from grader.usecases.writing import save, write_stdout
@@ -77,18 +77,12 @@ def set_up(arguments: Sequence[str]) -> int:
         raise GraderError(f"{option} takes one of {', '.join(SHELLS)}, not {' '.join(named)!r}")
     shell = named[0] if named else _detected(option)
     if option == "--show-completion":
-        write_stdout(_script(shell))
+        script = _typer.get_completion_script(prog_name="grader", complete_var=VARIABLE, shell=shell)
+        write_stdout(_BASH if shell == "bash" else script + "\n")
     else:
         path = printable_path(_install(shell))
         write_stdout(f"completion for {shell} is installed in {path}; start a new shell to use it\n")
     return 0
-
-
-def _script(shell: str) -> str:
-    if shell == "bash":
-        return _BASH
-    script: str = _typer.get_completion_script(prog_name="grader", complete_var=VARIABLE, shell=shell)
-    return script + "\n"
 
 
 def _install(shell: str) -> Path:

@@ -4,8 +4,7 @@ from typing import Annotated
 
 import typer
 
-from grader.cli.options import DEFAULT_RUBRIC, RubricOption
-from grader.cli.suggestions import explainable
+from grader.cli.options import DEFAULT_RUBRIC, RubricOption, explainable
 
 _NAME = "Such as URDF051, frame_at or lidar-frame."
 

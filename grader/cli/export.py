@@ -48,6 +48,6 @@ def export(
     request = ExportRequest(
         target, gradebook, into, output, strict, due, column, feedback_column, pending_as_zero, any_maximum
     )
-    exported = export_grades(request, warn)
-    write_stdout(exported.data)
-    return exported.exit_code
+    data, code = export_grades(request, warn)
+    write_stdout(data)
+    return code

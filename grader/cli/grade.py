@@ -4,9 +4,8 @@ from typing import Annotated
 
 import typer
 
-from grader.cli.options import DEFAULT_RUBRIC, MaxSizeOption, RubricOption
+from grader.cli.options import DEFAULT_RUBRIC, MaxSizeOption, RubricOption, part_ids, save_formats
 from grader.cli.output import TERMINAL, screen, warn, write_stderr
-from grader.cli.suggestions import part_ids, save_formats
 from grader.errors import GraderError
 from grader.files.reading import URDF_LIMIT
 from grader.report.formats import Format, render

@@ -4,8 +4,8 @@ from typing import Annotated
 
 import typer
 
+from grader.cli.options import rubric_ids
 from grader.cli.output import warn
-from grader.cli.suggestions import rubric_ids
 from grader.usecases import rubrics
 
 _HELP = """List, show and check rubrics, and list the checks.
@@ -71,9 +71,7 @@ def list_checks() -> str:
 
 
 @rubric.command("check")
-def check_rubric(
-    file: RubricArgument,
-) -> str:
+def check_rubric(file: RubricArgument) -> str:
     """Check a rubric and its reference solution.
 
     Exits 2 if there are mistakes, and lists all of them with their lines.

@@ -1,13 +1,13 @@
 """Grade a submission: run the rubric's checks in order, and attribute each failure."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from grader.checks.outcome import Outcome, fault_of, location_of, pending
 from grader.checks.registry import Check, Subject
-from grader.errors import MissingElement, NotDecided
-from grader.grading.report import GradedSubmission, Report, Result
+from grader.errors import InputError, MissingElement, NotDecided
+from grader.grading.report import Exhibits, GradedSubmission, Report, Result
 from grader.grading.rubric import Criterion, Rubric
-from grader.grading.scope import chosen_parts, exhibits_of
 from grader.problems import Problem
 from grader.robot import catalogue
 from grader.robot.kinematics import Configuration
@@ -15,6 +15,14 @@ from grader.robot.shapes import UnknownShape
 from grader.source import LazyLocation, Location
 from grader.submission.submission import Submission, open_submission
 from grader.submission.urdf import NeedsExpansion, Read
+from grader.text import enumerated
+
+if TYPE_CHECKING:
+    from grader.documents.evidence import Exhibit
+
+_MAX_PICTURES = 50
+_EXPANDED = "the URDF is xacro: its properties and expressions were evaluated, as xacro does before ROS 2 reads it"
+_ELSEWHERE = "the graded URDF is outside the graded package"
 
 # Problems that explain a measurement at the same place, and those with which ROS 2 drops visuals of a link.
 _EXPLAINING = (catalogue.BAD_COLOUR, catalogue.COLOUR_COUNT, catalogue.DEGREES, catalogue.UNDEFINED_MATERIAL)
@@ -23,7 +31,7 @@ _DROPPING = (catalogue.BAD_VISUAL, catalogue.BAD_INERTIAL)
 
 def grade(rubric: Rubric, submission: Submission, parts: Sequence[str] = ()) -> Report:
     """Return the report on a submission for all parts of the rubric, or for the named ones; raise InputError for others."""
-    chosen, notes = chosen_parts(rubric, submission, parts)
+    chosen, notes = _chosen_parts(rubric, submission, parts)
     grading = _Grading(submission)
     for criterion in rubric.criteria:
         if criterion.part in chosen:
@@ -33,9 +41,44 @@ def grade(rubric: Rubric, submission: Submission, parts: Sequence[str] = ()) -> 
         from grader.package.problems import package_problems  # a URDF on its own needs none of what reads a package
 
         problems += package_problems(submission.package)
-    exhibits, others = exhibits_of(rubric, submission, chosen)
+    evidence = _evidence(rubric, submission, chosen)
     results = tuple(grading.results.values())
-    return Report(GradedSubmission.of(submission), rubric, chosen, results, problems, exhibits, others, notes)
+    return Report(GradedSubmission.of(submission), rubric, chosen, results, problems, *evidence, notes)
+
+
+def _chosen_parts(rubric: Rubric, submission: Submission, named: Sequence[str]) -> tuple[tuple[str, ...], ...]:
+    """Return the graded parts, and notes for the report: a single URDF is graded only on parts that need no package."""
+    for name in named:
+        if rubric.part(name).needs != "urdf" and submission.is_single:
+            raise InputError(f"{name} needs more than a URDF: give the folder or archive that was submitted")
+    parts = [part for part in rubric.parts if not named or part.id in named]
+    chosen = tuple(part.id for part in parts if part.needs == "urdf" or not submission.is_single)
+    notes = [_EXPANDED] if isinstance(submission.urdf, Read) and submission.urdf.is_expanded else []
+    package, path = submission.package, submission.path
+    if package is not None and path is not None and not path.startswith(f"{package.folder}/" if package.folder else ""):
+        notes.append(_ELSEWHERE)
+    skipped = [part.id for part in parts if part.id not in chosen]
+    if skipped:
+        only = enumerated(chosen) or "nothing"
+        notes.append(
+            f"a single URDF is graded on {only} only: {enumerated(skipped)} need the folder or archive it is in"
+        )
+    return chosen, tuple(notes)
+
+
+def _evidence(
+    rubric: Rubric, submission: Submission, chosen: Sequence[str]
+) -> "tuple[tuple[Exhibits, ...], tuple[Exhibit, ...]]":
+    """Return the evidence that the lab asks for, and the other pictures of the submission."""
+    wanted = [evidence for evidence in rubric.evidence if evidence.part in chosen]
+    if not wanted or submission.is_single:
+        return (), ()
+    from grader.documents.evidence import describe, find_evidence  # a URDF on its own has none
+
+    found = tuple(Exhibits(evidence, find_evidence(submission.proofs, evidence.names)) for evidence in wanted)
+    listed = {exhibit.path for exhibits in found for exhibit in exhibits.files}
+    others = [proof for proof in submission.proofs if proof.file.path not in listed]
+    return found, describe(others[:_MAX_PICTURES])
 
 
 def grade_reference(rubric: Rubric) -> Report:
@@ -97,8 +140,7 @@ class _Grading:
         except BaseException as error:  # noqa: BLE001  a faulty check, even one that exits, affects only its own criterion
             from traceback import format_exc  # needed only for a fault of the grader
 
-            fault = _text_of(error)
-            return Result(criterion, _errored(criterion.check, fault), traceback=format_exc())
+            return Result(criterion, _errored(criterion.check, _text_of(error)), traceback=format_exc())
 
     def _missing(self, name: Subject) -> object:
         """Return the package; raise MissingElement or NotDecided for any other subject that the submission does not have."""

@@ -34,20 +34,8 @@ def _is_number(value: Any) -> bool:
     return isinstance(value, int | Decimal) and not isinstance(value, bool) and Decimal(value).is_finite()
 
 
-def _is_texts(value: Any) -> bool:
-    return isinstance(value, list) and all(isinstance(text, str) for text in value)
-
-
-def _is_tables(value: Any) -> bool:
-    return isinstance(value, list) and value != [] and all(isinstance(row, dict) for row in value)
-
-
-def _is_time(value: Any) -> bool:
-    return isinstance(value, datetime) and value.tzinfo is not None
-
-
-def _one_line(text: str) -> str:
-    return " ".join(text.split())
+def _is_list(value: Any, kind: type) -> bool:
+    return isinstance(value, list) and all(isinstance(item, kind) for item in value)
 
 
 def _is_below(path: str) -> bool:
@@ -62,7 +50,9 @@ def _range(least: int, most: int) -> Constraint:
 
 def _rows(table: KeyTable) -> TomlType:
     schema = {"type": "array", "items": table.schema, "minItems": 1}
-    return simple_type(f"one or more [[{table.name}]] tables", schema, _is_tables)
+    return simple_type(
+        f"one or more [[{table.name}]] tables", schema, lambda value: value != [] and _is_list(value, dict)
+    )
 
 
 def _table(schema: Mapping[str, Any]) -> TomlType:
@@ -82,9 +72,15 @@ _ID = constrained(
     _TEXT,
     Constraint("one printable word", lambda text: text.isprintable() and len(text.split(" ")) == 1 and text != ""),
 )
-_NOT_EMPTY = Constraint("a text that is not empty", bool)
-_TITLE = constrained(simple_type("a text", _TEXT.schema, lambda value: isinstance(value, str), _one_line), _NOT_EMPTY)
-_TIME = simple_type("a date and time with its offset, such as 2026-11-20T23:59:00+01:00", {"type": "string"}, _is_time)
+_TITLE = constrained(
+    simple_type("a text", _TEXT.schema, lambda value: isinstance(value, str), lambda text: " ".join(text.split())),
+    Constraint("a text that is not empty", bool),
+)
+_TIME = simple_type(
+    "a date and time with its offset, such as 2026-11-20T23:59:00+01:00",
+    {"type": "string"},
+    lambda value: isinstance(value, datetime) and value.tzinfo is not None,
+)
 _FILE = constrained(
     _TEXT, Constraint("the path of a file", lambda path: path.strip().rstrip("/").split("/")[-1] not in ("", ".", ".."))
 )
@@ -105,7 +101,9 @@ CRITERION = KeyTable(
         "points": _POINTS,
         "check": _TEXT,
         "with": _table({"type": "object"}),
-        "requires": simple_type("a list of texts", {"type": "array", "items": _TEXT.schema}, _is_texts, tuple),
+        "requires": simple_type(
+            "a list of texts", {"type": "array", "items": _TEXT.schema}, lambda value: _is_list(value, str), tuple
+        ),
         "feedback": _TEXT,
     },
     optional=("about", "with", "requires", "feedback"),
@@ -113,12 +111,7 @@ CRITERION = KeyTable(
 EVIDENCE = KeyTable("evidence", {"id": _ID, "part": _TEXT, "title": _TITLE, "names": toml_type(tuple[str, ...])})
 LATE = KeyTable(
     "late policy",
-    {
-        "due": _TIME,
-        "grace_minutes": _MINUTES,
-        "percent_per_day": _PERCENT,
-        "floor_percent": _PERCENT,
-    },
+    {"due": _TIME, "grace_minutes": _MINUTES, "percent_per_day": _PERCENT, "floor_percent": _PERCENT},
     optional=("due", "grace_minutes", "floor_percent"),
 )
 RUBRIC = KeyTable(

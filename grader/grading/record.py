@@ -1,7 +1,7 @@
 """Reports as JSON text, which a gradebook stores, and back."""
 
 import json
-from collections.abc import Sequence
+from dataclasses import astuple
 from typing import Any
 
 from grader.checks.manual import answered
@@ -44,9 +44,9 @@ def to_record(report: Report, template: Template | None = None) -> str:
         "parts": report.parts,
         "results": [_result(same, result) for result in report.results],
         "problems": [(problem.code, problem.severity, problem.message, problem.location) for problem in report.problems],
-        "exhibits": [[_exhibit(file) for file in exhibits.files] for exhibits in report.exhibits],
+        "exhibits": [exhibits.files for exhibits in report.exhibits],
         "evidence": [exhibits.evidence.id for exhibits in report.exhibits],
-        "others": [_exhibit(exhibit) for exhibit in report.others],
+        "others": report.others,
         "notes": report.notes,
     }  # fmt: skip
     return _ENCODER.encode(data)
@@ -56,11 +56,9 @@ def from_record(text: str, rubric: Rubric, quote: Quote | None = None, template:
     """Return the report that a record was made from, with the same rubric and template."""
     same = template.outcomes if template is not None else {}
     data = json.loads(text)
-    identity, path, sha256, package, other_candidates, ignored, has_urdf, verdict, is_single, unread = data[
-        "submission"
-    ]
+    identity, path, sha256, package, others, ignored, has_urdf, verdict, is_single, unread = data["submission"]
     package = GradedPackage(*package) if package is not None else None
-    others = tuple(OtherCandidate(*file) for file in other_candidates)
+    others = tuple(OtherCandidate(*file) for file in others)
     submission = GradedSubmission(
         identity, path, sha256, package, others, tuple(ignored), has_urdf, verdict, is_single, unread, quote
     )
@@ -70,7 +68,10 @@ def from_record(text: str, rubric: Rubric, quote: Quote | None = None, template:
         rubric,
         tuple(data["parts"]),
         tuple(_read_result(rubric, same, entry) for entry in data["results"]),
-        tuple(_read_problem(*problem) for problem in data["problems"]),
+        tuple(
+            Problem(Kind(code, "", "", severity, "other"), message, Location(*place))
+            for code, severity, message, place in data["problems"]
+        ),
         tuple(
             Exhibits(evidence[name], tuple(Exhibit(*file) for file in files))
             for name, files in zip(data["evidence"], data["exhibits"], strict=True)
@@ -106,8 +107,8 @@ def _read_result(rubric: Rubric, same: dict[str, Outcome], entry: Any) -> Result
 
 
 def _plain(value: Any) -> Any:
-    """Return what JSON cannot hold as what it can: a location as a list, a read-only mapping as a dictionary."""
-    return (value.path, value.line, value.column) if isinstance(value, Location) else dict(value)
+    """Return what JSON cannot hold as what it can: a location or exhibit as a list, a read-only mapping as a dictionary."""
+    return astuple(value) if isinstance(value, Location | Exhibit) else dict(value)
 
 
 def _value(value: Any) -> Any:
@@ -115,11 +116,3 @@ def _value(value: Any) -> Any:
 
 
 _ENCODER = json.JSONEncoder(separators=(",", ":"), default=_plain)
-
-
-def _exhibit(exhibit: Exhibit) -> tuple[Any, ...]:
-    return exhibit.path, exhibit.size, exhibit.width, exhibit.height
-
-
-def _read_problem(code: str, severity: Any, message: str, place: Sequence[Any]) -> Problem:
-    return Problem(Kind(code, "", "", severity, "other"), message, Location(*place))

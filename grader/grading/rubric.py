@@ -203,16 +203,5 @@ def complain_of(complaints: Sequence[tuple[TomlPath, str]], text: str, path: Pat
 def _criterion(position: int, row: TomlRow, check: Check, arguments: TomlRow, *, answers: bool) -> Criterion:
     # Nothing that lists or passes on a criterion's arguments may see the model answer.
     answer = arguments.pop("answer", "") if check.function is answered else ""
-    return Criterion(
-        row["id"],
-        row["title"],
-        row["part"],
-        row["points"],
-        check,
-        arguments,
-        row.get("requires", ()),
-        row.get("feedback", ""),
-        row.get("about", ""),
-        position,
-        answer if answers else "",
-    )
+    own = {key: value for key, value in row.items() if key not in ("check", "with")}
+    return Criterion(**own, check=check, arguments=arguments, position=position, answer=answer if answers else "")

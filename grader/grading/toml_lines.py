@@ -68,10 +68,6 @@ def _statements(text: str) -> list[tuple[int, list[str]]]:
 
 
 def _names(tokens: list[str]) -> list[str]:
+    """Return the keys that tokens stand for, quoted ones without their quotes."""
     names = [token for token in tokens if token != "."][:_MAX_DEPTH]
-    return [_name(token) if token[0] in "\"'" else token for token in names]
-
-
-def _name(token: str) -> str:
-    """Return the key that a quoted token stands for."""
-    return next(iter(tomllib.loads(f"{token}=0")))
+    return [next(iter(tomllib.loads(f"{token}=0"))) if token[0] in "\"'" else token for token in names]

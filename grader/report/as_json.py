@@ -1,12 +1,10 @@
 """A report as JSON, schema grader/report/v1: `grader schema report` describes it."""
 
-from typing import TYPE_CHECKING, Any
+from dataclasses import asdict
+from typing import Any
 
-from grader.grading.report import Exhibits, GradedSubmission, Report, Result
+from grader.grading.report import Report, Result
 from grader.report.json_data import exact, location, problem, rounded, to_json
-
-if TYPE_CHECKING:
-    from grader.documents.evidence import Exhibit
 
 
 def render_json(report: Report) -> str:
@@ -25,7 +23,7 @@ def report_data(report: Report) -> dict[str, Any]:
             "id": submission.id,
             "path": submission.path,
             "sha256": submission.sha256,
-            "package": package_path(submission),
+            "package": submission.package and (submission.package.folder or "."),  # "." is the submission itself
             "passed_over": [{"path": file.path, "because": file.reason} for file in submission.other_candidates],
             "left_out": list(submission.ignored),
         },
@@ -36,24 +34,17 @@ def report_data(report: Report) -> dict[str, Any]:
         "pending": exact(report.pending),
         "problems": [problem(found) for found in report.problems],
         "results": [_result(result) for result in report.results],
-        "evidence": [_exhibits(found) for found in report.exhibits],
-        "other_pictures": [_exhibit(found) for found in report.others],
+        "evidence": [
+            {
+                "id": found.evidence.id,
+                "part": found.evidence.part,
+                "title": found.evidence.title,
+                "files": list(map(asdict, found.files)),
+            }
+            for found in report.exhibits
+        ],
+        "other_pictures": list(map(asdict, report.others)),
     }
-
-
-def package_path(submission: GradedSubmission) -> str | None:
-    """Return the folder of the graded package, `.` for the submission itself; None if there is none."""
-    return (submission.package.folder or ".") if submission.package is not None else None
-
-
-def _exhibits(found: Exhibits) -> dict[str, Any]:
-    evidence = found.evidence
-    files = [_exhibit(exhibit) for exhibit in found.files]
-    return {"id": evidence.id, "part": evidence.part, "title": evidence.title, "files": files}
-
-
-def _exhibit(exhibit: "Exhibit") -> dict[str, Any]:
-    return {"path": exhibit.path, "size": exhibit.size, "width": exhibit.width, "height": exhibit.height}
 
 
 def _result(result: Result) -> dict[str, Any]:

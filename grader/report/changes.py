@@ -34,11 +34,11 @@ def render_changes_json(changes: Sequence[Change], runs: tuple[Run, Run]) -> str
     listed = [
         {
             "id": change.key,
-            "before": _number(change.before),
-            "after": _number(change.after),
+            "before": exact(change.before),
+            "after": exact(change.after),
             "because": list(change.why),
             "criteria": [
-                {"id": step.criterion, "before": _number(step.before), "after": _number(step.after)}
+                {"id": step.criterion, "before": exact(step.before), "after": exact(step.after)}
                 for step in change.steps
             ],
         }
@@ -81,7 +81,3 @@ def _span(before: Decimal | None, after: Decimal | None) -> str:
 
 def _points(points: Decimal | None) -> str:
     return "none" if points is None else format_points(points)
-
-
-def _number(points: Decimal | None) -> int | float | None:
-    return None if points is None else exact(points)

@@ -5,7 +5,7 @@ from typing import Any
 
 from grader import __version__
 from grader.classroom.gradebook.grades import AttentionList
-from grader.classroom.gradebook.statistics import ClassStatistics, CriterionStatistics
+from grader.classroom.gradebook.statistics import ClassStatistics
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.grading.rubric import Rubric
 from grader.report.json_data import exact, rounded, to_json
@@ -25,14 +25,14 @@ def render_class_json(
             "grader": {"version": __version__},
             "rubric": {"id": rubric.id, "title": rubric.title, "sha256": rubric.sha256},
             **({"run": run} if run is not None else {}),
-            "statistics": statistics_data(statistics),
+            "statistics": _statistics(statistics),
             "needs_a_look": looks.total,
-            "students": [grade_data(grade) for grade in grades],
+            "students": [_grade(grade) for grade in grades],
         }
     )
 
 
-def grade_data(grade: StudentGrade) -> dict[str, Any]:
+def _grade(grade: StudentGrade) -> dict[str, Any]:
     """Return a student's current grade as plain data."""
     student, has_result = grade.student, grade.result is not None
     return {
@@ -54,7 +54,7 @@ def grade_data(grade: StudentGrade) -> dict[str, Any]:
     }
 
 
-def statistics_data(statistics: ClassStatistics) -> dict[str, Any]:
+def _statistics(statistics: ClassStatistics) -> dict[str, Any]:
     """Return the statistics as plain data, shares and correlations rounded to 1e-6."""
     return {
         "counts": dict(sorted(statistics.verdicts.items())),
@@ -67,24 +67,23 @@ def statistics_data(statistics: ClassStatistics) -> dict[str, Any]:
         "median": exact(statistics.median),
         "highest": exact(statistics.highest),
         "tenths": list(statistics.bins),
-        "criteria": [_criterion(row) for row in statistics.criteria],
+        "criteria": [
+            {
+                "id": row.criterion.id,
+                "max_points": exact(row.criterion.points),
+                "passed": row.passed,
+                "marked_by_hand": row.marked,
+                "failed": row.failed,
+                "skipped": row.skipped,
+                "pending": row.pending,
+                "errored": row.errored,
+                "share": rounded(row.share),
+                "discrimination": rounded(row.discrimination),
+            }
+            for row in statistics.criteria
+        ],
         "failures": [
             {"criterion": failure.criterion.id, "message": failure.message, "count": failure.count}
             for failure in statistics.failures
         ],
-    }
-
-
-def _criterion(row: CriterionStatistics) -> dict[str, Any]:
-    return {
-        "id": row.criterion.id,
-        "max_points": exact(row.criterion.points),
-        "passed": row.passed,
-        "marked_by_hand": row.marked,
-        "failed": row.failed,
-        "skipped": row.skipped,
-        "pending": row.pending,
-        "errored": row.errored,
-        "share": rounded(row.share),
-        "discrimination": rounded(row.discrimination),
     }

@@ -34,8 +34,19 @@ def render_class(title: str, statistics: ClassStatistics, looks: AttentionList, 
     if statistics.graded:
         _print_marks(statistics, console)
         _print_criteria(statistics.criteria, console)
-        _print_failures(statistics, console)
-    _print_attention(looks, console)
+    if statistics.graded and statistics.failures:
+        console.print()
+        console.print(Text("Common mistakes", style="bold"))
+        for failure in statistics.failures[:_MAX_FAILURES]:
+            head = Text(f"{failure.count:>6}  ", style="bold")
+            wrapped(console, Text(printable(f"{failure.criterion.id}: {failure.message}")), 8, head)
+    if looks.total:
+        console.print()
+        console.print(Text("Needs attention", style="bold"))
+        for look in looks.listed:
+            wrapped(console, Text(printable(f"{look.who}: {look.why}")), 4, Text("  "))
+    if looks.total > len(looks.listed):
+        wrapped(console, Text(f"... and {looks.total - len(looks.listed)} more", style="dim"), 2)
 
 
 def _print_marks(statistics: ClassStatistics, console: Console) -> None:
@@ -94,24 +105,3 @@ def _discrimination_text(discrimination: float | None) -> Text:
     if discrimination is None:
         return Text("")
     return Text(f"{discrimination:.2f}", style="yellow" if discrimination < _LOW_DISCRIMINATION else "")
-
-
-def _print_failures(statistics: ClassStatistics, console: Console) -> None:
-    if not statistics.failures:
-        return
-    console.print()
-    console.print(Text("Common mistakes", style="bold"))
-    for failure in statistics.failures[:_MAX_FAILURES]:
-        head = Text(f"{failure.count:>6}  ", style="bold")
-        wrapped(console, Text(printable(f"{failure.criterion.id}: {failure.message}")), 8, head)
-
-
-def _print_attention(looks: AttentionList, console: Console) -> None:
-    if not looks.total:
-        return
-    console.print()
-    console.print(Text("Needs attention", style="bold"))
-    for look in looks.listed:
-        wrapped(console, Text(printable(f"{look.who}: {look.why}")), 4, Text("  "))
-    if looks.total > len(looks.listed):
-        wrapped(console, Text(f"... and {looks.total - len(looks.listed)} more", style="dim"), 2)

@@ -6,7 +6,7 @@ from itertools import groupby
 from typing import NamedTuple
 
 from grader.checks.manual import MANUAL_CHECKS
-from grader.grading.report import Exhibits, Report, Result
+from grader.grading.report import Report, Result
 from grader.problems import Problem
 from grader.source import Location
 from grader.text import counted_points, enumerated, first_lines, format_points, printable
@@ -106,18 +106,19 @@ def undecided(report: Report) -> list[Result]:
 def result_details(result: Result, report: Report) -> Details:
     """Return the details of one criterion, whatever its status."""
     outcome = result.outcome
+    answers = (_lines(outcome.measured), _lines(result.criterion.answer)) if outcome.status == "pending" else ()
     if result.manual_mark is not None:
         comment = f": {_one_line(result.manual_mark.comment)}" if result.manual_mark.comment else ""
         mark = sentence(f"Marked {f'by {result.manual_mark.by}' if result.manual_mark.by else 'manually'}{comment}")
         if outcome.status == "pending":
-            return Details((mark,), *_answers(result))
+            return Details((mark,), *answers)
         expected = _expected(result) if status_of(result) == "failed" else ""
         return Details((mark, sentence(f"The check: {outcome.status}. {outcome.message}")), expected=expected)
     if outcome.status == "skipped":
         return Details((f"Skipped because {result.because} failed.",))
     sentences = (sentence(outcome.message),)
     if outcome.status == "pending":
-        return Details(sentences, *_answers(result))
+        return Details(sentences, *answers)
     if outcome.status != "failed":
         return Details(sentences, expected=_expected(result) if outcome.status == "errored" else "")
     has_subject = report.submission.has_urdf or result.criterion.check.subject not in ("urdf", "robot")
@@ -135,12 +136,8 @@ def _one_line(text: str) -> str:
     return printable(" ".join(text.split()))
 
 
-def _answers(result: Result) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """Return the answer and the model answer; nothing for a criterion that is not a question."""
-    return _lines(result.outcome.measured), _lines(result.criterion.answer)
-
-
 def _lines(text: object) -> tuple[str, ...]:
+    """Return the lines of an answer; none of the value of a criterion that is not a question."""
     return tuple(printable(line) for line in text.splitlines() if line.strip()) if isinstance(text, str) else ()
 
 
@@ -159,15 +156,14 @@ def other_problems_title(report: Report) -> str:
 def evidence(report: Report) -> Iterator[tuple[str, list[tuple[str, bool]]]]:
     """Yield the title of each part with its pieces of evidence, and whether files were found; then the other pictures."""
     parts = {part.id: part.title for part in report.rubric.parts}
-    for part, exhibits in groupby(report.exhibits, key=lambda exhibit: exhibit.evidence.part):
-        yield printable(parts[part]), [(_exhibits(exhibit), bool(exhibit.files)) for exhibit in exhibits]
+    for part, exhibits in groupby(report.exhibits, key=lambda exhibits: exhibits.evidence.part):
+        listed = [(found, ", ".join(exhibit.words for exhibit in found.files)) for found in exhibits]
+        yield (
+            printable(parts[part]),
+            [(printable(f"{found.evidence.title}: {files or 'missing'}"), bool(files)) for found, files in listed],
+        )
     if report.others:
         yield "Other pictures and documents", [(printable(exhibit.words), True) for exhibit in report.others]
-
-
-def _exhibits(found: Exhibits) -> str:
-    listed = ", ".join(exhibit.words for exhibit in found.files)
-    return printable(f"{found.evidence.title}: {listed or 'missing'}")
 
 
 def sentence(message: str) -> str:

@@ -54,16 +54,10 @@ class OutputFormat(StrEnum):
 
 
 def render(report: "Report", kind: Format, base: "Base | None" = None, screen: Screen | None = None) -> str:
-    """Return a report in a format; only that format's module is imported.
+    """Return a report in a format, for a screen or a file; only that format's module is imported.
 
-    Args:
-        report: The report.
-        kind: Its format.
-        base: Where the submission is in its repository; default: its paths are the repository's.
-        screen: Where the text is shown; default: a file.
-
-    Raises:
-        InputError: The environment does not say whose result it is (Classroom 50).
+    `base` is where the submission is in its repository; without it its paths are the repository's. Raises InputError if the
+    environment does not say whose result it is (Classroom 50).
     """
     module, _, name = kind.function.partition(":")
     function = getattr(import_module(f"grader.report.{module}"), name)

@@ -62,22 +62,19 @@ def _overview(report: Report) -> str:
 
 def command(name: str, location: RepositoryLocation | None, title: str, text: str) -> str:
     """Return one annotation: `error`, `warning` or `notice` of printable text, with a line break at its end."""
-    properties = [*_position(location), ("title", title)] if location is not None else [("title", title)]
-    listed = ",".join(f"{key}={_property(value)}" for key, value in properties)
+    properties = [*_position(location), ("title", title)]
+    listed = ",".join(f"{key}={_data(value).replace(':', '%3A').replace(',', '%2C')}" for key, value in properties)
     message = text if len(text) <= _MAX_MESSAGE else f"{text[:_MAX_MESSAGE]}..."
     return f"::{name} {listed}::{_data(message)}\n"
 
 
-def _position(location: RepositoryLocation) -> Iterable[tuple[str, str]]:
-    yield "file", printable(location.path)
-    if location.line is not None:
+def _position(location: RepositoryLocation | None) -> Iterable[tuple[str, str]]:
+    if location is not None:
+        yield "file", printable(location.path)
+    if location is not None and location.line is not None:
         yield from (("line", str(location.line)), ("endLine", str(location.line)))
         yield from (("col", str(location.column)), ("endColumn", str(max(location.column, location.end - 1))))
 
 
 def _data(text: str) -> str:
     return text.replace("%", "%25").replace("\r", "%0D").replace("\n", "%0A")
-
-
-def _property(text: str) -> str:
-    return _data(text).replace(":", "%3A").replace(",", "%2C")

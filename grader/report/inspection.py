@@ -1,6 +1,7 @@
 """What `grader inspect` shows of a URDF: problems, tree, joints, poses."""
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from itertools import islice
 from typing import Any
@@ -18,11 +19,10 @@ from grader.robot.transforms import Transform
 from grader.text import printable
 
 _MAX_LISTED = 500  # links in the terminal
-_VERDICTS = {"clean": "green", "degraded": "yellow", "rejected": "bold red"}
 _EFFECTS = {
-    "clean": "ROS 2 loads it",
-    "degraded": "ROS 2 loads it, but drops some of it",
-    "rejected": "ROS 2 rejects it",
+    "clean": ("ROS 2 loads it", "green"),
+    "degraded": ("ROS 2 loads it, but drops some of it", "yellow"),
+    "rejected": ("ROS 2 rejects it", "bold red"),
 }
 
 
@@ -50,10 +50,8 @@ def main_root(robot: Configuration) -> str | None:
     """Return the root of the largest tree; None if every link is in a loop."""
     sizes = dict.fromkeys(robot.roots, 0)
     for link in robot.robot.links:
-        try:
+        with suppress(MissingElement):
             sizes[robot.root_of(link.name)] += 1
-        except MissingElement:
-            continue
     return max(sizes, key=lambda root: sizes[root]) if sizes else None
 
 
@@ -82,7 +80,7 @@ def inspection_terminal(inspection: Inspection, console: Console) -> None:
     """Print the inspection."""
     reading, robot = inspection.reading, inspection.robot
     name = f"robot {robot.robot.name!r}" if robot is not None else "no robot"
-    effect = (_EFFECTS[reading.verdict], _VERDICTS[reading.verdict])
+    effect = _EFFECTS[reading.verdict]
     console.print(Text.assemble((printable(inspection.path), "bold"), ": ", effect, f", {printable(name)}"))
     if reading.problems:
         console.print()

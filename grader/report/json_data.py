@@ -10,7 +10,7 @@ from grader.problems import Problem
 from grader.source import Location
 
 _ENCODER = json.JSONEncoder(ensure_ascii=False, allow_nan=False)
-_UNUSUAL = re.compile(r"[^\n -~]+")  # all but ASCII
+_UNPRINTABLE = re.compile(r"[^\n -~]")  # or any other character that is not ASCII
 
 
 def to_json(data: Mapping[str, Any]) -> str:
@@ -31,12 +31,8 @@ def to_json_list(data: Sequence[Mapping[str, Any]]) -> str:
 def _harmless(text: str) -> str:
     """Return JSON with escapes for unprintable characters, and for what GitHub's runner takes for a command."""
     if not text.isascii() or "\x7f" in text:
-        text = _UNUSUAL.sub(lambda found: "".join(map(_escaped, found[0])), text)
+        text = _UNPRINTABLE.sub(lambda found: found[0] if found[0].isprintable() else json.dumps(found[0])[1:-1], text)
     return text.replace("##[", "##\\u005b")
-
-
-def _escaped(character: str) -> str:
-    return character if character.isprintable() else json.dumps(character)[1:-1]
 
 
 def _lines(value: Any) -> str:
@@ -48,8 +44,10 @@ def _lines(value: Any) -> str:
     return "[\n  " + text[1:-1].replace("}, {" + first, "},\n  {" + first) + "\n ]"
 
 
-def exact(points: Decimal) -> int | float:
+def exact(points: Decimal | None) -> int | float | None:
     """Return points as a JSON number: 58.5, and 70 rather than 70.0."""
+    if points is None:
+        return None
     return int(points) if points == points.to_integral_value() else float(points)
 
 
@@ -69,9 +67,5 @@ def location(where: Location | None) -> dict[str, Any] | None:
 
 def problem(found: Problem) -> dict[str, Any]:
     """Return a problem as plain data."""
-    return {
-        "code": found.code,
-        "severity": found.severity,
-        "message": found.message,
-        "location": location(found.location),
-    }
+    words = {"code": found.code, "severity": found.severity, "message": found.message}
+    return {**words, "location": location(found.location)}

@@ -1,17 +1,31 @@
-"""A report as Markdown (CommonMark without extensions): for job summaries, comments and pages of an LMS."""
+"""A report as Markdown (CommonMark without extensions): for job summaries, comments and pages of an LMS.
 
+Text of a submission is escaped: it never becomes markup, HTML, a link or a mention.
+"""
+
+import re
 from collections.abc import Iterator
 from itertools import groupby
 from textwrap import indent
 
 from grader.grading.report import Report, Result
 from grader.report import content
-from grader.report.markdown_text import code, escaped, fenced
 from grader.report.plain_text import excerpt_lines, problem_line, provenance
 from grader.text import format_points, printable
 
 _MARKS = {"passed": "\u2713", "failed": "\u2717", "skipped": "\u2212", "pending": "?", "errored": "!"}
 _CUT = "**The report is cut off here, because it is too long.** A report that is saved to a file is complete.\n"
+_HTML = {"<": "&lt;", ">": "&gt;", "&": "&amp;"}
+_ACTIVE = re.compile(
+    r"[\\`*\[\]<>&|~$#]|(?<![^\W_])_|_(?![^\W_])"  # an underscore inside a word is plain text
+    r"|(?<=http):(?=//)|(?<=https):(?=//)|(?<=ftp):(?=//)|(?<=www)\.",  # GitHub makes links of bare addresses
+    re.IGNORECASE,
+)
+_OPENING = re.compile(r"^([-+=]|\d+[.)](?= |$))")  # a list, rule or heading at the start of a line
+# GitHub looks for mentions and issue numbers after it has rendered Markdown, so escapes do not prevent them.
+_MENTION = re.compile(r"@|#(?=\d)")
+_FENCE = re.compile(r"`{3,}")
+_MAX_FENCE = 80  # backticks: GitHub's parser takes no more to start code, and counts those of a block to 255
 
 
 def render_markdown(report: Report, *, answers: bool = True) -> str:
@@ -118,3 +132,28 @@ def _problems(report: Report) -> Iterator[str]:
     if problems:
         yield f"## {content.other_problems_title(report)}"
         yield from (f"- {escaped(problem_line(problem))}" for problem in problems)
+
+
+def escaped(text: str) -> str:
+    """Return one line of printable text that Markdown shows as it is."""
+    plain = _ACTIVE.sub(lambda found: _HTML.get(found[0]) or f"\\{found[0]}", text.strip())
+    plain = _OPENING.sub(lambda found: f"{found[0][:-1]}\\{found[0][-1]}", plain)
+    return _MENTION.sub("\\g<0>\u2060", plain)
+
+
+def code(text: str) -> str:
+    """Return printable text as inline code; as plain text if it has too many backticks."""
+    longest = max((len(found[0]) for found in re.finditer(r"`+", text)), default=0)
+    if longest >= _MAX_FENCE:
+        return escaped(text)
+    fence = "`" * (longest + 1)
+    space = " " if not text or text[0] in "` " or text[-1] in "` " else ""
+    return f"{fence}{space}{text}{space}{fence}"
+
+
+def fenced(lines: list[str]) -> str:
+    """Return printable lines, none of them blank, as a code block that nothing in them can end."""
+    fence = "`" * max((len(found[0]) + 1 for line in lines for found in _FENCE.finditer(line)), default=3)
+    if len(fence) > _MAX_FENCE:
+        return "\n".join(f"    {line}" for line in lines)
+    return "\n".join((f"{fence}text", *lines, fence))

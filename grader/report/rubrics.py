@@ -8,7 +8,6 @@ from grader.errors import InputError
 from grader.grading.rubric import Criterion, Rubric
 from grader.names import did_you_mean
 from grader.package.catalogue import PACKAGE_CATALOGUE
-from grader.problems import Kind
 from grader.robot.catalogue import CATALOGUE
 from grader.text import format_points, printable
 
@@ -39,37 +38,35 @@ def rubric_text(rubric: Rubric) -> str:
 
 def checks_text() -> str:
     """Return every check with the fact that it tests and its arguments."""
-    return "\n".join(map(_listed, check_names()))
-
-
-def _listed(name: str) -> str:
-    try:
-        check = find_check(name)
-    except InputError as error:  # a broken plug-in must not hide the other checks
-        return f"{name}\n  {error}\n"
-    return _check_lines(check) if check is not None else ""
+    listed = []
+    for name in check_names():
+        try:
+            check = find_check(name)
+        except InputError as error:  # a broken plug-in must not hide the other checks
+            listed.append(f"{name}\n  {error}\n")
+            continue
+        if check is not None:
+            listed.append(f"{name}\n{textwrap.indent(_filled(check.fact), '  ')}\n{_arguments(check)}")
+    return "\n".join(listed)
 
 
 def explanation(name: str, rubric: Rubric) -> str:
     """Return the explanation of a code, a criterion or a check. Raises InputError for another name."""
     for kind in EVERY_KIND:
         if kind.code == name.upper():
-            return _kind_text(kind)
+            effect = f"\n{EFFECTS[kind.effect]}\n" if EFFECTS[kind.effect] else ""
+            return f"{kind.code} ({kind.severity}): {kind.title}\n\n{_filled(kind.explanation)}\n{effect}"
     for criterion in rubric.criteria:
         if criterion.id == name:
             return _criterion_text(criterion, rubric)
     check = find_check(name)
     if check is not None:
-        return _check_text(check)
+        text = "\n\n".join(_filled(paragraph) for paragraph in (inspect.getdoc(check.function) or "").split("\n\n"))
+        return f"{check.name}: a check for rubrics\n\n{text}\n{_arguments(check)}"
     known = [kind.code for kind in EVERY_KIND] + [criterion.id for criterion in rubric.criteria] + check_names()
     lists = f"; {rubric.shown_by} lists the criteria, grader rubric checks lists the checks, and reports show the codes"
     guess = did_you_mean(name, known) or lists
     raise InputError(f"there is no problem code, criterion or check {name!r}{guess}")
-
-
-def _kind_text(kind: Kind) -> str:
-    effect = f"\n{EFFECTS[kind.effect]}\n" if EFFECTS[kind.effect] else ""
-    return f"{kind.code} ({kind.severity}): {kind.title}\n\n{_filled(kind.explanation)}\n{effect}"
 
 
 def _criterion_text(criterion: Criterion, rubric: Rubric) -> str:
@@ -87,15 +84,6 @@ def _criterion_text(criterion: Criterion, rubric: Rubric) -> str:
     if given:
         lines += [_filled(f"With {given}.")]
     return "\n".join(lines) + "\n"
-
-
-def _check_text(check: Check) -> str:
-    text = "\n\n".join(_filled(paragraph) for paragraph in (inspect.getdoc(check.function) or "").split("\n\n"))
-    return f"{check.name}: a check for rubrics\n\n{text}\n{_arguments(check)}"
-
-
-def _check_lines(check: Check) -> str:
-    return f"{check.name}\n{textwrap.indent(_filled(check.fact), '  ')}\n{_arguments(check)}"
 
 
 def _arguments(check: Check) -> str:

@@ -70,16 +70,11 @@ def _result(finding: Finding, index: int) -> dict[str, Any]:
         "ruleId": finding.rule,
         "ruleIndex": index,
         "level": finding.level,
-        "message": {"text": _no_links(finding.text)},
+        "message": {"text": finding.text.replace("](", "] (")},  # no links in SARIF's syntax
         "locations": [{"physicalLocation": _physical(finding.location or finding.fallback)}],
         "partialFingerprints": {"primaryLocationLineHash": finding.fingerprint},
         **cost,
     }
-
-
-def _no_links(text: str) -> str:
-    """Return a text without SARIF's syntax for links."""
-    return text.replace("](", "] (")
 
 
 def _physical(location: RepositoryLocation) -> dict[str, Any]:

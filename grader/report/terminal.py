@@ -76,9 +76,10 @@ def _print_groups(results: tuple[Result, ...], title: str, page: _Page) -> None:
     named = [
         (name, tuple(group)) for name, group in groupby(results, key=lambda result: result.criterion.about or title)
     ]
-    for reason, alike in groupby(named, key=lambda group: _shared_reason(group[1])):
+    for reasons, alike in groupby(named, key=lambda group: set(map(_reason, group[1]))):
         groups = list(alike)
         alike_results = tuple(result for _, group in groups for result in group)
+        reason = next(iter(reasons)) if len(reasons) == 1 else None
         if reason is None or len(alike_results) == 1:
             for name, group in groups:
                 if name != title or len(page.report.parts) == 1:
@@ -87,16 +88,14 @@ def _print_groups(results: tuple[Result, ...], title: str, page: _Page) -> None:
                     _print_result(result, page)
         else:
             _print_heading(", ".join(name for name, _ in groups), alike_results, page.console)
-            _print_alike(alike_results, reason, page.console)
-
-
-def _shared_reason(results: tuple[Result, ...]) -> str | None:
-    """Return the reason for which all of some criteria are skipped or pending; None if there is not one for all."""
-    reasons = set(map(_reason, results))
-    return reasons.pop() if len(reasons) == 1 else None
+            maximum = content.earned_text(alike_results).partition("/")[2]
+            start = _line_start(alike_results[0].outcome.status, f"0/{maximum:<3}", page.console)
+            text = Text(printable(f"{len(alike_results)} criteria are {reason}"), style="dim")
+            wrapped(page.console, text, _INDENT, start)
 
 
 def _reason(result: Result) -> str | None:
+    """Return the reason for which a criterion is skipped or pending, None for another one."""
     if result.because is not None and result.manual_mark is None:
         return f"skipped because {result.because} failed"
     is_open = result.is_open and not isinstance(result.outcome.measured, str)  # answers are shown one by one
@@ -106,13 +105,6 @@ def _reason(result: Result) -> str | None:
 def _print_heading(name: str, results: tuple[Result, ...], console: Console) -> None:
     console.print()
     wrapped(console, Text.assemble((printable(name), "bold"), (f"  {content.earned_text(results)}", "dim")), 0)
-
-
-def _print_alike(results: tuple[Result, ...], reason: str, console: Console) -> None:
-    """Print one line for criteria that are skipped or pending for the same reason."""
-    maximum = content.earned_text(results).partition("/")[2]
-    text = Text(printable(f"{len(results)} criteria are {reason}"), style="dim")
-    wrapped(console, text, _INDENT, _line_start(results[0].outcome.status, f"0/{maximum:<3}", console))
 
 
 def _line_start(status: str, points: str, console: Console) -> Text:
@@ -132,14 +124,8 @@ def _print_result(result: Result, page: _Page) -> None:
         details = content.result_details(result, page.report)
         name.stylize("dim" if not details.expected else "")
         wrapped(page.console, name if details.expected else title + Text("  ") + name, _INDENT, start)
-        _print_details(details, _sentence_styles(result), page)
-
-
-def _sentence_styles(result: Result) -> tuple[str, ...]:
-    """Return the styles of a criterion's sentences: manual marks and faults of the grader stand out."""
-    if result.manual_mark is not None:
-        return ("bold", "dim")
-    return (_STYLES["errored"] if result.outcome.status == "errored" else "",)
+        styles = (_STYLES["errored"] if result.outcome.status == "errored" else "",)  # faults of the grader stand out
+        _print_details(details, ("bold", "dim") if result.manual_mark is not None else styles, page)
 
 
 def _print_details(details: content.Details, styles: tuple[str, ...], page: _Page) -> None:

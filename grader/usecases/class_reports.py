@@ -7,21 +7,18 @@ from collections import Counter
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from dataclasses import replace
+from datetime import datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.lms.spreadsheet import neutral, rows_of_table, write_table
 from grader.errors import InputError
+from grader.grading.report import Report
 from grader.report.formats import Format, render
 from grader.text import format_points
 from grader.usecases.writing import save
-
-if TYPE_CHECKING:
-    from datetime import datetime
-
-    from grader.classroom.gradebook.grades import Grades
-    from grader.classroom.gradebook.student_grade import StudentGrade
-    from grader.grading.report import Report
 
 _TASK_SIZE = 50  # reports
 _UNSAFE = re.compile(r'[\x00-\x1f\x7f<>:"/\\|?*\s]+')
@@ -32,11 +29,9 @@ _MAX_BYTES = 140  # of a name: with a digest, an ending and a temporary name it 
 
 
 def write_reports(
-    executor: Executor, book: Path, folder: Path, formats: Sequence[Format], due: "datetime | None" = None
+    executor: Executor, book: Path, folder: Path, formats: Sequence[Format], due: datetime | None = None
 ) -> int:
     """Write a report for every student who has a result and return their number. Raises InputError."""
-    from grader.classroom.gradebook.gradebook import Gradebook
-
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -55,11 +50,8 @@ def write_reports(
 
 
 def _write_some(
-    book: str, folder: str, formats: tuple[Format, ...], names: dict[str, str], due: "datetime | None"
+    book: str, folder: str, formats: tuple[Format, ...], names: dict[str, str], due: datetime | None
 ) -> None:
-    from grader.classroom.gradebook.gradebook import Gradebook
-    from grader.classroom.gradebook.grades import Grades
-
     with Gradebook(Path(book)) as opened:
         grades = Grades(opened, due)
         for grade in list(grades.between(min(names), max(names))):
@@ -70,7 +62,7 @@ def _write_some(
                     save(Path(folder, f"{name}.{kind.ending}"), render(report, kind))
 
 
-def report_of(grades: "Grades", grade: "StudentGrade") -> "Report":
+def report_of(grades: Grades, grade: StudentGrade) -> Report:
     """Return the report on a student's newest submission; the late penalty is a note of its own."""
     report = grades.report(grade)
     if not grade.late.reason:
@@ -88,12 +80,11 @@ def file_names(keys: Sequence[str]) -> dict[str, str]:
     """
     plain = {key: _plain(key) for key in keys}
     counts = Counter(map(_folded, plain.values()))
-    names = {
-        key: name
-        if name == key and counts[_folded(name)] == 1 and not _DIGEST.search(name)
-        else _with_digest(name, key)
-        for key, name in plain.items()
-    }
+    names = {}
+    for key, name in plain.items():
+        is_valid = name == key and counts[_folded(name)] == 1 and not _DIGEST.search(name)
+        digest = "" if is_valid else f"-{hashlib.sha256(key.encode('utf-8', 'surrogateescape')).hexdigest()}"
+        names[key] = name + digest
     if len(set(map(_folded, names.values()))) < len(names):
         raise InputError("two students would share a report file; nothing was written")
     return names
@@ -122,7 +113,3 @@ def _plain(key: str) -> str:
     data = _UNSAFE.sub("_", unicodedata.normalize("NFC", key)).encode("utf-8", "replace")
     name = data[:_MAX_BYTES].decode("utf-8", "ignore").strip(" .") or "_"
     return f"_{name}" if _RESERVED.fullmatch(name) or name.startswith("-") else name
-
-
-def _with_digest(name: str, key: str) -> str:
-    return f"{name}-{hashlib.sha256(key.encode('utf-8', 'surrogateescape')).hexdigest()}"

@@ -1,43 +1,38 @@
 """The summary of a class: marks, statistics, and who needs attention."""
 
+from datetime import datetime
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.lateness import read_time
+from grader.classroom.gradebook.statistics import statistics
 from grader.report.formats import OutputFormat
 from grader.report.screen import Screen, draw
 
 if TYPE_CHECKING:
-    from datetime import datetime
-
-    from grader.classroom.gradebook.grades import Grades
     from grader.classroom.run.batch import Progress
 
 _MAX_LISTED = 20
 
 
-def read_deadline(text: str | None) -> "datetime | None":
+def read_deadline(text: str | None) -> datetime | None:
     """Return the time that `--due` gives. Raises InputError."""
-    from grader.classroom.gradebook.lateness import read_time
-
     return read_time(text) if text else None
 
 
 def class_statistics(gradebook: Path, due: str | None, kind: OutputFormat, screen: Screen) -> str:
     """Return the summary of a gradebook's class. Raises InputError."""
-    from grader.classroom.gradebook.gradebook import Gradebook
-    from grader.classroom.gradebook.grades import Grades
-
     with Gradebook(gradebook) as book:
         return class_summary(Grades(book, read_deadline(due)), kind, screen)
 
 
 def class_summary(
-    grades: "Grades", kind: OutputFormat, screen: Screen | None = None, done: "Progress | None" = None
+    grades: Grades, kind: OutputFormat, screen: Screen | None = None, done: "Progress | None" = None
 ) -> str:
     """Return the summary; `done` counts what a batch has just done. Raises InputError if nothing was graded."""
-    from grader.classroom.gradebook.statistics import statistics
-
     rubric = grades.newest_rubric()
     found = statistics(grades.book, rubric)
     looks = grades.needing_attention(_MAX_LISTED)

@@ -1,7 +1,6 @@
 """The exit codes of the commands, and how a report decides them."""
 
 import re
-from dataclasses import dataclass
 from decimal import Decimal
 from enum import IntEnum
 from typing import TYPE_CHECKING
@@ -25,26 +24,14 @@ class ExitCode(IntEnum):
     INTERRUPTED = 130
 
 
-@dataclass(frozen=True, slots=True)
-class Threshold:
-    """The score from which `--fail-under` lets a run pass: points, or percent of the maximum."""
-
-    value: Decimal
-    is_percent: bool
-
-    @classmethod
-    def read(cls, text: str) -> "Threshold":
-        """Return the threshold that `--fail-under` gives, such as 58.5 or 80%. Raises GraderError."""
-        if not _THRESHOLD.fullmatch(text) or (text.endswith("%") and Decimal(text[:-1]) > _MAX_PERCENT):
-            raise GraderError(f"--fail-under takes points or a percentage such as 80%, not {text!r}")
-        return cls(Decimal(text.removesuffix("%")), text.endswith("%"))
-
-    def is_reached(self, score: Decimal, maximum: Decimal) -> bool:
-        """Return whether a score is high enough."""
-        return score * 100 >= self.value * maximum if self.is_percent else score >= self.value
+def read_threshold(text: str) -> tuple[Decimal, bool]:
+    """Return the score that `--fail-under` gives, such as 58.5 or 80%, and whether it is in percent. Raises GraderError."""
+    if not _THRESHOLD.fullmatch(text) or (text.endswith("%") and Decimal(text[:-1]) > _MAX_PERCENT):
+        raise GraderError(f"--fail-under takes points or a percentage such as 80%, not {text!r}")
+    return Decimal(text.removesuffix("%")), text.endswith("%")
 
 
-def exit_code(report: "Report", threshold: Threshold | None) -> ExitCode:
+def exit_code(report: "Report", threshold: tuple[Decimal, bool] | None) -> ExitCode:
     """Return the exit code for a report.
 
     A faulty check takes precedence. With a threshold, only the score decides. Without one, every automatic criterion must have
@@ -55,7 +42,8 @@ def exit_code(report: "Report", threshold: Threshold | None) -> ExitCode:
     if report.counts("errored"):
         return ExitCode.FAULT
     if threshold is not None:
-        is_passed = threshold.is_reached(report.score, report.max_score)
+        least, is_percent = threshold
+        is_passed = report.score * 100 >= least * (report.max_score if is_percent else 100)
     else:
         is_passed = not report.counts("failed", "skipped") and not undecided(report)
     return ExitCode.PASSED if is_passed else ExitCode.FAILED

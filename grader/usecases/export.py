@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from decimal import Decimal
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
@@ -24,8 +24,7 @@ from grader.text import printable, printable_path
 from grader.usecases import Warn
 from grader.usecases.class_summary import class_summary, read_deadline
 from grader.usecases.exit_codes import ExitCode
-from grader.usecases.targets import is_same_file, is_stdout, refuse_gradebook, refuse_symlinks
-from grader.usecases.writing import save_bytes
+from grader.usecases.writing import is_same_file, is_stdout, refuse_gradebook, refuse_symlinks, save_bytes
 
 _STUDENT_COLUMNS = (
     "id", "name", "email", "login", "sis", "status", "score", "max_score", "pending", "late_days", "late_points",
@@ -49,21 +48,9 @@ class ExportRequest:
     pending_as_zero: bool
     any_maximum: bool
 
-    @property
-    def is_lms(self) -> bool:
-        """Whether the target is a file of an LMS that is filled in."""
-        return self.target in ("canvas", "moodle")
 
-
-class Exported(NamedTuple):
-    """What to print, and the exit code."""
-
-    data: bytes
-    exit_code: ExitCode
-
-
-def export(request: ExportRequest, warn: Warn) -> Exported:
-    """Export the grades to the output file or for standard output. Raises GraderError."""
+def export(request: ExportRequest, warn: Warn) -> tuple[bytes, ExitCode]:
+    """Export the grades to the output file; return what to print, and the exit code. Raises GraderError."""
     _refuse_files(request)
     with Gradebook(request.gradebook) as book:
         classes = tuple({run.source for run in book.runs()})
@@ -76,21 +63,21 @@ def export(request: ExportRequest, warn: Warn) -> Exported:
                 warn(line)
             if request.strict and not filled.preflight.matches:
                 warn("nothing was written, because of --strict: some rows or grades are unmatched")
-                return Exported(b"", ExitCode.FAILED)
+                return b"", ExitCode.FAILED
             data = filled.data
         elif request.target == "csv":
             data = grades_csv(grades).encode()
         else:
             data = class_summary(grades, OutputFormat.JSON).encode()
     if request.output is None:
-        return Exported(data, ExitCode.PASSED)
+        return data, ExitCode.PASSED
     save_bytes(request.output, data, classes)
-    return Exported(b"", ExitCode.PASSED)
+    return b"", ExitCode.PASSED
 
 
 def _refuse_files(request: ExportRequest) -> None:
     into, output = request.into, request.output
-    if (into is None) == request.is_lms:
+    if (into is None) == (request.target in ("canvas", "moodle")):
         raise GraderError(
             f"export {request.target} fills in a file that the LMS exported: give it with --into"
             if into is None
@@ -138,27 +125,13 @@ def lms_grades(grades: Grades, *, feedback: bool, pending_as_zero: bool) -> Iter
 def _fill(request: ExportRequest, file: Path, grades: Grades) -> Filled:
     """Fill in Moodle's worksheet or Canvas' gradebook. Raises InputError."""
     data = read_capped(file, SIZE_LIMIT, advice="")
-    shown, rubric, is_moodle = printable_path(file), grades.newest_rubric(), request.target == "moodle"
+    rubric, is_moodle = grades.newest_rubric(), request.target == "moodle"
     rows = list(lms_grades(grades, feedback=is_moodle, pending_as_zero=request.pending_as_zero))
+    options: dict[str, Any] = {"column": request.column, "any_maximum": request.any_maximum}
+    options |= {"out_of": rubric.points, "shown": printable_path(file)}
     if is_moodle:
-        return fill_worksheet(
-            data,
-            rows,
-            out_of=rubric.points,
-            column=request.column,
-            feedback_column=request.feedback_column,
-            any_maximum=request.any_maximum,
-            shown=shown,
-        )
-    return fill_gradebook(
-        data,
-        rows,
-        out_of=rubric.points,
-        rubric_names=(rubric.id, rubric.title),
-        column=request.column,
-        any_maximum=request.any_maximum,
-        shown=shown,
-    )
+        return fill_worksheet(data, rows, feedback_column=request.feedback_column, **options)
+    return fill_gradebook(data, rows, rubric_names=(rubric.id, rubric.title), **options)
 
 
 def _feedback(grades: Grades, grade: StudentGrade) -> str:

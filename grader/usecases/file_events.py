@@ -3,6 +3,7 @@
 import os
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from math import inf
 from pathlib import Path
 from typing import NamedTuple
@@ -14,10 +15,7 @@ from grader.files.folder import is_looked_at
 from grader.text import printable_path
 
 _POLL = 100  # milliseconds between two checks for changes that cause no event
-_STEP, _DEBOUNCE = (
-    50,
-    400,
-)  # milliseconds: changes that follow each other within a step are one, up to the debounce time
+_STEP, _DEBOUNCE = 50, 400  # milliseconds: changes within a step of each other are one, up to the debounce time
 _RECHECK = 1.5  # seconds: without events, watchfiles misses the second change within one second
 _Stamp = tuple[int, ...] | None
 
@@ -129,27 +127,23 @@ def _filter(target: _Target, watched: Watched) -> Callable[[Change, str], bool]:
 def _target(path: Path) -> _Target:
     real = Path(os.path.realpath(path))
     if real.is_dir():
-        return _Target((str(real),), frozenset(), (_stamp(real),))
+        return _Target((str(real),), frozenset(), (_folder_stamp(real),))
     files = {real, Path(os.path.realpath(path.parent), path.name)}  # a symlink and its target
     folders = sorted({file.parent for file in files})
-    return _Target(tuple(map(str, folders)), frozenset(map(str, files)), tuple(map(_stamp, folders)))
+    return _Target(tuple(map(str, folders)), frozenset(map(str, files)), tuple(map(_folder_stamp, folders)))
 
 
-def _stamp(folder: Path) -> _Stamp:
+def _folder_stamp(folder: Path) -> _Stamp:
     """Return what identifies a folder and its permissions."""
-    try:
+    with suppress(OSError):
         status = folder.stat()
-    except OSError:
-        return None
-    return status.st_dev, status.st_ino, status.st_mode
+        return status.st_dev, status.st_ino, status.st_mode
+    return None
 
 
 def _file_stamp(file: Path | None) -> _Stamp:
     """Return what changes whenever a file is written."""
-    try:
+    with suppress(OSError):
         status = file.stat() if file is not None else None
-    except OSError:
-        return None
-    if status is None:
-        return None
-    return status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns
+        return status and (status.st_dev, status.st_ino, status.st_size, status.st_mtime_ns, status.st_ctime_ns)
+    return None

@@ -6,8 +6,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.errors import InputError
+from grader.text import printable
 from grader.usecases import Warn
-from grader.usecases.targets import refuse_symlinks
+from grader.usecases.writing import refuse_symlinks
 
 if TYPE_CHECKING:
     from grader.grading.report import Report
@@ -38,8 +39,7 @@ def publish_report(report: "Report", base: "Base", annotate: Annotate | None, wa
 def publish_refusal(reason: str, annotate: Annotate, warn: Warn) -> None:
     """Annotate why nothing was graded, and add it to the job summary."""
     from grader.report.github import command
-    from grader.report.markdown_text import escaped
-    from grader.text import printable
+    from grader.report.markdown import escaped
 
     lines = [printable(line) for line in reason.splitlines()]
     annotate(command("error", None, "Nothing was graded", "\n".join(lines)))
@@ -54,7 +54,8 @@ def _add_to_summary(text: Callable[[int], str], warn: Warn) -> None:
         return
     try:
         refuse_symlinks(Path(summary))
-        with open(summary, "ab", opener=_open_file) as file:
+        no_symlinks = getattr(os, "O_NOFOLLOW", 0)
+        with open(summary, "ab", opener=lambda path, flags: os.open(path, flags | no_symlinks, 0o666)) as file:
             size = file.tell()
             added = text(_MAX_SUMMARY - size - 1).encode("utf-8", "backslashreplace")
             if added:
@@ -63,8 +64,3 @@ def _add_to_summary(text: Callable[[int], str], warn: Warn) -> None:
         warn(f"cannot write the job summary: {error.strerror or error}")
     except InputError as error:
         warn(f"job summary: {error}")
-
-
-def _open_file(path: str, flags: int) -> int:
-    """Open a file, but not through a symlink."""
-    return os.open(path, flags | getattr(os, "O_NOFOLLOW", 0), 0o666)

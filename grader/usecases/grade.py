@@ -3,7 +3,9 @@
 import os
 import re
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
+from decimal import Decimal
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -11,11 +13,9 @@ from grader.errors import GraderError, InputError
 from grader.report.formats import Format, needed, render
 from grader.text import printable, printable_path
 from grader.usecases import Warn
-from grader.usecases.exit_codes import ExitCode, Threshold, exit_code
-from grader.usecases.repository import base_of
+from grader.usecases.exit_codes import ExitCode, exit_code, read_threshold
 from grader.usecases.rubrics import load
-from grader.usecases.targets import ROBOT_FILES, is_same_file, refuse_symlinks
-from grader.usecases.writing import remove_previous, save
+from grader.usecases.writing import CHECKOUTS, ROBOT_FILES, is_same_file, refuse_symlinks, remove_previous, save
 
 if TYPE_CHECKING:
     from grader.grading.report import Report
@@ -41,9 +41,9 @@ class GradeRequest:
     answers: bool = False
 
     @property
-    def threshold(self) -> Threshold | None:
+    def threshold(self) -> tuple[Decimal, bool] | None:
         """The threshold of `--fail-under`, if there is one. Raises GraderError."""
-        return Threshold.read(self.fail_under) if self.fail_under is not None else None
+        return read_threshold(self.fail_under) if self.fail_under is not None else None
 
 
 class GradeResult(NamedTuple):
@@ -103,7 +103,7 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeResult:
     for result in report.results:
         if result.traceback:
             warn(printable(f"{result.criterion.id}: {result.traceback.strip().splitlines()[-1]}"))
-    base = base_of(request.path, is_single=submission.is_single)
+    base = _base_of(request.path, is_single=submission.is_single)
     return GradeResult(report, base, exit_code(report, threshold))
 
 
@@ -158,3 +158,38 @@ def requested_rubric(request: GradeRequest, warn: Warn) -> "Rubric":
     for name in request.parts:
         rubric.part(name)
     return rubric
+
+
+def _base_of(path: str, *, is_single: bool) -> "Base":
+    """Return where a submission is in its repository; `is_single` if it is one URDF, whose paths start in its folder."""
+    from grader.report.locations import Base
+
+    if path == "-":
+        return Base(is_outside=True)
+    named = Path(path)
+    is_folder = named.is_dir()
+    # A file keeps the name that was typed, even if that is a symlink; a folder is resolved.
+    place = named.resolve() if is_folder else named.parent.resolve() / named.name
+    root = _repository(place)
+    if root is None:
+        return Base(is_outside=True)
+    if is_folder or is_single:
+        folder = (place if is_folder else place.parent).relative_to(root).as_posix()
+        return Base("" if folder == "." else f"{folder}/")
+    return Base(archive=place.relative_to(root).as_posix())
+
+
+def _repository(place: Path) -> Path | None:
+    """Return the root of a path's repository: the CI system's checkout, else the folder with .git, else the current folder."""
+    around = [place, *place.parents]
+    for name in CHECKOUTS:
+        checkout = Path(os.environ.get(name) or os.sep).resolve()
+        if checkout in around[:-1]:  # the last is the root of the file system
+            return checkout
+    for folder in around:
+        if (folder / ".git").exists():
+            return folder
+    with suppress(OSError):  # the current folder may have been deleted
+        here = Path.cwd()
+        return here if here in around else None
+    return None

@@ -25,8 +25,7 @@ from grader.usecases import Warn
 from grader.usecases.class_reports import write_reports
 from grader.usecases.class_summary import class_summary, read_deadline
 from grader.usecases.export import grades_csv
-from grader.usecases.targets import missing_folder, refuse_gradebook, refuse_symlinks
-from grader.usecases.writing import save
+from grader.usecases.writing import missing_folder, refuse_gradebook, refuse_symlinks, save
 
 _MAX_LINES = 10
 _REPORT_SECONDS = 600.0  # for a task that writes a few dozen reports

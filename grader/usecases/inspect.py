@@ -2,29 +2,23 @@
 
 from collections.abc import Sequence
 from math import isfinite
-from typing import TYPE_CHECKING
 
 from grader.errors import GraderError, InputError, MissingElement
+from grader.report.inspection import Inspection, main_root
+from grader.robot.frames import Position
+from grader.robot.kinematics import Configuration
+from grader.robot.reader import Reading
+from grader.submission.submission import open_submission
+from grader.submission.urdf import Absent, Read, Unreadable
 from grader.text import printable_path
 from grader.usecases import Warn
 
-if TYPE_CHECKING:
-    from grader.report.inspection import Inspection
-    from grader.robot.frames import Position
-    from grader.robot.kinematics import Configuration
-    from grader.robot.reader import Reading
-
-_ANY_URDF = "robot.urdf"
 _MAX_NAMED = 20
 
 
-def inspect(path: str, joints: Sequence[str], relative_to: str | None, max_size: int, warn: Warn) -> "Inspection":
+def inspect(path: str, joints: Sequence[str], relative_to: str | None, max_size: int, warn: Warn) -> Inspection:
     """Return the inspection of the URDF at a path. Raises GraderError."""
-    from grader.report.inspection import Inspection, main_root
-    from grader.submission.submission import open_submission
-    from grader.submission.urdf import Absent, Read, Unreadable
-
-    submission = open_submission(path, wanted=_ANY_URDF, limit=max_size)
+    submission = open_submission(path, wanted="robot.urdf", limit=max_size)
     match urdf := submission.urdf:
         case Unreadable(reason=reason):
             raise InputError(reason)
@@ -44,9 +38,7 @@ def inspect(path: str, joints: Sequence[str], relative_to: str | None, max_size:
     return Inspection(urdf.path, urdf.reading, robot, relative_to)
 
 
-def _configuration(urdf: "Reading", joints: Sequence[str]) -> "Configuration | None":
-    from grader.robot.kinematics import Configuration
-
+def _configuration(urdf: Reading, joints: Sequence[str]) -> Configuration | None:
     positions = dict(map(_read_position, joints))
     if urdf.robot is None:
         return None
@@ -56,7 +48,7 @@ def _configuration(urdf: "Reading", joints: Sequence[str]) -> "Configuration | N
         raise GraderError(f"--joint: {error}") from None
 
 
-def _read_position(text: str) -> "tuple[str, Position]":
+def _read_position(text: str) -> tuple[str, Position]:
     """Return the joint and its position in radians or metres that `--joint` gives. Raises GraderError."""
     name, equals, value = text.rpartition("=")
     try:

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from grader.errors import RubricError
-from grader.text import counted, printable
+from grader.text import counted, counted_points, printable
 from grader.usecases import Warn
 
 if TYPE_CHECKING:
@@ -32,15 +32,12 @@ def listed() -> str:
 
 def summary(rubric: "Rubric") -> str:
     """Return a rubric's title and size: Lab 6 (56 criteria, 100 points)."""
-    from grader.text import counted_points
-
     return f"{rubric.title} ({counted(len(rubric.criteria), 'criterion', 'criteria')}, {counted_points(rubric.points)})"
 
 
 def check(name: str, warn: Warn) -> str:
     """Check a rubric and return a summary. Raises RubricError if its reference solution does not get full marks."""
     from grader.grading.grade import grade_reference
-    from grader.text import counted_points
 
     rubric = load(name, warn)
     found = f"{rubric.id}: {len(rubric.criteria)} criteria, {counted_points(rubric.points)}, no mistakes found"
@@ -48,10 +45,6 @@ def check(name: str, warn: Warn) -> str:
         return found
     lost = [result for result in grade_reference(rubric).results if result.outcome.status not in ("passed", "pending")]
     if lost:
-        raise RubricError(
-            tuple(
-                printable(f"the reference does not get {result.criterion.id}: {result.outcome.message}")
-                for result in lost
-            )
-        )
+        lines = (f"the reference does not get {result.criterion.id}: {result.outcome.message}" for result in lost)
+        raise RubricError(tuple(map(printable, lines)))
     return f"{found}; its reference gets full marks"

@@ -4,10 +4,15 @@ import gc
 import os
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+
+from rich.console import Console
+from rich.text import Text
 
 from grader.errors import GraderError, InputError, RubricError
+from grader.grading.report import Report
+from grader.grading.rubric import find_rubric, shipped_rubrics
 from grader.report.comparison import comparison_lines, unchanged_line
+from grader.report.console import wrapped
 from grader.report.formats import Format, render
 from grader.report.screen import draw
 from grader.text import printable_path
@@ -15,17 +20,7 @@ from grader.usecases import Terminal, Warn
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.grade import GradeRequest, grade_submission, remove_reports, requested_rubric, save_reports
 
-if TYPE_CHECKING:
-    from rich.console import Console
-
-    from grader.grading.report import Report
-
-
-class _Shown(NamedTuple):
-    """The report that was shown last, and its text for a file, which does not depend on the terminal's width."""
-
-    report: "Report"
-    text: str
+_Shown = tuple[Report, str]  # the report that was shown last, and its text for a file, whatever the terminal's width
 
 
 def watch(request: GradeRequest, terminal: Terminal) -> ExitCode:
@@ -82,8 +77,6 @@ def _changes(request: GradeRequest, warn: Warn) -> Iterator[bool]:
 
 def _rubric_file(request: GradeRequest, warn: Warn) -> Path | None:
     """Return the rubric's file, None for a shipped rubric. Raises GraderError for an unknown rubric or part."""
-    from grader.grading.rubric import find_rubric, shipped_rubrics
-
     file = find_rubric(request.rubric)
     if file not in shipped_rubrics().values():
         return file
@@ -99,25 +92,21 @@ def _show_error(path: str, error: GraderError, warn: Warn) -> None:
         warn(line)
 
 
-def _show(report: "Report", last: _Shown | None, terminal: Terminal, *, has_changed: bool) -> _Shown:
+def _show(report: Report, last: _Shown | None, terminal: Terminal, *, has_changed: bool) -> _Shown:
     """Show what changed, then the whole report; of a report that is the same, one line at most."""
-    shown = _Shown(report, render(report, Format.TERMINAL))
-    if last is not None and shown.text == last.text:
+    shown = report, render(report, Format.TERMINAL)
+    if last is not None and shown[1] == last[1]:
         if has_changed:
             terminal.show(f"{unchanged_line(report)}\n")
         return shown
     screen = terminal.screen()
-    lines = comparison_lines(last.report, report) if last is not None else []
+    lines = comparison_lines(last[0], report) if last is not None else []
     changes = draw(lambda console: _print_lines(lines, console), screen) if lines else ""
     terminal.show(changes + render(report, Format.TERMINAL, screen=screen))
     return shown
 
 
-def _print_lines(lines: list[str], console: "Console") -> None:
-    from rich.text import Text
-
-    from grader.report.console import wrapped
-
+def _print_lines(lines: list[str], console: Console) -> None:
     console.print()
     for line in lines:
         wrapped(console, Text(line, style="bold"), 0)

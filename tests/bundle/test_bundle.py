@@ -14,9 +14,8 @@ from pathlib import Path
 
 import pytest
 
-from grader.bundle import installed
-from grader.bundle.gradescope import autograder_zip
-from grader.bundle.installed import package_files, requirements
+from grader.bundle import gradescope as installed
+from grader.bundle.gradescope import autograder_zip, package_files, requirements
 from grader.checks.outcome import Outcome
 from grader.checks.registry import describe
 from grader.errors import InputError

@@ -50,12 +50,7 @@ def run(command: list[str], seconds: float) -> Completed:
     # Files instead of pipes: a child that keeps a pipe open would block the reader.
     with TemporaryFile() as output, TemporaryFile() as errors:
         process = subprocess.Popen(
-            command,
-            stdin=subprocess.DEVNULL,
-            stdout=output,
-            stderr=errors,
-            env=ENVIRONMENT,
-            start_new_session=True,
+            command, stdin=subprocess.DEVNULL, stdout=output, stderr=errors, env=ENVIRONMENT, start_new_session=True
         )
         code: int | None
         try:
