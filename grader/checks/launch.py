@@ -75,14 +75,14 @@ def _why_missing(launch: "Launch", missing: set[str]) -> "tuple[str, Location | 
 
 
 def launch_finds_files(package: Package, *, name: str) -> Outcome:
-    """The URDF and RViz files that the launch file names are where a build of the package puts them."""
+    """The launch file looks for the URDF and RViz files where a build of the package installs them."""
     launch = _launch(package, name)
     verdicts = [(_verdict(package, file), file) for file in launch.named("urdf", "rviz", "include")]
     wrong = [(text, file) for (status, text), file in verdicts if status == "failed"]
     if wrong:
         message = "; ".join(dict.fromkeys(text for text, _ in wrong))
         if any(file.path is not None and is_of_one_machine(file.path) for _, file in wrong):
-            message += f"; get_package_share_directory({package.name!r}) returns the folder that it is installed in"
+            message += f"; use get_package_share_directory({package.name!r}), which returns the installed folder"
         return failed(message, wrong[0][1].location)
     for (status, text), file in verdicts:
         if status == "missing":
@@ -155,16 +155,25 @@ def _verdict(package: Package, named: "Reference") -> "tuple[Status | Literal['m
         owner, _, rest = path.removeprefix(f"{SHARE}/").partition("/")
         return _below_share(package, owner, rest, named)
     if is_of_one_machine(path):
-        return "failed", f"it looks for the {what} at {path.replace(HOME, '~')}, which exists on one machine only"
+        return (
+            "failed",
+            f"the launch file looks for the {what} at {path.replace(HOME, '~')}, which exists on one machine only",
+        )
     if path.startswith(WORKING_FOLDER) or not path.startswith("/"):
         shown = path.removeprefix(WORKING_FOLDER + "/")
         if shown.startswith("~"):
-            return "failed", f"it looks for the {what} at {shown}, but nothing replaces ~ by the home folder"
-        return "failed", f"it looks for the {what} at {shown}, in the folder that ros2 launch is started from"
+            return (
+                "failed",
+                f"the launch file looks for the {what} at {shown}, but nothing replaces ~ by the home folder",
+            )
+        return (
+            "failed",
+            f"the launch file looks for the {what} at {shown}, relative to the folder that ros2 launch is started from",
+        )
     if not path.startswith(PREFIX) and posixpath.basename(path) in map(posixpath.basename, package.tree.files):
         return (
             "failed",
-            f"it looks for the {what} at {path}: joining a path that begins with / drops the folders before it",
+            f"the launch file looks for the {what} at {path}: joining a path that begins with / drops the folders before it",
         )
     return "pending", f"the {what} {path.removeprefix(PREFIX)} is not part of the package"
 
@@ -183,9 +192,12 @@ def _below_share(
     if other is None:
         if _is_glued(package, owner, rest):
             path = posixpath.join("share", owner, rest).rstrip("/")
-            return "failed", f"it looks for the {what} at {path}: a slash is missing after {package.name!r}"
+            return (
+                "failed",
+                f"the launch file looks for the {what} at {path}: a slash is missing after {package.name!r}",
+            )
         if closest(owner, [package.name]):
-            return "failed", f"it looks in a package {owner!r}, but this one is named {package.name!r}"
+            return "failed", f"the launch file looks in a package {owner!r}, but this one is named {package.name!r}"
         if named.purpose == "include":
             return "passed", ""
         return "pending", f"the {what} is in {owner!r}, which is not part of the submission"
@@ -203,12 +215,12 @@ def _below_share(
     name = posixpath.basename(rest)
     put = next((path for path in installed if posixpath.basename(path) == name), None)
     if put is not None:
-        return "failed", f"it looks for the {what} at {target}, but a build installs it as {put}"
+        return "failed", f"the launch file looks for the {what} at {target}, but a build installs it as {put}"
     if any(posixpath.basename(path) == name for path in other.tree.files):
-        return "missing", f"it looks for the {what} at {target}, but a build does not install {name}"
+        return "missing", f"the launch file looks for the {what} at {target}, but a build does not install {name}"
     endings, own = _ENDINGS[named.purpose], posixpath.basename(named.location.path)
     alike = sorted({posixpath.basename(path) for path in other.tree.files if path.lower().endswith(endings)} - {own})
-    message = f"it looks for the {what} at {target}, but the package has no file {name!r}"
+    message = f"the launch file looks for the {what} at {target}, but the package has no file {name!r}"
     if not alike and named.purpose != "include":
         return "missing", message
     similar = closest(name, alike) or (alike[0] if len(alike) == 1 and named.purpose != "include" else None)

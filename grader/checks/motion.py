@@ -93,7 +93,7 @@ def turns_about_itself(
     if away <= tolerance + SLACK:
         message, detail = f"{link!r} turns about its own axis", ""
     else:
-        message = f"{link!r} turns off centre: its joint axis is {size(away, 'm')} beside the cylinder's axis; it should be on it"
+        message = f"{link!r} turns off centre: its joint axis is {size(away, 'm')} from the cylinder's axis; it should be on it"
     fine = not detail
     return judged(fine, message, away, 0.0, tolerance, "m", at=at, detail=detail)
 

@@ -43,7 +43,7 @@ def fault_of(returned: object) -> str:
         return f"it returned the status {returned.status!r}; a check returns passed, failed or pending"
     for name, is_valid in _VALID.items():
         if not is_valid(getattr(returned, name)):
-            return f"it returned an Outcome whose {name} no report can hold"
+            return f"it returned an Outcome with an invalid {name}"
     return ""
 
 

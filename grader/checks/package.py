@@ -101,7 +101,7 @@ def _readable_setup(package: Package) -> "Setup | Outcome":
     setup = package.setup
     if package.is_cmake:
         return pending(
-            "the grader does not evaluate CMakeLists.txt, which says what is installed; needs manual grading"
+            "the grader does not evaluate CMakeLists.txt, which lists what is installed; needs manual grading"
         )
     if setup is None:
         message = "the package has no setup.py, so a build of an ament_python package installs nothing"

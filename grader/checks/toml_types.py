@@ -74,10 +74,10 @@ def _is_float(value: Any) -> bool:
 _SIMPLE = {
     float: simple_type("a number", {"type": "number"}, _is_float, float),
     int: simple_type("a whole number", {"type": "integer"}, _is_integer),
-    str: simple_type("a text", {"type": "string"}, lambda value: isinstance(value, str)),
+    str: simple_type("a string", {"type": "string"}, lambda value: isinstance(value, str)),
     bool: simple_type("true or false", {"type": "boolean"}, lambda value: isinstance(value, bool)),
 }
-_PLURALS = {float: "numbers", str: "texts"}
+_PLURALS = {float: "numbers", str: "strings"}
 
 
 @lru_cache(maxsize=256)
@@ -144,7 +144,7 @@ def _sequence(item: TomlType, origin: type, length: int | None, plural: str) -> 
 
 
 def _mapping(item: TomlType) -> TomlType:
-    name = "a table of texts"
+    name = "a table of strings"
     schema = {"type": "object", "additionalProperties": item.schema, "minProperties": 1}
 
     def parse(value: Any) -> Any:

@@ -8,7 +8,7 @@ from grader.cli.options import DEFAULT_RUBRIC, RubricOption
 from grader.cli.suggestions import explainable
 from grader.usecases.writing import write_stdout
 
-_NAME = "Such as URDF051, frame_at or lidar-frame."
+_NAME = "For example URDF051, frame_at or lidar-frame."
 
 
 def explain(

@@ -42,7 +42,7 @@ def export(
 ) -> int:
     """Export the current grades for a spreadsheet, Canvas or Moodle.
 
-    A grade is the sum of automatic points and manual marks, less the late penalty. For Canvas and Moodle, give the file that the LMS
+    A grade is the sum of automatic points and manual marks, minus the late penalty. For Canvas and Moodle, give the file that the LMS
     exported: only the cells of the grade (and Moodle's feedback) change. Rows without a grade are omitted, so that the import
     overwrites no other grade. The maximum in the file must be the rubric's. Exits 1 if --strict finds an unmatched row.
 

@@ -35,7 +35,7 @@ class Allowance:
 
 def too_many(name: str) -> InputError:
     """Return the error for a submission with more files than any student submits."""
-    return FileError(name, f"holds more than {MAX_FILES} files: name the package or the URDF")
+    return FileError(name, f"contains more than {MAX_FILES} files: name the package or the URDF")
 
 
 def too_large(name: str) -> FileError:

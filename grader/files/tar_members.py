@@ -14,7 +14,7 @@ from grader.files import limits
 from grader.files.members import NOT_REGULAR, ArchiveMember, Opener
 
 _CHUNK = 1024 * 1024  # bytes
-_BACKWARD = "it leads back to its own beginning"
+_BACKWARD = "it refers to an earlier position"
 
 _DECOMPRESSORS: dict[str, Any] = {"gz": gzip.open, "bz2": bz2.open, "xz": lzma.open}
 COMPRESSED_KINDS = frozenset(_DECOMPRESSORS)

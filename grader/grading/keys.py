@@ -82,8 +82,8 @@ _ID = constrained(
     _TEXT,
     Constraint("one printable word", lambda text: text.isprintable() and len(text.split(" ")) == 1 and text != ""),
 )
-_NOT_EMPTY = Constraint("a text that is not empty", bool)
-_TITLE = constrained(simple_type("a text", _TEXT.schema, lambda value: isinstance(value, str), _one_line), _NOT_EMPTY)
+_NOT_EMPTY = Constraint("a non-empty string", bool)
+_TITLE = constrained(simple_type("a string", _TEXT.schema, lambda value: isinstance(value, str), _one_line), _NOT_EMPTY)
 _TIME = simple_type("a date and time with its offset, such as 2026-11-20T23:59:00+01:00", {"type": "string"}, _is_time)
 _FILE = constrained(
     _TEXT, Constraint("the path of a file", lambda path: path.strip().rstrip("/").split("/")[-1] not in ("", ".", ".."))
@@ -105,7 +105,7 @@ CRITERION = KeyTable(
         "points": _POINTS,
         "check": _TEXT,
         "with": _table({"type": "object"}),
-        "requires": simple_type("a list of texts", {"type": "array", "items": _TEXT.schema}, _is_texts, tuple),
+        "requires": simple_type("a list of strings", {"type": "array", "items": _TEXT.schema}, _is_texts, tuple),
         "feedback": _TEXT,
     },
     optional=("about", "with", "requires", "feedback"),

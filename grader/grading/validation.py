@@ -72,7 +72,7 @@ class Validation:
         for index, row in enumerate(self.rubric.get(key, ())):
             name = row.get("id")
             if isinstance(name, str) and positions.setdefault(name, index) != index:
-                self._complain((key, index, "id"), f"there is a {key} {name!r} already")
+                self._complain((key, index, "id"), f"the {key} {name!r} is already used")
         return positions
 
     def _belongs(self, where: Path, row: TomlRow, parts: Collection[str]) -> None:

@@ -113,7 +113,7 @@ class DataFiles:
             case str() | PurePosixPath():
                 self._file(entry, "", at)
             case [str() as path]:
-                self._stop(path, "an entry is a folder and a list of files, and here the list is missing", at)
+                self._stop(path, "an entry is a folder and a list of files; the list is missing", at)
             case [str() | PurePosixPath() as folder, files]:
                 self._folder(str(folder), files, at)
             case [folder, _]:

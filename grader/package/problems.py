@@ -82,5 +82,5 @@ def _launch_problems(launch: Launch) -> Iterator[Problem]:
         yield Problem(catalogue.LAUNCH_UNKNOWN, unknown.message, unknown.location)
     for reference in launch.references:
         if reference.path is not None and is_of_one_machine(reference.path):
-            message = f"{reference.path.replace(HOME, '~')}, which exists on one machine only"
+            message = f"the path {reference.path.replace(HOME, '~')} exists on one machine only"
             yield Problem(catalogue.HARD_CODED, message, reference.location)

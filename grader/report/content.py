@@ -13,7 +13,7 @@ from grader.text import counted_points, enumerated, first_lines, format_points, 
 
 _VERDICTS = {
     "clean": "ROS 2 loads the file",
-    "degraded": "ROS 2 loads the file, but drops some of it",
+    "degraded": "ROS 2 loads the file, but drops content of it",
     "rejected": "ROS 2 rejects the file",
 }
 _MAX_LISTED = 12
@@ -193,8 +193,8 @@ def advice(report: Report) -> str:
     first = next((result.criterion.id for result in report.results if result.outcome.status == "failed"), None)
     if first is None:
         return ""
-    robot = ", `grader inspect` shows the whole robot" if report.submission.has_urdf else ""
-    return f"`{explain_command(first, report)}` explains how it is decided{robot}."
+    robot = "; `grader inspect` shows the whole robot" if report.submission.has_urdf else ""
+    return f"`{explain_command(first, report)}` explains the first failed criterion{robot}."
 
 
 def explain_command(name: str, report: Report) -> str:

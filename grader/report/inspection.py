@@ -21,7 +21,7 @@ _MAX_LISTED = 500  # links in the terminal
 _VERDICTS = {"clean": "green", "degraded": "yellow", "rejected": "bold red"}
 _EFFECTS = {
     "clean": "ROS 2 loads it",
-    "degraded": "ROS 2 loads it, but drops some of it",
+    "degraded": "ROS 2 loads it, but drops content of it",
     "rejected": "ROS 2 rejects it",
 }
 

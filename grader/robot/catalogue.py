@@ -218,7 +218,7 @@ CYCLE = rejects(
 DETACHED_CYCLE = drops(
     "URDF083",
     "A detached loop of links",
-    "These links form a loop that is not connected to the root. ROS 2 loads the file, but leaves them out of the tree.",
+    "These links form a loop that is not connected to the root. ROS 2 loads the file, but ignores them.",
     detaches_links=True,
 )
 TWO_PARENTS = warns(

@@ -69,15 +69,15 @@ def undefined_pose(joint: Joint) -> MissingElement:
     """Return the error for a pose that is undefined because of this joint."""
     location, attribute, inside = joint.axis_location, "xyz", ""
     if joint.origin is None:
-        reason = "its origin cannot be read"
+        reason = "the joint's origin cannot be read"
         location, attribute, inside = joint.location, "", "origin"
     elif joint.axis is None:
-        reason = "its axis cannot be read"
+        reason = "the joint's axis cannot be read"
     elif unit(joint.axis) is None:
-        reason = "its axis is 0 0 0"
+        reason = "the joint's axis is 0 0 0"
     else:
-        reason = "its numbers are too large"
+        reason = "the joint's numbers are too large"
         location, attribute = joint.location, ""
-    message, detail = f"the pose of a joint's child is undefined: {reason}", f" (joint {quoted(joint.name)})"
+    message, detail = f"the pose is undefined: {reason}", f" (joint {quoted(joint.name)})"
     at = location._replace(attribute=attribute or None, inside=inside or None) if location is not None else None
     return MissingElement("pose below joint", joint.name, message=message, detail=detail, location=at)

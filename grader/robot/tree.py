@@ -47,7 +47,7 @@ def _check_two_parents(edges: Edges, parents: dict[str, Joint], problems: Proble
         if len({joint.name for joint in rivals}) > 1:
             names = " and ".join(quoted(joint.name) for joint in rivals[:_MAX_NAMED])
             message = (
-                f"link {quoted(child)} is the child of the joints {names}; ROS 2 takes "
+                f"link {quoted(child)} is the child of the joints {names}; ROS 2 uses "
                 f"{quoted(parents[child].name)}, the last in name order"
             )
             problems.add(catalogue.TWO_PARENTS, message, problems.element(rivals[1]))
@@ -105,7 +105,7 @@ def _report_cycle(cycle: list[Joint], reachable: set[str], problems: Problems, *
     if cycle[0].parent in reachable:
         problems.add(catalogue.CYCLE, f"{loop}: {steps}; ROS 2 follows it without end and crashes", element)
     elif has_root:
-        message = f"{loop} that is detached from the robot: {steps}; ROS 2 leaves these links out"
+        message = f"{loop} that is detached from the robot: {steps}; ROS 2 ignores these links"
         problems.add(catalogue.DETACHED_CYCLE, message, element)
     else:
         problems.add(catalogue.NO_ROOT, f"there is no root link: {loop}: {steps}; ROS 2 rejects the file", element)
@@ -124,7 +124,7 @@ def _check_roots(robot: Robot, roots: list[str], edges: Edges, links: dict[str, 
     verb, them = ("is", "it") if len(others) == 1 else ("are", "them")
     all_roots = ", ".join(map(quoted, [main, *others][:_MAX_ROOTS]))
     message = (
-        f"{named} {verb} not connected to the robot: no joint has {them} as its child (roots are {all_roots}); "
+        f"{named} {verb} not connected to the robot: no joint has {them} as its child (the roots are {all_roots}); "
         "ROS 2 rejects the file"
     )
     problems.add(catalogue.TWO_ROOTS, message, links[others[0]], "name")

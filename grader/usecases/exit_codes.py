@@ -36,7 +36,7 @@ class Threshold:
     def read(cls, text: str) -> "Threshold":
         """Return the threshold that `--fail-under` gives, such as 58.5 or 80%. Raises GraderError."""
         if not _THRESHOLD.fullmatch(text) or (text.endswith("%") and Decimal(text[:-1]) > _MAX_PERCENT):
-            raise GraderError(f"--fail-under takes points or a percentage such as 80%, not {text!r}")
+            raise GraderError(f"--fail-under takes points or a percentage from 0% to 100%, not {text!r}")
         return cls(Decimal(text.removesuffix("%")), text.endswith("%"))
 
     def is_reached(self, score: Decimal, maximum: Decimal) -> bool:

@@ -26,7 +26,7 @@ class Database:
         if not path.parent.exists():
             folder = printable_path(path.parent)
             raise InputError(
-                f"cannot create the gradebook {self.shown}: there is no folder {folder} (mkdir -p {folder} makes it)"
+                f"cannot create the gradebook {self.shown}: there is no folder {folder} (create it with mkdir -p {folder})"
             )
         with self.input_errors():
             self.connection = sqlite3.connect(path, timeout=BUSY_TIMEOUT, isolation_level=None)

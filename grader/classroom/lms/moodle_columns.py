@@ -58,7 +58,7 @@ def find_columns(table: Table, column: str, feedback_column: str, shown: str) ->
     maximum = grade + 1
     if not rows or any(not _is_maximum(row.value(maximum)) for row in rows if len(row.cells) == len(titles)):
         raise InputError(
-            f"{shown} has no number as the maximum grade behind {titles[grade]!r}: an assignment that is graded by a scale takes no points"
+            f"{shown} has no number as the maximum grade after {titles[grade]!r}: an assignment that is graded by a scale takes no points"
         )
     between = range(identifier + 1, grade)
     email = next((index for index in between if _all(rows, index, _ADDRESS)), None)

@@ -50,7 +50,7 @@ def _first(names: list[str]) -> str:
 
 def _refusal(book: Gradebook, reason: str) -> InputError:
     keys = [student.key for student in islice(book.students(), _MAX_NAMED + 1)]
-    held = f" (it holds {_first(keys)})" if keys else ""
+    held = f" (it contains {_first(keys)})" if keys else ""
     return InputError(
         f"{book.shown} is the gradebook of another class: {reason}{held}; name another file, or use --add"
     )

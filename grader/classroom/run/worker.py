@@ -153,7 +153,9 @@ def result_of(
     for criterion, outcome, *_ in report.results:
         statuses[criterion.position] = STATUS_LETTERS[outcome.status]
         if outcome.status == "failed":
-            failures.append((criterion.position, (outcome.mistake or outcome.message)[:MAX_MISTAKE]))
+            mistake = outcome.mistake or outcome.message
+            is_long = len(mistake) > MAX_MISTAKE
+            failures.append((criterion.position, mistake[: MAX_MISTAKE - 3] + "..." if is_long else mistake))
     score, out_of, pending = (
         int(points * UNITS_PER_POINT) for points in (report.score, report.max_score, report.pending)
     )

@@ -59,5 +59,5 @@ def start_worker(prepare: Callable[[int], None], memory: int) -> None:
 def exit_words(code: int) -> str:
     """Return how a worker ended, in words."""
     if code == EXIT_ENDED:
-        return "ended at work"
+        return "exited unexpectedly"
     return f"was ended by signal {-code}" if code < 0 else f"ended with exit code {code}"

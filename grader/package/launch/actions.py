@@ -103,7 +103,7 @@ class ActionVisitor:
     def _listed(self, actions: Value, call: Call, context: Context, when: bool | None) -> None:
         """Visit the actions of a description, which may not contain lists."""
         if isinstance(actions, list | tuple) and any(isinstance(action, list | tuple) for action in actions):
-            context.add_error("expected an action, and this is a list of actions: write * before it", call.at)
+            context.add_error("expected an action, found a list of actions: write * before it", call.at)
         self.visit(actions if actions is not None else [], context, when)
 
     def _inner(self, call: Call, actions: Value, context: Context, when: bool | None) -> None:
@@ -182,7 +182,7 @@ def _set_argument(call: Call, context: Context, when: bool | None, *, declares: 
     value = call.argument(1, "default_value", "value")
     choices = call.kwargs.get("choices")
     if declares and len(call.args) > 1:
-        context.add_error("DeclareLaunchArgument takes its default by name: default_value=...", call.at)
+        context.add_error("DeclareLaunchArgument takes its default as a keyword argument: default_value=...", call.at)
     is_limited = declares and isinstance(choices, list | tuple) and all(isinstance(choice, str) for choice in choices)
     if is_limited and choices and isinstance(value, str) and value not in choices:
         context.add_error(f"the default {value!r} of {name!r} is not one of its choices", call.at)

@@ -55,11 +55,11 @@ def _texts(parts: list[Value] | tuple[Value, ...], context: Context, depth: int)
     for part in parts:
         text = resolve(part, context, depth + 1)
         if not isinstance(text, str):
-            return text if isinstance(text, Unknown) else Unknown("the content of a file is part of a text", START)
+            return text if isinstance(text, Unknown) else Unknown("the content of a file is part of a string", START)
         texts.append(text)
         length += len(text)
         if length > _MAX_TEXT:
-            return Unknown("a text grows too long", START)
+            return Unknown("a string grows too long", START)
     return texts
 
 
