@@ -14,7 +14,7 @@ _SCRIPTS = Path(__file__).resolve().parent / "on_gradescope"
 _EXECUTABLES = ("setup.sh", "run_autograder")
 _EXTRA = "documents"  # reads answers in Word and PDF files
 _RUBRIC = "rubric.toml"
-_ZIP_EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time that a zip can hold
+_ZIP_EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time that a zip can contain
 _UNIX = 3
 
 

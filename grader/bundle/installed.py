@@ -1,4 +1,4 @@
-"""The files of the grader as it is installed here, and its requirements."""
+"""The files of the installed grader, and its requirements."""
 
 import re
 import tomllib
@@ -45,7 +45,7 @@ def _normalized(requirement: str) -> str:
 
 
 def _of_checkout(extra: str) -> list[str]:
-    """Return the requirements in the pyproject.toml beside the package: the installed metadata may be older."""
+    """Return the requirements in the pyproject.toml next to the package: the installed metadata may be older."""
     try:
         project = tomllib.loads(_PACKAGE.with_name("pyproject.toml").read_text(encoding="utf-8"))["project"]
     except (OSError, ValueError, KeyError):

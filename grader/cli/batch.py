@@ -15,7 +15,7 @@ from grader.usecases.writing import write_stdout
 
 
 class Layout(StrEnum):
-    """How a class folder is organized."""
+    """The layouts of a class folder."""
 
     AUTO = "auto"
     FOLDERS = "folders"
@@ -59,7 +59,7 @@ def batch(
 ) -> int:
     """Grade a class into a gradebook, in parallel.
 
-    Rerun the same command to resume, or to grade what is new or changed. Submissions are isolated: a crash or timeout affects only
+    Rerun the same command to resume, or to grade new and changed submissions. Submissions are isolated: a crash or timeout affects only
     its own submission. Exits 0 when every submission has a result, whatever the grades.
 
     Examples:

@@ -11,7 +11,7 @@ from grader.usecases.writing import write_stdout
 
 
 class Platform(StrEnum):
-    """The platforms that there are bundles for."""
+    """The platforms with bundles."""
 
     GRADESCOPE = "gradescope"
 

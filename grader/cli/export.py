@@ -23,7 +23,7 @@ class Target(StrEnum):
 _INTO = "The gradebook or worksheet that the LMS exported."
 _STRICT = "Write nothing if a row or a grade is unmatched."
 _PENDING = "Also export grades with points that need manual grading."
-_MAXIMUM = "Export points as they are, even if the LMS has another maximum."
+_MAXIMUM = "Export points unchanged, even if the LMS has another maximum."
 
 
 def export(

@@ -9,7 +9,7 @@ from grader.usecases.writing import write_stdout
 
 
 class SchemaName(StrEnum):
-    """What has a schema."""
+    """The outputs and inputs that have a schema."""
 
     REPORT = "report"
     RUBRIC = "rubric"

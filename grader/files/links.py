@@ -21,7 +21,7 @@ class Links:
         self._name = name
         self._paths = sorted(path for path, member in members.items() if member.kind == "file")
         self._steps_left = _MAX_STEPS
-        self.files: dict[str, str] = {}  # paths by way of a link, with the real ones
+        self.files: dict[str, str] = {}  # paths through a symlink, with the real ones
         self.folders: set[str] = set()
 
     def add(self, path: str) -> bool:

@@ -79,7 +79,7 @@ def tree_name(path: Path) -> str:
 
 
 def with_inner(tree: Tree, allowance: Allowance | None = None, depth: int = 0) -> Tree:
-    """Return the tree with what is in its archives, unless a package and a URDF are beside them."""
+    """Return the tree with the files in its archives, unless there is a package and a URDF outside of them."""
     archives = [file for file in tree.files.values() if file.suffix in ARCHIVES]
     has_package = any(file.name in _PACKAGE_FILES for file in tree.files.values())
     if not archives or (has_package and any(file.suffix == ".urdf" for file in tree.files.values())):
@@ -112,7 +112,7 @@ def with_inner(tree: Tree, allowance: Allowance | None = None, depth: int = 0) -
 
 
 def _inner(archive: File, allowance: Allowance, depth: int) -> Tree:
-    """Return what is in an archive inside of another one, or of a folder; raises InputError."""
+    """Return the tree of an archive inside another archive or a folder; raises InputError."""
     from grader.files.archive import read_archive
 
     if depth >= limits.MAX_NESTED:

@@ -11,7 +11,7 @@ from grader.files.members import ARCHIVE_ERRORS, MAX_NAME_LENGTH, NOT_REGULAR, A
 _MAX_DIRECTORY_SIZE = 16 * 1024 * 1024  # bytes of a zip's table of contents
 _ENCRYPTED = 0x1  # flag bits of a member
 _UTF8 = 0x800
-_METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)  # the others unpack without a bound, or are not known at all
+_METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)  # the others unpack without a limit, or are unknown
 
 
 def zip_members(file: IO[bytes]) -> Iterator[ArchiveMember]:

@@ -1,4 +1,4 @@
-"""Model answers: those in a rubric, and those in a file of their own, so that students can have the rubric."""
+"""Model answers: those in a rubric, and those in a separate file, so that students can have the rubric."""
 
 from collections.abc import Mapping
 from dataclasses import replace

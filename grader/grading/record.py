@@ -13,7 +13,7 @@ from grader.problems import Kind, Problem
 from grader.source import Location
 from grader.submission.urdf import OtherCandidate
 
-_STORED_FIELDS = 7  # of an outcome: its mistake is in a column of its own
+_STORED_FIELDS = 7  # of an outcome: its mistake is in a separate column
 
 
 class Template:
@@ -96,13 +96,13 @@ def _read_result(rubric: Rubric, same: dict[str, Outcome], entry: Any) -> Result
     index, (status, message, measured, expected, tolerance, unit, place), *rest = entry
     location = Location(*place) if place is not None else None
     if rubric.criteria[index].check.function is answered:
-        expected = None  # records of earlier development versions hold the model answer here
+        expected = None  # records of earlier development versions contain the model answer here
     outcome = Outcome(status, message, _value(measured), _value(expected), tolerance, unit, location)
     return Result(rubric.criteria[index], outcome, *rest)
 
 
 def _plain(value: Any) -> Any:
-    """Return what JSON cannot hold as what it can: a location as a list, a read-only mapping as a dictionary."""
+    """Return a value that JSON does not support as one that it does: a location as a list, a read-only mapping as a dictionary."""
     return (value.path, value.line, value.column) if isinstance(value, Location) else dict(value)
 
 

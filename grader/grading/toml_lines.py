@@ -73,5 +73,5 @@ def _names(tokens: list[str]) -> list[str]:
 
 
 def _name(token: str) -> str:
-    """Return the key that a quoted token stands for."""
+    """Return the key of a quoted token."""
     return next(iter(tomllib.loads(f"{token}=0")))

@@ -22,9 +22,9 @@ TomlRow = dict[str, Any]
 
 
 class Validation:
-    """One pass over a parsed rubric. Where `complaints` is empty, the rows hold what a rubric needs, converted.
+    """One pass over a parsed rubric. Where `complaints` is empty, the rows contain the converted values of a rubric.
 
-    `bound` holds the check of each criterion with its arguments, in the order of the rows.
+    `bound` has the check of each criterion with its arguments, in the order of the rows.
     """
 
     def __init__(self, table: TomlRow) -> None:

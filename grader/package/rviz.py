@@ -29,7 +29,7 @@ class Display:
 
     @property
     def is_enabled(self) -> bool:
-        """Whether it is enabled itself, whatever its group is; Enabled overrides Value."""
+        """Return whether the display itself is enabled, regardless of its group; Enabled overrides Value."""
         return _is_enabled(self.node)
 
     @property

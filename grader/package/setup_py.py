@@ -31,7 +31,7 @@ _CHANGES = (
 class Setup:
     """The result of a setup.py. `fault` is set where Python cannot read it: nothing else is known then.
 
-    `unknown` has what cannot be determined: a file that is not among `copies` may be installed all the same.
+    `unknown` has what cannot be determined: a file that is not among `copies` may still be installed.
     """
 
     path: str

@@ -21,7 +21,7 @@ _STATUSES = ("passed", "failed", "skipped", "pending", "errored", "marked manual
 
 
 class Details(NamedTuple):
-    """What there is to say of a criterion beside its id and points.
+    """The sentences of a report on a criterion, besides its id and points.
 
     `answer` is the student's answer to a question, line by line, and `model_answer` the instructor's, if the rubric was loaded
     with its answers. `location` is where to look and `expected` what should be, if the criterion failed.

@@ -212,7 +212,7 @@ NO_ROOT = rejects(
 CYCLE = rejects(
     "URDF082",
     "A loop of joints",
-    "Following the joints from parent to child leads back to the same link. robot_state_publisher follows the loop without "
+    "The joints lead from parent to child back to the same link. robot_state_publisher follows the loop without "
     "end and crashes. A robot in a URDF is a tree.",
 )
 DETACHED_CYCLE = drops(

@@ -19,7 +19,7 @@ _REJECTED = "ROS 2 rejects the file"
 
 
 class ElementReader:
-    """Reads one element that ROS 2 keeps or loses as a whole: every defect in it is a problem of one kind."""
+    """A reader of one element that ROS 2 keeps or drops as a whole: every defect in it is a problem of one kind."""
 
     __slots__ = ("_consequence", "_kind", "_link", "_problems", "failed")
 

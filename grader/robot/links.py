@@ -1,4 +1,4 @@
-"""Links as urdfdom reads them (`link.cpp`): what is lost with a bad element, and which material a visual gets."""
+"""Links as urdfdom reads them (`link.cpp`): the content that is dropped with an invalid element, and the material of each visual."""
 
 from grader.robot import catalogue
 from grader.robot.diagnostics import Problems, first_children

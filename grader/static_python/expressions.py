@@ -54,7 +54,7 @@ class ExpressionEvaluator(SimpleEvaluator):
     def function(
         self, parameters: ast.arguments, scope: Scope, at: Position, body: Callable[[Scope, Position], Value]
     ) -> Function:
-        """Return a function as it is defined: its defaults are evaluated now."""
+        """Return the function of a definition; its defaults are evaluated now."""
         positional = [*parameters.posonlyargs, *parameters.args]
         pairs = list(zip(reversed(positional), reversed(parameters.defaults), strict=False))
         pairs += [

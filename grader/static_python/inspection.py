@@ -6,7 +6,7 @@ from grader.static_python.values import Function, Unknown, Value
 
 MAX_ITEMS = 20_000  # of a list or dict
 MAX_TEXT = 100_000  # characters
-PACKAGE_FOLDER = "<package>"  # stands for the name of the package's folder, which the submission does not determine
+PACKAGE_FOLDER = "<package>"  # represents the name of the package's folder, which the submission does not determine
 
 
 def size(value: Value) -> int:

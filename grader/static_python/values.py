@@ -7,9 +7,7 @@ from typing import Any
 
 from grader.static_python.positions import START, Position
 
-UNKNOWN_KEYS = (
-    "**"  # the key of an entry that stands for keys that are not known, in a dict and among keyword arguments
-)
+UNKNOWN_KEYS = "**"  # the key of an entry that represents unknown keys, in a dict and among keyword arguments
 
 _MAX_SEARCHED = 20_000  # parts of a value
 

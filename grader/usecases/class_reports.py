@@ -1,4 +1,4 @@
-"""Write a report for each student of a class, from the gradebook, in a file of their own."""
+"""Write a report for each student of a class, from the gradebook, each in a separate file."""
 
 import hashlib
 import re
@@ -71,7 +71,7 @@ def _write_some(
 
 
 def report_of(grades: "Grades", grade: "StudentGrade") -> "Report":
-    """Return the report on a student's newest submission; the late penalty is a note of its own."""
+    """Return the report on a student's newest submission; the late penalty is a separate note."""
     report = grades.report(grade)
     if not grade.late.reason:
         return report

@@ -16,7 +16,7 @@ _MAX_PERCENT = 100
 
 
 class ExitCode(IntEnum):
-    """What a command returns to the shell."""
+    """The exit code of a command."""
 
     PASSED = 0
     FAILED = 1
@@ -34,7 +34,7 @@ class Threshold:
 
     @classmethod
     def read(cls, text: str) -> "Threshold":
-        """Return the threshold that `--fail-under` gives, such as 58.5 or 80%. Raises GraderError."""
+        """Return the threshold of `--fail-under`, such as 58.5 or 80%. Raises GraderError."""
         if not _THRESHOLD.fullmatch(text) or (text.endswith("%") and Decimal(text[:-1]) > _MAX_PERCENT):
             raise GraderError(f"--fail-under takes points or a percentage from 0% to 100%, not {text!r}")
         return cls(Decimal(text.removesuffix("%")), text.endswith("%"))

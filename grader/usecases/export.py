@@ -36,7 +36,7 @@ Cell = str | int | Decimal | None
 
 @dataclass(frozen=True, slots=True)
 class ExportRequest:
-    """What to export, and for an LMS the file to fill in and how."""
+    """An export: its format, and for an LMS the file to fill in and how."""
 
     target: str
     gradebook: Path
@@ -51,12 +51,12 @@ class ExportRequest:
 
     @property
     def is_lms(self) -> bool:
-        """Whether the target is a file of an LMS that is filled in."""
+        """Return whether the target is a file of an LMS that is filled in."""
         return self.target in ("canvas", "moodle")
 
 
 class Exported(NamedTuple):
-    """What to print, and the exit code."""
+    """The output of an export, and the exit code."""
 
     data: bytes
     exit_code: ExitCode

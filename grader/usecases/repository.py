@@ -1,4 +1,4 @@
-"""Where a submission is in the repository around it: reports for a repository give paths from its root."""
+"""The location of a submission in the repository around it: reports for a repository give paths from its root."""
 
 import os
 from contextlib import suppress

@@ -10,14 +10,14 @@ from grader.text import printable
 
 CHECKOUTS = ("GITHUB_WORKSPACE", "CI_PROJECT_DIR")  # the repository that GitHub Actions and GitLab CI checked out
 ROBOT_FILES = (".urdf", ".xacro")
-_SQLITE_FILES = ("", "-wal", "-shm", "-journal")  # SQLite keeps recent changes in files beside the gradebook
+_SQLITE_FILES = ("", "-wal", "-shm", "-journal")  # SQLite keeps recent changes in files next to the gradebook
 _MAX_SYMLINKS = 40  # in one path, as in Linux
 
 
 def refuse_symlinks(path: Path, submissions: Sequence[Path | str] = ()) -> None:
     """Raise InputError if a path leads through a symlink that a student may have made.
 
-    These are the symlinks in the folder of a submission, or beside a URDF, or in the repository that a CI job checked out.
+    These are the symlinks in the folder of a submission, or next to a URDF, or in the repository that a CI job checked out.
     """
     folders = set(_student_folders(submissions))
     for symlink in _symlinks(path):
@@ -57,7 +57,7 @@ def _symlinks(path: Path) -> Iterator[Path]:
 
 
 def refuse_gradebook(path: Path, gradebook: Path) -> None:
-    """Raise InputError if a file to write is the gradebook, or one of the files that SQLite keeps beside it."""
+    """Raise InputError if a file to write is the gradebook, or one of the files that SQLite keeps next to it."""
     book = Path(os.path.realpath(gradebook))
     if any(is_same_file(path, book.with_name(book.name + ending)) for ending in _SQLITE_FILES):
         raise InputError(f"cannot write {path}: this would overwrite the gradebook and all its manual marks")

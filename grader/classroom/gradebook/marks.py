@@ -1,4 +1,4 @@
-"""Manual marks: the points that a person gives for a criterion, stored beside the automatic points."""
+"""Manual marks: the points that a person gives for a criterion, stored in addition to the automatic points."""
 
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -92,12 +92,12 @@ def mark(
     Args:
         book: The gradebook.
         grade: The student; raises InputError for one who has submitted nothing.
-        criterion: What is marked.
+        criterion: The criterion to mark.
         points: The points, or None to take the newest mark back.
         by: The name that reports show; the user account is stored for the audit only.
         why: The comment.
         shown: The id of the newest mark that the person has seen, 0 for none. If there is a newer one, nothing is written and
-            NewerMarkError holds it. Without `shown` the mark is always added.
+            NewerMarkError contains it. Without `shown` the mark is always added.
 
     """
     if grade.result is None:
@@ -138,7 +138,7 @@ def account() -> str:
 
 
 def manual_grading_queue(grades: Grades, criterion: str = "") -> list[QueuedCriterion]:
-    """Return what needs manual grading, one criterion after the other, so that similar answers follow each other.
+    """Return what needs manual grading, one criterion after the other, so that similar answers are adjacent.
 
     Unreadable submissions are not in it: they need a fix, not points.
     """

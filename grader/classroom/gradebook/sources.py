@@ -13,7 +13,7 @@ from grader.submission.submission import Submission
 
 
 class SubmissionFiles(NamedTuple):
-    """Where a submission was when it was graded: paths below the class `root`, and the fingerprint of the files."""
+    """The location of a submission when it was graded: paths below the class `root`, and the fingerprint of the files."""
 
     root: str
     paths: tuple[str, ...]

@@ -1,4 +1,4 @@
-"""What a gradebook has stored about a student: identity, enrolment, and the newest submission."""
+"""The stored data of a student: identity, enrolment, and the newest submission."""
 
 import json
 from collections.abc import Sequence
@@ -9,7 +9,7 @@ from grader.classroom.students import ClassSubmission, Student
 
 
 class Enrolment(NamedTuple):
-    """What the roster says about a student. The fields are columns of the table `student`."""
+    """The roster entry of a student. The fields are columns of the table `student`."""
 
     is_on_roster: int | None  # None where there is no roster
     deadline: str = ""  # the student's own deadline, ISO 8601
@@ -94,7 +94,7 @@ class StoredSubmission(NamedTuple):
 
     @property
     def is_on_roster(self) -> bool:
-        """Whether the student was on the roster."""
+        """Return whether the student was on the roster."""
         return bool(self.profile.enrolment.is_on_roster)
 
     def is_same(self, submission: ClassSubmission, enrolment: Enrolment | None) -> bool:

@@ -13,7 +13,7 @@ from grader.classroom.gradebook.stored import STUDENT_COLUMNS
 from grader.classroom.students import Student
 from grader.text import counted
 
-_COUNTS = ("id", "run", "result", "faults", "marks", "older_marks", "over_marks")  # columns that are taken as they are
+_COUNTS = ("id", "run", "result", "faults", "marks", "older_marks", "over_marks")  # columns that are used unchanged
 _POINTS = ("score", "out_of", "pending")
 _TEXTS = ("rubric", "digest", "verdict", "reason", "statuses", "submitted")
 _OTHERS = ("deadline", "extension", "days_late", "is_on_roster", "is_gone", "is_late", "files", "source", "fingerprint")

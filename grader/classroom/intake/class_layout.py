@@ -57,12 +57,12 @@ class ClassLayout:
                 return folders.find_submissions(listing, children, start, ignored, rubric_id, self._knows_submission)
 
     def holds_students(self, path: str) -> bool:
-        """Return whether a folder holds submissions of at least two students: then it is a section, and not a team's submission."""
+        """Return whether a folder contains submissions of at least two students: then it is a section, and not a team's submission."""
         inner = self._listing.children(path, _MAX_NAMES)
         return self._roster is not None and sum(map(self._roster.knows, stems_of(inner.folders, inner.files))) > 1
 
     def _enter_only_folder(self) -> None:
-        """Enter the one folder that holds everything in a zip, unless it is itself a submission."""
+        """Enter the one folder that contains everything in a zip, unless it is itself a submission."""
         folders, files, _ = self.children
         if len(folders) != 1 or files or folders[0] == "submitted" or self.detected() != "folders":
             return

@@ -20,9 +20,9 @@ from grader.text import printable_path
 class Intake:
     """The submissions of a class. `ignored` says in lines what in the folder is not a submission, and why.
 
-    With a roster, `unmatched` are the keys of submissions of nobody on it (they are graded all the same), `absent` are students
+    With a roster, `unmatched` are the keys of submissions of students who are not on it (they are still graded), `absent` are students
     without a submission, `contested` students with several possible submissions, and `notes` says which submissions are ambiguous.
-    A submission that is named like a group of the roster, and like nobody on it, counts once for each member of the group.
+    A submission that is named like a group of the roster, and like no student on it, counts once for each member of the group.
     `assignments` are the names of the assignment in nbgrader or Canvas.
     """
 
@@ -50,7 +50,7 @@ class Intake:
             yield self._assigned.final(self._roster, position, submission).student.key
 
     def named_students(self) -> Iterator[Student]:
-        """Yield the students as the names of the submissions tell."""
+        """Yield the students that the names of the submissions identify."""
         yield from map(self._submissions.student, range(len(self._submissions)))
 
     def submissions(self) -> Iterator[ClassSubmission]:

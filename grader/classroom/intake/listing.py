@@ -1,4 +1,4 @@
-"""The names in a class folder. Symlinks are not followed: whose a file is depends on where it really is."""
+"""The names in a class folder. Symlinks are not followed: the owner of a file depends on its real path."""
 
 import os
 from collections.abc import Iterable

@@ -69,7 +69,7 @@ def _entry(row: RosterRow, shown: str, notes: list[str]) -> RosterEntry:
 
 
 def _due(row: RosterRow, shown: str) -> tuple[str, float]:
-    """Return a student's own deadline and extension in days: the column extension may hold either."""
+    """Return a student's own deadline and extension in days: the column extension may contain either."""
     days = _number(row["extension"].removesuffix("days").removesuffix("day").strip())
     written = row["due"] or ("" if days is not None else row["extension"])
     due = iso_time(written)

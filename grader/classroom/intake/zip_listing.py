@@ -10,7 +10,7 @@ from grader.files.zip_members import zip_members
 from grader.text import printable_path
 
 MAX_MEMBERS = 200_000
-_MAX_DEPTH = 20  # folders: names below do not tell whose a file is
+_MAX_DEPTH = 20  # folders: names below do not identify the owner of a file
 
 
 class ZipListing:

@@ -1,4 +1,4 @@
-"""Fill an LMS file with grades, row by row. Rows of students without a grade are removed, so that nothing of theirs changes."""
+"""Fill an LMS file with grades, row by row. Rows of students without a grade are removed, so that their data does not change."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
@@ -62,5 +62,5 @@ def check_maximum(what: str, maxima: Iterable[str], out_of: Decimal) -> None:
         if maximum is not None and maximum != out_of:
             raise InputError(
                 f"{what} is {exact_text(maximum)}, but the rubric's maximum is {exact_text(out_of)}: change the maximum in the"
-                " LMS and export again, or write the points as they are with --any-maximum"
+                " LMS and export again, or pass --any-maximum to write the points unchanged"
             )

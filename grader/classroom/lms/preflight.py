@@ -1,4 +1,4 @@
-"""What importing a filled LMS file would do: what changes, what is left out and why, and who is unmatched."""
+"""A preview of the import of a filled LMS file: changes, omitted grades with the reason, and unmatched rows."""
 
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -23,7 +23,7 @@ class Conflict(NamedTuple):
 
 @dataclass(slots=True)
 class Preflight:
-    """What importing the filled file does.
+    """The effects of importing the filled file.
 
     `filled` rows are changed and `unchanged` ones have the grade already; all other students' rows are removed from the file, so that
     nothing of theirs can change. `ungraded` are rows of students without a grade, `unknown` rows that match nobody, `missing`
@@ -44,7 +44,7 @@ class Preflight:
 
     @property
     def matches(self) -> bool:
-        """Whether every row has its student and every grade its row."""
+        """Return whether every row has its student and every grade its row."""
         return not (self.unknown or self.missing or self.ambiguous)
 
 

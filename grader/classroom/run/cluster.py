@@ -1,4 +1,4 @@
-"""Grade on a Dask cluster: each Dask worker grades in processes of its own, so that no submission can end it."""
+"""Grade on a Dask cluster: each Dask worker grades in separate processes, so that no submission can end it."""
 
 import asyncio
 import logging

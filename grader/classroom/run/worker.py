@@ -38,7 +38,7 @@ MAX_MISTAKE = 200  # characters of a mistake that statistics count
 
 
 class ClassContext(NamedTuple):
-    """What all tasks of a run share: the path of the class folder or zip, and the rubric's file."""
+    """The data that all tasks of a run share: the path of the class folder or zip, and the rubric's file."""
 
     root: str
     rubric: bytes
@@ -109,7 +109,7 @@ def _grade_one(context: ClassContext, task: Task) -> GradingResult:
 def _why_unreadable(submission: Submission) -> str:
     """Return why nothing in a submission could be read, although its folder could; empty if something was read.
 
-    A damaged or empty archive makes a submission unreadable if there is nothing else to grade beside it.
+    A damaged or empty archive makes a submission unreadable if there is nothing else to grade.
     """
     if isinstance(submission.urdf, Unreadable):
         return submission.urdf.reason

@@ -1,4 +1,4 @@
-"""How worker processes start and end: from a fork server that has loaded everything once, and with their parent."""
+"""The start and end of worker processes: from a fork server that has loaded everything once, and with their parent."""
 
 import multiprocessing
 import os
@@ -27,7 +27,7 @@ def worker_context(preload: Sequence[str]) -> Any:
 
 
 def start_server(context: Any) -> None:
-    """Start the fork server with Ctrl-C blocked: while it loads modules it would print a traceback of its own."""
+    """Start the fork server with Ctrl-C blocked: while it loads modules it would print a traceback."""
     if context.get_start_method() == "forkserver":
         from multiprocessing import forkserver, resource_tracker
 

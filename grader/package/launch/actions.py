@@ -1,4 +1,4 @@
-"""Visits the actions of a launch description: what they start, include and declare."""
+"""Visit the actions of a launch description: the nodes, includes and arguments that they add."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -25,7 +25,7 @@ Include = Callable[[str, Context], str]
 
 @dataclass(slots=True)
 class ActionVisitor:
-    """Visits actions and adds what it finds. `when` is whether an action is executed: True, False or None for unknown."""
+    """A visitor of actions that adds its findings. `when` is whether an action is executed: True, False or None for unknown."""
 
     findings: Findings
     include: Include

@@ -84,7 +84,7 @@ def _xml_root(data: bytes, source: Source) -> Entity:
 
 
 class _YamlReader:
-    """Reads entities from YAML's lists and mappings; aliases can multiply them, so they are counted."""
+    """A reader of entities from YAML's lists and mappings; aliases can multiply them, so they are counted."""
 
     def __init__(self, frontend: Frontend) -> None:
         self.frontend = frontend

@@ -1,4 +1,4 @@
-"""Reads a launch file in any of its languages, and the launch files that it includes."""
+"""Read a launch file in any of its languages, and the launch files that it includes."""
 
 import posixpath
 from collections.abc import Callable
@@ -35,7 +35,7 @@ def read_launch(data: bytes, path: str, installed: str, opener: Opener) -> Launc
 
 
 class _LaunchReader:
-    """Reads a launch file and a limited number of included ones."""
+    """A reader of a launch file and a limited number of included ones."""
 
     def __init__(self, opener: Opener) -> None:
         self.opener = opener

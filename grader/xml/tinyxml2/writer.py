@@ -11,7 +11,7 @@ _MAX_DEPTH = 32  # urdfdom never looks deeper than robot/link/visual/geometry/bo
 
 
 class RobotWriter:
-    """Writes tags as they are opened and closed. Names that XML or lxml may refuse mean nothing to urdfdom: `_` replaces them."""
+    """A writer of opening and closing tags. Names that XML or lxml may refuse have no meaning for urdfdom: `_` replaces them."""
 
     def __init__(self) -> None:
         self.offsets: list[int] = []  # of the start tags that were written

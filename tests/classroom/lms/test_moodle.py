@@ -287,7 +287,7 @@ def test_another_maximum_is_refused() -> None:
         fill(data, graded("1", "9.33", moodle="1"))
     assert str(raised.value) == (
         "Moodle's 'Maximum Grade' is 10, but the rubric's maximum is 100: change the maximum in the LMS and export again,"
-        " or write the points as they are with --any-maximum"
+        " or pass --any-maximum to write the points unchanged"
     )
     assert fill(data, graded("1", "9.33", moodle="1"), any_maximum=True).preflight.filled == 1
 

@@ -1,4 +1,4 @@
-"""What every layout returns: the submissions of a class, and what it ignored."""
+"""The result of a layout: the submissions of a class, and the ignored files."""
 
 import os
 from collections import Counter
@@ -19,7 +19,7 @@ class Submissions(Protocol):
 
     @property
     def assignments(self) -> frozenset[str]:
-        """What an LMS calls the assignment."""
+        """The name of the assignment in an LMS."""
 
     @property
     def contested(self) -> tuple[Student, ...]:
@@ -29,7 +29,7 @@ class Submissions(Protocol):
         """Return the number of submissions."""
 
     def student(self, index: int) -> Student:
-        """Return the student, as far as names tell."""
+        """Return the student that the names identify."""
 
     def submission(self, index: int) -> ClassSubmission:
         """Return the submission."""

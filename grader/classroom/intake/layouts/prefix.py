@@ -11,7 +11,7 @@ def class_prefix(names: Sequence[str], rubric_id: str, knows: Callable[[str], bo
     """Return the prefix to remove from the names that have it, in lower case; empty if there is none.
 
     It is the rubric's id with a hyphen, or `lab` and a number if most names have it. With a roster (`knows` says whether a name is on
-    it) it can be any prefix behind which the most names are on the roster. One more folder cannot change what the others mean.
+    it) it can be any prefix after which the most names are on the roster. One more folder cannot change what the others mean.
     """
     if not names or (knows and all(map(knows, names))):
         return ""
@@ -41,5 +41,5 @@ def _roster_prefix(names: Sequence[str], knows: Callable[[str], bool]) -> str:
 
 
 def has_prefix(name: str, prefix: str) -> bool:
-    """Return whether a name starts with a prefix and continues behind it, in any case."""
+    """Return whether a name starts with a prefix and continues after it, ignoring case."""
     return len(name) > len(prefix) and name[: len(prefix)].lower() == prefix

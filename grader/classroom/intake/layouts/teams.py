@@ -1,6 +1,6 @@
 """The teams layout: `<team>/Lab6/<Surname>/...` or `<team>/lab6/<login>/lab/...`, a lab folder with one folder for each student.
 
-A lab folder may also hold a package or a workspace, so only folders that cannot be part of one count as students. A team without
+A lab folder may also contain a package or a workspace, so only folders that cannot be part of one count as students. A team without
 such a lab folder is one submission.
 """
 
@@ -49,7 +49,7 @@ def find_labs(
     *,
     is_explicit: bool = False,
 ) -> dict[str, str]:
-    """Return the lab folders that hold students' folders, each with its team; `is_explicit` if the user has named the layout."""
+    """Return the lab folders that contain students' folders, each with its team; `is_explicit` if the user has named the layout."""
     labs: dict[str, str] = {}
     pattern = lab_folder(rubric_id)
     if len(children.folders) > _MAX_TEAMS and not is_explicit:
