@@ -1,5 +1,6 @@
 """Write the pages that are generated from the code: `python docs/make.py`. The tests fail if a page is out of date."""
 
+import json
 import re
 from io import StringIO
 from pathlib import Path
@@ -76,7 +77,7 @@ def checks() -> str:
         if check.parameters:
             lines += ["", "| argument | type | default |", "|---|---|---|"]
         for parameter in check.parameters.values():
-            default = "required" if parameter.required else f"`{parameter.default}`"
+            default = "required" if parameter.required else f"`{json.dumps(parameter.default)}`"
             lines.append(f"| `{parameter.name}` | {parameter.type.name} | {default} |")
     return "\n".join(lines) + "\n"
 

@@ -22,7 +22,7 @@ class FileError(InputError):
 
 
 class RubricError(GraderError):
-    """A rubric that cannot be used. `complaints` holds one line for each mistake in it."""
+    """A rubric that cannot be used. `complaints` has one line for each mistake in it."""
 
     def __init__(self, complaints: tuple[str, ...]) -> None:
         super().__init__("\n".join(complaints))

@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 from decimal import Decimal
 from pathlib import Path
 
-# The runner of GitHub Actions takes a line for a command if it begins with `::`, after white space as well, or holds `##[`.
+# The runner of GitHub Actions treats a line as a command if it begins with `::`, after white space as well, or contains `##[`.
 _LINE_COMMAND = re.compile(r"^(\s*):(?=:)", re.MULTILINE)
 _MAX_NAME = 60  # characters of a name that are shown
 
@@ -22,7 +22,7 @@ def printable(text: str) -> str:
 
 
 def without_commands(text: str) -> str:
-    """Return a text with a space wherever the runner of a CI system would take a line for a command."""
+    """Return a text with a space wherever the runner of a CI system would treat a line as a command."""
     return _LINE_COMMAND.sub(r"\1: ", text).replace("##[", "## [")
 
 
@@ -68,7 +68,7 @@ def counted(number: int, noun: str, plural: str = "") -> str:
 
 
 def format_points(points: Decimal) -> str:
-    """Return points as they are, without trailing zeros and not rounded: 58.5, 70."""
+    """Return exact points, without trailing zeros: 58.5, 70."""
     return format(points.normalize(), "f") if points else "0"
 
 

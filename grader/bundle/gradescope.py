@@ -18,7 +18,7 @@ DISTRIBUTION = "urdf-grader"
 _PACKAGE = Path(__file__).resolve().parent.parent
 _EXTRA = re.compile(r"""(?:\band\s+)?\bextra\s*==\s*["']([\w.-]+)["']""")
 _RUBRIC = "rubric.toml"
-_ZIP_EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time that a zip can hold
+_ZIP_EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time that a zip can contain
 _UNIX = 3
 
 

@@ -1,4 +1,4 @@
-"""Checks of contact between two links: one stands on the other, or does not cut into it."""
+"""Checks of contact between two links: one rests on the other, or does not cut into it."""
 
 from itertools import product
 from operator import itemgetter

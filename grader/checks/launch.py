@@ -78,7 +78,7 @@ def _why_missing(launch: "Launch", missing: set[str]) -> "tuple[str, Location | 
 
 
 def launch_finds_files(package: Package, *, name: str) -> Outcome:
-    """The URDF and RViz files that the launch file names are where a build of the package puts them."""
+    """The launch file looks for the URDF and RViz files where a build of the package installs them."""
     launch = _launch(package, name)
     verdicts = [(_verdict(package, file), file) for file in launch.named("urdf", "rviz", "include")]
     wrong = [(text, file) for (status, text), file in verdicts if status == "failed"]
@@ -178,9 +178,12 @@ def _below_share(package: Package, owner: str, rest: str, named: "Reference") ->
         tail = posixpath.basename(rest or owner.removeprefix(package.name))
         if owner.startswith(package.name) and tail in map(posixpath.basename, package.tree.files):
             path = posixpath.join("share", owner, rest).rstrip("/")
-            return "failed", f"it looks for the {what} at {path}: a slash is missing after {package.name!r}"
+            return (
+                "failed",
+                f"the launch file looks for the {what} at {path}: a slash is missing after {package.name!r}",
+            )
         if closest(owner, [package.name]):
-            return "failed", f"it looks in a package {owner!r}, but this one is named {package.name!r}"
+            return "failed", f"the launch file looks in a package {owner!r}, but this one is named {package.name!r}"
         if named.purpose == "include":
             return "passed", ""
         return "pending", f"the {what} is in {owner!r}, which is not part of the submission"
@@ -198,12 +201,12 @@ def _below_share(package: Package, owner: str, rest: str, named: "Reference") ->
     name = posixpath.basename(rest)
     put = next((path for path in installed if posixpath.basename(path) == name), None)
     if put is not None:
-        return "failed", f"it looks for the {what} at {target}, but a build installs it as {put}"
+        return "failed", f"the launch file looks for the {what} at {target}, but a build installs it as {put}"
     if any(posixpath.basename(path) == name for path in other.tree.files):
-        return "missing", f"it looks for the {what} at {target}, but a build does not install {name}"
+        return "missing", f"the launch file looks for the {what} at {target}, but a build does not install {name}"
     endings, own = _ENDINGS[named.purpose], posixpath.basename(named.location.path)
     alike = sorted({posixpath.basename(path) for path in other.tree.files if path.lower().endswith(endings)} - {own})
-    message = f"it looks for the {what} at {target}, but the package has no file {name!r}"
+    message = f"the launch file looks for the {what} at {target}, but the package has no file {name!r}"
     if not alike and named.purpose != "include":
         return "missing", message
     similar = closest(name, alike) or (alike[0] if len(alike) == 1 and named.purpose != "include" else None)

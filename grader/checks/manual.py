@@ -15,9 +15,9 @@ def answered(
 
     Always pending. `places` are labels of the passage with the answer, such as "task 1 step 15" or "question 15"; `files` are
     patterns for the names of documents. `answer` is the model answer, which `grader review` and `--answers` show: the rubric
-    keeps it here or in a file of its own.
+    keeps it here or in a separate file.
     """
-    del answer  # students read outcomes, so none holds it
+    del answer  # students read outcomes, so they do not contain it
     from grader.documents.answers import find_answer  # a URDF on its own has no answers
 
     if submission.no_documents:

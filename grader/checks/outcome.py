@@ -19,7 +19,7 @@ _FEW, _MANY = 100.0, 1e7  # from here on: no decimals, an exponent
 
 
 class Outcome(NamedTuple):
-    """What one check found: a sentence, where to look, and the values that it measured, in `unit`.
+    """The result of one check: a sentence, the location, and the measured values in `unit`.
 
     `mistake` is the message without what differs between students who made the same mistake, such as the names of their
     joints: statistics count equal mistakes. It is empty where the message holds nothing of that kind.
@@ -38,14 +38,14 @@ class Outcome(NamedTuple):
 
 
 def fault_of(returned: object) -> str:
-    """Return what is wrong with the value that a check returned; empty for an Outcome that a report can hold."""
+    """Return what is wrong with the value that a check returned; empty for a valid Outcome."""
     if not isinstance(returned, Outcome):
         return f"it returned {type(returned).__name__}, not an Outcome"
     if returned.status not in ("passed", "failed", "pending"):
         return f"it returned the status {returned.status!r}; a check returns passed, failed or pending"
     for name, is_valid in _VALID.items():
         if not is_valid(getattr(returned, name)):
-            return f"it returned an Outcome whose {name} no report can hold"
+            return f"it returned an Outcome with an invalid {name}"
     return ""
 
 
@@ -111,7 +111,7 @@ def judged(
 
 
 def location_of(at: AnyPlace) -> Location | None:
-    """Return the place in the file, worked out only now: most places are never looked at."""
+    """Return the place in the file, computed on demand: most places are never used."""
     return at.resolve() if isinstance(at, LazyLocation) else at
 
 

@@ -71,7 +71,7 @@ class Parameter:
 class Check:
     """A check, as a rubric names it.
 
-    `subject` is what it examines: the URDF as it was read, its robot, the package, or the whole submission. `distribution` is
+    `subject` is the examined object: the URDF as it was read, its robot, the package, or the whole submission. `distribution` is
     the installed package that the check comes from; empty for the grader's own.
     """
 
@@ -83,7 +83,7 @@ class Check:
 
     @property
     def fact(self) -> str:
-        """The first line of its docstring: what is true of a submission that passes."""
+        """The first line of its docstring: a fact that is true of a submission that passes."""
         return (inspect.getdoc(self.function) or "").split("\n\n")[0].replace("\n", " ")
 
 

@@ -27,7 +27,7 @@ class TomlType:
 
 @dataclass(frozen=True, slots=True)
 class Constraint:
-    """What a value must be beyond its type, for `Annotated`: `must_be` ends the message "... must be", `schema` adds to it."""
+    """A constraint on a value besides its type, for `Annotated`: `must_be` ends the message "... must be", `schema` adds to it."""
 
     must_be: str
     holds: Callable[[Any], bool]
@@ -75,10 +75,10 @@ def _is_float(value: Any) -> bool:
 _SIMPLE = {
     float: simple_type("a number", {"type": "number"}, _is_float, float),
     int: simple_type("a whole number", {"type": "integer"}, _is_integer),
-    str: simple_type("a text", {"type": "string"}, lambda value: isinstance(value, str)),
+    str: simple_type("a string", {"type": "string"}, lambda value: isinstance(value, str)),
     bool: simple_type("true or false", {"type": "boolean"}, lambda value: isinstance(value, bool)),
 }
-_PLURALS = {float: "numbers", str: "texts"}
+_PLURALS = {float: "numbers", str: "strings"}
 
 
 @lru_cache(maxsize=256)

@@ -12,10 +12,10 @@ from grader.text import counted, enumerated
 
 
 def urdf_loads(urdf: Reading) -> Outcome:
-    """ROS 2 loads the URDF, and every link is in its one tree."""
+    """ROS 2 loads the URDF, and all links form one tree."""
     problems = [problem for problem in urdf.problems if problem.kind.effect == "rejects" or problem.kind.detaches_links]
     if not problems and urdf.verdict != "rejected":
-        return passed("ROS 2 loads the file and every link is in its one tree")
+        return passed("ROS 2 loads the file, and all links form one tree")
     causes = [problem for problem in problems if not problem.kind.is_consequence]
     first = (causes or problems or list(urdf.problems))[0]
     others = f" (and {counted(len(problems) - 1, 'more such problem')})" if len(problems) > 1 else ""

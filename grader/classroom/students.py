@@ -1,4 +1,4 @@
-"""Students, and what they have submitted in a class."""
+"""Students of a class and their submissions."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""The `grader` command: its subcommands, and what it prints when one fails."""
+"""The `grader` command: its subcommands and its error messages."""
 
 import os
 import re

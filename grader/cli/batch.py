@@ -25,12 +25,14 @@ def batch(
         int | None, typer.Option(metavar="N", min=1, help="Worker processes; default: one per processor.")
     ] = None,
     timeout: Annotated[float, typer.Option(metavar="SECONDS", min=0.1, help=_TIMEOUT)] = 60.0,
-    roster: Annotated[Path | None, typer.Option(metavar="CSV", help="The students of the class.")] = None,
+    roster: Annotated[Path | None, typer.Option(metavar="CSV", help="The students of the class, as CSV.")] = None,
     layout: Annotated[
         Layout, typer.Option(metavar="LAYOUT", help=f"Layout of PATH: {', '.join(get_args(Layout))}.")
     ] = "auto",
     assignment: Annotated[str, typer.Option(metavar="NAME", help="The assignment in the nbgrader layout.")] = "",
-    reports: Annotated[Path | None, typer.Option(metavar="DIR", help="Write a report for each student here.")] = None,
+    reports: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Write a report for each student into this folder.")
+    ] = None,
     report_format: Annotated[
         list[Format] | None, typer.Option(metavar="FORMAT", help="Format of these reports; repeatable.")
     ] = None,
@@ -44,7 +46,7 @@ def batch(
 ) -> str:
     """Grade a class into a gradebook, in parallel.
 
-    Rerun the same command to resume, or to grade what is new or changed. Submissions are isolated: a crash or timeout affects only
+    Rerun the same command to resume, or to grade new and changed submissions. Submissions are isolated: a crash or timeout affects only
     its own submission. Exits 0 when every submission has a result, whatever the grades.
 
     Examples:

@@ -19,8 +19,9 @@ def diff(
 ) -> str:
     """Show whose grade changed between two runs, by how much, and why.
 
-    Compares the last two runs of a gradebook, or two gradebooks. The reasons are a changed submission, rubric or grader, and manual
-    marks from the start of the older run to the run after the newer one. Late penalties are not included. Runs count from 1.
+    Compares the last two runs of a gradebook, or two gradebooks. A grade changes with the submission, the rubric, the grader or
+    manual marks; marks that were given after the older run count as changes. Late penalties are not included. Runs count
+    from 1.
 
     Examples:
 

@@ -6,7 +6,7 @@ import typer
 
 from grader.cli.options import DEFAULT_RUBRIC, RubricOption, explainable
 
-_NAME = "Such as URDF051, frame_at or lidar-frame."
+_NAME = "For example URDF051, frame_at or lidar-frame."
 
 
 def explain(

@@ -13,7 +13,7 @@ Target = Literal["csv", "canvas", "moodle", "json"]
 _INTO = "The gradebook or worksheet that the LMS exported."
 _STRICT = "Write nothing if a row or a grade is unmatched."
 _PENDING = "Also export grades with points that need manual grading."
-_MAXIMUM = "Export points as they are, even if the LMS has another maximum."
+_MAXIMUM = "Export points unchanged, even if the LMS has another maximum."
 
 
 def export(
@@ -32,7 +32,7 @@ def export(
 ) -> int:
     """Export the current grades for a spreadsheet, Canvas or Moodle.
 
-    A grade is the sum of automatic points and manual marks, less the late penalty. For Canvas and Moodle, give the file that the LMS
+    A grade is the sum of automatic points and manual marks, minus the late penalty. For Canvas and Moodle, give the file that the LMS
     exported: only the cells of the grade (and Moodle's feedback) change. Rows without a grade are omitted, so that the import
     overwrites no other grade. The maximum in the file must be the rubric's. Exits 1 if --strict finds an unmatched row.
 

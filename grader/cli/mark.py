@@ -9,8 +9,12 @@ from grader.cli.output import warn
 
 
 def mark(
-    submission: Annotated[str, typer.Argument(metavar="SUBMISSION", help="A student's key, login, address or name.")],
-    criterion: Annotated[str, typer.Argument(metavar="CRITERION", help="Its id, such as answer-floating-link.")],
+    submission: Annotated[
+        str, typer.Argument(metavar="SUBMISSION", help="The student's key, login, email address or name.")
+    ],
+    criterion: Annotated[
+        str, typer.Argument(metavar="CRITERION", help="The id of the criterion, such as answer-floating-link.")
+    ],
     points: Annotated[str, typer.Argument(metavar="POINTS", help="The points, or - to withdraw a mark.")],
     gradebook: GradebookOption,
     comment: Annotated[str, typer.Option(metavar="TEXT", help="A reason, which the student reads.")] = "",
@@ -18,8 +22,8 @@ def mark(
 ) -> str:
     """Give a manual mark for one criterion of a submission.
 
-    It is for what needs manual grading, or overrides the result of a check. Grading again keeps it. A later mark replaces it; the
-    gradebook keeps both.
+    Use it for criteria that need manual grading, or to override a check. Later runs keep the mark. A later mark replaces it;
+    the gradebook keeps both.
 
     Examples:
 

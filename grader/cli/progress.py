@@ -18,7 +18,7 @@ _LINE_SECONDS = 10.0
 
 @contextmanager
 def progress_display() -> Iterator[Callable[["Progress"], None]]:
-    """Show the progress of a run; yields the function that takes it."""
+    """Show the progress of a run; yields the function that receives it."""
     began = last_line = time.monotonic()
 
     def print_line(progress: "Progress") -> None:

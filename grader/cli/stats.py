@@ -10,8 +10,9 @@ def stats(
 ) -> str:
     """Show statistics of a class: grades, criteria, common mistakes.
 
-    They include manual marks, but not late penalties: --format json has these in the students' totals. A criterion's difficulty is
-    the share of its points that the class earned; its discrimination is the correlation with the rest of the grade.
+    Manual marks are included, late penalties are not; only the totals of the students in --format json include them. The share of
+    a criterion is the mean share of its points that students earned; its discrimination is the correlation of its points with the
+    rest of the grade.
 
     Examples:
 

@@ -28,7 +28,7 @@ _OTHER = re.compile(
 
 
 class Document(NamedTuple):
-    """The first lines of a document and the headings among them; `is_cut` tells whether there are more lines."""
+    """The first lines of a document and the headings among them; `is_cut` is whether there are more lines."""
 
     file: File
     lines: list[str]
@@ -67,7 +67,7 @@ class DocumentCollection:
         return read, unread
 
     def _read(self, file: File) -> Document | str | None:
-        """Return a document, the reason why it was not read, or None for a file that holds no answers."""
+        """Return a document, the reason why it was not read, or None for a file that contains no answers."""
         try:
             text = self._text(file)
         except InputError as error:
@@ -96,7 +96,7 @@ class DocumentCollection:
             return data.decode("cp1252", "replace")
 
     def _convert(self, file: File) -> str:
-        """Return the text of a Word or PDF file, converted by a process of its own within what is left of the budget."""
+        """Return the text of a Word or PDF file, converted by a separate process within the remaining time."""
         self._converted += 1
         if self._converted > _MAX_CONVERTED:
             limit = f"at most {_MAX_CONVERTED} Word and PDF files are"

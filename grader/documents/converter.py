@@ -1,4 +1,4 @@
-"""Converts a Word or PDF file from standard input to text on standard output, as a process of its own.
+"""Convert a Word or PDF file from standard input to text on standard output, in a separate process.
 
 A crafted file of either format can use unlimited time or memory, so the grader stops the process after a time. The converter
 limits itself as well, and ends with the process that started it, however that ends.

@@ -35,7 +35,7 @@ class ClassZip:
             for member in zip_members(file):
                 self._members[safe_path(member.path) or ""] = member
                 if len(self._members) > _MAX_MEMBERS:
-                    raise FileError(self._shown, f"holds more than {_MAX_MEMBERS} files")
+                    raise FileError(self._shown, f"contains more than {_MAX_MEMBERS} files")
         except ARCHIVE_ERRORS as error:
             raise FileError(self._shown, f"cannot be read as an archive: {error_text(error)}") from None
         self._names = sorted(self._members)

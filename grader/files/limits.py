@@ -1,21 +1,21 @@
-"""The limits within which untrusted files are read, and what is said where one is exceeded."""
+"""The limits for reading untrusted files, and the messages if one is exceeded."""
 
 from grader.errors import FileError, InputError
 
 MAX_FILES = 50_000  # and as many folders, in a submission
 MAX_FILE_SIZE = 64 * 1024 * 1024  # bytes of one file of a submission: a larger one is ignored
-MAX_ARCHIVE_SIZE = 1024 * 1024 * 1024  # bytes of an archive, and of what is decompressed to read it
+MAX_ARCHIVE_SIZE = 1024 * 1024 * 1024  # bytes of an archive, and of its decompressed data
 MAX_UNPACKED_SIZE = 512 * 1024 * 1024  # bytes of the files in an archive, without those that are too large and ignored
 MAX_ARCHIVES = 20  # in an archive or folder
 MAX_NESTED = 3  # archives inside each other
-MAX_RATIO = 200  # of what is in an archive to its own size
-HARMLESS_SIZE = 32 * 1024 * 1024  # bytes that an archive may hold whatever the ratio
+MAX_RATIO = 200  # of the content of an archive to its own size
+HARMLESS_SIZE = 32 * 1024 * 1024  # bytes that an archive may contain regardless of the ratio
 
 
 class Allowance:
     """The number of bytes that an archive may unpack to, together with the archives in it.
 
-    `streamed` counts what is decompressed: a compressed tar has to be, files that are ignored included.
+    `streamed` counts the decompressed bytes of a compressed tar, ignored files included.
     """
 
     def __init__(self) -> None:
@@ -35,7 +35,7 @@ class Allowance:
 
 def too_many(name: str) -> InputError:
     """Return the error for a submission with more files than any student submits."""
-    return FileError(name, f"holds more than {MAX_FILES} files: name the package or the URDF")
+    return FileError(name, f"contains more than {MAX_FILES} files: name the package or the URDF")
 
 
 def too_large(name: str) -> FileError:

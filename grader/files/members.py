@@ -41,7 +41,7 @@ Opener = Callable[[], AbstractContextManager[IO[bytes]]]
 
 
 class ArchiveMember(NamedTuple):
-    """One entry of an archive. `reason` says why one of kind other is not read; `open` gives what is in a file.
+    """One entry of an archive. `reason` says why one of kind other is not read; `open` returns the content of a file.
 
     `target` is where a link points to: from its own folder, or, if it is a hard link, from the top.
     """

@@ -112,7 +112,7 @@ def _inner(archive: File, allowance: limits.Allowance, depth: int) -> Tree:
     from grader.files.archive import read_archive
 
     if depth >= limits.MAX_NESTED:
-        raise FileError(archive.path, "is an archive inside of an archive, nested too deep to be opened")
+        raise FileError(archive.path, "is an archive inside an archive, nested too deep to be opened")
     allowance.archives -= 1
     if allowance.archives < 0:
         raise FileError(archive.path, "was not opened: there are too many archives")

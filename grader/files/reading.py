@@ -12,7 +12,7 @@ from grader.errors import InputError
 from grader.text import printable_path
 
 URDF_LIMIT = 1024 * 1024  # bytes
-# O_NONBLOCK: opening a FIFO would block. What is not a regular file is refused before it is read.
+# O_NONBLOCK: opening a FIFO would block. Anything but a regular file is refused before it is read.
 _FLAGS = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0) | getattr(os, "O_CLOEXEC", 0)
 _FOLDER = os.O_RDONLY | getattr(os, "O_DIRECTORY", 0) | getattr(os, "O_CLOEXEC", 0)
 _OPENS_IN_FOLDERS = os.open in os.supports_dir_fd and hasattr(os, "O_NOFOLLOW")
@@ -44,7 +44,7 @@ def read_start(path: Path | str, count: int, shown: str = "", top: str = "") -> 
 
 
 def shown_below(path: Path | str, top: str) -> str:
-    """Return a path for messages, relative to the folder `top` if it lies below it."""
+    """Return a path for messages, relative to the folder `top` if it is below it."""
     return printable_path(os.fspath(path).removeprefix(f"{top}{os.sep}") if top else path)
 
 

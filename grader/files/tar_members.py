@@ -1,4 +1,4 @@
-"""The members of a tar: of a plain one where they are, of a compressed one copied to a temporary file."""
+"""The members of a tar: a plain one is read in place, a compressed one is copied to a temporary file."""
 
 import bz2
 import gzip
@@ -14,7 +14,7 @@ from grader.files import limits
 from grader.files.members import NOT_REGULAR, ArchiveMember, Opener
 
 _CHUNK = 1024 * 1024  # bytes
-_BACKWARD = "it leads back to its own beginning"
+_BACKWARD = "it refers to an earlier position"
 
 _DECOMPRESSORS: dict[str, Any] = {"gz": gzip.open, "bz2": bz2.open, "xz": lzma.open}
 COMPRESSED_KINDS = frozenset(_DECOMPRESSORS)
@@ -37,7 +37,7 @@ def compressed_members(
             member = _member(info, partial(_slice, stored, stored.tell(), info.size))
             if member.kind == "file" and member.size <= limits.MAX_FILE_SIZE:
                 total += member.size
-                if total > limits.MAX_UNPACKED_SIZE:  # a sparse file is larger than what is decompressed for it
+                if total > limits.MAX_UNPACKED_SIZE:  # a sparse file is larger than its decompressed data
                     raise limits.too_much(name, limits.MAX_UNPACKED_SIZE)
                 if info.issparse():
                     with _open(archive, info) as content:
@@ -116,7 +116,7 @@ def _slice(file: IO[bytes], start: int, size: int) -> IO[bytes]:
 
 
 class _Slice(io.RawIOBase):
-    """Some bytes of a file as a file of their own."""
+    """A range of bytes of a file, as a file."""
 
     def __init__(self, file: IO[bytes], start: int, size: int) -> None:
         self._file, self._position, self._left = file, start, size

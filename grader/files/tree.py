@@ -70,7 +70,7 @@ class Tree:
         return tuple(file for file in self.ignored if file.is_archive)
 
     def below(self, folder: str) -> "Tree":
-        """Return the files of one folder as a tree of their own; their paths are relative to it."""
+        """Return the files of one folder as a separate tree; their paths are relative to it."""
         if not folder:
             return self
         start = folder + "/"

@@ -1,4 +1,4 @@
-"""Model answers: those in a rubric, and those in a file of their own, so that students can have the rubric."""
+"""Model answers: those in a rubric, and those in a separate file, so that students can have the rubric."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -25,7 +25,7 @@ def load_with_answers(name: str) -> Rubric:
         return rubric
     file = _file(rubric)
     if not file.resolve().is_relative_to(path.parent.resolve()):
-        raise RubricError((f"{printable_path(file)}: the file of the answers must be in the rubric's folder",))
+        raise RubricError((f"{printable_path(file)}: the answers file must be in the rubric's folder",))
     text, table = read_toml(read_capped(file, advice=""), file)
     complain_of(_complaints(rubric, table), text, file)
     return with_answers(rubric, table)
@@ -35,7 +35,9 @@ def missing_answers(rubric: Rubric) -> str:
     """Return a warning if the rubric's file of model answers does not exist; empty otherwise."""
     if not rubric.answers or _file(rubric).exists():
         return ""
-    return f"{rubric.id}: the file of the model answers, {printable_path(_file(rubric))}, does not exist: no model answers are shown"
+    return (
+        f"{rubric.id}: the answers file {printable_path(_file(rubric))} does not exist, so no model answers are shown"
+    )
 
 
 def with_answers(rubric: Rubric, answers: Mapping[str, str]) -> Rubric:
@@ -56,7 +58,7 @@ def _complaints(rubric: Rubric, table: Mapping[str, Any]) -> list[tuple[TomlPath
             guess = did_you_mean(name, questions) or f"; there are: {', '.join(questions) or 'none'}"
             complaints.append(((name,), f"the rubric {rubric.id} has no question {name!r}{guess}"))
         elif not isinstance(value, str):
-            complaints.append(((name,), f"the answer to {name} must be a text"))
+            complaints.append(((name,), f"the answer to {name} must be a string"))
         elif questions[name].answer:
             complaints.append(((name,), f"the answer to {name} is already in the rubric: remove one of the two"))
     return complaints

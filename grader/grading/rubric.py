@@ -19,13 +19,13 @@ from grader.names import did_you_mean
 from grader.text import printable_path
 
 _MAX_COMPLAINTS = 1000  # lines about one rubric
-_ANSWERS = ".answers.toml"  # the ending of files with model answers beside the shipped rubrics
+_ANSWERS = ".answers.toml"  # the ending of files with model answers next to the shipped rubrics
 _LIST = "(`grader rubric list` lists the rubrics that come with the grader)"
 
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """A task of the lab. `needs` is what it is graded on: a urdf, a package, or all files of the submission."""
+    """A task of the lab. `needs` is the required input: a urdf, a package, or all files of the submission."""
 
     id: str
     title: str
@@ -66,7 +66,7 @@ class Criterion:
 class Late:
     """The late penalty, in percent of the maximum for each day begun after the deadline and the grace period.
 
-    The penalty takes no mark below `floor_percent` of the maximum, and leaves lower marks as they are. `due` has a time zone.
+    The penalty lowers no grade below `floor_percent` of the maximum, and does not change lower grades. `due` has a time zone.
     """
 
     percent_per_day: Decimal
@@ -104,7 +104,7 @@ class Rubric:
 
     @property
     def is_shipped(self) -> bool:
-        """Whether it comes with the grader and is named by its id."""
+        """Return whether it comes with the grader and is named by its id."""
         return shipped_rubrics().get(self.id) == self.path
 
     @property
@@ -125,7 +125,7 @@ class Rubric:
 def shipped_rubrics() -> dict[str, Path]:
     """Return the rubrics that come with the grader, by id."""
     package = Path(__file__).resolve().parent.parent
-    # In a wheel they are inside the package, in a checkout beside it.
+    # In a wheel they are inside the package, in a checkout next to it.
     for folder in (package / "rubrics", package.parent / "rubrics"):
         if folder.is_dir():
             return {path.stem: path for path in sorted(folder.glob("*.toml")) if not path.name.endswith(_ANSWERS)}

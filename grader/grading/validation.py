@@ -22,9 +22,9 @@ TomlRow = dict[str, Any]
 
 
 class Validation:
-    """One pass over a parsed rubric. Where `complaints` is empty, the rows hold what a rubric needs, converted.
+    """One pass over a parsed rubric. Where `complaints` is empty, the rows contain the converted values of a rubric.
 
-    `bound` holds the check of each criterion with its arguments, in the order of the rows.
+    `bound` has the check of each criterion with its arguments, in the order of the rows.
     """
 
     def __init__(self, table: TomlRow) -> None:
@@ -72,7 +72,7 @@ class Validation:
         for index, row in enumerate(self.rubric.get(key, ())):
             name = row.get("id")
             if isinstance(name, str) and positions.setdefault(name, index) != index:
-                self._complain((key, index, "id"), f"there is a {key} {name!r} already")
+                self._complain((key, index, "id"), f"the {key} {name!r} is already used")
         return positions
 
     def _belongs(self, where: Path, row: TomlRow, parts: Collection[str]) -> None:

@@ -10,7 +10,7 @@ def _kind(code: str, severity: Severity, title: str, explanation: str) -> Kind:
 BAD_MANIFEST = _kind(
     "PKG001", "error", "Unreadable package.xml",
     "colcon finds packages by their package.xml. It ignores a package whose package.xml is not well-formed XML or has another "
-    "root than <package>, and builds nothing of it.",
+    "root than <package>, and does not build it.",
 )  # fmt: skip
 INCOMPLETE_MANIFEST = _kind(
     "PKG002", "warning", "package.xml without a required element",

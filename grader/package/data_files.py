@@ -102,7 +102,7 @@ class DataFiles:
             self._give_up(None, "setup.py itself makes or changes files", change.at)
 
     def _give_up(self, value: Value, reason: str, at: Position) -> None:
-        """Add what is unknown in a value, or that it is not supported."""
+        """Add the unknown parts of a value, or that it is not supported."""
         self.unknown.append(unknown_in(value) or Unknown(reason, at))
 
     def _stop(self, path: str, reason: str, at: Position) -> None:
@@ -113,7 +113,7 @@ class DataFiles:
             case str() | PurePosixPath():
                 self._file(entry, "", at)
             case [str() as path]:
-                self._stop(path, "an entry is a folder and a list of files, and here the list is missing", at)
+                self._stop(path, "an entry is a folder and a list of files; the list is missing", at)
             case [str() | PurePosixPath() as folder, files]:
                 self._folder(str(folder), files, at)
             case [folder, _]:
@@ -173,7 +173,7 @@ class DataFiles:
             self.stops.append(InstallError(text, "there is no such file", at, guess))
 
     def _narrower(self, folder: str) -> str:
-        """Return the hint at a pattern that matches the files beside a folder, but not the folder."""
+        """Return the hint about a pattern that matches the other files next to a folder, but not the folder."""
         above = posixpath.dirname(folder)
         names = self.listing.names(above) if above else []
         beside = [posixpath.splitext(name)[1] for name in names if posixpath.join(above, name) in self.tree.files]

@@ -21,7 +21,7 @@ _GLOB_OPTIONS = {"pathname", "root_dir", "recursive", "include_hidden"}
 
 
 def file_functions(listing: PackageListing, root: str) -> FunctionTable:
-    """Return the functions by full name; `root` is the absolute path that stands for the package's folder."""
+    """Return the functions by full name; `root` is the absolute path that represents the package's folder."""
     folder = _PackageFolder(listing, root)
     functions: dict[str, Callable[[Evaluation, Call], Value]] = {
         "glob.glob": folder.glob,

@@ -66,13 +66,13 @@ class Package:
 
     @property
     def is_cmake(self) -> bool:
-        """Whether CMake, not setup.py, installs the package."""
+        """Return whether CMake, not setup.py, installs the package."""
         other_type = self.manifest is not None and self.manifest.build_type not in ("ament_python", "")
         return "CMakeLists.txt" in self.tree.files and (SETUP not in self.tree.files or other_type)
 
     @cached_property
     def setup(self) -> "Setup | None":
-        """What its setup.py would install; None where there is none."""
+        """Return the files that its setup.py would install; None without a setup.py."""
         file = self.tree.files.get(SETUP)
         if file is None:
             return None

@@ -85,7 +85,9 @@ def _print_criteria(criteria: Iterable[CriterionStatistics], console: Console) -
             _discrimination_text(row.discrimination),
         )
     console.print(table)
-    hint = "share: of the points earned; discrimination: correlation with the rest of the grade, from -1 to 1"
+    hint = (
+        "share: mean share of the points earned; discrimination: correlation with the rest of the grade, from -1 to 1"
+    )
     wrapped(console, Text(hint, style="dim"), 0)
 
 

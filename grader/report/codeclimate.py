@@ -1,4 +1,4 @@
-"""A report as the part of Code Climate's JSON that GitLab shows beside a merge request: one issue for each finding.
+"""A report as the part of Code Climate's JSON that GitLab shows with a merge request: one issue for each finding.
 
 https://docs.gitlab.com/ci/testing/code_quality/#code-quality-report-format
 """

@@ -1,4 +1,4 @@
-"""What changed in a report since the submission was graded last, in plain lines."""
+"""The changes of a report since the submission was last graded, as plain lines."""
 
 from collections.abc import Iterator, Sequence
 from decimal import Decimal

@@ -24,7 +24,7 @@ def wrapped(console: Console, text: Text, indent: int, head: Text | None = None)
 
 
 def show_excerpt(console: Console, source: Source, where: Location, indent: int, style: str = "red") -> None:
-    """Print the source line of a location, and underline what is meant."""
+    """Print the source line of a location, and underline the marked part."""
     number = str(where.line)
     line = excerpt(source, where, max(8, console.width - indent - len(number) - 3))
     mark, bar = ("\u2500", "\u2502") if _unicode(console) else ("-", "|")

@@ -13,7 +13,7 @@ from grader.text import counted_points, enumerated, first_lines, format_points, 
 
 _VERDICTS = {
     "clean": "ROS 2 loads the file",
-    "degraded": "ROS 2 loads the file, but drops some of it",
+    "degraded": "ROS 2 loads the file, but drops content of it",
     "rejected": "ROS 2 rejects the file",
 }
 _MAX_LISTED = 12
@@ -21,7 +21,7 @@ _STATUSES = ("passed", "failed", "skipped", "pending", "errored", "marked manual
 
 
 class Details(NamedTuple):
-    """What there is to say of a criterion beside its id and points.
+    """The sentences of a report on a criterion, besides its id and points.
 
     `answer` is the student's answer to a question, line by line, and `model_answer` the instructor's, if the rubric was loaded
     with its answers. `location` is where to look and `expected` what should be, if the criterion failed.
@@ -184,8 +184,8 @@ def advice(report: Report) -> str:
     first = next((result.criterion.id for result in report.results if result.outcome.status == "failed"), None)
     if first is None:
         return ""
-    robot = ", `grader inspect` shows the whole robot" if report.submission.has_urdf else ""
-    return f"`{explain_command(first, report)}` explains how it is decided{robot}."
+    robot = "; `grader inspect` shows the whole robot" if report.submission.has_urdf else ""
+    return f"`{explain_command(first, report)}` explains the first failed criterion{robot}."
 
 
 def explain_command(name: str, report: Report) -> str:

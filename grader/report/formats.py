@@ -27,7 +27,7 @@ class Format(StrEnum):
     function: str
     needs: Need
 
-    # The endings differ, so that a report in every format can stand in one folder under one name.
+    # The endings differ, so that one folder can contain a report in every format under one name.
     TERMINAL = "terminal", "txt", "terminal:render_terminal", "console"
     MARKDOWN = "markdown", "md", "markdown:render_markdown"
     JSON = "json", "json", "as_json:render_json"

@@ -47,7 +47,7 @@ def _cost(lost: Decimal) -> str:
 
 
 def _overview(report: Report) -> str:
-    """Return what there is to say of the whole submission, and what is not decided."""
+    """Return the lines about the whole submission and the undecided criteria."""
     pending = [result.criterion.id for result in report.results if result.is_open]
     lines = [*summary_lines(report), provenance(report)]  # first, because the rest may be cut off
     if pending:

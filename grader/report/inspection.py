@@ -1,4 +1,4 @@
-"""What `grader inspect` shows of a URDF: problems, tree, joints, poses."""
+"""A URDF as `grader inspect` shows it: problems, tree, joints, poses."""
 
 from collections.abc import Iterator
 from contextlib import suppress

@@ -8,12 +8,12 @@ from grader.text import printable
 
 _MEANT = re.compile(r"""[^\s=<>"'/]+\s*=\s*(?:"[^"]*"?|'[^']*'?)|<[^\s>]*[^>]*>?|[\w.]+""")  # attribute, tag, word
 _ARCHIVE = re.compile(r"(?i)(.*?\.(?:zip|tar|tgz|tar\.gz))/", re.DOTALL)
-_MARGIN = 4  # characters before what is meant, if the line is cut
+_MARGIN = 4  # characters before the marked part, if the line is cut
 _MAX_TEXT = 500  # characters of a line: a whole file may be one line
 
 
 class Excerpt(NamedTuple):
-    """A source line, cut to the room that there is. What is meant starts at `start`, from 0, and is `width` long."""
+    """A source line, cut to the available width. The marked part starts at `start`, from 0, and is `width` long."""
 
     text: str
     start: int
@@ -21,7 +21,7 @@ class Excerpt(NamedTuple):
 
 
 class Base(NamedTuple):
-    """Where a submission is in a repository: the folder of its paths, with a slash at its end, or the archive that holds them.
+    """The location of a submission in a repository: the folder of its paths, with a slash at its end, or the archive that contains them.
 
     With `is_outside` it is in no repository.
     """
@@ -32,7 +32,7 @@ class Base(NamedTuple):
 
 
 class RepositoryLocation(NamedTuple):
-    """A location as seen from the repository's root, from 1; `end` is the column after what is meant.
+    """A location as seen from the repository's root, from 1; `end` is the column after the marked part.
 
     Without a line it is the whole file. `text` is the source line, `meant` the part of it that is meant, empty if it is too long.
     """
@@ -52,7 +52,7 @@ def width_of(line: str, column: int) -> int:
 
 
 def excerpt(source: Source, where: Location, room: int) -> Excerpt:
-    """Return the source line of a location, cut to a number of characters around what is meant."""
+    """Return the source line of a location, cut to a number of characters around the marked part."""
     line = source.line(where.line)
     start = where.column - 1
     width = width_of(line, where.column)

@@ -57,7 +57,7 @@ def overview_markdown(report: Report) -> str:
 
 
 def criterion_markdown(result: Result, report: Report) -> str:
-    """Return what is said of one criterion, beside its title and points."""
+    """Return the text about one criterion, besides its title and points."""
     return "\n\n".join(_details(content.result_details(result, report), report, set(), answers=False))
 
 
@@ -101,7 +101,7 @@ def _item(result: Result, report: Report, shown: set[str], *, answers: bool) -> 
 
 
 def _details(details: content.Details, report: Report, shown: set[str], *, answers: bool) -> Iterator[str]:
-    """Yield what is said of a criterion, block by block, without feedback that is shown already."""
+    """Yield the text about a criterion, block by block, without feedback that is shown already."""
     yield from map(escaped, details.sentences)
     if details.expected:
         yield escaped(details.expected)

@@ -1,4 +1,4 @@
-"""The parts of a report as lines of printable plain text, for formats that hold text."""
+"""The parts of a report as lines of printable plain text, for text formats."""
 
 from collections.abc import Iterator
 
@@ -24,12 +24,12 @@ def note_lines(report: Report) -> list[str]:
 
 
 def submission_lines(report: Report) -> list[str]:
-    """Return all that is said of the whole submission, beside its score."""
+    """Return all lines about the whole submission, besides its score."""
     return summary_lines(report) + note_lines(report)
 
 
 def criterion_lines(result: Result, report: Report) -> list[str]:
-    """Return what is said of one criterion: the finding, its place, the answer, the feedback."""
+    """Return the lines about one criterion: the finding, its place, the answer, the feedback."""
     details = content.result_details(result, report)
     lines = list(details.sentences)
     if details.location is not None:
@@ -40,7 +40,7 @@ def criterion_lines(result: Result, report: Report) -> list[str]:
 
 
 def excerpt_lines(where: Location, report: Report) -> Iterator[str]:
-    """Yield the source line of a location, and a line that underlines what is meant; nothing without the file."""
+    """Yield the source line of a location, and a line that underlines the marked part; nothing without the file."""
     source = report.submission.source(where.path)
     if source is not None:
         line = excerpt(source, where, _EXCERPT_WIDTH)

@@ -1,4 +1,4 @@
-"""What `grader review` shows of a criterion: the answer, the model answer, where the pictures are."""
+"""A criterion as `grader review` shows it: the answer, the model answer, where the pictures are."""
 
 from pathlib import Path
 
@@ -7,7 +7,7 @@ from rich.text import Text
 
 from grader.classroom.gradebook.marks import Mark, PendingCriterion
 from grader.report.console import wrapped
-from grader.text import counted_points, format_points, printable
+from grader.text import counted_points, printable
 
 _INDENT = 2
 
@@ -18,7 +18,7 @@ def render_pending(pending: PendingCriterion, position: str, console: Console) -
     student = pending.grade.student
     who = f"{student.name} ({student.key})" if student.name else student.key
     console.print()
-    head = f"{position}  {printable(who)}: {printable(criterion.title)}  {format_points(criterion.points)} points"
+    head = f"{position}  {printable(who)}: {printable(criterion.title)} ({counted_points(criterion.points)})"
     wrapped(console, Text(head, style="bold"), 0)
     wrapped(console, Text(printable(outcome.message)), 0)
     if isinstance(outcome.measured, str):

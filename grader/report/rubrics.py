@@ -9,7 +9,7 @@ from grader.grading.rubric import Criterion, Rubric
 from grader.names import did_you_mean
 from grader.package.catalogue import PACKAGE_CATALOGUE
 from grader.robot.catalogue import CATALOGUE
-from grader.text import format_points, printable
+from grader.text import counted_points, format_points, printable
 
 _WIDTH = 80
 EVERY_KIND = (*CATALOGUE, *PACKAGE_CATALOGUE)
@@ -71,7 +71,7 @@ def explanation(name: str, rubric: Rubric) -> str:
 
 def _criterion_text(criterion: Criterion, rubric: Rubric) -> str:
     lines = [
-        f"{criterion.id} (points: {format_points(criterion.points)}; part {criterion.part} of {rubric.id})",
+        f"{criterion.id} ({counted_points(criterion.points)}, part {criterion.part} of {rubric.id})",
         "",
         _filled(f"Passes when: {criterion.title}."),
     ]
@@ -80,7 +80,7 @@ def _criterion_text(criterion: Criterion, rubric: Rubric) -> str:
     if criterion.requires:
         lines += ["", _filled(f"Skipped unless these passed: {', '.join(criterion.requires)}.")]
     given = ", ".join(f"{key} = {_toml(value)}" for key, value in criterion.arguments.items())
-    lines += ["", _filled(f"How it is decided: {criterion.check.name}. {criterion.check.fact}")]
+    lines += ["", _filled(f"Check: {criterion.check.name}. {criterion.check.fact}")]
     if given:
         lines += [_filled(f"With {given}.")]
     return "\n".join(lines) + "\n"

@@ -22,7 +22,7 @@ def columns(terminal: int = _DEFAULT_WIDTH) -> int:
 
 
 class Screen(NamedTuple):
-    """Where a report is drawn: its width in columns, its encoding, and whether it shows colours."""
+    """The terminal or file of a report: its width in columns, its encoding, and whether it shows colours."""
 
     width: int
     encoding: str = "utf-8"
@@ -50,7 +50,7 @@ def draw(render: Callable[["Console"], None], screen: Screen | None = None) -> s
 
 
 class _Buffer(io.StringIO):
-    """Collects what is printed, and reports the encoding of where it will go."""
+    """A stream that collects output and reports the encoding of its destination."""
 
     def __init__(self, encoding: str) -> None:
         super().__init__()

@@ -200,13 +200,13 @@ NO_ROOT = rejects(
 CYCLE = rejects(
     "URDF082",
     "A loop of joints",
-    "Following the joints from parent to child leads back to the same link. robot_state_publisher follows the loop without "
+    "The joints lead from parent to child back to the same link. robot_state_publisher follows the loop without "
     "end and crashes. A robot in a URDF is a tree.",
 )
 DETACHED_CYCLE = drops(
     "URDF083",
     "A detached loop of links",
-    "These links form a loop that is not connected to the root. ROS 2 loads the file, but leaves them out of the tree.",
+    "These links form a loop that is not connected to the root. ROS 2 loads the file, but ignores them.",
     detaches_links=True,
 )
 TWO_PARENTS = warns(

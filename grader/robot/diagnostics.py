@@ -61,7 +61,7 @@ class Problems:
     def duplicate(self, kind: Kind, element: Element, first: Element) -> None:
         """Add that an element has the name of an earlier one of its kind."""
         name = quoted(element.get("name") or "")
-        message = f"there is already a {element.tag} {name} in line {self.line(first)}; ROS 2 rejects the file"
+        message = f"the {element.tag} {name} is already defined in line {self.line(first)}; ROS 2 rejects the file"
         self.add(kind, message, element, "name")
 
     def closest(self, name: str, known: Iterable[str]) -> str | None:

@@ -104,9 +104,9 @@ def undefined_pose(joint: Joint) -> MissingElement:
     if joint.origin is None:
         reason, at = "its origin cannot be read", joint.location and joint.location._replace(inside="origin")
     elif joint.axis is None:
-        reason = "its axis cannot be read"
+        reason = "the joint's axis cannot be read"
     elif unit(joint.axis) is None:
-        reason = "its axis is 0 0 0"
+        reason = "the joint's axis is 0 0 0"
     else:
         reason, at = "its numbers are too large", joint.location
     message, detail = f"the pose of a joint's child is undefined: {reason}", f" (joint {quoted(joint.name)})"

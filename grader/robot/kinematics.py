@@ -140,7 +140,9 @@ class Configuration:
         self.axis(joint)  # raises where it has no direction
         chain = self.chain(link, above=relative_to) or ()
         if joint in chain and not self.positions and all(above.mimic is None for above in chain):
-            T_relative_joint = self.pose(joint.child, relative_to=relative_to)  # what is below the joint turns as one
+            T_relative_joint = self.pose(
+                joint.child, relative_to=relative_to
+            )  # everything below the joint turns together
             turn = motion_of(joint, angle)
             return T_relative_joint @ (turn or IDENTITY) @ T_relative_joint.inverse()
         position = self.position(joint)

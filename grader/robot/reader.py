@@ -36,7 +36,7 @@ class Reading:
 def read_urdf(data: bytes, path: str = "robot.urdf") -> Reading:
     """Read the bytes of a URDF; `path` only appears in locations.
 
-    The verdict is ROS 2 Jazzy's (urdfdom on TinyXML2): `clean`; `degraded`, if content is dropped or links are left out
+    The verdict is ROS 2 Jazzy's (urdfdom on TinyXML2): `clean`; `degraded`, if content is dropped or links are omitted
     of the tree; `rejected`. Every problem is reported, sorted by location. Never raises for any input.
     """
     root, source, listed, first_tag = read_document(data, path)

@@ -148,7 +148,7 @@ def _report_cycle(cycle: list[Joint], reachable: set[str], problems: Problems, *
     if cycle[0].parent in reachable:
         problems.add(catalogue.CYCLE, f"{loop}: {steps}; ROS 2 follows it without end and crashes", element)
     elif has_root:
-        message = f"{loop} that is detached from the robot: {steps}; ROS 2 leaves these links out"
+        message = f"{loop} that is detached from the robot: {steps}; ROS 2 ignores these links"
         problems.add(catalogue.DETACHED_CYCLE, message, element)
     else:
         problems.add(catalogue.NO_ROOT, f"there is no root link: {loop}: {steps}; ROS 2 rejects the file", element)

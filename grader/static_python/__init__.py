@@ -1,1 +1,1 @@
-"""Static evaluation of Python files and expressions of a submission: nothing of them is run or imported."""
+"""Static evaluation of Python files and expressions of a submission: none of them is run or imported."""

@@ -108,7 +108,7 @@ class Evaluation:
         return call
 
     def find(self, node: ast.Name, scope: Scope) -> Value:
-        """Return the value of a name. An undefined name is an error; its value is what was most likely meant."""
+        """Return the value of a name. An undefined name is an error; its value is the most likely intended one."""
         try:
             return scope.find(node.id)
         except KeyError:
@@ -155,7 +155,7 @@ class Evaluation:
         parameters = function.parameters
         positional = [parameter.arg for parameter in (*parameters.posonlyargs, *parameters.args)]
         names = {*positional, *(parameter.arg for parameter in parameters.kwonlyargs)}
-        unpacked = call.kwargs.get(UNKNOWN_KEYS)  # stands for any argument
+        unpacked = call.kwargs.get(UNKNOWN_KEYS)  # represents any argument
         given = dict(zip(positional, call.args, strict=False))
         given |= {name: value for name, value in call.kwargs.items() if name in names}
         missing = sorted(names - given.keys() - function.defaults.keys())

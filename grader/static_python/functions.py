@@ -57,7 +57,9 @@ def _of_path(function: Callable[..., Value], _: Evaluation, call: Call) -> Value
 
 def _join(evaluation: Evaluation, call: Call) -> Value:
     if any(isinstance(value, list | tuple | dict | int | float | None) for value in call.args):
-        evaluation.error("os.path.join takes strings, and one argument is none: is a bracket misplaced?", call.at)
+        evaluation.error(
+            "os.path.join takes strings, and one argument is not a string: is a bracket misplaced?", call.at
+        )
     paths = [path for value in call.args if (path := path_text(value)) is not None]
     if paths and len(paths) == len(call.args) and sum(map(len, paths)) <= MAX_PATH:
         return posixpath.join(*paths)

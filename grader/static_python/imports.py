@@ -89,7 +89,7 @@ def is_always_installed(module: str) -> bool:
 
 
 def imported_names(module: str, alias: ast.alias) -> dict[str, QualifiedName]:
-    """Return what `import name` or `from module import name` binds; the name * stands for names that are not known."""
+    """Return what `import name` or `from module import name` binds; the name * represents unknown names."""
     if alias.name == "*":
         names: Sequence[str] = ["", *_LAUNCH_NAMES.get(module, ())]
         if module == "setuptools":

@@ -1,4 +1,4 @@
-"""Evaluates a whole Python file without running it: its blocks, functions, branches, loops and error handlers."""
+"""Evaluate a whole Python file without running it: its blocks, functions, branches, loops and error handlers."""
 
 import ast
 import builtins

@@ -56,7 +56,7 @@ def call_value(evaluation: Evaluation, function: Value, call: Call) -> Value:
 
 
 class SimpleEvaluator(Evaluation):
-    """Evaluates expressions, with the functions of a table."""
+    """An evaluator of expressions, with a table of functions."""
 
     def evaluate(self, node: ast.expr, scope: Scope) -> Value:
         """Return the value of an expression; Unknown, with the reason, where it cannot be determined."""

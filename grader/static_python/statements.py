@@ -1,4 +1,4 @@
-"""Evaluates the statements that have no blocks: imports, assignments, deletions, raise and assert."""
+"""Evaluate the statements that have no blocks: imports, assignments, deletions, raise and assert."""
 
 import ast
 import builtins

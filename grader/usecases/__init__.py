@@ -1,4 +1,4 @@
-"""What each command does, without typer and without printing: the command passes what writes to the terminal."""
+"""The work of each command, without typer and without printing: the command passes the functions that print."""
 
 from collections.abc import Callable
 from typing import NamedTuple

@@ -1,4 +1,4 @@
-"""Write a report for each student of a class, from the gradebook, in a file of their own."""
+"""Write a report for each student of a class, from the gradebook, each in a separate file."""
 
 import hashlib
 import re

@@ -15,7 +15,7 @@ _MAX_PERCENT = 100
 
 
 class ExitCode(IntEnum):
-    """What a command returns to the shell."""
+    """The exit code of a command."""
 
     PASSED = 0
     FAILED = 1

@@ -35,7 +35,7 @@ Cell = str | int | Decimal | None
 
 @dataclass(frozen=True, slots=True)
 class ExportRequest:
-    """What to export, and for an LMS the file to fill in and how."""
+    """An export: its format, and for an LMS the file to fill in and how."""
 
     target: str
     gradebook: Path

@@ -31,7 +31,7 @@ class Watched(NamedTuple):
 class _Target(NamedTuple):
     """The folders to watch, and the files in them if the submission is a file: editors replace a file by a new one.
 
-    `stamps` tell a folder from another one of its name, because no event reports the exchange.
+    `stamps` distinguish a folder from another one of the same name, because no event reports the replacement.
     """
 
     folders: tuple[str, ...]

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from grader.report.locations import Base
 
 Annotate = Callable[[str], None]  # writes workflow commands
-_MAX_SUMMARY = 1024 * 1024  # bytes: GitHub shows nothing of a longer step summary
+_MAX_SUMMARY = 1024 * 1024  # bytes: GitHub does not show a longer step summary
 
 
 def is_github_job() -> bool:

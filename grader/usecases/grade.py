@@ -28,7 +28,7 @@ Saves = tuple[tuple[Format, Path], ...]
 
 @dataclass(frozen=True, slots=True)
 class GradeRequest:
-    """What to grade, against which rubric, and the reports to make."""
+    """A submission to grade, its rubric, and the reports to make."""
 
     path: str
     rubric: str
@@ -110,7 +110,7 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeResult:
 def remove_reports(request: GradeRequest) -> dict[Path, int]:
     """Remove the files that `--save` is about to write and return their permissions.
 
-    They may be of an earlier run, or forged by a student: if this run is refused, nobody may take them for its reports. Robot
+    They may be of an earlier run, or forged by a student: if this run is refused, they must not be mistaken for its reports. Robot
     descriptions stay, because they may be what is graded. Raises InputError if a report would overwrite what is graded or lead
     through a symlink of the submission.
     """

@@ -34,7 +34,7 @@ ProgressDisplay = AbstractContextManager[Callable[[Progress], None]]
 
 @dataclass(frozen=True, slots=True)
 class ClassRequest:
-    """A class to grade, and what to write beside the gradebook. `timeout` is in seconds, `max_size` in bytes."""
+    """A class to grade, and the files to write besides the gradebook. `timeout` is in seconds, `max_size` in bytes."""
 
     path: Path
     gradebook: Path
@@ -121,7 +121,7 @@ def _processes(jobs: int | None, timeout: float) -> Executor:
 
 
 def _run(batch: Batch, intake: Intake, warn: Warn) -> Progress:
-    """Grade what is new or changed; if that is interrupted, say what is kept."""
+    """Grade new and changed submissions; after an interruption, report which results are kept."""
     try:
         return batch.grade(intake)
     except BaseException:

@@ -40,7 +40,7 @@ def check(name: str, warn: Warn) -> str:
     from grader.grading.grade import grade_reference
 
     rubric = load(name, warn)
-    found = f"{rubric.id}: {len(rubric.criteria)} criteria, {counted_points(rubric.points)}, no mistakes found"
+    found = f"{rubric.id}: {counted(len(rubric.criteria), 'criterion', 'criteria')}, {counted_points(rubric.points)}, no mistakes found"
     if not rubric.reference:
         return found
     lost = [result for result in grade_reference(rubric).results if result.outcome.status not in ("passed", "pending")]

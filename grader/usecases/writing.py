@@ -20,7 +20,7 @@ _MAX_SYMLINKS = 40  # in one path, as in Linux
 
 
 def write_stdout(text: str | bytes) -> None:
-    """Write to standard output; bytes as they are, text in its encoding. Raises InputError if it is closed."""
+    """Write to standard output; bytes unchanged, text in its encoding. Raises InputError if it is closed."""
     stream = sys.stdout
     if stream is None:
         raise InputError("cannot write the report: standard output is closed")
@@ -68,7 +68,7 @@ def save_bytes(path: Path, data: bytes, submissions: Sequence[Path | str] = (), 
 def remove_previous(path: Path) -> int | None:
     """Remove the regular file of an earlier run and return its permissions; None if there is none.
 
-    A run that fails later then leaves no old report behind. Raises InputError if the file cannot be removed.
+    A run that fails later then leaves no old report. Raises InputError if the file cannot be removed.
     """
     if is_stdout(path):
         return None

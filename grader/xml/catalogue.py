@@ -55,5 +55,5 @@ IGNORED_REST = warns(
 SEVERAL_ROOTS = warns(
     "URDF012",
     "More than one element at the top level",
-    "ROS 2 reads the first <robot> at the top level and ignores every other element beside it.",
+    "ROS 2 reads the first <robot> at the top level and ignores every other top-level element.",
 )

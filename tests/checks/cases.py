@@ -92,9 +92,9 @@ CASES = (
         tree.urdf_loads,
         {},
         passing=mounted(),
-        says="ROS 2 loads the file and every link is in its one tree",
+        says="ROS 2 loads the file, and all links form one tree",
         failing=scene(BASE, LIDAR),
-        complains="'lidar' is not connected to the robot: no joint has it as its child (roots are 'base', 'lidar');"
+        complains="'lidar' is not connected to the robot: no joint has it as its child (the roots are 'base', 'lidar');"
         " ROS 2 rejects the file",
         at='name="lidar"',
         needs_size=False,

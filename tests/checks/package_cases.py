@@ -112,7 +112,7 @@ PACKAGE_CASES = (
         {"name": _NAME},
         says="a build installs share/my_robot/my_robot.urdf and share/my_robot/my_robot.rviz, where the launch file looks for them",
         failing=REFERENCE.replacing(LAUNCH, "os.path.join(share, 'my_robot.urdf')", "'urdf/my_robot.urdf'"),
-        complains="it looks for the URDF at urdf/my_robot.urdf, in the folder that ros2 launch is started from",
+        complains="the launch file looks for the URDF at urdf/my_robot.urdf, relative to the folder that ros2 launch is started from",
         at=(LAUNCH, "open("),
     ),
     PackageCase(

@@ -431,7 +431,7 @@ def test_a_launch_file_of_which_nothing_is_known(submitted: Submitted, message: 
         (
             IN_YAML.replacing(YAML, "launch:\n", "lunch:\n"),
             YAML,
-            "the file is not one list below launch:; ros2 launch starts nothing",
+            "the file is not a list of actions below launch:; ros2 launch starts nothing",
             "lunch:",
         ),
         (
@@ -510,7 +510,7 @@ def test_ways_to_read_the_urdf(code: str) -> None:
     assert finds_files(described(code)) == ("passed", FOUND, None)
     assert starts(described(code)) == ("passed", STARTED, None)
     wrong = described(code.replace("my_robot.urdf", "urdf/my_robot.urdf"))
-    message = "it looks for the URDF at share/my_robot/urdf/my_robot.urdf, but a build installs it as share/my_robot/my_robot.urdf"
+    message = "the launch file looks for the URDF at share/my_robot/urdf/my_robot.urdf, but a build installs it as share/my_robot/my_robot.urdf"
     assert finds_files(wrong)[:2] == ("failed", message)
 
 
@@ -546,7 +546,7 @@ def test_flat_and_nested_paths_have_to_agree() -> None:
     agreeing = Submitted({**NESTED.files, LAUNCH: wanted.files[LAUNCH]})
     assert finds_files(agreeing) == ("passed", FOUND.replace(flat, nested), None)
     for submitted, asked, put in ((NESTED, flat, nested), (wanted, nested, flat)):
-        message = f"it looks for the URDF at {asked}, but a build installs it as {put}"
+        message = f"the launch file looks for the URDF at {asked}, but a build installs it as {put}"
         assert finds_files(submitted) == ("failed", message, submitted.place(LAUNCH, "open("))
 
 
@@ -555,51 +555,51 @@ def test_flat_and_nested_paths_have_to_agree() -> None:
     [
         (
             launch(URDF_PATH, "'/home/student/ros2_ws/src/my_robot/urdf/my_robot.urdf'"),
-            ("it looks for the URDF at /home/student/ros2_ws/src/my_robot/urdf/my_robot.urdf, which exists on one machine "
-            "only; get_package_share_directory('my_robot') returns the folder that it is installed in"),
+            ("the launch file looks for the URDF at /home/student/ros2_ws/src/my_robot/urdf/my_robot.urdf, which exists on one machine "
+            "only; use get_package_share_directory('my_robot'), which returns the installed folder"),
             "open(",
         ),
         (
             launch(URDF_PATH, "os.path.expanduser('~/ros2_ws/my_robot.urdf')"),
-            ("it looks for the URDF at ~/ros2_ws/my_robot.urdf, which exists on one machine only; "
-            "get_package_share_directory('my_robot') returns the folder that it is installed in"),
+            ("the launch file looks for the URDF at ~/ros2_ws/my_robot.urdf, which exists on one machine only; "
+            "use get_package_share_directory('my_robot'), which returns the installed folder"),
             "open(",
         ),
         (
             launch(URDF_PATH, "'~/ros2_ws/my_robot.urdf'"),
-            "it looks for the URDF at ~/ros2_ws/my_robot.urdf, but nothing replaces ~ by the home folder",
+            "the launch file looks for the URDF at ~/ros2_ws/my_robot.urdf, but nothing replaces ~ by the home folder",
             "open(",
         ),
         (
             launch(URDF_PATH, "'urdf/my_robot.urdf'"),
-            "it looks for the URDF at urdf/my_robot.urdf, in the folder that ros2 launch is started from",
+            "the launch file looks for the URDF at urdf/my_robot.urdf, relative to the folder that ros2 launch is started from",
             "open(",
         ),
         (
             launch(RVIZ_PATH, "'rviz/my_robot.rviz'"),
-            "it looks for the RViz file at rviz/my_robot.rviz, in the folder that ros2 launch is started from",
+            "the launch file looks for the RViz file at rviz/my_robot.rviz, relative to the folder that ros2 launch is started from",
             "Node(\n            package='rviz2'",
         ),
         (
             launch(RVIZ_PATH, "'/Users/me/my_robot.rviz'"),
-            ("it looks for the RViz file at /Users/me/my_robot.rviz, which exists on one machine only; "
-            "get_package_share_directory('my_robot') returns the folder that it is installed in"),
+            ("the launch file looks for the RViz file at /Users/me/my_robot.rviz, which exists on one machine only; "
+            "use get_package_share_directory('my_robot'), which returns the installed folder"),
             "Node(\n            package='rviz2'",
         ),
         (
             launch("get_package_share_directory('my_robot')", "get_package_share_directory('my_robt')"),
-            "it looks in a package 'my_robt', but this one is named 'my_robot'",
+            "the launch file looks in a package 'my_robt', but this one is named 'my_robot'",
             "open(",
         ),
         (
             launch("'my_robot.urdf'", "'my_robt.urdf'"),
-            ("it looks for the URDF at share/my_robot/my_robt.urdf, but the package has no file 'my_robt.urdf'; "
+            ("the launch file looks for the URDF at share/my_robot/my_robt.urdf, but the package has no file 'my_robt.urdf'; "
             "there is 'my_robot.urdf'"),
             "open(",
         ),
         (
             launch("'my_robot.rviz'", "'config.rviz'"),
-            ("it looks for the RViz file at share/my_robot/config.rviz, but the package has no file 'config.rviz'; "
+            ("the launch file looks for the RViz file at share/my_robot/config.rviz, but the package has no file 'config.rviz'; "
             "there is 'my_robot.rviz'"),
             "Node(\n            package='rviz2'",
         ),
@@ -625,7 +625,7 @@ def test_flat_and_nested_paths_have_to_agree() -> None:
         ),
         (
             DISPLAY.replacing(LAUNCH, "'my_robot.urdf'", "'urdf/my_robot.urdf'"),
-            ("it looks for the URDF at share/my_robot/urdf/my_robot.urdf, "
+            ("the launch file looks for the URDF at share/my_robot/urdf/my_robot.urdf, "
             "but a build installs it as share/my_robot/my_robot.urdf"),
             "IncludeLaunchDescription(\n",
         ),
@@ -654,11 +654,11 @@ def test_a_file_that_is_not_where_it_is_looked_for(submitted: Submitted, message
 def test_the_same_in_xml_and_yaml() -> None:
     """The other languages are held to the same paths."""
     wrong = IN_XML.replacing(XML, "/my_robot.urdf", "/urdf/my_robot.urdf")
-    message = "it looks for the URDF at share/my_robot/urdf/my_robot.urdf, but a build installs it as share/my_robot/my_robot.urdf"
+    message = "the launch file looks for the URDF at share/my_robot/urdf/my_robot.urdf, but a build installs it as share/my_robot/my_robot.urdf"
     at = wrong.place(XML, "<param")
     assert finds_files(wrong) == ("failed", message, at)
     other = IN_YAML.replacing(YAML, "/my_robot.rviz", "/rviz/my_robot.rviz")
-    words = "it looks for the RViz file at share/my_robot/rviz/my_robot.rviz, but a build installs it as share/my_robot/my_robot.rviz"
+    words = "the launch file looks for the RViz file at share/my_robot/rviz/my_robot.rviz, but a build installs it as share/my_robot/my_robot.rviz"
     assert finds_files(other)[:2] == ("failed", words)
 
 
@@ -668,7 +668,7 @@ def test_two_wrong_paths_are_both_told() -> None:
     status, message, place = finds_files(submitted)
     assert (status, place) == ("failed", submitted.place(LAUNCH, "open("))
     assert "/home/me/my_robot.urdf" in message
-    assert "; it looks for the RViz file at my_robot.rviz, in the folder" in message
+    assert "; the launch file looks for the RViz file at my_robot.rviz, relative to the folder" in message
 
 
 def test_a_node_that_is_not_started_needs_no_file() -> None:
@@ -763,14 +763,14 @@ def test_another_name_in_package_xml_is_no_fault_here() -> None:
         (
             INCLUDES.replacing(LAUNCH, "share, 'launch', ", "share, "),
             (
-                "it looks for the launch file at share/my_robot/robot.launch.py, "
+                "the launch file looks for the launch file at share/my_robot/robot.launch.py, "
                 "but a build installs it as share/my_robot/launch/robot.launch.py"
             ),
         ),
         (
             INCLUDES.without(INNER),
             (
-                "it looks for the launch file at share/my_robot/launch/robot.launch.py, "
+                "the launch file looks for the launch file at share/my_robot/launch/robot.launch.py, "
                 "but the package has no file 'robot.launch.py'"
             ),
         ),
@@ -788,7 +788,7 @@ def test_an_included_file_that_is_not_installed() -> None:
     """An included launch file has to be installed, too."""
     entry = "glob(os.path.join('launch', '*launch.[pxy][yma]*'))"
     submitted = INCLUDES.replacing(SETUP, entry, "['launch/my_robot_rviz.launch.py']")
-    message = "it looks for the launch file at share/my_robot/launch/robot.launch.py, but a build does not install robot.launch.py"
+    message = "the launch file looks for the launch file at share/my_robot/launch/robot.launch.py, but a build does not install robot.launch.py"
     place = submitted.place(LAUNCH, "IncludeLaunchDescription(P")
     assert lacks(launch_finds_files, submitted, name=NAME) == ("installed include", FOLDER, message, place)
 

@@ -523,7 +523,7 @@ def test_what_cmake_installs_is_for_a_person(kind: str) -> None:
     cmake = (
         manifest("ament_python", "ament_cmake").without(SETUP).with_files({"my_robot/CMakeLists.txt": "install()\n"})
     )
-    message = "the grader does not evaluate CMakeLists.txt, which says what is installed; needs manual grading"
+    message = "the grader does not evaluate CMakeLists.txt, which lists what is installed; needs manual grading"
     assert finds(build_installs, cmake, kind=kind, name=KINDS[kind]) == ("pending", message, None)
     assert finds(setup_imports, cmake) == ("pending", message, None)
     assert finds(installs_files, cmake, files=["urdf/*"]) == ("pending", message, None)

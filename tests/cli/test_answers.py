@@ -120,7 +120,7 @@ def test_without_the_file_the_rubric_works(top: Path) -> None:
             "3: the rubric small has no question 'esay'; did you mean 'essay'?",
         ),
         ("\nbox = ''", "2: the rubric small has no question 'box'; there are: essay"),
-        ("essay = 3", "1: the answer to essay must be a text"),
+        ("essay = 3", "1: the answer to essay must be a string"),
         ("essay = ", " not readable as TOML: Invalid value (at end of document)"),
     ],
 )

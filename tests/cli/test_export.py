@@ -334,7 +334,7 @@ def test_another_maximum_is_refused(top: Path) -> None:
     arguments = ("canvas", "--into", top / "canvas.csv", "--output", top / "out.csv")
     assert refusal(export(top, *arguments)) == (
         "Canvas' Points Possible of 'A small lab (77)' is 100, but the rubric's maximum is 11: change the maximum in the LMS"
-        " and export again, or write the points as they are with --any-maximum"
+        " and export again, or pass --any-maximum to write the points unchanged"
     )
     assert not (top / "out.csv").exists()
     done = export(top, *arguments, "--any-maximum")

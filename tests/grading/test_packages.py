@@ -311,7 +311,7 @@ def test_two_defects_are_both_told() -> None:
             REFERENCE.replacing(LAUNCH, "os.path.join(share, 'my_robot.urdf')", "'/home/me/my_robot.urdf'"),
             "LCH003",
             LAUNCH,
-            "/home/me/my_robot.urdf, which exists on one machine only",
+            "the path /home/me/my_robot.urdf exists on one machine only",
         ),
         (
             REFERENCE.with_files({RVIZ: "hello\n"}),

@@ -159,7 +159,7 @@ def test_an_id_is_one_word_and_a_title_one_line(tmp_path: Path) -> None:
 EVERY_KIND_OF_MISTAKE = """\
 id = ""  # !! id must be one printable word, not ''
 titel = "Lab 0"  # !! a rubric has no key 'titel'; did you mean 'title'?
-urdf = 3  # !! urdf must be a text, not 3
+urdf = 3  # !! urdf must be a string, not 3
 title = "Lab 0"
 
 [[part]]
@@ -169,7 +169,7 @@ needs = "udrf"  # !! needs must be one of urdf, package, files, not 'udrf'
 colour = "red"  # !! a part has no key 'colour'; it has: id, title, needs, points
 
 [[part]]  # !! this part has no title
-id = "task1"  # !! there is a part 'task1' already
+id = "task1"  # !! the part 'task1' is already used
 
 [[criterion]]
 id = "one"
@@ -192,9 +192,9 @@ with = { link = "base", sise = [1, 2, 3], tolerance = "a" }  # !! the check show
  !! tolerance of shows_box must be a number, not 'a' !! the check shows_box needs size: 3 numbers
 
 [[criterion]]
-id = "three"  # !! there is a criterion 'three' already
+id = "three"  # !! the criterion 'three' is already used
 part = "task1"
-title = " "  # !! title must be a text that is not empty, not ' '
+title = " "  # !! title must be a non-empty string, not ' '
 points = -1  # !! points must be a number from 0 to 1000000, not -1
 check = "urdf_loads"
 requires = ["on"]  # !! requires 'on', which does not exist; did you mean 'one'?
@@ -205,10 +205,10 @@ part = "task1"
 title = "Four"
 points = 1
 check = "urdf_loads"
-requires = ["five", "one", 3]  # !! requires must be a list of texts, not ['five', 'one', 3] !! requires 'five', which is below:\
+requires = ["five", "one", 3]  # !! requires must be a list of strings, not ['five', 'one', 3] !! requires 'five', which is below:\
  a criterion can only require those above it
-feedback = ["a"]  # !! feedback must be a text, not ['a']
-about = true  # !! about must be a text, not true
+feedback = ["a"]  # !! feedback must be a string, not ['a']
+about = true  # !! about must be a string, not true
 
 [[criterion]]
 id = "five"
@@ -233,8 +233,8 @@ def test_every_mistake_is_told_at_once(tmp_path: Path) -> None:
     [
         GOOD + "with = 3  # !! with must be a table, not 3",
         GOOD + "with = []  # !! with must be a table, not []",
-        GOOD + "requires = 'loads'  # !! requires must be a list of texts, not 'loads'",
-        GOOD + "requires = {}  # !! requires must be a list of texts, not {}",
+        GOOD + "requires = 'loads'  # !! requires must be a list of strings, not 'loads'",
+        GOOD + "requires = {}  # !! requires must be a list of strings, not {}",
         GOOD.replace("points = 1", "points = true  # !! points must be a number, not true"),
         GOOD.replace("points = 1", "points = 1979-05-27  # !! points must be a number, not 1979-05-27"),
         GOOD.replace("points = 1", "points = 07:32:00  # !! points must be a number, not 07:32:00"),
@@ -242,15 +242,16 @@ def test_every_mistake_is_told_at_once(tmp_path: Path) -> None:
         GOOD.replace("points = 1", "points = inf  # !! points must be a number, not Infinity"),
         GOOD.replace("points = 1", "points = nan  # !! points must be a number, not NaN"),
         GOOD.replace("points = 1", "points = -nan  # !! points must be a number, not -NaN"),
-        GOOD.replace('id = "loads"', "id = [\"loads\"]  # !! id must be a text, not ['loads']"),
-        GOOD.replace('id = "loads"', "id = 3  # !! id must be a text, not 3"),
+        GOOD.replace('id = "loads"', "id = [\"loads\"]  # !! id must be a string, not ['loads']"),
+        GOOD.replace('id = "loads"', "id = 3  # !! id must be a string, not 3"),
         GOOD.replace('id = "a"', "id = \"\\t \"  # !! id must be one printable word, not '\\t '").replace(
             'part = "a"', r'part = "\t "'
         ),
-        GOOD.replace('check = "urdf_loads"', "check = 3  # !! check must be a text, not 3"),
-        GOOD.replace('part = "a"', "part = 1.5  # !! part must be a text, not 1.5"),
+        GOOD.replace('check = "urdf_loads"', "check = 3  # !! check must be a string, not 3"),
+        GOOD.replace('part = "a"', "part = 1.5  # !! part must be a string, not 1.5"),
         GOOD.replace(
-            'title = "Lab 0"', "title = 2026-01-01T00:00:00Z  # !! title must be a text, not 2026-01-01 00:00:00+00:00"
+            'title = "Lab 0"',
+            "title = 2026-01-01T00:00:00Z  # !! title must be a string, not 2026-01-01 00:00:00+00:00",
         ),
         GOOD.replace(
             'title = "Part A"', 'title = "A"\nneeds = 3  # !! needs must be one of urdf, package, files, not 3'
@@ -330,15 +331,15 @@ COLOUR = 'link = "a", colour = [0, 1, 0], tolerance = 0'
         ("shows_box", BOX.replace("[1, 1, 1]", "[1, 1, 1, 1]"), "size of shows_box must be 3 numbers, not [1, 1, 1, 1]"),
         ("shows_box", BOX.replace("[1, 1, 1]", "1"), "size of shows_box must be 3 numbers, not 1"),
         ("shows_box", BOX.replace("[1, 1, 1]", "[]"), "size of shows_box must be 3 numbers, not []"),
-        ("shows_box", BOX.replace('"base"', "3"), "link of shows_box must be a text, not 3"),
+        ("shows_box", BOX.replace('"base"', "3"), "link of shows_box must be a string, not 3"),
         ("shows_box", BOX.replace("0.1", '"0.1"'), "tolerance of shows_box must be a number, not '0.1'"),
         ("shows_box", BOX.replace("0.1", "nan"), "tolerance of shows_box must be a number, not NaN"),
         ("shows_box", BOX.replace("0.1", "inf"), "tolerance of shows_box must be a number, not Infinity"),
         ("shows_box", BOX.replace(", tolerance = 0.1", ""), "the check shows_box needs tolerance: a number"),
         ("shows_box", BOX + ", links = 3", "the check shows_box takes no 'links'; it takes: link, size, tolerance"),
-        ("bottoms_at_height", BOTTOMS.replace('["a"]', '"a"'), "links of bottoms_at_height must be a list of texts, not 'a'"),
-        ("bottoms_at_height", BOTTOMS.replace('["a"]', "[]"), "links of bottoms_at_height must be a list of texts, not []"),
-        ("joints_named", 'parent = "a", joints = ["j"]', "joints of joints_named must be a table of texts, not ['j']"),
+        ("bottoms_at_height", BOTTOMS.replace('["a"]', '"a"'), "links of bottoms_at_height must be a list of strings, not 'a'"),
+        ("bottoms_at_height", BOTTOMS.replace('["a"]', "[]"), "links of bottoms_at_height must be a list of strings, not []"),
+        ("joints_named", 'parent = "a", joints = ["j"]', "joints of joints_named must be a table of strings, not ['j']"),
     ],
 )  # fmt: skip
 def test_an_argument_that_a_check_does_not_take_is_told(tmp_path: Path, check: str, given: str, complaint: str) -> None:
@@ -397,15 +398,15 @@ def test_a_misspelt_argument_is_told_twice(tmp_path: Path) -> None:
     given = f"with = {{ {BOX.replace('link', 'lnk')} }}\n"
     assert complaints(tmp_path, checked("shows_box", given)) == [
         "12: the check shows_box takes no 'lnk'; did you mean 'link'?",
-        "12: the check shows_box needs link: a text",
+        "12: the check shows_box needs link: a string",
     ]
 
 
 def test_all_arguments_are_told_if_none_is_given(tmp_path: Path) -> None:
     """Without a table each argument that is needed is told for the criterion; those with a default are not."""
     assert complaints(tmp_path, checked("rolls_forward", "")) == [
-        "6: the check rolls_forward needs link: a text",
-        "6: the check rolls_forward needs base: a text",
+        "6: the check rolls_forward needs link: a string",
+        "6: the check rolls_forward needs base: a string",
         "6: the check rolls_forward needs tolerance: a number",
     ]
 
@@ -774,7 +775,7 @@ requires = [ # [ ] "
 def test_lines_are_right_behind_text_of_many_lines(tmp_path: Path) -> None:
     """Multi-line strings, comments and arrays of many lines do not move what comes behind them."""
     assert complaints(tmp_path, GOOD + BEHIND_TEXTS) == [
-        "22: title must be a text that is not empty, not ''",
+        "22: title must be a non-empty string, not ''",
         "24: requires 'lods', which does not exist; did you mean 'loads'?",
         "28: points must be a number from 0 to 1000000, not -1",
         "29: there is no check 'urdf_load'; did you mean 'urdf_loads'?",
@@ -794,13 +795,13 @@ def test_lines_in_tables_of_arguments(tmp_path: Path) -> None:
     names = GOOD.replace("urdf_loads", "joints_named")
     tables = '[criterion.with]\nparent = 3\n\n[criterion.with.joints]\n# a joint\nj = "lidar"\nk = 4\n'
     assert complaints(tmp_path, names + tables) == [
-        "13: parent of joints_named must be a text, not 3",
-        "15: joints of joints_named must be a table of texts, not {'j': 'lidar', 'k': 4}",
+        "13: parent of joints_named must be a string, not 3",
+        "15: joints of joints_named must be a table of strings, not {'j': 'lidar', 'k': 4}",
     ]
     dotted = 'with.parent = 3\nwith.joints.j = "lidar"\nwith.jionts = 3\n'
     assert complaints(tmp_path, names + dotted) == [
-        "12: parent of joints_named must be a text, not 3",
+        "12: parent of joints_named must be a string, not 3",
         "14: the check joints_named takes no 'jionts'; it takes: parent, joints",
     ]
     braces = 'with = { parent = 3, joints = { j = "lidar" } }\n'
-    assert complaints(tmp_path, names + braces) == ["12: parent of joints_named must be a text, not 3"]
+    assert complaints(tmp_path, names + braces) == ["12: parent of joints_named must be a string, not 3"]

@@ -45,7 +45,7 @@ TOLD = {
     "command_without_quotes.launch.xml": Told(
         nodes="robot_state_publisher",
         urdf=("3: my_robot/urdf/my_robot.urdf",),
-        faults=("3: $(command ...) takes its command in quotes: $(command 'xacro ...')",),
+        faults=("3: $(command ...) needs quotes around its command: $(command 'xacro ...')",),
     ),
     "condition_on_the_environment.launch.py": Told(
         nodes="joint_state_publisher rviz2?",
@@ -148,7 +148,7 @@ TOLD = {
     "list_in_the_list.launch.py": Told(
         nodes="rviz2 joint_state_publisher",
         rviz=(f"6: {NO_FILE}",),
-        faults=("7: expected an action, and this is a list of actions: write * before it",),
+        faults=("7: expected an action, found a list of actions: write * before it",),
     ),
     "list_returned.launch.py": Told(
         nodes="rviz2",
@@ -189,7 +189,7 @@ TOLD = {
         syntax="1: the root of the file is not <launch>; ros2 launch starts nothing",
     ),
     "no_launch_key.launch.yaml": Told(
-        syntax="1: the file is not one list below launch:; ros2 launch starts nothing",
+        syntax="1: the file is not a list of actions below launch:; ros2 launch starts nothing",
     ),
     "no_list_at_all.launch.py": Told(
         nodes="joint_state_publisher rviz2",
@@ -381,7 +381,7 @@ TOLD = {
         ),
     ),
     "two_keys.launch.yaml": Told(
-        syntax="1: the file is not one list below launch:; ros2 launch starts nothing",
+        syntax="1: the file is not a list of actions below launch:; ros2 launch starts nothing",
     ),
     "urdf_as_argument.launch.py": Told(
         nodes="robot_state_publisher",
@@ -391,9 +391,9 @@ TOLD = {
         nodes="rviz2",
         rviz=("9: /opt/a.rviz",),
         faults=(
-            "4: default of arg has to be a string, and 'true' is none in YAML: put quotes around it",
-            "7: default of arg has to be a string, and '3' is none in YAML: put quotes around it",
-            "9: if of node has to be a string, and 'true' is none in YAML: put quotes around it",
+            "4: default of arg must be a string, but YAML reads true as another type: put quotes around it",
+            "7: default of arg must be a string, but YAML reads 3 as another type: put quotes around it",
+            "9: if of node must be a string, but YAML reads true as another type: put quotes around it",
         ),
     ),
     "whole.launch.xml": Told(

@@ -366,9 +366,9 @@ def test_axes_are_unit() -> None:
     )
     configuration = Configuration(named)
     assert configuration.axis("ab") == pytest.approx((0.0, -0.6, 0.8))
-    with pytest.raises(MissingElement, match=r"is undefined: its axis is 0 0 0 .joint 'ac'"):
+    with pytest.raises(MissingElement, match=r"is undefined: the joint's axis is 0 0 0 .joint 'ac'"):
         configuration.axis("ac")
-    with pytest.raises(MissingElement, match=r"is undefined: its axis cannot be read .joint 'ad'"):
+    with pytest.raises(MissingElement, match=r"is undefined: the joint's axis cannot be read .joint 'ad'"):
         configuration.axis("ad")
 
 
@@ -404,7 +404,7 @@ def test_an_unreadable_origin_begins_a_frame_group() -> None:
     assert configuration.pose("e", relative_to="d").translation == (0.0, 0.0, 1.0)
     assert configuration.pose("d", relative_to="c").translation == (0.0, 0.0, 1.0)
     for one, other in (("c", None), ("d", None), ("d", "b"), ("a", "e")):
-        with pytest.raises(MissingElement, match=r"is undefined: its origin cannot be read .joint 'bc'"):
+        with pytest.raises(MissingElement, match=r"is undefined: the joint's origin cannot be read .joint 'bc'"):
             configuration.pose(one, relative_to=other)
     assert configuration.root_of("e") == "a"
     assert [each.name for each in configuration.between("e", "a")] == ["ce", "bc", "ab"]
@@ -413,7 +413,7 @@ def test_an_unreadable_origin_begins_a_frame_group() -> None:
 def test_two_frame_groups_name_a_joint_between_them() -> None:
     """Between two frame groups the message names one of the joints with an unreadable origin."""
     broken = robot(joint("ab", origin=None), joint("ac", origin=None), joint("cd", origin=at(1, 0, 0)))
-    with pytest.raises(MissingElement, match=r"is undefined: its origin cannot be read .joint '(ab|ac)'"):
+    with pytest.raises(MissingElement, match=r"is undefined: the joint's origin cannot be read .joint '(ab|ac)'"):
         Configuration(broken).pose("b", relative_to="d")
 
 
@@ -429,7 +429,7 @@ def test_a_zero_axis_hides_what_is_below_it(kind: str, position: float | None) -
         positions["ab"] = (position, 0.0, 0.0) if kind == "planar" else position
     configuration = Configuration(broken, positions)
     for link in "bc":
-        with pytest.raises(MissingElement, match=r"is undefined: its axis is 0 0 0 .joint 'ab'"):
+        with pytest.raises(MissingElement, match=r"is undefined: the joint's axis is 0 0 0 .joint 'ab'"):
             configuration.pose(link)
     assert configuration.pose("c", relative_to="b") == IDENTITY
     assert configuration.pose("d").translation == (0.0, 1.0, 0.0)

@@ -49,7 +49,7 @@ class PointsChange(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Change:
-    """What changed for one student, and why. A score is None if there was none."""
+    """The changes for one student, and their causes. A score is None if there was none."""
 
     key: str
     before: Decimal | None
@@ -74,7 +74,7 @@ class _StudentState(NamedTuple):
 def last_two(book: Gradebook, before: int | None = None, after: int | None = None) -> tuple[Snapshot, Snapshot]:
     """Return the last two runs in a gradebook, or two runs by their numbers; raises InputError.
 
-    The older snapshot has the manual marks from before its run, the newer one also those that followed its run.
+    The older snapshot has the manual marks from before its run, the newer one also those after its run.
     """
     runs = {run.id: run for run in book.runs()}
     if len(runs) < 2:

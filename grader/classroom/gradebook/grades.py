@@ -40,7 +40,7 @@ class AttentionList(NamedTuple):
 
 
 class Grades:
-    """The current grades in a gradebook. Rubrics hold model answers only with `answers`, for those who grade."""
+    """The current grades in a gradebook. Rubrics contain model answers only with `answers`, for those who grade."""
 
     def __init__(self, book: Gradebook, deadline: datetime | None = None, *, answers: bool = False) -> None:
         self.book = book

@@ -1,4 +1,4 @@
-"""The late penalty of a submission under a rubric's policy: a line of its own, never part of a criterion.
+"""The late penalty of a submission under a rubric's policy: a separate line, never part of a criterion.
 
 As in Canvas (app/models/late_policy.rb): a percentage of the maximum for each day begun, and never below the floor.
 """
@@ -17,7 +17,7 @@ _DAY = timedelta(days=1)
 
 @dataclass(frozen=True, slots=True)
 class Lateness:
-    """How late a submission is, in days begun, the penalty in points (0 or less), and the reason in words."""
+    """The lateness of a submission: days begun, the penalty in points (0 or less), and the reason in words."""
 
     days: int = 0
     points: Decimal = Decimal(0)

@@ -1,4 +1,4 @@
-"""Manual marks: the points that a person gives for a criterion, stored beside the automatic points."""
+"""Manual marks: the points that a person gives for a criterion, stored in addition to the automatic points."""
 
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -132,7 +132,7 @@ def account() -> str:
 
 
 def manual_grading_queue(grades: Grades, criterion: str = "") -> list[QueuedCriterion]:
-    """Return what needs manual grading, one criterion after the other, so that similar answers follow each other.
+    """Return what needs manual grading, one criterion after the other, so that similar answers are adjacent.
 
     Unreadable submissions are not in it: they need a fix, not points.
     """

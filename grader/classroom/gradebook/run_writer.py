@@ -40,7 +40,7 @@ class RunWriter:
             self.run = _insert(book, "run", row)
 
     def use_template(self, template: str) -> None:
-        """Store the records that follow as differences from a template; an empty one means none."""
+        """Store the next records as differences from a template; an empty one means none."""
         self._template = sha256_of(template.encode()) if template else None
         if template:
             with self._book.transaction():

@@ -1,4 +1,4 @@
-"""What a gradebook has stored about a student: identity, enrolment, and the newest submission."""
+"""The stored data of a student: identity, enrolment, and the newest submission."""
 
 import json
 from collections.abc import Sequence
@@ -9,7 +9,7 @@ from grader.classroom.students import ClassSubmission, Student
 
 
 class Enrolment(NamedTuple):
-    """What the roster says about a student. The fields are columns of the table `student`."""
+    """The roster entry of a student. The fields are columns of the table `student`."""
 
     is_on_roster: int | None = None  # None where there is no roster
     deadline: str = ""  # the student's own deadline, ISO 8601

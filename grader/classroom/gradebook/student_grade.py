@@ -20,7 +20,7 @@ from grader.source import Source
 from grader.submission.submission import Submission
 from grader.text import counted, counted_points
 
-_COUNTS = ("id", "run", "result", "faults", "marks", "older_marks", "over_marks")  # columns that are taken as they are
+_COUNTS = ("id", "run", "result", "faults", "marks", "older_marks", "over_marks")  # columns that are used unchanged
 _POINTS = ("score", "out_of", "pending")
 _TEXTS = ("rubric", "digest", "verdict", "reason", "statuses", "submitted")
 _OTHERS = ("deadline", "extension", "days_late", "is_on_roster", "is_gone", "is_late", "files", "source", "fingerprint")

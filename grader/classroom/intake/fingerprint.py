@@ -1,4 +1,4 @@
-"""What the file system says about a submission: as long as it says the same, the contents are the same and need no reading."""
+"""The fingerprint of a submission in the file system: while it does not change, the contents need not be read again."""
 
 import os
 import stat
@@ -22,7 +22,7 @@ def is_zip(root: str) -> bool:
 def fingerprint(root: str, paths: tuple[str, ...], now: int, limit: int = URDF_LIMIT) -> str:
     """Return the fingerprint of a submission; empty if it cannot be trusted, because it was changed just before `now`.
 
-    `now` is in nanoseconds. Another `limit` (bytes of a URDF) gives another fingerprint: what was too large may not be so now.
+    `now` is in nanoseconds. Another `limit` (bytes of a URDF) gives another fingerprint: a file that was too large may be read now.
     """
     found = _fingerprint(root, paths, now - _CLOCK_RESOLUTION)
     return f"{found} {limit}" if found and limit != URDF_LIMIT else found

@@ -60,7 +60,7 @@ def open_submission(
 ) -> OpenedSubmission:
     """Open what is at `paths` below a class folder, or in a class zip; raises InputError.
 
-    Several files become one submission, called `name`, that holds them side by side as `names`.
+    Several files become one submission, called `name`, that contains them as `names`.
     """
     if len(paths) == 1:
         return _open_in_zip(root, paths[0], limit) if is_zip(root) else _open_on_disk(root, paths[0], limit)

@@ -13,8 +13,8 @@ from grader.classroom.students import ClassSubmission, Student
 class RosterEntry:
     """One row of a roster. `due` and `submitted` are ISO 8601; what the roster does not say is empty or None.
 
-    `section` is the group or team that submits together, or else the section: only a submission tells the two apart.
-    `aliases` are further names that are as good as a login, such as one at GitHub beside one at the university.
+    `section` is the group or team that submits together, or else the section: only a submission shows which of the two it is.
+    `aliases` are other logins, such as the one at GitHub in addition to the one at the university.
     Gradebooks store entries as JSON with these field names.
     """
 
@@ -103,7 +103,7 @@ class Roster:
         return self._people.find(claims_of(student)).people
 
     def match(self, student: Student) -> RosterMatch:
-        """Return whose a submission is, given the student that its name tells.
+        """Return the student of a submission, given the student that its name identifies.
 
         A submission in a team's folder can only be of a student in that group: anybody in the team may have named it.
         """

@@ -65,7 +65,7 @@ def _cause(result: Result) -> tuple[str, str] | None:
 
 
 def _capitalised(message: str) -> str:
-    """Return a message as in the terminal report: a first word that is no plain word, such as an attribute, stays as it is."""
+    """Return a message as in the terminal report: a first word that is not a plain word, such as an attribute, is not changed."""
     return message[:1].upper() + message[1:] if message.partition(" ")[0].isalpha() else message
 
 
@@ -104,7 +104,7 @@ def _escaped(text: str) -> str:
     """Return a student's text on one line of HTML.
 
     Two things become character references: a backslash, which PHP's CSV reader takes for an escape, and what a spreadsheet would take
-    for a formula behind the semicolon of another reference.
+    for a formula after the semicolon of another reference.
     """
     line = spelt_out(" ".join(text.split()))
     short = line if len(line) <= _MAX_MESSAGE else line[: _MAX_MESSAGE - 3] + "..."

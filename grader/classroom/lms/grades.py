@@ -1,4 +1,4 @@
-"""A student's grade for a learning management system, and points as such a system writes them."""
+"""A student's grade for a learning management system, and points in the notation of such a system."""
 
 import re
 from dataclasses import dataclass

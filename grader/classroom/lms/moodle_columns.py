@@ -1,8 +1,8 @@
 """Detect the columns of a Moodle grading worksheet, in any language.
 
 The order of the columns is fixed (mod/assign/gradingtable.php): Identifier, then, unless the marking is blind, Full name and
-other data of a user; Status, group, marker; Grade, and directly behind it Maximum grade, or Scale. So the Identifier is detected by
-its shape, a word and a number, and the Grade by the column behind it.
+other data of a user; Status, group, marker; Grade, and directly after it Maximum grade, or Scale. So the Identifier is detected by
+its shape, a word and a number, and the Grade by the column after it.
 """
 
 import re
@@ -48,7 +48,7 @@ _ADDRESS = re.compile(r"[^@\s]+@[^@\s]+")
 
 @dataclass(frozen=True, slots=True)
 class MoodleColumns:
-    """The columns by index, None where there are none. `numbers` hold ID numbers and user names."""
+    """The columns by index, None where there are none. `numbers` contain ID numbers and user names."""
 
     identifier: int
     name: int | None
@@ -86,7 +86,7 @@ def find_columns(table: Table, column: str, feedback_column: str, shown: str) ->
     maximum = grade + 1
     if not rows or any((read_points(row.value(maximum)) or 0) <= 0 for row in rows if len(row.cells) == len(titles)):
         raise InputError(
-            f"{shown} has no number as the maximum grade behind {titles[grade]!r}: an assignment that is graded by a scale takes no points"
+            f"{shown} has no number as the maximum grade after {titles[grade]!r}: an assignment that is graded by a scale takes no points"
         )
     between = range(identifier + 1, grade)
     email = next((index for index in between if _all(rows, index, _ADDRESS)), None)

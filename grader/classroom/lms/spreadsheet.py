@@ -1,7 +1,7 @@
 """Write CSV for any spreadsheet, with nothing in it that one would run as a formula.
 
 What starts a formula is after OWASP's page on CSV injection: = + - @, a tab, a line break, the full-width forms of the four;
-also behind spaces. A spreadsheet with the semicolon as separator begins a cell behind each semicolon, quoted or not.
+also after spaces. A spreadsheet with the semicolon as separator begins a cell after each semicolon, quoted or not.
 """
 
 import csv

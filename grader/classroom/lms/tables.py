@@ -25,7 +25,7 @@ _BOMS = (
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """One cell: `raw` as it is written, with its quotes, and its value."""
+    """One cell: `raw` as in the file, with its quotes, and its value."""
 
     raw: str
     value: str
@@ -33,7 +33,7 @@ class Cell:
 
 @dataclass(frozen=True, slots=True)
 class TableRow:
-    """One row: `number` counts from 1, `end` is the line break behind it. A blank line has no cells."""
+    """One row: `number` counts from 1, `end` is the line break after it. A blank line has no cells."""
 
     number: int
     cells: tuple[Cell, ...]
@@ -100,13 +100,13 @@ def _delimiter(text: str) -> str:
 
 
 def _rows(text: str, delimiter: str, shown: str) -> tuple[TableRow, ...]:
-    # Possessive, so that an open quote fails in one pass. Behind a closing quote csv continues with plain text.
+    # Possessive, so that an open quote fails in one pass. After a closing quote csv continues with plain text.
     cell = rf'(?:"((?:[^"]++|"")*+)"([^{delimiter}\r\n]*+)|(?!")[^{delimiter}\r\n]*+)'
     pattern = re.compile(rf"({cell})({delimiter}|\r\n|\r|\n|\Z)")
     at, count = 0, 0
     rows: list[TableRow] = []
     cells: list[Cell] = []
-    while at < len(text) or cells:  # a text that ends behind a delimiter has one more empty cell
+    while at < len(text) or cells:  # a text that ends after a delimiter has one more empty cell
         if not cells and len(rows) >= ROW_LIMIT:
             raise InputError(f"{shown} has more than {ROW_LIMIT} rows, the limit")
         found = pattern.match(text, at)

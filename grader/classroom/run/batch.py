@@ -1,4 +1,4 @@
-"""Grade a class: submit what is new or changed to the workers, and write each result into the gradebook at once."""
+"""Grade a class: submit new and changed submissions to the workers, and write each result into the gradebook at once."""
 
 import time
 from collections.abc import Callable, Iterable
@@ -28,7 +28,7 @@ from grader.grading.rubric import Rubric
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """How far a run has come. `errored` and `unreadable` count submissions that were graded in this run."""
+    """The progress of a run. `errored` and `unreadable` count submissions that were graded in this run."""
 
     total: int
     graded: int = 0
@@ -68,7 +68,7 @@ class RunSettings(NamedTuple):
 
 
 class Batch:
-    """One run over a class. `notes` says what is unclear about whose submission is whose."""
+    """One run over a class. `notes` has the unclear matches of submissions to students."""
 
     def __init__(
         self,
@@ -88,7 +88,7 @@ class Batch:
 
     @property
     def has_begun(self) -> bool:
-        """Whether the run is in the gradebook."""
+        """Return whether the run is in the gradebook."""
         return self._writer is not None
 
     def grade(self, intake: Intake) -> Progress:
@@ -138,7 +138,7 @@ class Batch:
         return self.progress
 
     def _context(self) -> ClassContext:
-        """Return what all tasks share, when there is something to grade: grading the reference takes a while."""
+        """Return the data that all tasks share, only when there is something to grade: grading the reference takes a while."""
         assert self._writer is not None
         template = _template(self._rubric)
         self._writer.use_template(template)

@@ -13,7 +13,7 @@ _MAX_NAMED = 3
 
 
 def check_same_class(book: Gradebook, intake: Intake, identities: Identities, rubric_id: str) -> None:
-    """Raise InputError, naming what the gradebook holds, if it is for another lab, another assignment or other students."""
+    """Raise InputError, naming the content of the gradebook, if it is for another lab, another assignment or other students."""
     for (other,) in book.rows("SELECT rubric.id FROM run JOIN rubric ON sha256 = rubric ORDER BY run.id DESC LIMIT 1"):
         if other != rubric_id:
             raise _refusal(book, f"it was graded by the rubric {other}, not {rubric_id}")
@@ -50,7 +50,7 @@ def _first(names: list[str]) -> str:
 
 def _refusal(book: Gradebook, reason: str) -> InputError:
     keys = [student.key for student in islice(book.students(), _MAX_NAMED + 1)]
-    held = f" (it holds {_first(keys)})" if keys else ""
+    held = f" (it contains {_first(keys)})" if keys else ""
     return InputError(
         f"{book.shown} is the gradebook of another class: {reason}{held}; name another file, or use --add"
     )

@@ -1,4 +1,4 @@
-"""Grade on a Dask cluster: each Dask worker grades in processes of its own, so that no submission can end it."""
+"""Grade on a Dask cluster: each Dask worker grades in separate processes, so that no submission can end it."""
 
 import asyncio
 import logging
@@ -94,7 +94,7 @@ class Cluster(Executor):
             result = WorkerError("the cluster ended", is_own_fault=False)
         except Exception as error:  # noqa: BLE001  such as Dask's KilledWorker
             is_killer = type(error).__name__ == "KilledWorker"
-            result = WorkerError("it ended one worker of the cluster after the other") if is_killer else error
+            result = WorkerError("it ended several workers of the cluster") if is_killer else error
         if isinstance(result, Exception):
             outer.set_exception(result)
         else:

@@ -69,7 +69,7 @@ class Processes(Executor):
     def submit_within(
         self, timeout: float, function: Callable[..., Any], arguments: tuple[Any, ...], named: dict[str, Any]
     ) -> "Future[Any]":
-        """Run a function in a worker with a timeout of its own, in seconds."""
+        """Run a function in a worker with its own timeout, in seconds."""
         outer: Future[Any] = Future()
         with self._lock:
             if not self._has_begun:

@@ -1,4 +1,4 @@
-"""Submissions on their way through an executor: in groups as long as all goes well, one by one after a failure."""
+"""Submissions in an executor: in groups as long as no task fails, one by one after a failure."""
 
 import time
 from collections import deque
@@ -33,17 +33,17 @@ class Queue:
         self._done = 0
 
     def put(self, task: Task) -> None:
-        """Add a task, and submit what is ready."""
+        """Add a task, and submit all that are ready."""
         self._waiting.append(task)
         self._submit_ready(all_in=False)
 
     @property
     def is_full(self) -> bool:
-        """Whether more tasks wait than can be submitted now."""
+        """Return whether more tasks wait than can be submitted now."""
         return len(self._waiting) >= self._group_size and len(self._running) >= self._workers * _AHEAD
 
     def take(self, *, all_in: bool) -> Iterator[list[GradingResult]]:
-        """Submit what is ready and yield results as they come; `all_in` says that no more tasks will be added."""
+        """Submit all ready tasks and yield results as they come; `all_in` says that no more tasks will be added."""
         self._submit_ready(all_in=all_in)
         if not self._running:
             return
@@ -69,7 +69,7 @@ class Queue:
         self._began = self._began or time.perf_counter()
         while len(self._running) < self._workers * _AHEAD:
             if self._alone:
-                # A task that was lost when all processes ended runs with nothing beside it.
+                # A task that was lost when all processes ended runs alone.
                 if self._alone[0][1] > 1 and self._running:
                     return
                 task, tries = self._alone.popleft()

@@ -27,7 +27,7 @@ MAX_MISTAKE = 200  # characters of a mistake that statistics count
 
 
 class ClassContext(NamedTuple):
-    """What all tasks of a run share: the path of the class folder or zip, and the rubric's file."""
+    """The data that all tasks of a run share: the path of the class folder or zip, and the rubric's file."""
 
     root: str
     rubric: bytes
@@ -84,7 +84,7 @@ def _grade_one(context: ClassContext, task: Task) -> GradingResult:
 def _why_unreadable(submission: Submission) -> str:
     """Return why nothing in a submission could be read, although its folder could; empty if something was read.
 
-    A damaged or empty archive makes a submission unreadable if there is nothing else to grade beside it.
+    A damaged or empty archive makes a submission unreadable if there is nothing else to grade.
     """
     if isinstance(submission.urdf, Unreadable):
         return submission.urdf.reason
@@ -128,7 +128,9 @@ def result_of(
     for criterion, outcome, *_ in report.results:
         statuses[criterion.position] = STATUS_LETTERS[outcome.status]
         if outcome.status == "failed":
-            failures.append((criterion.position, (outcome.mistake or outcome.message)[:MAX_MISTAKE]))
+            mistake = outcome.mistake or outcome.message
+            is_long = len(mistake) > MAX_MISTAKE
+            failures.append((criterion.position, mistake[: MAX_MISTAKE - 3] + "..." if is_long else mistake))
     score, out_of, pending = (
         int(points * UNITS_PER_POINT) for points in (report.score, report.max_score, report.pending)
     )

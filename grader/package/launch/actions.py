@@ -1,4 +1,4 @@
-"""Visits the actions of a launch description: what they start, include and declare."""
+"""Visit the actions of a launch description: the nodes, includes and arguments that they add."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -24,7 +24,7 @@ Include = Callable[[str, Context], str]
 
 @dataclass(slots=True)
 class ActionVisitor:
-    """Visits actions and adds what it finds. `when` is whether an action is executed: True, False or None for unknown."""
+    """A visitor of actions that adds its findings. `when` is whether an action is executed: True, False or None for unknown."""
 
     findings: Findings
     include: Include
@@ -172,7 +172,7 @@ def _set_argument(call: Call, context: Context, when: bool | None, *, declares: 
     value = call.argument(1, "default_value", "value")
     choices = call.kwargs.get("choices")
     if declares and len(call.args) > 1:
-        context.add_error("DeclareLaunchArgument takes its default by name: default_value=...", call.at)
+        context.add_error("DeclareLaunchArgument takes its default as a keyword argument: default_value=...", call.at)
     is_limited = declares and isinstance(choices, list | tuple) and all(isinstance(choice, str) for choice in choices)
     if is_limited and choices and isinstance(value, str) and value not in choices:
         context.add_error(f"the default {value!r} of {name!r} is not one of its choices", call.at)

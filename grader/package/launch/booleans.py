@@ -40,7 +40,7 @@ def boolean_substitution(kind: str, operands: Sequence[object], at: Position) ->
 
 
 def boolean(value: object) -> bool | None:
-    """Return the boolean that a text stands for; None where launch accepts it as neither."""
+    """Return the boolean value of a text; None where launch accepts it as neither."""
     if not isinstance(value, str):
         return None
     return {"true": True, "1": True, "false": False, "0": False}.get(value.strip().lower())

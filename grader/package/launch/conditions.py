@@ -1,4 +1,4 @@
-"""Whether the condition of an action holds, with the defaults of the launch arguments."""
+"""Evaluation of the condition of an action, with the defaults of the launch arguments."""
 
 from grader.package.launch.booleans import boolean
 from grader.package.launch.model import Context

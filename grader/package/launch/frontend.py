@@ -60,7 +60,7 @@ def _xml_root(file: XmlFile) -> Entity:
 
 @dataclass(slots=True)
 class _YamlReader:
-    """Reads entities from YAML's lists and mappings; aliases can multiply them, so they are counted."""
+    """A reader of entities from YAML's lists and mappings; aliases can multiply them, so they are counted."""
 
     findings: Findings
     count: int = 0

@@ -32,7 +32,7 @@ def start_node(findings: Findings, call: Call, context: Context, when: bool | No
     for name in call.kwargs.keys() - _NODE_ARGUMENTS:
         context.add_error(f"Node has no argument {name!r}{did_you_mean(name, _NODE_ARGUMENTS)}", call.at)
     if call.args:
-        context.add_error("Node takes its arguments by name: package=..., executable=...", call.at)
+        context.add_error("Node takes keyword arguments only: package=..., executable=...", call.at)
     if call.kwargs.keys().isdisjoint(("executable", "node_executable", UNKNOWN_KEYS)):
         context.add_error("a node has no executable: add executable=...", call.at)
     no_package = Unknown("a node without a package is a program of the machine", call.at)

@@ -1,4 +1,4 @@
-"""Reads a launch file in any of its languages, and the launch files that it includes."""
+"""Read a launch file in any of its languages, and the launch files that it includes."""
 
 import posixpath
 import re
@@ -40,7 +40,7 @@ def read_launch(data: bytes, path: str, installed: str, opener: Opener) -> Launc
 
 @dataclass(slots=True)
 class _LaunchReader:
-    """Reads a launch file and a limited number of included ones."""
+    """A reader of a launch file and a limited number of included ones."""
 
     opener: Opener
     includes_left: int = _MAX_INCLUDES

@@ -55,7 +55,7 @@ def _texts(parts: list[Value] | tuple[Value, ...], context: Context, depth: int)
     for part in parts:
         text = resolve(part, context, depth + 1)
         if not isinstance(text, str):
-            return text if isinstance(text, Unknown) else Unknown("the content of a file is part of a text", START)
+            return text if isinstance(text, Unknown) else Unknown("the content of a file is part of a string", START)
         texts.append(text)
         length += len(text)
         if length > MAX_TEXT:

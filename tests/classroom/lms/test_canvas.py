@@ -260,7 +260,7 @@ def test_another_maximum_is_refused(possible: str, said: str) -> None:
         fill(data, graded("x", "9.33", canvas="11"))
     assert str(raised.value) == (
         f"Canvas' Points Possible of 'Lab 6 (98765)' is {said}, but the rubric's maximum is 100: change the maximum in the"
-        " LMS and export again, or write the points as they are with --any-maximum"
+        " LMS and export again, or pass --any-maximum to write the points unchanged"
     )
     assert fill(data, graded("x", "9.33", canvas="11"), any_maximum=True).preflight.filled == 1
 

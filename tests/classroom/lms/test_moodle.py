@@ -250,7 +250,7 @@ def test_a_workflow_a_marker_and_an_online_text() -> None:
         (b"Student,ID,SIS Login ID,Section,Lab 6 (1)\nJane,1,ab1,A,\n", "not a grading worksheet.*'Student', 'ID'"),
         (
             b'Identifier,Full name,Grade,Scale\nParticipant 1,Jane,,"poor\ngood"\n',
-            "no number as the maximum grade behind 'Grade'",
+            "no number as the maximum grade after 'Grade'",
         ),
         (b"Identifier,Full name,Grade,Maximum grade\nParticipant 1,Jane,,\n", "no number as the maximum grade"),
         (b"Tunniste,Nimi,Arvosana\nOsallistuja 1,Jane,\n", "cannot detect the column.*'Arvosana'"),
@@ -287,7 +287,7 @@ def test_another_maximum_is_refused() -> None:
         fill(data, graded("1", "9.33", moodle="1"))
     assert str(raised.value) == (
         "Moodle's 'Maximum Grade' is 10, but the rubric's maximum is 100: change the maximum in the LMS and export again,"
-        " or write the points as they are with --any-maximum"
+        " or pass --any-maximum to write the points unchanged"
     )
     assert fill(data, graded("1", "9.33", moodle="1"), any_maximum=True).preflight.filled == 1
 

@@ -32,7 +32,7 @@ REASONS = {
     "stops": SLOW,
     "dies": "the process that graded it was ended by signal 9",
     "crashes": "the process that graded it was ended by signal 11",
-    "leaves": "the process that graded it ended at work",
+    "leaves": "the process that graded it exited unexpectedly",
     "leaves_loudly": "the process that graded it ended with exit code 7",
     "exits": "the check behaves of the package hostile-checks is faulty: SystemExit: out",
     "eats": r".*(MemoryError|more memory than a worker may use).*",

@@ -77,7 +77,7 @@ def test_no_more_memory_than_allowed(pool: Processes) -> None:
 @pytest.mark.parametrize(
     ("function", "arguments", "reason"),
     [
-        (_leave, (0,), "the process that graded it ended at work"),
+        (_leave, (0,), "the process that graded it exited unexpectedly"),
         (_leave, (7,), "the process that graded it ended with exit code 7"),
         (os.abort, (), "the process that graded it was ended by signal 6"),
         (signal.raise_signal, (signal.SIGKILL,), "the process that graded it was ended by signal 9"),

@@ -22,7 +22,7 @@ class Attempts(NamedTuple):
 
 
 def attempts_in(listing: ClassListing, folder: str) -> Attempts | None:
-    """Return the attempts in a folder that holds nothing else; of two with the same number a folder is the later one."""
+    """Return the attempts in a folder that contains nothing else; of two with the same number a folder is the later one."""
     first = listing.first(folder)
     if first is None or _number(first) is None:  # a shortcut for nearly all folders
         return None

@@ -2,7 +2,7 @@
 
 canvas-lms, lib/content_zipper.rb: `{name}[_LATE]_{user id}_{attachment id}_{file}`, or `[LATE_]anon_{5 letters}_{attachment
 id}_{file}` where students are anonymous; `..._text.html` is a text entry, `..._link.html` a web address. A file that is submitted
-again under the same name is saved with `-1`, `-2` behind its stem (attachment.rb, make_unique_filename).
+again under the same name is saved with `-1`, `-2` after its stem (attachment.rb, make_unique_filename).
 """
 
 import re
@@ -41,7 +41,7 @@ class _CanvasFile(NamedTuple):
 
     @property
     def is_ambiguous(self) -> bool:
-        """Whether the name can be read in several ways."""
+        """Return whether the name can be read in several ways."""
         return len(self.maybe_users) > 1
 
 

@@ -1,7 +1,7 @@
 """The folders layout: each folder, archive or URDF is the submission of one student or team, and is named after them.
 
 Class repositories of GitHub are `<assignment>-<login>/`. A browser saves a second `alice.zip` as `alice (1).zip`, a later attempt;
-a folder may hold nothing but attempts. If two names differ in their ending only, a folder counts, then the endings in the
+a folder may contain only attempts. If two names differ in their ending only, a folder counts, then the endings in the
 order of `names.ENDINGS`; the other one is ignored, and reported.
 """
 
@@ -45,7 +45,7 @@ class FolderSubmissions(Submissions):
         return len(self._names)
 
     def student(self, index: int) -> Student:
-        """Return the student that the name of a submission tells."""
+        """Return the student that the name of a submission identifies."""
         name = self._names[index]
         key, stem, plain = self._key(name), self._stem(name), self._without_copy(name)
         is_odd = not plain.isprintable() and plain.encode(errors="ignore").decode() == plain

@@ -1,4 +1,4 @@
-"""What every layout returns: the submissions of a class, and what it ignored."""
+"""The result of a layout: the submissions of a class, and the ignored files."""
 
 import os
 from collections import Counter

@@ -1,8 +1,8 @@
 """The Moodle layout, a bulk download: a folder for each participant, or all files side by side, unpacked or in a zip.
 
 moodle, mod/assign/classes/downloader.php: `{full name}_{participant id}_assignsubmission_{plugin}/...`, in older versions with
-a `_` behind it, or `..._{plugin}_{file}` without folders. A team has its group's name and number, or no number. Where names are
-hidden, the same word stands for each name, in the language of the site.
+a `_` after it, or `..._{plugin}_{file}` without folders. A team has its group's name and number, or no number. Where names are
+hidden, the same word replaces each name, in the language of the site.
 
 A folder with one archive or URDF in it, and nothing else, counts as that file: Canvas and students submit it without the folder,
 and it has to get the same points.
@@ -97,7 +97,7 @@ def _submission(folder: ClassFolder, files: list[_MoodleFile], *, are_hidden: bo
 
 
 def _only_file(listing: ClassListing, folder: str) -> str | None:
-    """Return the one archive or URDF in a folder that holds nothing else."""
+    """Return the one archive or URDF in a folder that contains nothing else."""
     children = listing.children(folder, _MAX_FILES)
     if children.folders or children.refused or len(children.files) != 1 or not ending_of(children.files[0]):
         return None

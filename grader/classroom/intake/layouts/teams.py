@@ -1,6 +1,6 @@
 """The teams layout: `<team>/Lab6/<Surname>/...` or `<team>/lab6/<login>/lab/...`, a lab folder with one folder for each student.
 
-A lab folder may also hold a package or a workspace, so only folders that cannot be part of one count as students. A team without
+A lab folder may also contain a package or a workspace, so only folders that cannot be part of one count as students. A team without
 such a lab folder is one submission.
 """
 
