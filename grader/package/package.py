@@ -60,8 +60,7 @@ class Package:
     @cached_property
     def names(self) -> tuple[str, ...]:
         """The names that ROS 2 finds it by: its own, and those that setup.py installs in the resource index."""
-        targets = self.setup.installed() if self.setup is not None else {}
-        index = [path.removeprefix(RESOURCE_INDEX) for path in targets if path.startswith(RESOURCE_INDEX)]
+        index = [path.removeprefix(RESOURCE_INDEX) for path in self.installed if path.startswith(RESOURCE_INDEX)]
         return tuple(dict.fromkeys([self.name, *index]))
 
     @property
@@ -85,6 +84,11 @@ class Package:
         except InputError as error:
             code = SyntaxFault(Source(path, ""), str(error), Location(path, 1, 1), sure=False)
         return read_setup(code, self.tree)
+
+    @cached_property
+    def installed(self) -> dict[str, str]:
+        """Each installed file's path in the package, by its path below the prefix."""
+        return self.setup.installed() if self.setup is not None else {}
 
     @cached_property
     def launch_files(self) -> tuple[str, ...]:
@@ -181,22 +185,18 @@ class Package:
 
     def target(self, path: str) -> str | None:
         """Return the path below the prefix that a build installs a file at; None where it does not."""
-        copies = self.setup.copies if self.setup is not None else ()
-        return next((copy.target for copy in copies if copy.source == path), None)
+        return next((target for target, source in self.installed.items() if source == path), None)
 
     def source_of(self, path: str) -> str | None:
         """Return the file of the package that a build installs at a path, which begins with the stand-in for the prefix."""
         shares = tuple(f"{SHARE}/{name}/" for name in self.names)
-        if self.setup is None or not path.startswith(shares):
-            return None
-        return self.setup.installed().get(path.removeprefix(f"{PREFIX}/"))
+        return self.installed.get(path.removeprefix(f"{PREFIX}/")) if path.startswith(shares) else None
 
     def _open_installed(self, path: str) -> tuple[bytes, str] | None:
         """Return what a build installs at a path below the prefix, with its path, from any package of the submission."""
-        for package in self.packages.values():
-            source = package.setup.installed().get(path) if package.setup is not None else None
-            if source is not None:
-                with suppress(InputError):
-                    return package.tree.files[source].read(PYTHON_LIMIT), package.path(source)
-                return None
+        package = next((package for package in self.packages.values() if path in package.installed), None)
+        if package is not None:
+            source = package.installed[path]
+            with suppress(InputError):
+                return package.tree.files[source].read(PYTHON_LIMIT), package.path(source)
         return None

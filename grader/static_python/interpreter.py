@@ -138,9 +138,7 @@ class Interpreter(StatementEvaluator):
         if not node.handlers:
             self._block(node.body, scope)
         else:
-            before = self.uncertainty
             raised, may_have_failed = self._guarded(node.body, scope)
-            self.uncertainty = before
             if raised is not None:
                 self._handle(node, raised, scope)
             elif may_have_failed:
@@ -152,16 +150,18 @@ class Interpreter(StatementEvaluator):
 
     def _guarded(self, body: list[ast.stmt], scope: Scope) -> tuple[RaisedFlow | None, bool]:
         """Evaluate a block whose errors are caught; return the error that is certainly raised, and whether another one may be."""
-        failed_before, self.may_have_failed = self.may_have_failed, False
+        before, failed_before, self.may_have_failed = self.uncertainty, self.may_have_failed, False
         self.handlers += 1
+        raised: RaisedFlow | None = None
         try:
             self._block(body, scope)
-        except RaisedFlow as raised:
-            return raised, True
+        except RaisedFlow as error:
+            raised = error
         finally:
             self.handlers -= 1
             failed, self.may_have_failed = self.may_have_failed, self.may_have_failed or failed_before
-        return None, failed
+        self.uncertainty = before
+        return raised, failed
 
     def _handle(self, node: ast.Try | ast.TryStar, raised: RaisedFlow, scope: Scope) -> None:
         """Evaluate the first handler that catches an error; raise it again where none does."""
@@ -174,9 +174,8 @@ class Interpreter(StatementEvaluator):
             if catches:
                 self._block(handler.body, scope)
                 return
-            self._branches(
-                [handler.body], scope, position_of(handler), "which error is raised is known only at run time"
-            )
+            reason = "which error is raised is known only at run time"
+            self._branches([handler.body], scope, position_of(handler), reason)
         self.error(raised.error.message, raised.error.at, raised.kind)
 
 

@@ -3,6 +3,7 @@
 import ast
 import operator
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -63,10 +64,8 @@ def operate(evaluation: Evaluation, op: ast.operator, left: Value, right: Value,
     if isinstance(op, ast.Add) and isinstance(left, _NOT_ADDED) and isinstance(right, _NOT_ADDED):
         evaluation.error(f"Python cannot add {type_name(right)} to {type_name(left)}", at)
     if function is not None and any(isinstance(value, Unknown) for value in (left, right)):
-        try:
+        with suppress(TypeError):
             return function(left, right)
-        except TypeError:
-            pass
     unknown = Unknown("this operation is not supported", at)
     return next((value for value in (left, right) if isinstance(value, Unknown)), unknown)
 

@@ -10,12 +10,12 @@ BOOLEAN_SUBSTITUTIONS = frozenset(
     {"EqualsSubstitution", "NotEqualsSubstitution", "NotSubstitution", "AndSubstitution", "OrSubstitution",
      "IfElseSubstitution", "AllSubstitution", "AnySubstitution"}
 )  # fmt: skip
-_OPERANDS = ("left", "right", "value", "condition", "if_value", "else_value")
 
 
 def operands_of(call: Call) -> list[Value]:
     """Return the operands of a boolean substitution."""
-    return [*call.args, *(call.kwargs[name] for name in _OPERANDS if name in call.kwargs)]
+    names = ("left", "right", "value", "condition", "if_value", "else_value")
+    return [*call.args, *(call.kwargs[name] for name in names if name in call.kwargs)]
 
 
 def boolean_substitution(kind: str, operands: Sequence[object], at: Position) -> str | Unknown:
@@ -41,9 +41,8 @@ def boolean_substitution(kind: str, operands: Sequence[object], at: Position) ->
 
 def boolean(value: object) -> bool | None:
     """Return the boolean value of a text; None where launch accepts it as neither."""
-    if not isinstance(value, str):
-        return None
-    return {"true": True, "1": True, "false": False, "0": False}.get(value.strip().lower())
+    texts = {"true": True, "1": True, "false": False, "0": False}
+    return texts.get(value.strip().lower()) if isinstance(value, str) else None
 
 
 def _are_equal(left: str, right: str) -> bool:
