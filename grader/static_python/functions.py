@@ -94,6 +94,11 @@ def _joined(evaluation: Evaluation, items: list[Value], call: Call) -> Value:
     return joined
 
 
+def _enumerated(_: Evaluation, items: list[Value], call: Call) -> Value:
+    start = call.args[1] if len(call.args) > 1 else call.kwargs.get("start", 0)
+    return list(enumerate(items, start)) if type(start) is int else call.unknown("the numbers are known only at run time")
+
+
 def _sum(evaluation: Evaluation, call: Call) -> Value:
     items = items_of(call.args[0]) if call.args else []
     if (len(call.args) == 2 and isinstance(call.args[1], list)) or (items and isinstance(items[0], list)):
@@ -158,7 +163,7 @@ _OF_ITEMS: dict[tuple[str, ...], Callable[[Evaluation, list[Value], Call], Any]]
     ("builtins.list", "builtins.tuple", "builtins.iter"): lambda _, items, __: items,
     ("builtins.set", "builtins.frozenset"): lambda _, items, __: distinct(items),
     ("builtins.reversed",): lambda _, items, __: items[::-1],
-    ("builtins.enumerate",): lambda _, items, __: list(enumerate(items)),
+    ("builtins.enumerate",): _enumerated,
     ("builtins.sorted",): in_order,
     ("itertools.chain.from_iterable",): _joined,
 }
