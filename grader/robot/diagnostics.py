@@ -20,6 +20,7 @@ _MAX_PROBLEMS = 1000
 _MAX_GUESSES = 50  # in one file, because they take long
 _PRINTED = frozenset({"origin", "box", "cylinder", "sphere", "mass"})  # whose values urdfdom uses as printf's format
 _FULL_TURN = 6.2832  # radians
+_ZERO: Vector = (0.0, 0.0, 0.0)
 
 Value = TypeVar("Value")
 
@@ -114,7 +115,7 @@ class ElementReader:
             self.fail(f"<{element.tag}> has no {attribute}", element)
         return self._value(element, attribute, number, nan)
 
-    def vector(self, element: Element, attribute: str, default: Vector = (0.0, 0.0, 0.0)) -> Vector:
+    def vector(self, element: Element, attribute: str, default: Vector = _ZERO) -> Vector:
         """Return an attribute's three numbers, or the default if it is not given."""
         return self._value(element, attribute, vector, default)
 
@@ -122,13 +123,13 @@ class ElementReader:
         """Return an <origin>: the identity if there is none."""
         if element is None:
             return Origin()
-        origin = Origin(self.vector(element, "xyz"), self.vector(element, "rpy"), self._problems.location(element))
-        if not self.failed and any(origin.rpy):
-            angle = next((angle for angle in origin.rpy if abs(angle) > _FULL_TURN and angle % 15 == 0), None)
+        xyz, rpy = self._value(element, "xyz", vector, _ZERO), self._value(element, "rpy", vector, _ZERO)
+        if rpy != _ZERO and max(map(abs, rpy)) > _FULL_TURN and not self.failed:
+            angle = next((angle for angle in rpy if abs(angle) > _FULL_TURN and angle % 15 == 0), None)
             if angle is not None:
                 message = f"rpy is in radians, and {angle:g} is more than a full turn: is it in degrees?"
                 self._problems.add(catalogue.DEGREES, message, element, "rpy")
-        return origin
+        return Origin(xyz, rpy, self._problems.location(element))
 
     def _value(self, element: Element, attribute: str, parse: Callable[[str], Value], default: Value) -> Value:
         text = element.get(attribute)

@@ -3,8 +3,6 @@
 The colour is that of `parseMaterial` in `link.cpp` and of `assignMaterial` in `model.cpp`.
 """
 
-from math import nan
-
 from grader.robot import catalogue
 from grader.robot.diagnostics import ElementReader, Problems, first_children, shown
 from grader.robot.model import Box, Collision, Cylinder, Geometry, Inertial, Link, Material, Mesh, Sphere, Visual
@@ -110,13 +108,13 @@ def read_link(element: Element, problems: Problems, materials: Materials) -> Lin
     if name is None:
         problems.add(catalogue.LINK_WITHOUT_NAME, "this link has no name; ROS 2 keeps it as an empty link ''", element)
         return Link("", location=location)
-    inertial, dropping = None, False
-    for child in element.iterchildren("inertial"):
-        inertial = _read_inertial(child, problems, name)
-        dropping = inertial is None
-        break
+    parts: dict[str, list[Element]] = {"inertial": [], "visual": [], "collision": []}
+    for child in element:
+        parts.get(child.tag, []).append(child)
+    inertial = _read_inertial(parts["inertial"][0], problems, name) if parts["inertial"] else None
+    dropping = inertial is None and parts["inertial"] != []
     shapes: list[Visual | Collision] = []
-    for child in (*element.iterchildren("visual"), *element.iterchildren("collision")):
+    for child in parts["visual"] + parts["collision"]:
         shape = _read_shape(child, problems, name, None if dropping else materials)
         dropping = dropping or shape is None
         if shape is not None and not dropping:
@@ -129,15 +127,15 @@ def _read_inertial(element: Element, problems: Problems, link: str) -> Inertial 
     reader = ElementReader(problems, catalogue.BAD_INERTIAL, _INERTIAL_LOST, link)
     inside = first_children(element)
     origin = reader.origin(inside.get("origin"))
-    values = dict.fromkeys(("value", *_INERTIA), nan)
+    values: list[float] = []
     for tag, attributes in (("mass", ("value",)), ("inertia", _INERTIA)):
         if tag in inside:
-            values |= {attribute: reader.required(inside[tag], attribute) for attribute in attributes}
+            values += [reader.required(inside[tag], attribute) for attribute in attributes]
         else:
             reader.fail(f"<inertial> has no <{tag}>", element)
     if reader.failed:
         return None
-    mass, ixx, ixy, ixz, iyy, iyz, izz = values.values()
+    mass, ixx, ixy, ixz, iyy, iyz, izz = values
     return Inertial(mass, (ixx, ixy, ixz, iyy, iyz, izz), origin)
 
 
@@ -195,9 +193,9 @@ def _read_geometry(
         case unknown:
             guess = problems.did_you_mean(str(unknown), _SHAPES)
             reader.fail(f"<{unknown}> is not a shape that ROS 2 knows{guess}", shape)
-    negative = next(((attribute, value) for attribute, value in sizes if value < 0), None)
-    if negative is not None:
-        attribute, value = negative
-        message = f"{attribute} of <{shape.tag}> is negative ({value:g}), which ROS 2 does not check"
-        problems.add(catalogue.NEGATIVE_SIZE, message, shape, attribute)
+    for attribute, value in sizes:
+        if value < 0:
+            message = f"{attribute} of <{shape.tag}> is negative ({value:g}), which ROS 2 does not check"
+            problems.add(catalogue.NEGATIVE_SIZE, message, shape, attribute)
+            break
     return geometry

@@ -66,8 +66,8 @@ def read_urdf(data: bytes, path: str = "robot.urdf") -> Reading:
 def _read_robot(root: Element, problems: Problems) -> Robot:
     if root.get("name") is None:
         problems.add(catalogue.ROBOT_WITHOUT_NAME, "<robot> has no name; ROS 2 rejects the file", root)
-    version = root.get("version", "1.0")
-    if not is_version_one(version):
+    version = root.get("version")
+    if version is not None and not is_version_one(version):
         message = f'version="{version[:40]}" is not supported, expected 1.0; ROS 2 rejects the file'
         problems.add(catalogue.BAD_VERSION, message, root, "version")
     materials = Materials(problems)
@@ -119,13 +119,13 @@ def _check_root_inertia(robot: Robot, links: dict[str, Element], problems: Probl
 def _check_text(problems: Problems) -> None:
     text = problems.source.text
     comments = list(_comments(text))
-    outside = zip([0, *(end for _, end in comments)], [*(start for start, _ in comments), len(text)], strict=True)
-    found = (_XACRO.search(text, *span) for span in outside) if "$" in text or "xacro:" in text else ()
-    xacro = next(filter(None, found), None)
-    if xacro is not None:
-        name = problems.source.path.rpartition("/")[2]
-        message = f"this is xacro, which ROS 2 does not evaluate in a .urdf: run `ros2 run xacro xacro {name}`"
-        problems.listed.append(Problem(catalogue.RAW_XACRO, message, problems.source.at(xacro.start())))
+    if "$" in text or "xacro:" in text:
+        outside = zip([0, *(end for _, end in comments)], [*(start for start, _ in comments), len(text)], strict=True)
+        xacro = next(filter(None, (_XACRO.search(text, *span) for span in outside)), None)
+        if xacro is not None:
+            name = problems.source.path.rpartition("/")[2]
+            message = f"this is xacro, which ROS 2 does not evaluate in a .urdf: run `ros2 run xacro xacro {name}`"
+            problems.listed.append(Problem(catalogue.RAW_XACRO, message, problems.source.at(xacro.start())))
     for start, end in comments:
         if text.find(": ", start, end) >= 0 or text.find("\t", start, end) >= 0:
             message = "this comment contains a colon and a space, or a tab: it can stop a launch file that passes the URDF as YAML"

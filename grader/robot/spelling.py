@@ -1,14 +1,12 @@
 """Unknown names that look like misspelt ones, which ROS 2 silently ignores, and repeated elements."""
 
-from collections.abc import Set as AbstractSet
-
 from grader.robot import catalogue
 from grader.robot.diagnostics import Problems
 from grader.text import quoted
 from grader.xml.parsing import Element
 
 # What urdfdom reads: the attributes of each element, and the elements that may be in it.
-_ATTRIBUTES: dict[str, AbstractSet[str]] = {
+_ATTRIBUTES: dict[str, set[str] | frozenset[str]] = {
     "robot": {"name", "version"},
     **dict.fromkeys(("link", "material", "visual", "collision"), frozenset({"name"})),
     "joint": {"name", "type"},
@@ -53,7 +51,7 @@ _SWAPPED = {("cylinder", "height"): "length", ("color", "rgb"): "rgba", ("origin
 
 def check_spelling(root: Element, problems: Problems) -> None:
     """Report misspelt names and repeated elements in what urdfdom reads; extensions of other tools are skipped."""
-    if not _ATTRIBUTES["robot"] >= set(root.keys()):
+    if not _ATTRIBUTES["robot"].issuperset(root.keys()):
         _check_attributes(root, problems)
     waiting = [root]
     while waiting:
@@ -64,7 +62,7 @@ def check_spelling(root: Element, problems: Problems) -> None:
             tag = child.tag
             tags.append(tag)
             if tag in allowed:
-                if not _ATTRIBUTES[tag] >= set(child.keys()):
+                if not _ATTRIBUTES[tag].issuperset(child.keys()):
                     _check_attributes(child, problems)
                 if tag in _CHILDREN and len(child):
                     waiting.append(child)
