@@ -85,7 +85,7 @@ def launch_finds_files(package: Package, *, name: str) -> Outcome:
     if wrong:
         message = "; ".join(dict.fromkeys(text for text, _ in wrong))
         if any(file.path is not None and is_of_one_machine(file.path) for _, file in wrong):
-            message += f"; get_package_share_directory({package.name!r}) returns the folder that it is installed in"
+            message += f"; use get_package_share_directory({package.name!r}), which returns the installed folder"
         first = wrong[0][1]
         return failed(message, first.location, problem=one_machine_only(first.path) if first.path else "")
     for (status, text), file in verdicts:
@@ -154,7 +154,7 @@ def _verdict(package: Package, named: "Reference") -> Verdict:
     if named.path is None or named.reason:
         return ("failed" if named.sure else "pending", named.reason)
     what, path = _WORDS[named.purpose], posixpath.normpath(named.path)
-    looks = f"it looks for the {what} at"
+    looks = f"the launch file looks for the {what} at"
     if path.startswith(f"{SHARE}/"):
         owner, _, rest = path.removeprefix(f"{SHARE}/").partition("/")
         return _below_share(package, owner, rest, named)
@@ -164,7 +164,7 @@ def _verdict(package: Package, named: "Reference") -> Verdict:
         shown = path.removeprefix(WORKING_FOLDER + "/")
         if shown.startswith("~"):
             return "failed", f"{looks} {shown}, but nothing replaces ~ by the home folder"
-        return "failed", f"{looks} {shown}, in the folder that ros2 launch is started from"
+        return "failed", f"{looks} {shown}, relative to the folder that ros2 launch is started from"
     if not path.startswith(PREFIX) and posixpath.basename(path) in map(posixpath.basename, package.tree.files):
         return "failed", f"{looks} {path}: joining a path that begins with / drops the folders before it"
     return "pending", f"the {what} {path.removeprefix(PREFIX)} is not part of the package"

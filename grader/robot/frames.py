@@ -102,14 +102,14 @@ def undefined_pose(joint: Joint) -> MissingElement:
     """Return the error for a pose that is undefined because of this joint."""
     at = joint.axis_location and joint.axis_location._replace(attribute="xyz")
     if joint.origin is None:
-        reason, at = "its origin cannot be read", joint.location and joint.location._replace(inside="origin")
+        reason, at = "the joint's origin cannot be read", joint.location and joint.location._replace(inside="origin")
     elif joint.axis is None:
         reason = "the joint's axis cannot be read"
     elif unit(joint.axis) is None:
         reason = "the joint's axis is 0 0 0"
     else:
-        reason, at = "its numbers are too large", joint.location
-    message, detail = f"the pose of a joint's child is undefined: {reason}", f" (joint {quoted(joint.name)})"
+        reason, at = "the joint's numbers are too large", joint.location
+    message, detail = f"the pose is undefined: {reason}", f" (joint {quoted(joint.name)})"
     return MissingElement("pose below joint", joint.name, message=message, detail=detail, location=at)
 
 

@@ -124,6 +124,7 @@ def _predecessors(edges: Edges, links: Iterable[str]) -> dict[str, list[str]]:
 def _cycles(edges: Edges, links: list[str]) -> list[list[Joint]]:
     """Return up to `_MAX_CYCLES` loops of joints; the links of each are removed before the next is looked for."""
     cycles: list[list[Joint]] = []
+    rank = {link: number for number, link in enumerate(links)}
     while len(cycles) < _MAX_CYCLES:
         try:
             TopologicalSorter(_predecessors(edges, links)).prepare()
@@ -131,11 +132,11 @@ def _cycles(edges: Edges, links: list[str]) -> list[list[Joint]]:
             *names, _ = error.args[1]
         else:
             break
-        first = names.index(min(names, key=links.index))
+        first = names.index(min(names, key=rank.__getitem__))
         ring = [*names[first:], *names[:first], names[first]]
-        steps = pairwise(ring)
+        in_ring, steps = set(ring), pairwise(ring)
         cycles.append([next(joint for joint in edges[parent] if joint.child == child) for parent, child in steps])
-        links = [link for link in links if link not in set(ring)]
+        links = [link for link in links if link not in in_ring]
     return cycles
 
 

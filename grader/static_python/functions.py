@@ -96,7 +96,9 @@ def _joined(evaluation: Evaluation, items: list[Value], call: Call) -> Value:
 
 def _enumerated(_: Evaluation, items: list[Value], call: Call) -> Value:
     start = call.args[1] if len(call.args) > 1 else call.kwargs.get("start", 0)
-    return list(enumerate(items, start)) if type(start) is int else call.unknown("the numbers are known only at run time")
+    return (
+        list(enumerate(items, start)) if type(start) is int else call.unknown("the numbers are known only at run time")
+    )
 
 
 def _sum(evaluation: Evaluation, call: Call) -> Value:
