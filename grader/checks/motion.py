@@ -96,7 +96,7 @@ def turns_about_itself(
     fine = away <= tolerance + SLACK
     message = f"{link!r} turns about its own axis"
     if not fine:
-        message = f"{link!r} turns off centre: its joint axis is {in_millimetres(away)} beside the cylinder's axis; it should be on it"
+        message = f"{link!r} turns off centre: its joint axis is {in_millimetres(away)} from the cylinder's axis; it should be on it"
     at = place(visual.origin.location, "xyz") or at
     return judged(fine, message, away, 0.0, tolerance, "m", at=at, detail="" if fine else detail)
 
