@@ -22,7 +22,7 @@ from grader.text import counted, counted_points
 
 _COUNTS = ("id", "run", "result", "faults", "marks", "older_marks", "over_marks")  # columns that are taken as they are
 _POINTS = ("score", "out_of", "pending")
-_TEXTS = ("rubric", "digest", "verdict", "reason", "statuses", "submitted")
+_TEXTS = ("rubric", "verdict", "reason", "statuses", "submitted")
 _OTHERS = ("deadline", "extension", "days_late", "is_on_roster", "is_gone", "is_late", "files", "source", "fingerprint")
 COLUMNS = (*_COUNTS, *_POINTS, *_TEXTS, *_OTHERS, *STUDENT_COLUMNS)
 
@@ -78,7 +78,6 @@ class StudentGrade:
     out_of: Decimal
     pending: Decimal
     rubric: str
-    digest: str
     verdict: str
     reason: str
     statuses: str
