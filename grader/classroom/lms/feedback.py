@@ -109,11 +109,9 @@ def _escaped(text: str) -> str:
     line = spelt_out(" ".join(text.split()))
     short = line if len(line) <= _MAX_MESSAGE else line[: _MAX_MESSAGE - 3] + "..."
     escaped = html.escape(short).replace("\\", "&#92;")
-    return FORMULA_BEHIND_SEMICOLON.sub(lambda found: "".join(map(_reference, found[0])), escaped)
-
-
-def _reference(character: str) -> str:
-    return character if character.isspace() else f"&#{ord(character)};"
+    return FORMULA_BEHIND_SEMICOLON.sub(
+        lambda found: re.sub(r"\S", lambda character: f"&#{ord(character[0])};", found[0]), escaped
+    )
 
 
 def _hash(text: str) -> str:
