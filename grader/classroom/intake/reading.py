@@ -1,6 +1,7 @@
 """Read a class folder or zip: detect its layout, and find the submission of each student. No submission is opened."""
 
 import os
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -17,7 +18,13 @@ from grader.files.opening import archive_kind
 from grader.files.reading import not_there, read_start
 from grader.text import printable_path
 
-LAYOUTS = ("folders", "canvas", "moodle", "teams", "nbgrader")
+LAYOUTS: dict[str, Callable[[ClassFolder], Submissions]] = {
+    "folders": FolderSubmissions,
+    "canvas": canvas.find_submissions,
+    "moodle": moodle.find_submissions,
+    "teams": teams.find_submissions,
+    "nbgrader": nbgrader.find_submissions,
+}
 _MAX_NAMES = 1_000  # in one folder
 
 
@@ -29,22 +36,7 @@ def _detected(folder: ClassFolder) -> str:
         return "canvas"
     if nbgrader.find_course(folder) is not None:
         return "nbgrader"
-    return "teams" if teams.find_labs(folder, is_explicit=False) else "folders"
-
-
-def _find_submissions(folder: ClassFolder, layout: str, assignment: str, *, is_explicit: bool) -> Submissions:
-    """Return the submissions in this layout; `is_explicit` if the user has named it."""
-    match layout:
-        case "moodle":
-            return moodle.find_submissions(folder)
-        case "canvas":
-            return canvas.find_submissions(folder)
-        case "nbgrader":
-            return nbgrader.find_submissions(folder, assignment)
-        case "teams":
-            return teams.find_submissions(folder, is_explicit=is_explicit)
-        case _:
-            return FolderSubmissions(folder)
+    return "teams" if teams.find_labs(folder) else "folders"
 
 
 def _only_folder(folder: ClassFolder) -> ClassFolder:
@@ -79,7 +71,7 @@ def read_class(
     listing, name = _listing(path), path.name
     with suppress(OSError):
         name = path.resolve().name
-    folder = ClassFolder(listing, listing.children(""), "", IgnoredFiles(), name, rubric_id, roster)
+    folder = ClassFolder(listing, listing.children(""), "", IgnoredFiles(), name, rubric_id, roster, assignment)
     if isinstance(listing, ZipListing):
         folder = _only_folder(folder)
     if not any(folder.children):
@@ -94,7 +86,7 @@ def read_class(
         raise InputError(
             f"{shown} is one submission and not a class: it holds a package.xml (grade it with grader grade {shown})"
         )
-    submissions = _find_submissions(folder, chosen, assignment, is_explicit=layout != "auto")
+    submissions = LAYOUTS[chosen](replace(folder, is_explicit=layout != "auto"))
     ignored = folder.ignored.lines()
     if not len(submissions):
         example = "".join(f": {line}" for line in ignored[:1])

@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
+from itertools import accumulate
 
 from grader.classroom.lms.grades import rounded_down
 from grader.classroom.lms.spreadsheet import FORMULA_BEHIND_SEMICOLON, spelt_out
@@ -74,10 +75,7 @@ def feedback_html(score: Decimal, out_of: Decimal, items: Sequence[FeedbackItem]
     opening = f"<p>{_OPENING}: {format_points(rounded_down(score))} of {format_points(out_of)} points.</p>"
     lines = [_item(item) for item in items]
     room = LIMIT - len(opening) - 100  # for the list's tags, the mark, and the line that counts the rest
-    shown = 0
-    while shown < len(lines) and room >= len(lines[shown]):
-        room -= len(lines[shown])
-        shown += 1
+    shown = sum(length <= room for length in accumulate(map(len, lines)))
     more = [f"<li>... and {len(lines) - shown} more</li>"] if shown < len(lines) else []
     listed = f"<ul>{''.join([*lines[:shown], *more])}</ul>" if lines else ""
     return f"{opening}{listed}<!-- grader {_hash(opening + listed)} -->"

@@ -73,7 +73,8 @@ def is_path_key(key: str) -> bool:
 class ClassFolder:
     """The folder that holds the submissions of a class: its names, and its path in the listing, `start`, empty or with a slash.
 
-    `rubric_id` is the name of the lab in names of folders.
+    `rubric_id` is the name of the lab in names of folders, `assignment` that in nbgrader, if the user has named it; `is_explicit` if
+    the user has named the layout.
     """
 
     listing: ClassListing
@@ -83,6 +84,8 @@ class ClassFolder:
     name: str = ""
     rubric_id: str = ""
     roster: Roster | None = None
+    assignment: str = ""
+    is_explicit: bool = False
 
 
 class IgnoredFiles:

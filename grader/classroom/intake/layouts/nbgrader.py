@@ -35,12 +35,12 @@ def find_course(folder: ClassFolder) -> str | None:
     return start if has_lab or has_timestamp else None
 
 
-def find_submissions(folder: ClassFolder, assignment: str) -> Submissions:
+def find_submissions(folder: ClassFolder) -> Submissions:
     """Return the submissions for one assignment; raises InputError if it is not clear which one."""
     listing, ignored, course = folder.listing, folder.ignored, find_course(folder)
     start = folder.start if course is None else course
     found = _assignments(listing, start)
-    name = _chosen(found, assignment, folder.rubric_id)
+    name = _chosen(found, folder.assignment, folder.rubric_id)
     children = listing.children(start.rstrip("/"))
     submitters = set(found[name])
     for student in children.folders:
