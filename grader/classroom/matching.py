@@ -63,19 +63,18 @@ class People:
 
     def __init__(self, people: Iterable[Clues]) -> None:
         self.clues = tuple(people)
-        self._tables: dict[Clue, dict[str, int | tuple[int, ...]]] = {clue: {} for clue in Clue}
+        self._tables: dict[Clue, dict[str, tuple[int, ...]]] = {clue: {} for clue in Clue}
         for index, clues in enumerate(self.clues):
             for clue, values in clues.items():
                 table = self._tables[clue]
                 for value in values:
-                    before = table.get(value)
-                    table[value] = index if before is None else (*_tuple(before), index)
+                    table[value] = (*table.get(value, ()), index)
 
     def find(self, claims: Clues, kinds: Sequence[Clue] = OF_FOLDERS, among: Collection[int] | None = None) -> Match:
         """Find people by clues, among all or among the positions in `among`; `kinds` are tried in order."""
         for clue in kinds:
             table = self._tables[clue]
-            found = {index for value in claims.get(clue, ()) for index in _tuple(table.get(value, ()))}
+            found = {index for value in claims.get(clue, ()) for index in table.get(value, ())}
             if among is not None:
                 found.intersection_update(among)
             if found:
@@ -138,10 +137,6 @@ def _present(clues: Mapping[Clue, Collection[str]]) -> Clues:
 
 def _composed(word: str) -> str:
     return word if word.isascii() else unicodedata.normalize("NFC", word)
-
-
-def _tuple(found: int | tuple[int, ...]) -> tuple[int, ...]:
-    return (found,) if isinstance(found, int) else found
 
 
 def _contradict(left: Clues, right: Clues) -> bool:

@@ -1,5 +1,6 @@
 """The current grades in a gradebook: look up students, list those that need attention, build their reports."""
 
+import json
 from collections.abc import Iterator
 from dataclasses import replace
 from datetime import datetime
@@ -11,9 +12,10 @@ from grader.checks.outcome import Outcome
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.lateness import Lateness, SubmissionTimes, lateness, read_time
 from grader.classroom.gradebook.result import UNITS_PER_POINT, criterion_points
-from grader.classroom.gradebook.stored import storable
-from grader.classroom.gradebook.student_grade import COLUMNS, StudentGrade, SubmissionSources, grade_from_row
+from grader.classroom.gradebook.stored import STUDENT_COLUMNS, storable
+from grader.classroom.gradebook.student_grade import StudentGrade, SubmissionFiles, SubmissionSources
 from grader.classroom.matching import People, clues_of
+from grader.classroom.students import Student
 from grader.errors import InputError
 from grader.grading.record import Template, from_record
 from grader.grading.report import ManualMark, Report, Result
@@ -22,7 +24,12 @@ from grader.names import did_you_mean
 
 _MAX_NAMED = 5
 _MAX_SUGGESTED_FROM = 5_000  # students whose names are compared with a misspelt one
-_QUERY = f"SELECT {', '.join(COLUMNS)} FROM grade"
+_COUNTS = ("id", "run", "result", "faults", "marks", "older_marks", "over_marks")  # columns that are taken as they are
+_POINTS = ("score", "out_of", "pending")
+_TEXTS = ("rubric", "verdict", "reason", "statuses", "submitted")
+_OTHERS = ("deadline", "extension", "days_late", "is_on_roster", "is_gone", "is_late", "files", "source", "fingerprint")
+_COLUMNS = (*_COUNTS, *_POINTS, *_TEXTS, *_OTHERS, *STUDENT_COLUMNS)
+_QUERY = f"SELECT {', '.join(_COLUMNS)} FROM grade"
 
 
 class AttentionItem(NamedTuple):
@@ -121,10 +128,29 @@ class Grades:
 
     def _select(self, condition: str, *values: Any) -> Iterator[StudentGrade]:
         for row in self.book.rows(f"{_QUERY} {condition}", *values):
-            yield grade_from_row(row, self._newest_sha256, self._lateness)
+            yield self._grade(dict(zip(_COLUMNS, row, strict=True)))
 
-    def _lateness(self, rubric: str, times: SubmissionTimes, score: Decimal) -> Lateness:
-        return lateness(self.rubric(rubric), times, score, self._deadline)
+    def _grade(self, values: dict[str, Any]) -> StudentGrade:
+        counts = {name: values[name] for name in _COUNTS}
+        points = {name: Decimal(values[name] or 0) / UNITS_PER_POINT for name in _POINTS}
+        texts = {name: values[name] or "" for name in _TEXTS}
+        rubric, is_late, is_on_roster = texts["rubric"], bool(values["is_late"]), values["is_on_roster"]
+        extension = float(values["extension"] or 0)
+        times = SubmissionTimes(is_late, texts["submitted"], values["deadline"], extension, values["days_late"])
+        paths, names, attempt, earlier = json.loads(values["files"])
+        key, fingerprint = values["key"], values["fingerprint"] or ""
+        return StudentGrade(
+            **{**counts, **points, **texts, "faults": counts["faults"] or 0},
+            student=Student(*(values[name] for name in STUDENT_COLUMNS)),
+            is_on_roster=None if is_on_roster is None else bool(is_on_roster),
+            is_gone=bool(values["is_gone"]),
+            is_late=is_late,
+            is_outdated=bool(rubric) and rubric != self._newest_sha256,
+            files=SubmissionFiles(values["source"] or "", tuple(paths), tuple(names), key, fingerprint),
+            attempt=attempt,
+            earlier=tuple(earlier),
+            late=lateness(self.rubric(rubric), times, points["score"], self._deadline) if rubric else Lateness(),
+        )
 
 
 def _with_marks(report: Report, marks: dict[str, ManualMark]) -> tuple[Result, ...]:

@@ -76,6 +76,6 @@ def _days_late(times: SubmissionTimes, policy: Late | None, deadline: datetime |
     days = max(0, -((allowed - (submitted - due)) // _DAY))  # rounded up to days begun
     if not days:
         return 0, ""
-    extension = f", extension {times.extension:g} day{'' if times.extension == 1 else 's'}" if times.extension else ""
+    extension = f", extension {times.extension:g} day{'s' * (times.extension != 1)}" if times.extension else ""
     shown = f"submitted {times.submitted}, deadline {due.isoformat(timespec='minutes')}{extension}"
     return days, f"{counted(days, 'day')} late: {shown}"

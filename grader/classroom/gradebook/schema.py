@@ -66,9 +66,13 @@ LEFT JOIN run ON run.id = {submission}.run
 LEFT JOIN {override} ON {override}.student = student.id;
 """
 _FIRST_NAMES = {
-    "manual_mark": "ruling", "override": "ruled", "submission": "seen", "files": "place", "statuses": "signs",
+    "manual_mark": "ruling",
+    "override": "ruled",
+    "submission": "seen",
+    "files": "place",
+    "statuses": "signs",
     "failures": "misses",
-}  # fmt: skip
+}
 
 _FIRST = (
     """

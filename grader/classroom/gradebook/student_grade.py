@@ -1,16 +1,12 @@
 """The current grade of one student: automatic points, manual marks, late penalty, and whether it is final."""
 
-import json
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from grader.classroom.gradebook.lateness import Lateness, SubmissionTimes
-from grader.classroom.gradebook.result import UNITS_PER_POINT
-from grader.classroom.gradebook.stored import STUDENT_COLUMNS
+from grader.classroom.gradebook.lateness import Lateness
 from grader.classroom.intake.fingerprint import fingerprint
 from grader.classroom.intake.opening import open_submission
 from grader.classroom.students import Student
@@ -19,12 +15,6 @@ from grader.grading.rubric import Rubric
 from grader.source import Source
 from grader.submission.submission import Submission
 from grader.text import counted, counted_points
-
-_COUNTS = ("id", "run", "result", "faults", "marks", "older_marks", "over_marks")  # columns that are used unchanged
-_POINTS = ("score", "out_of", "pending")
-_TEXTS = ("rubric", "digest", "verdict", "reason", "statuses", "submitted")
-_OTHERS = ("deadline", "extension", "days_late", "is_on_roster", "is_gone", "is_late", "files", "source", "fingerprint")
-COLUMNS = (*_COUNTS, *_POINTS, *_TEXTS, *_OTHERS, *STUDENT_COLUMNS)
 
 
 class SubmissionFiles(NamedTuple):
@@ -78,7 +68,6 @@ class StudentGrade:
     out_of: Decimal
     pending: Decimal
     rubric: str
-    digest: str
     verdict: str
     reason: str
     statuses: str
@@ -127,31 +116,3 @@ class StudentGrade:
             (self.older_marks, f"{older} from before the submission or the points changed"),
         )
         return "; ".join(reason for holds, reason in reasons if holds)
-
-
-def grade_from_row(
-    row: tuple[Any, ...], newest_rubric: str, lateness_of: Callable[[str, SubmissionTimes, Decimal], Lateness]
-) -> StudentGrade:
-    """Return the grade in a row of COLUMNS; `lateness_of` gets the rubric, the times and the score."""
-    values = dict(zip(COLUMNS, row, strict=True))
-    counts = {name: values[name] for name in _COUNTS}
-    points = {name: Decimal(values[name] or 0) / UNITS_PER_POINT for name in _POINTS}
-    texts = {name: values[name] or "" for name in _TEXTS}
-    rubric, is_late, is_on_roster = texts["rubric"], bool(values["is_late"]), values["is_on_roster"]
-    times = SubmissionTimes(
-        is_late, texts["submitted"], values["deadline"], float(values["extension"] or 0), values["days_late"]
-    )
-    paths, names, attempt, earlier = json.loads(values["files"])
-    key, fingerprint = values["key"], values["fingerprint"] or ""
-    return StudentGrade(
-        **{**counts, **points, **texts, "faults": counts["faults"] or 0},
-        student=Student(*(values[name] for name in STUDENT_COLUMNS)),
-        is_on_roster=None if is_on_roster is None else bool(is_on_roster),
-        is_gone=bool(values["is_gone"]),
-        is_late=is_late,
-        is_outdated=bool(rubric) and rubric != newest_rubric,
-        files=SubmissionFiles(values["source"] or "", tuple(paths), tuple(names), key, fingerprint),
-        attempt=attempt,
-        earlier=tuple(earlier),
-        late=lateness_of(rubric, times, points["score"]) if rubric else Lateness(),
-    )

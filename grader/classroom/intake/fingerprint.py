@@ -51,20 +51,17 @@ def _walk(top: str) -> Iterator[tuple[str, os.stat_result]]:
     """Yield every file and folder at and below a path, sorted, symlinks unfollowed; raises OSError if there are too many."""
     status = os.lstat(top)
     yield "", status
-    if not stat.S_ISDIR(status.st_mode):
-        return
-    folders = [top]
+    folders = [top] if stat.S_ISDIR(status.st_mode) else []
     count = 0
     while folders:
         with os.scandir(folders.pop()) as found:
             entries = sorted(found, key=lambda entry: entry.name)
+        count += len(entries)
+        if count > _MAX_ENTRIES:
+            raise OSError("too many")
         for entry in entries:
-            count += 1
-            if count > _MAX_ENTRIES:
-                raise OSError("too many")
             yield entry.path, entry.stat(follow_symlinks=False)
-            if entry.is_dir(follow_symlinks=False):
-                folders.append(entry.path)
+        folders += [entry.path for entry in entries if entry.is_dir(follow_symlinks=False)]
 
 
 def _shown(status: os.stat_result) -> str:

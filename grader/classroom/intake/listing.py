@@ -135,17 +135,12 @@ class ZipListing:
         """Return the first bytes of those files that can be read."""
         wanted = set(paths)
         starts: dict[str, bytes] = {}
-        if not wanted:
-            return starts
         with self._path.open("rb") as file:
-            for member in zip_members(file):
+            for member in zip_members(file) if wanted else ():
                 path = safe_path(member.path)
                 if path in wanted and member.kind == "file":
-                    try:
-                        with member.open() as opened:
-                            starts[path] = opened.read(count)
-                    except ARCHIVE_ERRORS:
-                        continue
+                    with suppress(*ARCHIVE_ERRORS), member.open() as opened:
+                        starts[path] = opened.read(count)
         return starts
 
 

@@ -62,12 +62,9 @@ def iso_time(text: str) -> str:
 
 def utc_time(text: str) -> str:
     """Return a date or time as ISO 8601 in UTC; one without a zone is taken as UTC. Empty if it is neither."""
-    written = iso_time(text)
-    if not written:
-        return ""
-    time = datetime.fromisoformat(written)
     try:
+        time = datetime.fromisoformat(iso_time(text))
         time = time.replace(tzinfo=UTC) if time.tzinfo is None else time.astimezone(UTC)
-    except OverflowError:  # a time in the year 1
+    except (ValueError, OverflowError):  # OverflowError for a time in the year 1
         return ""
     return time.isoformat(timespec="seconds").replace("+00:00", "Z")

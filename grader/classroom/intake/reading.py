@@ -1,6 +1,8 @@
 """Read a class folder or zip: detect its layout, and find the submission of each student. No submission is opened."""
 
 import os
+from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,70 +18,38 @@ from grader.files.opening import archive_kind
 from grader.files.reading import not_there, read_start
 from grader.text import printable_path
 
-LAYOUTS = ("folders", "canvas", "moodle", "teams", "nbgrader")
+LAYOUTS: dict[str, Callable[[ClassFolder], Submissions]] = {
+    "folders": FolderSubmissions,
+    "canvas": canvas.find_submissions,
+    "moodle": moodle.find_submissions,
+    "teams": teams.find_submissions,
+    "nbgrader": nbgrader.find_submissions,
+}
 _MAX_NAMES = 1_000  # in one folder
 
 
-class _ClassLayout:
-    """The names in a class, and what the roster knows about them. `top` is the name of the class folder."""
+def _detected(folder: ClassFolder) -> str:
+    """Return the layout that the names prove, else `folders`."""
+    if moodle.is_layout(folder.children):
+        return "moodle"
+    if canvas.is_layout(folder.children):
+        return "canvas"
+    if nbgrader.find_course(folder) is not None:
+        return "nbgrader"
+    return "teams" if teams.find_labs(folder) else "folders"
 
-    def __init__(self, listing: ClassListing, top: str, roster: Roster | None, rubric_id: str) -> None:
-        self._listing = listing
-        self._top = top
-        self._roster = roster
-        knows = roster.knows_submission if roster else None
-        self.folder = ClassFolder(listing, listing.children(""), "", IgnoredFiles(), rubric_id, knows)
-        if isinstance(listing, ZipListing):
-            self._enter_only_folder()
 
-    def detected(self) -> str:
-        """Return the layout that the names prove, else `folders`."""
-        if moodle.is_layout(self.folder.children):
-            return "moodle"
-        if canvas.is_layout(self.folder.children):
-            return "canvas"
-        if nbgrader.find_course(self.folder, self._top) is not None:
-            return "nbgrader"
-        return "teams" if self._labs(is_explicit=False) else "folders"
-
-    def find_submissions(self, layout: str, assignment: str, *, is_explicit: bool) -> Submissions:
-        """Return the submissions in this layout; `is_explicit` if the user has named it."""
-        match layout:
-            case "moodle":
-                return moodle.find_submissions(self.folder)
-            case "canvas":
-                return canvas.find_submissions(self.folder)
-            case "nbgrader":
-                course = nbgrader.find_course(self.folder, self._top)
-                return nbgrader.find_submissions(
-                    self.folder, self.folder.start if course is None else course, assignment
-                )
-            case "teams":
-                return teams.find_submissions(self.folder, self._labs(is_explicit=is_explicit))
-            case _:
-                return FolderSubmissions(self.folder)
-
-    def holds_students(self, path: str) -> bool:
-        """Return whether a folder holds submissions of at least two students: then it is a section, and not a team's submission."""
-        inner = self._listing.children(path, _MAX_NAMES)
-        return self._roster is not None and sum(map(self._roster.knows, stems_of(inner.folders, inner.files))) > 1
-
-    def _enter_only_folder(self) -> None:
-        """Enter the one folder that holds everything in a zip, unless it is itself a submission."""
-        folders, files, _ = self.folder.children
-        if len(folders) != 1 or files or folders[0] == "submitted" or self.detected() != "folders":
-            return
-        if self._roster is not None and self._roster.knows(folders[0]):
-            return
-        inner = self._listing.children(folders[0])
-        if not _is_one_submission(inner):
-            self._top = folders[0]
-            self.folder = replace(self.folder, children=inner, start=f"{self._top}/")
-
-    def _labs(self, *, is_explicit: bool) -> dict[str, str]:
-        return teams.find_labs(
-            self.folder, self._roster.knows_surname if self._roster else None, is_explicit=is_explicit
-        )
+def _only_folder(folder: ClassFolder) -> ClassFolder:
+    """Return the one folder that holds everything in a zip, unless it is itself a submission: then the zip's top."""
+    folders, files, _ = folder.children
+    if len(folders) != 1 or files or folders[0] == "submitted" or _detected(folder) != "folders":
+        return folder
+    if folder.roster is not None and folder.roster.knows(folders[0]):
+        return folder
+    inner = folder.listing.children(folders[0])
+    if _is_one_submission(inner):
+        return folder
+    return replace(folder, children=inner, start=f"{folders[0]}/", name=folders[0])
 
 
 def _is_one_submission(children: Children) -> bool:
@@ -98,33 +68,37 @@ def read_class(
     if layout not in ("auto", *LAYOUTS):
         raise InputError(f"there is no layout {layout!r}; the layouts are: auto, {', '.join(LAYOUTS)}")
     shown = printable_path(path)
-    class_layout = _ClassLayout(_listing(path), _top_name(path), roster, rubric_id)
-    if not any(class_layout.folder.children):
+    listing, name = _listing(path), path.name
+    with suppress(OSError):
+        name = path.resolve().name
+    folder = ClassFolder(listing, listing.children(""), "", IgnoredFiles(), name, rubric_id, roster, assignment)
+    if isinstance(listing, ZipListing):
+        folder = _only_folder(folder)
+    if not any(folder.children):
         raise InputError(f"{shown} is empty: name the folder that holds the class's submissions")
-    chosen = class_layout.detected() if layout == "auto" else layout
+    chosen = _detected(folder) if layout == "auto" else layout
     if assignment and chosen != "nbgrader":
         raise InputError(
             f"--assignment is only for the layout nbgrader, and {shown} has the layout {chosen}: remove it, or add"
             " --layout nbgrader"
         )
-    if layout == "auto" and chosen == "folders" and "package.xml" in class_layout.folder.children.files:
+    if layout == "auto" and chosen == "folders" and "package.xml" in folder.children.files:
         raise InputError(
             f"{shown} is one submission and not a class: it holds a package.xml (grade it with grader grade {shown})"
         )
-    submissions = class_layout.find_submissions(chosen, assignment, is_explicit=layout != "auto")
-    ignored = class_layout.folder.ignored.lines()
+    submissions = LAYOUTS[chosen](replace(folder, is_explicit=layout != "auto"))
+    ignored = folder.ignored.lines()
     if not len(submissions):
         example = "".join(f": {line}" for line in ignored[:1])
         advice = f" (without --layout {layout} the layout is detected)" if layout != "auto" else ""
         raise InputError(f"there is no submission in {shown}{example}{advice}")
-    return assign(chosen, ignored, submissions, roster, class_layout.holds_students)
 
+    def holds_students(path: str) -> bool:
+        """Return whether a folder holds submissions of at least two students: then it is a section, and not a team's submission."""
+        inner = listing.children(path, _MAX_NAMES)
+        return roster is not None and sum(map(roster.knows, stems_of(inner.folders, inner.files))) > 1
 
-def _top_name(path: Path) -> str:
-    try:
-        return path.resolve().name
-    except OSError:
-        return path.name
+    return assign(chosen, ignored, submissions, roster, holds_students)
 
 
 def _listing(path: Path) -> ClassListing:

@@ -113,9 +113,8 @@ class Roster:
         if found.only is not None:
             return RosterMatch(found.only, found.clue)
         if found.people:
-            return RosterMatch(
-                None, found.clue, "is ambiguous: it matches several students on the roster", found.people
-            )
+            doubt = "is ambiguous: it matches several students on the roster"
+            return RosterMatch(None, found.clue, doubt, found.people)
         if found.contradicted:
             other = self.entries[found.contradicted[0]].student
             return RosterMatch(None, found.clue, f"has the name of {other.key}, but another number")
@@ -150,7 +149,7 @@ def entry_to_json(entry: RosterEntry) -> str:
 
 def roster_from_json(entries: Iterable[str]) -> Roster | None:
     """Return the roster that a gradebook has stored; None if there is none."""
-    rows = [entry_from_json(entry) for entry in entries]
+    rows = list(map(entry_from_json, entries))
     return Roster(rows) if rows else None
 
 

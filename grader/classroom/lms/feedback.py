@@ -10,6 +10,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
+from itertools import accumulate
 
 from grader.classroom.lms.grades import rounded_down
 from grader.classroom.lms.spreadsheet import FORMULA_BEHIND_SEMICOLON, spelt_out
@@ -74,10 +75,7 @@ def feedback_html(score: Decimal, out_of: Decimal, items: Sequence[FeedbackItem]
     opening = f"<p>{_OPENING}: {format_points(rounded_down(score))} of {format_points(out_of)} points.</p>"
     lines = [_item(item) for item in items]
     room = LIMIT - len(opening) - 100  # for the list's tags, the mark, and the line that counts the rest
-    shown = 0
-    while shown < len(lines) and room >= len(lines[shown]):
-        room -= len(lines[shown])
-        shown += 1
+    shown = sum(length <= room for length in accumulate(map(len, lines)))
     more = [f"<li>... and {len(lines) - shown} more</li>"] if shown < len(lines) else []
     listed = f"<ul>{''.join([*lines[:shown], *more])}</ul>" if lines else ""
     return f"{opening}{listed}<!-- grader {_hash(opening + listed)} -->"
@@ -109,11 +107,9 @@ def _escaped(text: str) -> str:
     line = spelt_out(" ".join(text.split()))
     short = line if len(line) <= _MAX_MESSAGE else line[: _MAX_MESSAGE - 3] + "..."
     escaped = html.escape(short).replace("\\", "&#92;")
-    return FORMULA_BEHIND_SEMICOLON.sub(lambda found: "".join(map(_reference, found[0])), escaped)
-
-
-def _reference(character: str) -> str:
-    return character if character.isspace() else f"&#{ord(character)};"
+    return FORMULA_BEHIND_SEMICOLON.sub(
+        lambda found: re.sub(r"\S", lambda character: f"&#{ord(character[0])};", found[0]), escaped
+    )
 
 
 def _hash(text: str) -> str:

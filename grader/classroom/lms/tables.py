@@ -80,7 +80,8 @@ def read_table(data: bytes, shown: str) -> Table:
     bom, encoding, text = _decoded(data, shown)
     if "\0" in text:
         raise InputError(f"{shown} is not a CSV file: it contains a NUL character")
-    delimiter = _delimiter(text)
+    found = re.match(rf'(?:"(?:[^"]++|"")*+"|[^"{DELIMITERS}])*+([{DELIMITERS}])', text)
+    delimiter = found[1] if found else ","
     return Table(_rows(text, delimiter, shown), delimiter, encoding, bom)
 
 
@@ -92,11 +93,6 @@ def _decoded(data: bytes, shown: str) -> tuple[bytes, str, str]:
         except UnicodeDecodeError:
             continue
     raise InputError(f"{shown} is not text in {encoding or 'UTF-8 or Windows-1252'}: export it again, as CSV in UTF-8")
-
-
-def _delimiter(text: str) -> str:
-    found = re.match(rf'(?:"(?:[^"]++|"")*+"|[^"{DELIMITERS}])*+([{DELIMITERS}])', text)
-    return found[1] if found else ","
 
 
 def _rows(text: str, delimiter: str, shown: str) -> tuple[TableRow, ...]:

@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Iterable
 from concurrent.futures import Executor
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -43,10 +44,8 @@ class Progress:
 
     def with_result(self, verdict: str) -> "Progress":
         """Return the progress after one more result."""
-        if verdict == "unchanged":
-            return replace(self, unchanged=self.unchanged + 1)
-        unreadable, errored = self.unreadable + (verdict == "unreadable"), self.errored + (verdict == "errored")
-        return replace(self, graded=self.graded + 1, unreadable=unreadable, errored=errored)
+        counted = {"unchanged"} if verdict == "unchanged" else {"graded", verdict}
+        return replace(self, **{name: getattr(self, name) + 1 for name in counted})
 
 
 class RunSettings(NamedTuple):
@@ -100,7 +99,7 @@ class Batch:
         assignment = assignments_text(intake.assignments)
         writer = RunWriter(book, settings.root, settings.layout, self._rubric, settings.deadline, assignment)
         self._writer = writer
-        students = StoredStudents(book, writer, identities, settings.root, settings.roster, self.notes)
+        students = StoredStudents(identities, writer, self.notes)
         contested = {student.key for student in intake.contested}
         for submission in intake.submissions():
             stored = students.find(submission)
@@ -110,8 +109,7 @@ class Batch:
                 contested.add(stored.key)
                 self._report(("unchanged",))
                 continue
-            if stored is not None and not self._is_valid(stored):
-                stored = None
+            stored = stored if stored is not None and self._is_valid(stored) else None
             if stored is not None and self._is_unchanged(submission, stored):
                 self._report(("unchanged",))
             else:
@@ -140,9 +138,10 @@ class Batch:
     def _context(self) -> ClassContext:
         """Return the data that all tasks share, only when there is something to grade: grading the reference takes a while."""
         assert self._writer is not None
-        template = _template(self._rubric)
+        rubric, settings, template = self._rubric, self._settings, ""
+        with suppress(InputError):  # most records resemble that of the reference solution
+            template = to_record(grade_reference(rubric)) if rubric.reference else ""
         self._writer.use_template(template)
-        rubric, settings = self._rubric, self._settings
         return ClassContext(settings.root, rubric.data, str(rubric.path), template, settings.max_size)
 
     def _is_valid(self, stored: StoredSubmission) -> bool:
@@ -189,11 +188,3 @@ class Batch:
         for verdict in verdicts:
             self.progress = self.progress.with_result(verdict)
         self._listener(self.progress)
-
-
-def _template(rubric: Rubric) -> str:
-    """Return the record of the rubric's reference solution, which most records resemble; empty if there is none."""
-    try:
-        return to_record(grade_reference(rubric)) if rubric.reference else ""
-    except InputError:
-        return ""

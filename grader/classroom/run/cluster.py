@@ -35,7 +35,8 @@ class Cluster(Executor):
             raise InputError("--cluster needs Dask: pip install 'urdf-grader[cluster]'") from None
         self._timeout, self._address = timeout, address
         self._is_gone = False
-        _silence_logs()
+        for name in [name for name in logging.root.manager.loggerDict if name.partition(".")[0] == "distributed"]:
+            logging.getLogger(name).setLevel(logging.CRITICAL + 1)  # errors are reported in one line here
         dask: Any = distributed  # it has no annotations
         try:
             asyncio.run(_connect_once(address))  # a client that has failed keeps its process from ending
@@ -99,12 +100,6 @@ class Cluster(Executor):
             outer.set_exception(result)
         else:
             outer.set_result(result)
-
-
-def _silence_logs() -> None:
-    """Turn off Dask's log messages: errors are reported in one line here."""
-    for name in [name for name in logging.root.manager.loggerDict if name.partition(".")[0] == "distributed"]:
-        logging.getLogger(name).setLevel(logging.CRITICAL + 1)
 
 
 async def _connect_once(address: str) -> None:

@@ -26,17 +26,17 @@ class Identities:
     """
 
     def __init__(self, book: Gradebook, root: str, roster: Roster | None, keys: Callable[[], Iterable[str]]) -> None:
-        self._book, self._root, self._roster, self._keys = book, root, roster, keys
+        self.book, self.root, self.roster, self._keys = book, root, roster, keys
 
     @cached_property
     def _stored(self) -> list[StoredSubmission]:
         """The students whose key is neither in the class nor on the roster; most runs need none of them."""
-        kept = set(self._keys()).union(student.key for student in (self._roster.students if self._roster else ()))
-        return [stored for stored in self._book.stored_submissions() if stored.key not in kept]
+        kept = set(self._keys()).union(student.key for student in (self.roster.students if self.roster else ()))
+        return [stored for stored in self.book.stored_submissions() if stored.key not in kept]
 
     @cached_property
     def _people(self) -> People:
-        return People(_clues(stored, self._root) for stored in self._stored)
+        return People(_clues(stored, self.root) for stored in self._stored)
 
     @cached_property
     def _not_on_roster(self) -> set[int]:
@@ -45,10 +45,10 @@ class Identities:
     def of(self, submission: ClassSubmission) -> StoredSubmission | None:
         """Return the stored submission of the student who is certainly the same."""
         student = submission.student
-        entry = self._roster.entry(student.key) if self._roster is not None else None
+        entry = self.roster.entry(student.key) if self.roster is not None else None
         from_roster = clues_of(entry.student, entry.aliases) if entry is not None else {}
         match = self._people.find({**from_roster, **numbers_of(student)}, (*NUMBERS, Clue.WORD))
-        if not (match.people or match.contradicted) and (self._roster is None or entry is not None):
+        if not (match.people or match.contradicted) and (self.roster is None or entry is not None):
             # The login may be the name of a folder that another team has as well, or that could not be a key.
             login = "" if student.team or is_path_key(student.key) else student.login
             words = clues_of(Student(student.key, login=login, canvas=student.canvas, moodle=student.moodle))
@@ -73,31 +73,24 @@ class StoredStudents:
     Students who are recognised under a new key are added to `notes`.
     """
 
-    def __init__(
-        self,
-        book: Gradebook,
-        writer: RunWriter,
-        identities: Identities,
-        root: str,
-        roster: Roster | None,
-        notes: list[str],
-    ) -> None:
-        self._writer, self._identities, self._root, self._roster = writer, identities, root, roster
-        self._rest = book.stored_submissions()
+    def __init__(self, identities: Identities, writer: RunWriter, notes: list[str]) -> None:
+        self._identities, self._writer, self._notes = identities, writer, notes
+        self._root, self._roster = identities.root, identities.roster
+        self._rest = identities.book.stored_submissions()
         self._next = next(self._rest, None)
         self._has_any = self._next is not None
         self._passed: list[StoredSubmission] = []  # of this class folder, and not found yet
         self._renamed: set[int] = set()
-        self._notes = notes
 
     def find(self, submission: ClassSubmission) -> StoredSubmission | None:
         """Return the stored submission of a student; submissions have to be asked for in the order of their keys."""
         key = submission.student.key
         self._skip_to(key)
-        stored = self._next if self._next is not None and self._next.key == key else None
-        if stored is not None:
+        stored = self._next
+        if stored is not None and stored.key == key:
             self._next = next(self._rest, None)
-            return self._under_new_key(submission) if self._gives_way(stored, submission) else stored
+            if not self._gives_way(stored, submission):
+                return stored
         return self._under_new_key(submission) if self._has_any else None
 
     def is_doubtful(self, submission: ClassSubmission, stored: StoredSubmission) -> bool:

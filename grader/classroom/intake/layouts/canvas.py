@@ -51,12 +51,9 @@ def is_layout(children: Children) -> bool:
     Canvas writes names in lower case, so a name with capitals does not count.
     """
     names = children.folders + children.files
-    fitting = {name for name in names if _is_lower(_parsed(name))}
-    if not fitting:
-        return False
-    folders = set(children.folders)
-    others = sum(1 for name in names if name not in fitting and (name in folders or ending_of(name)))
-    return len(fitting) >= 3 * others
+    fitting = {name for name in names if (file := _parsed(name)) and not any(map(str.isupper, file.name))}
+    possible = children.folders + [name for name in children.files if ending_of(name)]
+    return bool(fitting) and len(fitting) >= 3 * sum(name not in fitting for name in possible)
 
 
 def find_submissions(folder: ClassFolder) -> Submissions:
@@ -90,10 +87,6 @@ def _certain(files: list[_CanvasFile], start: str, ignored: IgnoredFiles) -> lis
             reason = f"may belong to another user than {file.user}: its name can be read in two ways"
             ignored.add(start + file.path, reason)
     return [file for file in files if file.name in names]
-
-
-def _is_lower(file: _CanvasFile | None) -> bool:
-    return file is not None and not any(letter.isupper() for letter in file.name)
 
 
 def _parsed(name: str) -> _CanvasFile | None:

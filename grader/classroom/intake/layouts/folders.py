@@ -24,7 +24,8 @@ class FolderSubmissions(Submissions):
 
     def __init__(self, folder: ClassFolder) -> None:
         super().__init__(())
-        self._listing, self._start, self._knows = folder.listing, folder.start, folder.knows
+        self._listing, self._start = folder.listing, folder.start
+        self._knows = folder.roster.knows_submission if folder.roster is not None else None
         self._ignored = folder.ignored
         self._names: list[str] = []
         self._stems: dict[str, str] = {}  # of the last of several copies, without its number
@@ -37,7 +38,7 @@ class FolderSubmissions(Submissions):
         ignored.add_all(start, refused)
         folders = [name for name in names if name not in BUILD_FOLDERS]
         files = [name for name in files if ending_of(name)]
-        self._prefix = class_prefix(folders or stems_of([], files), folder.rubric_id, folder.knows)
+        self._prefix = class_prefix(folders or stems_of([], files), folder.rubric_id, self._knows)
         self._folders = frozenset(name for name in folders if ending_of(name))  # those that are named like a file
         self._add(folders + files)
 

@@ -2,11 +2,12 @@
 
 import os
 from collections import Counter
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from hashlib import sha256
 
 from grader.classroom.intake.listing import Children, ClassListing
+from grader.classroom.intake.roster import Roster
 from grader.classroom.students import ClassSubmission, Student
 from grader.text import printable_path
 
@@ -72,15 +73,19 @@ def is_path_key(key: str) -> bool:
 class ClassFolder:
     """The folder that holds the submissions of a class: its names, and its path in the listing, `start`, empty or with a slash.
 
-    `knows` says whether a name is on the roster, `rubric_id` is the name of the lab in names of folders.
+    `rubric_id` is the name of the lab in names of folders, `assignment` that in nbgrader, if the user has named it; `is_explicit` if
+    the user has named the layout.
     """
 
     listing: ClassListing
     children: Children
     start: str
     ignored: "IgnoredFiles"
+    name: str = ""
     rubric_id: str = ""
-    knows: Callable[[str], bool] | None = None
+    roster: Roster | None = None
+    assignment: str = ""
+    is_explicit: bool = False
 
 
 class IgnoredFiles:

@@ -10,7 +10,6 @@ and it has to get the same points.
 
 import re
 from collections import defaultdict
-from typing import NamedTuple
 
 from grader.classroom.intake.layouts.layout import ClassFolder, Submissions
 from grader.classroom.intake.listing import Children, ClassListing
@@ -24,71 +23,56 @@ _HIDDEN = frozenset({"Participant", "Teilnehmerin", "Participante", "Partecipant
 _MAX_FILES = 2_000  # of one participant, if files and an online text have to be put side by side
 
 
-class _MoodleFile(NamedTuple):
-    """One file or folder of a download."""
-
-    path: str
-    name: str
-    participant: str
-    plugin: str
-    file: str
-    is_folder: bool
-
-
 def is_layout(children: Children) -> bool:
     """Return whether this is a download of Moodle: at least half of the possible submissions are named like one."""
-    fitting = sum(_parsed(name) is not None for names in (children.folders, children.files) for name in names)
-    if not fitting:
-        return False
-    return 2 * fitting >= len(children.folders) + sum(1 for name in children.files if ending_of(name) or _parsed(name))
+    fitting = {name for name in children.folders + children.files if _parsed(name)}
+    possible = children.folders + [name for name in children.files if ending_of(name) or name in fitting]
+    return bool(fitting) and 2 * len(fitting) >= len(possible)
 
 
 def find_submissions(folder: ClassFolder) -> Submissions:
     """Return the submissions of a download, one for each participant."""
-    by_participant: dict[str, list[_MoodleFile]] = defaultdict(list)
-    for names, is_folder in ((folder.children.folders, True), (folder.children.files, False)):
-        for name in sorted(names):
-            file = _parsed(name, is_folder=is_folder)
-            if file is None:
-                folder.ignored.add(folder.start + name, "is not named like a submission in Moodle")
-            else:
-                by_participant[file.participant or f"_{file.name}"].append(file)
+    folders = frozenset(folder.children.folders)
+    by_participant: dict[str, list[re.Match[str]]] = defaultdict(list)
+    for name in (*sorted(folders), *sorted(folder.children.files)):
+        file = _parsed(name)
+        if file is None:
+            folder.ignored.add(folder.start + name, "is not named like a submission in Moodle")
+        else:
+            by_participant[file["id"] or f"_{file['name']}"].append(file)
     folder.ignored.add_all(folder.start, folder.children.refused)
-    full_names = {file.name for files in by_participant.values() for file in files}
+    full_names = {file["name"] for files in by_participant.values() for file in files}
     are_hidden = full_names <= _HIDDEN or (len(full_names) == 1 and len(by_participant) > 1)
-    return Submissions(
-        _submission(folder, sorted(files, key=lambda file: (file.plugin != "file", file.path)), are_hidden=are_hidden)
-        for files in by_participant.values()
-    )
+    return Submissions(_submission(folder, files, folders, are_hidden=are_hidden) for files in by_participant.values())
 
 
-def _parsed(name: str, *, is_folder: bool = False) -> _MoodleFile | None:
+def _parsed(name: str) -> re.Match[str] | None:
     # Names and files are chosen by students: with two such words a name could belong to either of two participants.
-    if name.count("_assignsubmission_") != 1:
-        return None
-    found = _NAME.fullmatch(name)
-    if found is None:
-        return None
-    return _MoodleFile(name, found["name"], found["id"] or "", found["plugin"], found["file"], is_folder)
+    return _NAME.fullmatch(name) if name.count("_assignsubmission_") == 1 else None
 
 
-def _submission(folder: ClassFolder, files: list[_MoodleFile], *, are_hidden: bool) -> ClassSubmission:
+def _submission(
+    folder: ClassFolder, files: list[re.Match[str]], folders: frozenset[str], *, are_hidden: bool
+) -> ClassSubmission:
     listing, start = folder.listing, folder.start
+    files = sorted(files, key=lambda file: (file["plugin"] != "file", file.string))
     if len(files) > 1:  # ignore empty folders
-        files = [file for file in files if not file.is_folder or listing.first(start + file.path)] or files[:1]
+        files = [file for file in files if file.string not in folders or listing.first(start + file.string)] or files[
+            :1
+        ]
     first = files[0]
-    path = start + first.path
-    key = f"{first.name}_{first.participant}" if first.participant else first.name
-    student = Student(key, "" if are_hidden else first.name, moodle=first.participant)
-    if len(files) == 1 and first.is_folder:
+    path, name, participant = start + first.string, first["name"], first["id"] or ""
+    key = f"{name}_{participant}" if participant else name
+    student = Student(key, "" if are_hidden else name, moodle=participant)
+    if len(files) == 1 and first.string in folders:
         return ClassSubmission(student, (_only_file(listing, path) or path,))
     names: dict[str, str] = {}
     for file in files:
-        top, part = start + file.path, "" if file.plugin == "file" else f"{file.plugin}/"
-        if file.is_folder:
+        top, part = start + file.string, "" if file["plugin"] == "file" else f"{file['plugin']}/"
+        if file.string in folders:
             names |= {inner: part + inner[len(top) + 1 :] for inner in _files_below(listing, top)}
         else:
-            names[top] = part + (file.file or file.path)
+            names[top] = part + (file["file"] or file.string)
     if len(names) > _MAX_FILES:
         folder.ignored.add(path, f"has more than {_MAX_FILES} files: the files beside it were not read")
     if not names or len(names) > _MAX_FILES:

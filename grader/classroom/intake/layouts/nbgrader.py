@@ -19,13 +19,13 @@ _MAX_TIMESTAMP = 100  # bytes
 _MAX_NAMED = 10
 
 
-def find_course(folder: ClassFolder, top: str) -> str | None:
-    """Return where the students' folders are if this is a course: below `submitted`, or here if `top` is called so."""
+def find_course(folder: ClassFolder) -> str | None:
+    """Return where the students' folders are if this is a course: below `submitted`, or here if the folder is called so."""
     listing, start = folder.listing, folder.start
     if _SUBMITTED in folder.children.folders:
         below = f"{start}{_SUBMITTED}/"
         return below if _assignments(listing, below) else None
-    if top != _SUBMITTED:
+    if folder.name != _SUBMITTED:
         return None
     found = _assignments(listing, start)
     has_lab = any(_normalised(name) == _normalised(folder.rubric_id) for name in found)
@@ -35,11 +35,12 @@ def find_course(folder: ClassFolder, top: str) -> str | None:
     return start if has_lab or has_timestamp else None
 
 
-def find_submissions(folder: ClassFolder, start: str, assignment: str) -> Submissions:
-    """Return the submissions for one assignment in a course at `start`; raises InputError if it is not clear which one."""
-    listing, ignored = folder.listing, folder.ignored
+def find_submissions(folder: ClassFolder) -> Submissions:
+    """Return the submissions for one assignment; raises InputError if it is not clear which one."""
+    listing, ignored, course = folder.listing, folder.ignored, find_course(folder)
+    start = folder.start if course is None else course
     found = _assignments(listing, start)
-    name = _chosen(found, assignment, folder.rubric_id)
+    name = _chosen(found, folder.assignment, folder.rubric_id)
     children = listing.children(start.rstrip("/"))
     submitters = set(found[name])
     for student in children.folders:

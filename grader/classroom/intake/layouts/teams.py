@@ -5,7 +5,6 @@ such a lab folder is one submission.
 """
 
 import re
-from collections.abc import Callable
 from dataclasses import replace
 
 from grader.classroom.intake.layouts.folders import FolderSubmissions
@@ -40,25 +39,23 @@ def lab_folder(rubric_id: str) -> re.Pattern[str]:
     return re.compile(r"[\s_-]*".join(parts) or r"(?!)", re.IGNORECASE)
 
 
-def find_labs(folder: ClassFolder, knows: Callable[[str], bool] | None, *, is_explicit: bool = False) -> dict[str, str]:
-    """Return the lab folders that hold students' folders, each with its team.
-
-    `knows` says whether a name, or surname, is on the roster; `is_explicit` whether the user has named the layout.
-    """
+def find_labs(folder: ClassFolder) -> dict[str, str]:
+    """Return the lab folders that hold students' folders, each with its team."""
     labs: dict[str, str] = {}
     pattern = lab_folder(folder.rubric_id)
-    if len(folder.children.folders) > _MAX_TEAMS and not is_explicit:
+    if len(folder.children.folders) > _MAX_TEAMS and not folder.is_explicit:
         return labs
     for team in sorted(folder.children.folders):
         for name in sorted(folder.listing.children(folder.start + team, _MAX_NAMES).folders):
             lab = f"{folder.start}{team}/{name}"
-            if pattern.fullmatch(name) and _holds_students(folder.listing, lab, knows, is_explicit=is_explicit):
+            if pattern.fullmatch(name) and _holds_students(folder, lab):
                 labs[lab] = team
     return labs
 
 
-def find_submissions(folder: ClassFolder, labs: dict[str, str]) -> Submissions:
-    """Return the submissions of the students in these lab folders, and of the teams without one."""
+def find_submissions(folder: ClassFolder) -> Submissions:
+    """Return the submissions of the students in lab folders, and of the teams without one."""
+    labs = find_labs(folder)
     teams = set(labs.values())
     rest = folder.children._replace(folders=[name for name in folder.children.folders if name not in teams])
     alone = FolderSubmissions(replace(folder, children=rest))
@@ -85,17 +82,17 @@ def is_package(children: Children) -> bool:
     )
 
 
-def _holds_students(listing: ClassListing, lab: str, knows: Callable[[str], bool] | None, *, is_explicit: bool) -> bool:
-    inner = listing.children(lab, _MAX_NAMES)
+def _holds_students(folder: ClassFolder, lab: str) -> bool:
+    inner = folder.listing.children(lab, _MAX_NAMES)
     names = stems_of(inner.folders, inner.files)
     if not names or is_package(inner):
         return False
-    known = sum(map(knows, names)) if knows else 0
+    known = sum(map(folder.roster.knows_surname, names)) if folder.roster is not None else 0
     if known and known >= min(len(names), 2):
         return True
-    if is_explicit:
+    if folder.is_explicit:
         return bool(inner.folders)
-    within = [_has_robot(listing, f"{lab}/{name}") for name in inner.folders]
+    within = [_has_robot(folder.listing, f"{lab}/{name}") for name in inner.folders]
     return within.count(True) >= 2 and None not in within
 
 
