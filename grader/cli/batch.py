@@ -1,11 +1,7 @@
 """grader batch: a class against a rubric, into a gradebook."""
 
-import sys
-import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal, get_args
+from typing import Annotated, Literal, get_args
 
 import typer
 
@@ -15,13 +11,7 @@ from grader.errors import GraderError
 from grader.files.reading import URDF_LIMIT
 from grader.report.formats import Format, OutputFormat
 
-if TYPE_CHECKING:
-    from rich.progress import Progress as Bar
-
-    from grader.classroom.run.batch import Progress
-
 Layout = Literal["auto", "folders", "canvas", "moodle", "teams", "nbgrader"]
-_LINE_SECONDS = 10.0  # between lines of progress, if standard error is no terminal
 _PATH = "A folder with an entry for each student, or the zip of an LMS."
 _ADD = "Add to the gradebook even if it has another class, assignment or rubric."
 _TIMEOUT = "Time limit for each submission."
@@ -63,6 +53,7 @@ def batch(
 
       grader batch class/ --gradebook lab6.db --reports reports --csv grades.csv
     """
+    from grader.cli.progress import progress_display
     from grader.usecases.grade_class import ClassRequest, grade_class  # imports what grades a class
 
     formats = tuple(report_format or [Format.TERMINAL])
@@ -72,57 +63,4 @@ def batch(
     request = ClassRequest(
         path, gradebook, rubric, jobs, timeout, roster, layout, assignment, due, force, cluster, add, max_size, reports, formats, csv
     )  # fmt: skip
-    return grade_class(request, output_format, screen(), _progress_display(), warn)
-
-
-@contextmanager
-def _progress_display() -> Iterator[Callable[["Progress"], None]]:
-    """Show the progress of a run; yields the function that takes it."""
-    began = last_line = time.monotonic()
-
-    def print_line(progress: "Progress") -> None:
-        nonlocal last_line
-        now = time.monotonic()
-        if now - last_line > _LINE_SECONDS:
-            last_line = now
-            warn(_line(progress, now - began))
-
-    if sys.stderr is None or not sys.stderr.isatty():
-        yield print_line
-        return
-    with _bar() as bar:
-        task = bar.add_task("grading", total=None, rate="", found="")
-
-        def move(progress: "Progress") -> None:
-            rate = f"{progress.done / max(1e-3, time.monotonic() - began):.0f}/s"
-            bar.update(task, total=progress.total, completed=progress.done, rate=rate, found=_counts(progress))
-
-        yield move
-
-
-def _bar() -> "Bar":
-    from rich import progress
-    from rich.console import Console
-
-    columns = (
-        progress.TextColumn("{task.description}"),
-        progress.BarColumn(),
-        progress.MofNCompleteColumn(),
-        progress.TextColumn("{task.fields[rate]}"),
-        progress.TimeRemainingColumn(),
-        progress.TextColumn("{task.fields[found]}"),
-    )
-    return progress.Progress(*columns, console=Console(stderr=True), transient=True)
-
-
-def _counts(progress: "Progress") -> str:
-    counts = [(progress.errored, "errored"), (progress.unreadable, "unreadable"), (progress.unchanged, "unchanged")]
-    return ", ".join(f"{count} {status}" for count, status in counts if count)
-
-
-def _line(progress: "Progress", seconds: float) -> str:
-    rate = progress.done / seconds if seconds else 0.0
-    left = (progress.total - progress.done) / rate if rate else 0.0
-    counts = _counts(progress)
-    time_left = f"{left:.0f} s" if left < 100 else f"{left / 60:.0f} min"
-    return f"{progress.done} of {progress.total}, {rate:.0f}/s, {time_left} left{f' ({counts})' if counts else ''}"
+    return grade_class(request, output_format, screen(), progress_display(), warn)

@@ -8,7 +8,7 @@ import pytest
 
 from grader.checks.outcome import Status
 from grader.grading.report import Report, Result
-from grader.usecases.watch import comparison_lines, unchanged_line
+from grader.report.comparison import comparison_lines, unchanged_line
 from tests.samples import SAMPLES
 
 SHORT = SAMPLES["lidar-offset-in-visual"].grade()  # 64 of 70: lidar-frame fails

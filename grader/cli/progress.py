@@ -1,0 +1,69 @@
+"""Progress of a batch on standard error: a bar on a terminal, else a line every ten seconds."""
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from grader.cli.output import warn
+
+if TYPE_CHECKING:
+    from rich.progress import Progress as Bar
+
+    from grader.classroom.run.batch import Progress
+
+_LINE_SECONDS = 10.0
+
+
+@contextmanager
+def progress_display() -> Iterator[Callable[["Progress"], None]]:
+    """Show the progress of a run; yields the function that takes it."""
+    began = last_line = time.monotonic()
+
+    def print_line(progress: "Progress") -> None:
+        nonlocal last_line
+        now = time.monotonic()
+        if now - last_line > _LINE_SECONDS:
+            last_line = now
+            warn(_line(progress, now - began))
+
+    if sys.stderr is None or not sys.stderr.isatty():
+        yield print_line
+        return
+    with _bar() as bar:
+        task = bar.add_task("grading", total=None, rate="", found="")
+
+        def move(progress: "Progress") -> None:
+            rate = f"{progress.done / max(1e-3, time.monotonic() - began):.0f}/s"
+            bar.update(task, total=progress.total, completed=progress.done, rate=rate, found=_counts(progress))
+
+        yield move
+
+
+def _bar() -> "Bar":
+    from rich import progress
+    from rich.console import Console
+
+    columns = (
+        progress.TextColumn("{task.description}"),
+        progress.BarColumn(),
+        progress.MofNCompleteColumn(),
+        progress.TextColumn("{task.fields[rate]}"),
+        progress.TimeRemainingColumn(),
+        progress.TextColumn("{task.fields[found]}"),
+    )
+    return progress.Progress(*columns, console=Console(stderr=True), transient=True)
+
+
+def _counts(progress: "Progress") -> str:
+    counts = [(progress.errored, "errored"), (progress.unreadable, "unreadable"), (progress.unchanged, "unchanged")]
+    return ", ".join(f"{count} {status}" for count, status in counts if count)
+
+
+def _line(progress: "Progress", seconds: float) -> str:
+    rate = progress.done / seconds if seconds else 0.0
+    left = (progress.total - progress.done) / rate if rate else 0.0
+    counts = _counts(progress)
+    time_left = f"{left:.0f} s" if left < 100 else f"{left / 60:.0f} min"
+    return f"{progress.done} of {progress.total}, {rate:.0f}/s, {time_left} left{f' ({counts})' if counts else ''}"
