@@ -155,13 +155,7 @@ def _robot(robot: Configuration) -> dict[str, Any]:
         "root": main_root(robot),
         "links": [link.name for link in robot.robot.links],
         "joints": [
-            {
-                "name": joint.name,
-                "type": joint.type,
-                "parent": joint.parent,
-                "child": joint.child,
-                "axis": rounded(joint.axis),
-            }
+            {name: rounded(getattr(joint, name)) for name in ("name", "type", "parent", "child", "axis")}
             for joint in robot.robot.joints
         ],
     }
