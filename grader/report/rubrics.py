@@ -62,7 +62,9 @@ def explanation(name: str, rubric: Rubric) -> str:
     if check is not None:
         return _check_text(check)
     known = [kind.code for kind in EVERY_KIND] + [criterion.id for criterion in rubric.criteria] + check_names()
-    lists = f"; {rubric.shown_by} lists the criteria, grader rubric checks lists the checks, and reports show the codes"
+    lists = (
+        f"; `{rubric.shown_by}` lists the criteria, `grader rubric checks` lists the checks, and reports show the codes"
+    )
     guess = did_you_mean(name, known) or lists
     raise InputError(f"there is no problem code, criterion or check {name!r}{guess}")
 

@@ -86,8 +86,8 @@ class Materials:
         later = self._defined.get(name)
         if later is not None:
             line = problems.line(later)
-            hint = f" before its definition in line {line}; define it directly under <robot>"
+            hint, advice = f" before its definition in line {line}", "; define it directly under <robot>"
         else:
-            hint = f", which is not defined{problems.did_you_mean(name, self._defined)}"
-        message = f"link {quoted(link)} uses material {quoted(name)}{hint}; ROS 2 shows it without the colour"
+            hint, advice = ", which is not defined", problems.did_you_mean(name, self._defined)
+        message = f"link {quoted(link)} uses material {quoted(name)}{hint}; ROS 2 shows it without the colour{advice}"
         problems.add(catalogue.UNDEFINED_MATERIAL, message, element, "name")

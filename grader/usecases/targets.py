@@ -83,5 +83,5 @@ def missing_folder(path: Path) -> InputError:
     """Return the error for a file whose folder does not exist."""
     folder = printable(str(path.parent))
     return InputError(
-        f"cannot write {printable(str(path))}: there is no folder {folder} (create it with mkdir -p {folder})"
+        f"cannot write {printable(str(path))}: there is no folder {folder} (create it with `mkdir -p {folder}`)"
     )

@@ -72,7 +72,7 @@ class StudentGrade:
         if self.is_gone:
             return "it is no longer in the class folder"
         if self.is_outdated:
-            return "it was graded with an earlier version of the rubric: run grader batch again"
+            return "it was graded with an earlier version of the rubric: run `grader batch` again"
         if self.over_marks:
             return "a manual mark exceeds the criterion's maximum"
         if self.pending:

@@ -80,7 +80,7 @@ def read_class(
         )
     if layout == "auto" and chosen == "folders" and "package.xml" in class_layout.children.files:
         raise InputError(
-            f"{shown} is one submission and not a class: it contains a package.xml (grade it with grader grade {shown})"
+            f"{shown} is one submission and not a class: it contains a package.xml (grade it with `grader grade {shown}`)"
         )
     ignored = IgnoredFiles()
     submissions = class_layout.find_submissions(chosen, ignored, is_explicit=layout != "auto")
@@ -113,6 +113,6 @@ def _listing(path: Path) -> ClassListing:
     if archive_kind(read_start(path, 512)) != "zip":
         raise InputError(
             f"{shown} is neither a folder nor a zip: name the folder that holds the class's submissions"
-            " (grader grade grades a single one)"
+            " (`grader grade` grades a single one)"
         )
     return ZipListing(path)
