@@ -25,7 +25,7 @@ class Identities:
 
     @cached_property
     def _stored(self) -> list[StoredSubmission]:
-        """The students whose key is neither in the class nor on the roster; most runs need none of them."""
+        """The students whose key is neither in the class nor on the roster; most runs do not need them."""
         kept = set(self._keys()).union(student.key for student in (self._roster.students if self._roster else ()))
         return [stored for stored in self._book.stored_submissions() if stored.key not in kept]
 

@@ -19,7 +19,7 @@ class Submissions(Protocol):
 
     @property
     def assignments(self) -> frozenset[str]:
-        """The name of the assignment in an LMS."""
+        """The names that an LMS gives the assignment."""
 
     @property
     def contested(self) -> tuple[Student, ...]:
