@@ -49,7 +49,7 @@ class Bench(NamedTuple):
         return max(size for size in self.sizes if size <= 1_000 or size == min(self.sizes))
 
     def folder(self, count: int) -> Path:
-        """A class of so many URDFs, made when it is first asked for."""
+        """Return a class of this many URDFs, generated on first use."""
         folder = self.top / f"class-{count}"
         if not folder.exists():
             for _ in make_class(folder, count, seed=count):
@@ -60,13 +60,11 @@ class Bench(NamedTuple):
 def main() -> None:
     """Print the figures that are asked for, or all."""
     parser = argparse.ArgumentParser(description="Measure how whole classes are graded.")
+    parser.add_argument("figures", nargs="*", metavar="figure", help=f"any of: {', '.join(FIGURES)}; default: all")
     parser.add_argument(
-        "figures", nargs="*", metavar="figure", help=f"any of: {', '.join(FIGURES)}; all of them if left out"
+        "--sizes", type=int, nargs="+", default=[100, 1_000, 10_000], help="numbers of submissions in a class"
     )
-    parser.add_argument(
-        "--sizes", type=int, nargs="+", default=[100, 1_000, 10_000], help="how many submissions a class has"
-    )
-    parser.add_argument("--all", action="store_true", help="a class of 100,000 as well")
+    parser.add_argument("--all", action="store_true", help="also measure a class of 100,000")
     parser.add_argument("--jobs", type=int, default=processors())
     parser.add_argument("--runs", type=int, default=5)
     given = parser.parse_args()
@@ -237,7 +235,7 @@ def _has_command() -> bool:
 
 
 def _compare_runs(title: str, run: Callable[[Path], float], bench: Bench) -> None:
-    """Time pairs of runs into one gradebook each, behind a pair that does not count."""
+    """Time pairs of runs into one gradebook each, after a pair that is not measured."""
     times: dict[str, list[float]] = {"first": [], "second": []}
     for number in range(bench.runs + 1):
         with tempfile.TemporaryDirectory(dir=bench.top) as top:
@@ -288,7 +286,7 @@ def _tree(top: int) -> list[int]:
 
 
 def _share(process: int) -> int:
-    """A process's share of the memory in bytes: what is its own, and its part of what it shares (PSS)."""
+    """Return the memory of a process in bytes: its own, and its part of shared memory (PSS)."""
     try:
         lines = Path(f"/proc/{process}/smaps_rollup").read_text(encoding="ascii").splitlines()
     except OSError:

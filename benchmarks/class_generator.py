@@ -1,4 +1,4 @@
-"""Made-up classes to try a grader on: `python benchmarks/class_generator.py FOLDER --count 1000 --seed 1`.
+"""Generate classes of invented students for tests and benchmarks: `python benchmarks/class_generator.py FOLDER --count 1000 --seed 1`.
 
 The same seed gives the same names and bytes everywhere: nothing depends on the order of a set, on the clock, on a compressor's
 version, or on more of `random` than `Random.random`. No URDF has the bytes of another one. The mistakes and their proportions are
@@ -72,7 +72,7 @@ class Edit(NamedTuple):
 
 
 class Way(NamedTuple):
-    """A way to build or to spoil the robot, how often it is met, what of the robot it `touches`, and the criteria that it loses."""
+    """A variant or mistake of the robot: how often it occurs, which elements it `touches`, and the criteria that it loses."""
 
     name: str
     weight: int
@@ -234,7 +234,7 @@ _MISTAKES, _EQUIVALENTS, _BROKEN = _bag(MISTAKES), _bag(EQUIVALENTS), _bag(BROKE
 
 
 class Made(NamedTuple):
-    """A URDF that was made up: its text, what sort it is, how it was built, and the criteria that it surely loses, and no others."""
+    """A generated URDF: its text, its kind, how it was built, and exactly the criteria that it loses."""
 
     text: str
     sort: str
@@ -292,7 +292,7 @@ def make_urdf(dice: Dice, author: str) -> Made:
 
 
 def chosen(dice: Dice, bag: Sequence[Way], count: int, beside: Iterable[Way] = ()) -> tuple[Way, ...]:
-    """So many ways, or fewer, of which none touches what another one touches, nor what those `beside` them do."""
+    """Return up to `count` ways that do not touch the elements of each other or of the ways in `beside`."""
     taken = {part for way in beside for part in way.touches.split()}
     found: list[Way] = []
     for _ in range(count):
@@ -316,7 +316,7 @@ def built(dice: Dice, author: str, sort: str, ways: Sequence[Way]) -> Made:
 
 
 def _written(dice: Dice, author: str, parts: dict[str, str]) -> str:
-    """The text of a robot; no two styles change what it says."""
+    """Return the text of a robot; a style does not change its meaning."""
     texts = _in_order(dice, [part for part in parts.values() if part])
     share = dice.pick((0.0, 0.1, 0.4))
     blocks = (f"  {dice.pick(_COMMENTS)}\n  {part}" if dice.chance(share) else f"  {part}" for part in texts)
@@ -356,7 +356,7 @@ def _other_form(dice: Dice, number: str) -> str:
 
 
 def _spoilt(dice: Dice, text: str, ways: Sequence[Way]) -> str:
-    """The text after what a way does to the whole of it, and with the line ends of some system."""
+    """Return the text after the changes of a way to the whole file, with the line endings of some system."""
     below = text[text.index("<!--") :]
     match ways[0].name if ways else "":
         case "comment-before-declaration":
@@ -377,7 +377,7 @@ def _spoilt(dice: Dice, text: str, ways: Sequence[Way]) -> str:
 
 
 class Person(NamedTuple):
-    """Somebody who does not exist. `number` is what Canvas and Moodle know them by, each with another digit in front."""
+    """An invented student. `number` is the id in Canvas and Moodle, each with another digit in front."""
 
     first: str
     last: str
@@ -444,7 +444,7 @@ def person(seed: int, index: int, *, with_awkward: bool) -> Person:
 
 
 class Item(NamedTuple):
-    """A file, a folder (`data` is None), or a link to `link`. `path` may hold bytes that are no UTF-8, as os.fsdecode writes them."""
+    """A file, a folder (`data` is None), or a symlink to `link`. `path` may contain bytes that are not UTF-8, as os.fsdecode writes them."""
 
     path: str
     data: bytes | None = None
@@ -478,7 +478,7 @@ def tarred(items: Iterable[Item]) -> bytes:
 
 
 def stored(data: bytes) -> bytes:
-    """A deflate stream that compresses nothing: what zlib makes of data differs from one version to the next."""
+    """Return a deflate stream without compression, because compressed data differs between versions of zlib."""
     pieces = [data[start : start + 65535] for start in range(0, len(data), 65535)] or [b""]
     last = len(pieces) - 1
     heads = (struct.pack("<B2H", index == last, len(piece), 65535 - len(piece)) for index, piece in enumerate(pieces))
@@ -525,7 +525,7 @@ class Desk:
         return self.made.text.encode()
 
     def uncertain(self, data: bytes) -> bytes:
-        """The same bytes, of which nobody says what they are worth."""
+        """Return the same bytes without an expected result."""
         self.made = None
         return data
 
@@ -547,7 +547,7 @@ def package(desk: Desk, top: str = "my_robot") -> list[Item]:
 
 
 def workspace(desk: Desk) -> list[Item]:
-    """A workspace with what an old build has left, pictures and answers."""
+    """Return a workspace with the files of an old build, pictures and answers."""
     built_before = desk.urdf()
     stale = "roscourse_sim_ws/install/my_robot/share/my_robot"
     return [
@@ -610,12 +610,12 @@ def _once(build: Callable[[Desk], list[Item]]) -> Kind:
 
 
 def _raw(name: str, data: Callable[[Desk], bytes]) -> Kind:
-    """One file, of which nobody says what it is worth."""
+    """Return one file without an expected result."""
     return lambda desk: [[Item(name, desk.uncertain(data(desk)))]]
 
 
 def _folder(data: Callable[[Desk], list[Item]]) -> Kind:
-    """A folder, of which nobody says what it is worth."""
+    """Return a folder without an expected result."""
 
     def build(desk: Desk) -> Attempts:
         items = data(desk)
@@ -677,7 +677,7 @@ class ClassSubmission(NamedTuple):
 
 
 def hand_ins(count: int, seed: int, kind: str) -> Iterator[ClassSubmission]:
-    """A class of so many students. A mixed one has one more, who is nobody in it and comes last."""
+    """Return a class of this many students. A mixed class ends with one more submission, of nobody on the roster."""
     is_mixed = kind == "mixed"
     for index in range(count + is_mixed):
         name = card(seed, index) if is_mixed and index < count else "urdf"
@@ -717,7 +717,7 @@ def in_folders(hand_in: ClassSubmission) -> Iterator[Item]:
 
 
 def in_canvas(hand_in: ClassSubmission) -> Iterator[Item]:
-    """Files side by side; what is a folder was zipped. The same name in a later attempt is numbered."""
+    """Return all files in one folder; folders are zipped. The same name in a later attempt is numbered."""
     who = hand_in.person
     for number, items in enumerate(hand_in.attempts):
         is_flat = all(item.data is not None and "/" not in item.path for item in items)
@@ -758,7 +758,7 @@ def canvas_name(who: Person) -> str:
 
 
 def moodle_name(who: Person) -> str:
-    """The full name as Moodle writes it into the names of folders: without what a file's name may not have."""
+    """Return the full name as Moodle writes it in folder names: without characters that file names cannot have."""
     return re.sub(r'[\x00-\x1f\\/:*?"<>|&]', "", who.name.replace("_", " ")).strip()
 
 
@@ -774,12 +774,12 @@ def _below(top: str, items: Iterable[Item]) -> Iterator[Item]:
 
 
 def _plainly(items: Iterable[Item]) -> Iterator[Item]:
-    """With names that a zip can hold."""
+    """Return the files with names that a zip can contain."""
     return (item._replace(path=os.fsencode(item.path).decode("latin-1")) for item in items)
 
 
 def write(root: str, item: Item) -> None:
-    """Write a file, folder or link below a folder; what the file system cannot hold is left out."""
+    """Write a file, folder or symlink below a folder; skip what the file system does not support."""
     path = f"{root}/{item.path}"
     if item.data is not None and "/" not in item.path:
         with open(path, "wb") as file:  # noqa: PTH123  a hundred thousand of them
@@ -799,7 +799,7 @@ def write(root: str, item: Item) -> None:
 
 
 class Written(NamedTuple):
-    """A submission that was written: who, what kind, where (the last attempt's top names), and what it surely loses, if that is certain."""
+    """A written submission: student, kind, top names of the last attempt, and the criteria that it loses, if known."""
 
     person: Person
     kind: str
@@ -885,16 +885,22 @@ def expectation(written: Written) -> dict[str, Any]:
 
 
 def main() -> None:
-    """Write a class, and beside it what an LMS and a test would want to have."""
-    parser = argparse.ArgumentParser(description="Make up a class of Lab 6.")
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--count", type=int, default=1000)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--kind", choices=("urdf", "mixed"), default="urdf")
-    parser.add_argument("--layout", choices=LAYOUTS, default="folders")
-    parser.add_argument("--expected", type=Path, help="a JSON file of what each submission surely loses")
-    parser.add_argument("--roster", type=Path, help="a CSV file of the students")
-    parser.add_argument("--lms", type=Path, help="a CSV file: Canvas' gradebook, or Moodle's grading worksheet")
+    """Write a class, and the files of an LMS and of a test next to it."""
+    parser = argparse.ArgumentParser(description="Generate a class of invented submissions of Lab 6.")
+    parser.add_argument("folder", type=Path, help="the class folder to write")
+    parser.add_argument("--count", type=int, default=1000, help="number of students (default: 1000)")
+    parser.add_argument("--seed", type=int, default=1, help="seed of the random choices (default: 1)")
+    parser.add_argument(
+        "--kind", choices=("urdf", "mixed"), default="urdf", help="URDFs only, or packages and damaged files as well"
+    )
+    parser.add_argument("--layout", choices=LAYOUTS, default="folders", help="layout of the class folder")
+    parser.add_argument(
+        "--expected", type=Path, help="write the expected lost criteria of each submission to this JSON file"
+    )
+    parser.add_argument("--roster", type=Path, help="write a roster to this CSV file")
+    parser.add_argument(
+        "--lms", type=Path, help="write a Canvas gradebook or Moodle grading worksheet to this CSV file"
+    )
     given = parser.parse_args()
     made = make_class(given.folder, given.count, given.seed, given.kind, given.layout)
     if not (given.expected or given.roster or given.lms):
@@ -908,7 +914,7 @@ def main() -> None:
 def write_beside(
     written: Sequence[Written], count: int, layout: str, expected: Path | None, people: Path | None, lms: Path | None
 ) -> None:
-    """Write what belongs to a class and is not in it. Who comes behind the first `count` is in no list."""
+    """Write the lists of a class. Students after the first `count` are in no list."""
     students = [each.person for each in written[:count]]
     if expected:
         known = {each.person.key: expectation(each) for each in written}

@@ -1,4 +1,4 @@
-"""What the speed claims rest on: `python benchmarks/run.py`. Quote the ratios; absolute times are the machine's.
+"""Measurements behind the speed claims: `python benchmarks/run.py`. Quote the ratios; absolute times are the machine's.
 
 Every pair is timed in turn, A B A B, so that a machine whose speed drifts does not favour either.
 """
@@ -164,7 +164,7 @@ def forward_kinematics() -> None:
 
 
 def chain(count: int) -> bytes:
-    """The URDF of a chain of so many links."""
+    """Return the URDF of a chain of this many links."""
     lines = (
         f'<link name="l{index}"/><joint name="j{index}" type="continuous"><parent link="l{index - 1}"/>'
         f'<child link="l{index}"/><origin xyz="0.1 0 0.01" rpy="0.1 0.2 0.3"/><axis xyz="0 1 0"/></joint>'
@@ -195,7 +195,7 @@ def check_urdf() -> Path | None:
 
 
 def process(command: list[str], environment: dict[str, str] | None = None) -> Callable[[], float]:
-    """A run of a whole process; what it takes in seconds."""
+    """Run a whole process and return its time in seconds."""
     variables = process_environment() if environment is None else environment
 
     def run() -> float:
@@ -231,7 +231,7 @@ def once(run: Callable[[], object]) -> float:
 
 
 def in_turn(runs: dict[str, Callable[[], float]], count: int) -> dict[str, list[float]]:
-    """So many rounds of all, one after the other, behind a round that does not count."""
+    """Run this many rounds of all measurements in turn, after a round that is not measured."""
     times: dict[str, list[float]] = {name: [] for name in runs}
     for number in range(count + 1):
         for name, run in runs.items():

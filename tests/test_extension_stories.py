@@ -110,7 +110,7 @@ def test_a_new_check(project: Path) -> None:
     replace(project / "tests/checks/cases.py", "CASES = (\n", SAMPLE)
     python(project, "docs/make.py")
     passes(project, "tests/test_registry.py", "tests/test_architecture.py", "tests/checks/test_every_check.py",
-           "tests/checks/test_appearance.py", "tests/test_docs.py::test_a_made_page_is_current")  # fmt: skip
+           "tests/checks/test_appearance.py", "tests/test_docs.py::test_a_generated_page_is_current")  # fmt: skip
 
 
 def test_a_new_rubric(project: Path) -> None:

@@ -183,7 +183,10 @@ def _below_share(package: Package, owner: str, rest: str, named: "Reference") ->
                 f"the launch file looks for the {what} at {path}: a slash is missing after {package.name!r}",
             )
         if closest(owner, [package.name]):
-            return "failed", f"the launch file looks in a package {owner!r}, but this one is named {package.name!r}"
+            return (
+                "failed",
+                f"the launch file looks in a package {owner!r}, but the graded package is named {package.name!r}",
+            )
         if named.purpose == "include":
             return "passed", ""
         return "pending", f"the {what} is in {owner!r}, which is not part of the submission"

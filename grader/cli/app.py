@@ -122,7 +122,7 @@ def _command(arguments: Sequence[str]) -> list[str]:
     if first in COMMANDS:
         return [first]
     if not first.startswith("-") and os.path.lexists(first):
-        raise GraderError(f"there is no command {first!r}; to grade it, use grader grade {printable(first)}")
+        raise GraderError(f"there is no command {first!r}; to grade it, use `grader grade {printable(first)}`")
     return []
 
 
@@ -137,7 +137,7 @@ def _other_error(error: Exception) -> ExitCode:
     if type(error).__name__ == "NoArgsIsHelpError":
         print(usage(), file=sys.stderr)
     else:
-        warn(_one_line(f"{usage()} ({command} --help shows the usage)"))
+        warn(_one_line(f"{usage()} (`{command} --help` shows the usage)"))
     return ExitCode.NOT_GRADED
 
 

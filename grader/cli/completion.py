@@ -91,7 +91,7 @@ def _install(shell: str) -> Path:
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else str(error)
         raise InputError(
-            f"cannot install completion: {reason}; grader --show-completion {shell} prints what to add"
+            f"cannot install completion: {reason}; `grader --show-completion {shell}` prints the lines to add"
         ) from None
     if shell == "bash":
         save(path, _BASH)
@@ -105,5 +105,5 @@ def _detected(option: str) -> str:
     except Exception:  # noqa: BLE001  it fails in many ways, and $SHELL is next
         name = Path(os.environ.get("SHELL", "")).name
     if name not in SHELLS:
-        raise GraderError(f"cannot detect the shell: use grader {option} bash (or {' or '.join(SHELLS[1:])})")
+        raise GraderError(f"cannot detect the shell: use `grader {option} bash` (or {' or '.join(SHELLS[1:])})")
     return name

@@ -64,7 +64,9 @@ def explanation(name: str, rubric: Rubric) -> str:
         text = "\n\n".join(_filled(paragraph) for paragraph in (inspect.getdoc(check.function) or "").split("\n\n"))
         return f"{check.name}: a check for rubrics\n\n{text}\n{_arguments(check)}"
     known = [kind.code for kind in EVERY_KIND] + [criterion.id for criterion in rubric.criteria] + check_names()
-    lists = f"; {rubric.shown_by} lists the criteria, grader rubric checks lists the checks, and reports show the codes"
+    lists = (
+        f"; `{rubric.shown_by}` lists the criteria, `grader rubric checks` lists the checks, and reports show the codes"
+    )
     guess = did_you_mean(name, known) or lists
     raise InputError(f"there is no problem code, criterion or check {name!r}{guess}")
 

@@ -148,7 +148,7 @@ CASES = (
         passing=scene(link("lidar", visual(cylinder(), material=paint("0.8 0.8 0.8 1")))),
         says="'lidar' is shown in rgb 0.8 0.8 0.8",
         failing=scene(link("lidar", visual(cylinder(), material=paint("0.7 0.7 0.7 1")))),
-        complains="'lidar' is shown in rgb 0.7 0.7 0.7; it should be at least 0.75",
+        complains="'lidar' is shown in rgb 0.7 0.7 0.7; each should be at least 0.75",
         at="rgba=",
         edges={"tolerance": lambda off: painted("lidar", f"0.8 {0.8 + off} 0.8 1")},
     ),

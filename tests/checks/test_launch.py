@@ -588,7 +588,7 @@ def test_flat_and_nested_paths_have_to_agree() -> None:
         ),
         (
             launch("get_package_share_directory('my_robot')", "get_package_share_directory('my_robt')"),
-            "the launch file looks in a package 'my_robt', but this one is named 'my_robot'",
+            "the launch file looks in a package 'my_robt', but the graded package is named 'my_robot'",
             "open(",
         ),
         (

@@ -190,7 +190,7 @@ def test_another_class_is_refused(tmp_path: Path, roster: str) -> None:
     done = batch(tmp_path, roster=roster)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.splitlines()[-1].endswith(
-        "g.db is the gradebook of another class: no student of this class is in it (it holds ann, bea, cal, ...);"
+        "g.db is the gradebook of another class: no student of this class is in it (it contains ann, bea, cal, ...);"
         " name another file, or use --add"
     )
     assert (tmp_path / "g.db").read_bytes() == before
@@ -207,7 +207,7 @@ def test_another_rubric_is_refused(tmp_path: Path) -> None:
     (tmp_path / "lab7.toml").write_text(text.replace('reference = "lab6/my_robot"', "", 1), encoding="utf-8")
     done = batch(tmp_path, "--rubric", tmp_path / "lab7.toml")
     assert (done.returncode, done.stdout) == (2, "")
-    assert "it was graded by the rubric lab6, not lab7 (it holds ann)" in done.stderr
+    assert "it was graded by the rubric lab6, not lab7 (it contains ann)" in done.stderr
     assert batch(tmp_path, "--rubric", tmp_path / "lab7.toml", "--add").returncode == 0
 
 
@@ -337,7 +337,7 @@ def test_another_assignment_of_nbgrader_is_refused(tmp_path: Path) -> None:
     assert batch(tmp_path, "--assignment", "lab6").returncode == 0
     done = batch(tmp_path, "--assignment", "lab7")
     assert done.returncode == 2
-    assert "it was graded for nbgrader lab6, not nbgrader lab7 (it holds ann)" in done.stderr
+    assert "it was graded for nbgrader lab6, not nbgrader lab7 (it contains ann)" in done.stderr
 
 
 @pytest.mark.parametrize("roster", ["", "id,login\n1,ann\n"])

@@ -104,7 +104,7 @@ def test_without_the_file_the_rubric_works(top: Path) -> None:
     assert grader("rubric", "show", rubric).stdout == shown.stdout
     anna = ("grade", top / "class" / "anna", "--rubric", rubric, "--format", "json")
     assert grader(*anna).stdout == graded.stdout == grader(*anna, "--answers").stdout
-    note = f"grader: small: the file of the model answers, {top}/small.answers.toml, does not exist: no model answers are shown\n"
+    note = f"grader: small: the answers file {top}/small.answers.toml does not exist, so no model answers are shown\n"
     for arguments in (("rubric", "check", rubric), ("rubric", "show", rubric, "--answers"), (*anna, "--answers")):
         assert grader(*arguments).stderr == note
     assert batch(top, "--force").returncode == 0

@@ -250,14 +250,17 @@ def test_what_cannot_be_set_up(tmp_path: Path) -> None:
     refuse("takes one of bash, zsh, fish, not 'bash zsh'", "--install-completion", "bash", "zsh")
     (tmp_path / ".bashrc").mkdir()
     (tmp_path / ".bash_completions").touch()
-    advice = "grader --show-completion bash prints what to add"
+    advice = "`grader --show-completion bash` prints the lines to add"
     refuse(advice, "--install-completion", "bash", HOME=str(tmp_path))
 
 
 def test_the_shell_is_found_out(tmp_path: Path) -> None:
     """By who started us; where that is no shell that we know, it has to be named."""
     command = f'"{sys.executable}" -m grader --show-completion; true'
-    for shell, words in (("bash", "_grader_completion() {"), ("sh", "grader --show-completion bash (or zsh or fish)")):
+    for shell, words in (
+        ("bash", "_grader_completion() {"),
+        ("sh", "`grader --show-completion bash` (or zsh or fish)"),
+    ):
         program = tmp_path / shell
         program.symlink_to(shutil.which("bash") or "bash")
         done = subprocess.run([program, "-c", command], cwd=ROOT, capture_output=True, check=False, timeout=PATIENCE)

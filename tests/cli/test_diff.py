@@ -31,7 +31,7 @@ def as_json(*arguments: object) -> dict[str, Any]:
 def test_one_run_is_not_enough(graded_class: Path) -> None:
     """One line says what to do."""
     book = graded_class / "book.db"
-    again = f"grader batch PATH --gradebook {book} again, or name a second gradebook"
+    again = f"`grader batch PATH --gradebook {book}` again, or name a second gradebook"
     assert refusal(grader("diff", book)) == f"there are not two runs to compare: run {again}"
 
 

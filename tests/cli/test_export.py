@@ -255,7 +255,7 @@ def test_strict_writes_nothing(top: Path) -> None:
         (("moodle", "--into", "README.md"), "README.md is not a grading worksheet of Moodle"),
         (
             ("csv", "--output", "/nowhere/grades.csv"),
-            "cannot write /nowhere/grades.csv: there is no folder /nowhere (mkdir -p /nowhere makes it)",
+            "cannot write /nowhere/grades.csv: there is no folder /nowhere (create it with `mkdir -p /nowhere`)",
         ),
     ],
 )
@@ -267,7 +267,7 @@ def test_what_is_refused(arguments: tuple[str, ...], why: str, graded_class: Pat
 def test_without_a_target(graded_class: Path) -> None:
     """The choices are on one line, without the tabs that they come with."""
     why = refusal(grader("export", "--gradebook", graded_class / "book.db"))
-    assert "Choose from: csv, canvas, moodle, json (grader export --help shows the usage)" in why
+    assert "Choose from: csv, canvas, moodle, json (`grader export --help` shows the usage)" in why
 
 
 @pytest.mark.parametrize("name", ["book.db", "../small/book.db", "link.db", "hard.db", "book.db-wal", "book.db-shm"])

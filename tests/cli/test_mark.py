@@ -21,8 +21,8 @@ from tests.command_line import PATIENCE
 from tests.samples import ROOT
 
 GRADE = ("score", "max_score", "pending")
-EVERYONE = "; grader export csv --gradebook TOP/book.db lists all students"
-CRITERIA = " (grader rubric show TOP/small.toml lists them)"
+EVERYONE = "; `grader export csv --gradebook TOP/book.db` lists all students"
+CRITERIA = " (`grader rubric show TOP/small.toml` lists them)"
 
 
 def mark(top: Path, *arguments: object, **more: Any) -> subprocess.CompletedProcess[str]:
@@ -75,8 +75,8 @@ def test_whoever_is_meant(name: str, top: Path) -> None:
         ("anna", "essay", "1.00001", "points are a number from 0 to 4, with at most 4 decimals, not '1.00001'"),
         ("anna", "essay", "-1", "essay is worth 0 to 4 points, not -1"),
         ("anna", "essay", "-,5", "essay is worth 0 to 4 points, not -,5"),
-        ("anna", "essay", "-x", "No such option: -x (grader mark --help shows the usage)"),
-        ("anna", "essay", "--1", "No such option: --1 (grader mark --help shows the usage)"),
+        ("anna", "essay", "-x", "No such option: -x (`grader mark --help` shows the usage)"),
+        ("anna", "essay", "--1", "No such option: --1 (`grader mark --help` shows the usage)"),
         ("anna", "essay", "1e400", "essay is worth 0 to 4 points, not 1e400"),
     ],
 )

@@ -44,7 +44,7 @@ def refused(line: str, place: Path) -> str:
 @pytest.mark.parametrize(
     ("line", "why"),
     [
-        ("my_robot.urdf", "there is no command 'my_robot.urdf'; to grade it, use grader grade my_robot.urdf"),
+        ("my_robot.urdf", "there is no command 'my_robot.urdf'; to grade it, use `grader grade my_robot.urdf`"),
         ("grade my_robt.urdf", "my_robt.urdf does not exist; did you mean 'my_robot.urdf'?"),
         ("inspect clas/anna/my_robot.urdf", "did you mean 'class/anna/my_robot.urdf'?"),
         ("grade clas/ben", "clas/ben does not exist; did you mean 'class'?"),
@@ -55,20 +55,20 @@ def refused(line: str, place: Path) -> str:
         ),
         ("explain lidar-frame --rubric zzz", "write ./zzz for a file (`grader rubric list` lists"),
         ("grade my_robot.urdf --part task", "did you mean 'task3'? (see `grader rubric show lab6`)"),
-        ("explain zzz", "grader rubric show lab6 lists the criteria, grader rubric checks lists the checks"),
-        ("grade my_robot.urdf --save json=out/a.json", "there is no folder out (mkdir -p out makes it)"),
-        ("grade my_robot.urdf --score", "(grader grade --help shows the usage)"),
-        ("rubric shov lab6", "(grader rubric --help shows the usage)"),
+        ("explain zzz", "`grader rubric show lab6` lists the criteria, `grader rubric checks` lists the checks"),
+        ("grade my_robot.urdf --save json=out/a.json", "there is no folder out (create it with `mkdir -p out`)"),
+        ("grade my_robot.urdf --score", "(`grader grade --help` shows the usage)"),
+        ("rubric shov lab6", "(`grader rubric --help` shows the usage)"),
         ("batch clas --gradebook book.db", "clas does not exist; did you mean 'class'?"),
-        ("batch my_robot.urdf --gradebook book.db", "(grader grade grades a single one)"),
-        ("batch package --gradebook book.db", "(grade it with grader grade package)"),
+        ("batch my_robot.urdf --gradebook book.db", "(`grader grade` grades a single one)"),
+        ("batch package --gradebook book.db", "(grade it with `grader grade package`)"),
         ("batch empty --gradebook book.db", "name the folder that holds the class's submissions"),
         ("batch class --layout canvas --gradebook book.db", "(without --layout canvas the layout is detected)"),
         ("batch class --layout nbgrader --gradebook book.db", "name the assignment to grade with --assignment"),
-        ("batch class --gradebook book.db --csv out/a.csv", "there is no folder out (mkdir -p out makes it)"),
-        ("batch class --gradebook out/book.db", "there is no folder out (mkdir -p out makes it)"),
+        ("batch class --gradebook book.db --csv out/a.csv", "there is no folder out (create it with `mkdir -p out`)"),
+        ("batch class --gradebook out/book.db", "there is no folder out (create it with `mkdir -p out`)"),
         ("stats --gradebook notes.txt", "name another file"),
-        ("stats --gradebook book.db", f"there is no gradebook book.db: create it with {BATCH}"),
+        ("stats --gradebook book.db", f"there is no gradebook book.db: create it with `{BATCH}`"),
         ("export canvas --gradebook book.db", "give it with --into"),
     ],
 )
@@ -83,9 +83,9 @@ def test_what_to_type_with_a_gradebook(place: Path) -> None:
     """Whom and what to name, and how to come to something to compare."""
     assert typed("batch class --gradebook book.db", place).returncode == 0
     for line, why in (
-        ("mark zoe lidar-frame 1 --gradebook book.db", "; grader export csv --gradebook book.db lists all students"),
-        ("mark anna lidar 1 --gradebook book.db", "has no criterion 'lidar' (grader rubric show lab6 lists them)"),
-        ("diff book.db", f"run {BATCH} again, or name a second gradebook"),
-        ("export csv --gradebook book.db --output out/a.csv", "there is no folder out (mkdir -p out makes it)"),
+        ("mark zoe lidar-frame 1 --gradebook book.db", "; `grader export csv --gradebook book.db` lists all students"),
+        ("mark anna lidar 1 --gradebook book.db", "has no criterion 'lidar' (`grader rubric show lab6` lists them)"),
+        ("diff book.db", f"run `{BATCH}` again, or name a second gradebook"),
+        ("export csv --gradebook book.db --output out/a.csv", "there is no folder out (create it with `mkdir -p out`)"),
     ):
         assert why in refused(line, place)

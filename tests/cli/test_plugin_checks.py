@@ -31,11 +31,11 @@ def robot(folder: Path, name: str) -> str:
         ("returns_a_tuple", "it returned tuple, not an Outcome"),
         ("returns_another_status", "it returned the status 'fine'; a check returns passed, failed or pending"),
         ("returns_skipped", "it returned the status 'skipped'; a check returns passed, failed or pending"),
-        ("returns_no_message", "it returned an Outcome whose message no report can hold"),
+        ("returns_no_message", "it returned an Outcome with an invalid message"),
         ("raises_without_words", "Wordless"),
-        ("returns_nan", "it returned an Outcome whose measured no report can hold"),
-        ("returns_objects", "it returned an Outcome whose expected no report can hold"),
-        ("returns_a_value_of_no_report", "it returned an Outcome whose measured no report can hold"),
+        ("returns_nan", "it returned an Outcome with an invalid measured"),
+        ("returns_objects", "it returned an Outcome with an invalid expected"),
+        ("returns_a_value_of_no_report", "it returned an Outcome with an invalid measured"),
     ],
 )
 @pytest.mark.parametrize("threshold", [(), ("--fail-under", "0")])

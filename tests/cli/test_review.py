@@ -52,13 +52,13 @@ def test_what_is_shown(top: Path, graded_class: Path) -> None:
     done = review(top, "s\ns\nq\n", COLUMNS="200")
     first, second, third, last = done.stdout.split("points, 0 to ")
     assert first == (
-        "\n1 of 4  Anna Ek (anna): About essay  4 points\n"
+        "\n1 of 4  Anna Ek (anna): About essay (4 points)\n"
         "Why? The answer in answers.md, from line 1, needs manual grading\n"
         "Found:\n  # Step 1\n  The roots.\n"
         "Model answer:\n  Because of the roots.\n"
         f"in {graded_class}/class/anna/answers.md, line 1\n"
     )
-    assert "2 of 4  Ben Oh (emil): About essay  4 points\n" in second
+    assert "2 of 4  Ben Oh (emil): About essay (4 points)\n" in second
     assert r"[bold]\x1b[31mRed\x1b[0m roots[/bold] \u202eturned" in second
     assert f"Look at:\n  {graded_class}/class/anna/screen.png\n" in third
     assert last.endswith("0 marked, 4 left\n")

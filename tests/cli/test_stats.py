@@ -72,7 +72,7 @@ def test_an_empty_gradebook(tmp_path: Path) -> None:
     """One that nothing was graded into is told of in a line."""
     book = tmp_path / "book.db"
     Gradebook(book, create=True).close()
-    why = f"nothing has been graded into {book} yet: run grader batch PATH --gradebook {book}"
+    why = f"nothing has been graded into {book} yet: run `grader batch PATH --gradebook {book}`"
     assert refusal(grader("stats", "--gradebook", book)) == why
 
 

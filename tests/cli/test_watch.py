@@ -26,7 +26,7 @@ URDF = REFERENCE / "roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"  # 70 of 7
 SHORT = ROOT / "submissions/lidar-offset-in-visual/my_robot.urdf"  # 64 of 70
 BETTER = "\n64 -> 70 of 70 points (+6)\nnow passed: lidar-frame (+6)\n\n70 / 70 points"
 WORSE = "\n70 -> 64 of 70 points (-6)\nnow failed: lidar-frame (-6)\n\n64 / 70 points"
-END = "shows\nthe whole robot.\n"  # of a report on a robot with a mistake
+END = "inspect` shows the whole robot.\n"  # of a report on a robot with a mistake
 FLAWLESS_END = "down to the ground, z = 0 of\n          base_footprint\n"
 FOLDER_END = "Task3_Step3.png (320 x 240\n    pixels, 584 bytes)\n"
 

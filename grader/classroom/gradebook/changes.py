@@ -79,7 +79,7 @@ def last_two(book: Gradebook, before: int | None = None, after: int | None = Non
     runs = {run.id: run for run in book.runs()}
     if len(runs) < 2:
         again = f"grader batch PATH --gradebook {book.shown}"
-        raise InputError(f"there are not two runs to compare: run {again} again, or name a second gradebook")
+        raise InputError(f"there are not two runs to compare: run `{again}` again, or name a second gradebook")
     for run in (before, after):
         if run is not None and run not in runs:
             raise InputError(f"there is no run {run}; the runs are: {', '.join(map(str, runs))}")

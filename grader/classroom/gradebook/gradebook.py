@@ -94,7 +94,7 @@ class Gradebook(AbstractContextManager["Gradebook"]):
     def nothing_graded(self) -> InputError:
         """Return the error for a gradebook without a run."""
         command = f"grader batch PATH --gradebook {self.shown}"
-        return InputError(f"nothing has been graded into {self.shown} yet: run {command}")
+        return InputError(f"nothing has been graded into {self.shown} yet: run `{command}`")
 
     def runs(self) -> list[Run]:
         """Return all runs, the oldest first."""

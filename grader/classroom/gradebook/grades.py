@@ -103,7 +103,7 @@ class Grades:
             raise InputError(f"{name!r} is ambiguous: it may be {listed}; use one of these ids")
         some = students[:_MAX_SUGGESTED_FROM]
         guess = did_you_mean(name, {word for student in some for word in (student.key, student.login, student.name)})
-        advice = guess or f"; grader export csv --gradebook {self.book.shown} lists all students"
+        advice = guess or f"; `grader export csv --gradebook {self.book.shown}` lists all students"
         raise InputError(f"there is no student {name!r} in the gradebook{advice}")
 
     def report(self, grade: StudentGrade) -> Report:

@@ -74,7 +74,7 @@ def criterion_of(rubric: Rubric, name: str) -> Criterion:
     criteria = {criterion.id: criterion for criterion in rubric.criteria}
     if name not in criteria:
         guess = did_you_mean(name, criteria)
-        raise InputError(f"the rubric {rubric.id} has no criterion {name!r}{guess} ({rubric.shown_by} lists them)")
+        raise InputError(f"the rubric {rubric.id} has no criterion {name!r}{guess} (`{rubric.shown_by}` lists them)")
     return criteria[name]
 
 

@@ -39,7 +39,7 @@ class Progress:
 
     @property
     def done(self) -> int:
-        """The submissions that have a result."""
+        """The number of submissions that have a result."""
         return self.graded + self.unchanged
 
     def with_result(self, verdict: str) -> "Progress":

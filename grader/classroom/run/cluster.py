@@ -44,7 +44,7 @@ class Cluster(Executor):
         except Exception as error:  # noqa: BLE001  a wrong address, another program, TLS: Dask raises many types
             reason = str(error) or type(error).__name__
             raise InputError(
-                f"there is no Dask scheduler at {address or repr(address)}: {reason} (start one with dask scheduler)"
+                f"there is no Dask scheduler at {address or repr(address)}: {reason} (start one with `dask scheduler`)"
             ) from None
         try:
             self.workers = self._check_workers(address, root)
@@ -74,7 +74,9 @@ class Cluster(Executor):
         """Return how many tasks the workers run at once; raises InputError if one of them could not grade this class."""
         threads = self._client.nthreads()
         if not threads:
-            raise InputError(f"the Dask cluster at {address} has no workers yet: start one with dask worker {address}")
+            raise InputError(
+                f"the Dask cluster at {address} has no workers yet: start one with `dask worker {address}`"
+            )
         try:
             answers = self._client.run(_version_and_access, str(root))
         except Exception as error:  # noqa: BLE001  a worker without the grader raises any type

@@ -63,7 +63,7 @@ def test_nobody(book: Gradebook, name: str, guess: str) -> None:
     """The message guesses who was meant."""
     with pytest.raises(InputError) as caught:
         Grades(book).find(name)
-    everyone = f"; grader export csv --gradebook {book.path} lists all students"
+    everyone = f"; `grader export csv --gradebook {book.path}` lists all students"
     assert str(caught.value) == f"there is no student {name!r} in the gradebook{guess or everyone}"
 
 

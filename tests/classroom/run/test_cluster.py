@@ -251,9 +251,8 @@ def test_no_workers(lonely: Cluster, tmp_path: Path) -> None:
     """A scheduler alone grades nothing; the line says how to start a worker."""
     folder = urdf_class(tmp_path / "class", 2)
     line = refused("batch", folder, "--gradebook", tmp_path / "lab6.db", "--cluster", lonely.address)
-    assert (
-        line == f"the Dask cluster at {lonely.address} has no workers yet: start one with dask worker {lonely.address}"
-    )
+    start = f"`dask worker {lonely.address}`"
+    assert line == f"the Dask cluster at {lonely.address} has no workers yet: start one with {start}"
 
 
 _BLIND = """
