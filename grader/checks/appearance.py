@@ -85,7 +85,7 @@ def shows_grey(robot: Configuration, *, link: str, at_least: float, tolerance: N
     if not is_grey:
         message += ", which is not grey; red, green and blue should be equal"
     elif not is_light:
-        message += f"; it should be at least {at_least:g}"
+        message += f"; each should be at least {at_least:g}"
     fine, at = is_grey and is_light, place(visual.material.location, "rgba")
     return judged(fine, message, actual, at_least, tolerance, at=at)
 

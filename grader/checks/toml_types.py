@@ -103,7 +103,7 @@ def toml_type(annotation: Any) -> TomlType:
     item = toml_type(inner[1]) if len(inner) == 2 else _SIMPLE[str]
     schema = {"type": "object", "additionalProperties": item.schema, "minProperties": 1}
     return simple_type(
-        "a table of texts", schema, _is_table, lambda table: {key: item.parse(table[key]) for key in table}
+        "a table of strings", schema, _is_table, lambda table: {key: item.parse(table[key]) for key in table}
     )
 
 

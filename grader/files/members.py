@@ -122,5 +122,5 @@ class _BoundedReader:
     def read(self, size: int = -1) -> bytes:
         """Return the next bytes."""
         if size > _MAX_DIRECTORY_SIZE:
-            raise zipfile.BadZipFile("its table of contents is far too long")
+            raise zipfile.BadZipFile("its central directory is too long")
         return self._read(size)

@@ -74,7 +74,7 @@ _ID = constrained(
 )
 _TITLE = constrained(
     simple_type("a text", _TEXT.schema, lambda value: isinstance(value, str), lambda text: " ".join(text.split())),
-    Constraint("a text that is not empty", bool),
+    Constraint("a non-empty string", bool),
 )
 _TIME = simple_type(
     "a date and time with its offset, such as 2026-11-20T23:59:00+01:00",
@@ -102,7 +102,7 @@ CRITERION = KeyTable(
         "check": _TEXT,
         "with": _table({"type": "object"}),
         "requires": simple_type(
-            "a list of texts", {"type": "array", "items": _TEXT.schema}, lambda value: _is_list(value, str), tuple
+            "a list of strings", {"type": "array", "items": _TEXT.schema}, lambda value: _is_list(value, str), tuple
         ),
         "feedback": _TEXT,
     },

@@ -21,7 +21,7 @@ from grader.text import printable
 _MAX_LISTED = 500  # links in the terminal
 _EFFECTS = {
     "clean": ("ROS 2 loads it", "green"),
-    "degraded": ("ROS 2 loads it, but drops some of it", "yellow"),
+    "degraded": ("ROS 2 loads it, but drops content of it", "yellow"),
     "rejected": ("ROS 2 rejects it", "bold red"),
 }
 

@@ -15,8 +15,8 @@ _SHAPES = ("box", "cylinder", "sphere", "mesh")
 _INERTIA = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 # What is lost with an element that has a defect.
 _INERTIAL_LOST = "ROS 2 drops all visuals and collisions of link {}"
-_VISUAL_LOST = "ROS 2 drops this visual of link {}, those after it and all its collisions"
-_COLLISION_LOST = "ROS 2 drops this collision of link {} and those after it"
+_VISUAL_LOST = "ROS 2 drops this visual of link {}, the visuals after it and all collisions"
+_COLLISION_LOST = "ROS 2 drops this collision of link {} and the collisions after it"
 
 
 class Materials:

@@ -167,7 +167,7 @@ def _check_roots(robot: Robot, roots: list[str], edges: Edges, links: dict[str, 
     named = enumerated([*map(quoted, others)], _MAX_ROOTS)
     verb, them = ("is", "it") if len(others) == 1 else ("are", "them")
     all_roots = ", ".join(map(quoted, [main, *others][:_MAX_ROOTS]))
-    reason = f"no joint has {them} as its child (roots are {all_roots})"
+    reason = f"no joint has {them} as its child (the roots are {all_roots})"
     message = f"{named} {verb} not connected to the robot: {reason}; ROS 2 rejects the file"
     problems.add(catalogue.TWO_ROOTS, message, links[others[0]], "name")
 

@@ -96,7 +96,7 @@ class StudentGrade:
             (self.faults, "the grader failed on a criterion"),
             (self.verdict == "unreadable" and self.pending, f"it could not be graded: {self.reason}"),
             (self.is_gone, "it is no longer in the class folder"),
-            (self.is_outdated, "it was graded with an earlier version of the rubric: run grader batch again"),
+            (self.is_outdated, "it was graded with an earlier version of the rubric: run `grader batch` again"),
             (self.over_marks, "a manual mark exceeds the criterion's maximum"),
             (self.pending, f"{counted_points(self.pending)} need{'s' * (self.pending == 1)} manual grading"),
         )

@@ -84,7 +84,7 @@ def read_class(
         )
     if layout == "auto" and chosen == "folders" and "package.xml" in folder.children.files:
         raise InputError(
-            f"{shown} is one submission and not a class: it holds a package.xml (grade it with grader grade {shown})"
+            f"{shown} is one submission and not a class: it contains a package.xml (grade it with `grader grade {shown}`)"
         )
     submissions = LAYOUTS[chosen](replace(folder, is_explicit=layout != "auto"))
     ignored = folder.ignored.lines()
@@ -115,6 +115,6 @@ def _listing(path: Path) -> ClassListing:
     if archive_kind(read_start(path, 512)) != "zip":
         raise InputError(
             f"{shown} is neither a folder nor a zip: name the folder that holds the class's submissions"
-            " (grader grade grades a single one)"
+            " (`grader grade` grades a single one)"
         )
     return ZipListing(path)

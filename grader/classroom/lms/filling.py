@@ -130,7 +130,7 @@ def check_maximum(what: str, maxima: Iterable[str], out_of: Decimal) -> None:
         if maximum is not None and maximum != out_of:
             raise InputError(
                 f"{what} is {format_points(maximum)}, but the rubric's maximum is {format_points(out_of)}: change the maximum in the"
-                " LMS and export again, or write the points as they are with --any-maximum"
+                " LMS and export again, or pass --any-maximum to write the points unchanged"
             )
 
 

@@ -30,7 +30,7 @@ MAX_MEMORY = 2 * 1024**3  # bytes for each worker
 NO_MEMORY = f"grading it needs more memory than a worker may use ({MAX_MEMORY // 1024**3} GiB)"
 _POOL_ENDED = "the worker processes ended"
 _EXIT_CHANNEL_BLOCKED = 1  # the exit code of a worker that waited too long for the channel to its parent
-_EXIT_ENDED = 70  # the exit code of a worker that was ended at work with exit code 0
+_EXIT_ENDED = 70  # the exit code of a worker that exited unexpectedly with exit code 0
 _CHANNEL_TIMEOUT = 3.0  # seconds to wait for the channel: a worker that is killed while it sends never releases it
 _CHECK_INTERVAL = 0.5  # seconds
 _MAX_TRIES = 3  # to submit a task to a pool, which may break at any moment
@@ -203,5 +203,5 @@ def _start_worker(memory: int) -> None:
 def _exit_words(code: int) -> str:
     """Return how a worker ended, in words."""
     if code == _EXIT_ENDED:
-        return "ended at work"
+        return "exited unexpectedly"
     return f"was ended by signal {-code}" if code < 0 else f"ended with exit code {code}"

@@ -103,7 +103,7 @@ class ActionVisitor:
     def _listed(self, actions: Value, call: Call, context: Context, when: bool | None) -> None:
         """Visit the actions of a description, which may not contain lists."""
         if isinstance(actions, list | tuple) and any(isinstance(action, list | tuple) for action in actions):
-            context.add_error("expected an action, and this is a list of actions: write * before it", call.at)
+            context.add_error("expected an action, found a list of actions: write * before it", call.at)
         self.visit(actions, context, when)
 
     def _inner(self, call: Call, actions: Value, context: Context, when: bool | None) -> None:

@@ -43,7 +43,7 @@ def read_frontend(data: bytes, source: Source, findings: Findings, *, is_yaml: b
         return LaunchFault(f"not readable as {'YAML' if is_yaml else 'XML'}: {fault}", fault.location)
     if root is not None and root.kind == "launch":
         return root
-    what = "the file is not one list below launch:" if is_yaml else "the root of the file is not <launch>"
+    what = "the file is not a list of actions below launch:" if is_yaml else "the root of the file is not <launch>"
     return LaunchFault(f"{what}; ros2 launch starts nothing", Location(source.path, 1, 1))
 
 
@@ -112,7 +112,9 @@ class _YamlReader:
             return
         tag: str = _YAML.resolve(yaml.ScalarNode, value.text, (True, False))  # type: ignore[no-untyped-call]
         if tag.rpartition(":")[2] in ("bool", "int", "float", "null"):
-            message = f"{key} of {kind} has to be a string, and {value.text!r} is none in YAML: put quotes around it"
+            message = (
+                f"{key} of {kind} must be a string, but YAML reads {value.text} as another type: put quotes around it"
+            )
             self.findings.add_fault(message, _position(value))
 
 

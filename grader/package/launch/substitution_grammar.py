@@ -93,7 +93,7 @@ class _ValueParser:
             self.findings.add_fault(message, self.at)
             name = _ROS1[name]
         if name == "command" and len(values) > 1 and values[1] not in [[mode] for mode in _ON_STDERR]:
-            message = "$(command ...) takes its command in quotes: $(command 'xacro ...')"
+            message = "$(command ...) needs quotes around its command: $(command 'xacro ...')"
             self.findings.add_fault(message, self.at)
             values = [[part for value in values for part in (*value, " ")]]
         similar = closest(name, _SUBSTITUTIONS) if name not in _SUBSTITUTIONS else None

@@ -59,7 +59,7 @@ def _texts(parts: list[Value] | tuple[Value, ...], context: Context, depth: int)
         texts.append(text)
         length += len(text)
         if length > MAX_TEXT:
-            return Unknown("a text grows too long", START)
+            return Unknown("a string grows too long", START)
     return texts
 
 
