@@ -1,4 +1,4 @@
-"""For every check a robot that passes and one that fails, and what the check says of each."""
+"""For every check a robot that passes, one that fails, and the message for each."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -43,17 +43,17 @@ class Case:
 
     @property
     def name(self) -> str:
-        """The name of the check."""
+        """Return the name of the check."""
         return self.check.__name__
 
     @property
     def family(self) -> str:
-        """The module that the check is in."""
+        """Return the module of the check."""
         return self.check.__module__.rpartition(".")[2]
 
 
 def painted(name: str, rgba: str) -> Scene:
-    """One link with a visual in a colour."""
+    """Return a link with a visual in a colour."""
     return scene(link(name, visual(box(0.6, 0.4, 0.2), material=paint(rgba))))
 
 
@@ -65,17 +65,17 @@ def rolling(
     axis: Numbers = "0 0 1",
     wheel: str = WHEEL,
 ) -> Scene:
-    """A base with one wheel at its left side, which drives it forward by default."""
+    """Return a base with one wheel on its left side, which drives it forward by default."""
     return scene(BASE, wheel, joint("wheel_joint", kind, "base", "wheel", xyz=xyz, rpy=rpy, axis=axis))
 
 
 def mounted(xyz: Numbers = (0.15, 0.0, 0.225), rpy: Numbers = "", *, lidar: str = LIDAR) -> Scene:
-    """A base with a lidar on a fixed joint; unless told, it stands on the base."""
+    """Return a base with a lidar on a fixed joint; default: the lidar stands on the base."""
     return scene(BASE, lidar, joint("base_lidar_joint", "fixed", "base", "lidar", xyz=xyz, rpy=rpy))
 
 
 def standing(*, height: float = 0.1, rpy: Numbers = "", xy: str = "0 0", wheel: float = 0.0) -> Scene:
-    """A footprint with a base `height` above it, one wheel at `wheel` above the base's frame, and a caster."""
+    """Return a footprint with a base `height` above it, one wheel at `wheel` above the base's frame, and a caster."""
     return scene(
         FOOT,
         BASE,
@@ -325,6 +325,6 @@ CASE = {case.name: case for case in CASES}
 
 
 def cases_of(family: str) -> pytest.MarkDecorator:
-    """Run a test once for each check of a family."""
+    """Parametrise a test over the checks of a family."""
     chosen = [case for case in CASES if case.family == family]
     return pytest.mark.parametrize("case", chosen, ids=[case.name for case in chosen])

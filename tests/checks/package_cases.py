@@ -1,4 +1,4 @@
-"""For every check of a package, a submission that passes and one that fails, and what the check says of each."""
+"""For every check of a package, a submission that passes, one that fails, and the message for each."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -17,7 +17,7 @@ _RVIZ = {"name": "my_robot.rviz", "launch": _NAME}
 
 @dataclass(frozen=True)
 class PackageCase:
-    """A check with arguments, a submission that it fails, what it says of both, and where the failure stands, if anywhere."""
+    """A check with arguments, a submission that fails it, both messages, and the location of the failure, if it has one."""
 
     check: AnyCheck
     arguments: Mapping[str, Any]
@@ -29,13 +29,13 @@ class PackageCase:
 
     @property
     def name(self) -> str:
-        """The name of the check."""
+        """Return the name of the check."""
         return self.check.__name__
 
 
 @dataclass(frozen=True)
 class PendingCase:
-    """A check that a person decides, whatever was handed in: what it says where something is found, and where nothing is."""
+    """A check that always needs manual grading: its message if something was found, and if nothing was."""
 
     check: AnyCheck
     arguments: Mapping[str, Any]
@@ -46,7 +46,7 @@ class PendingCase:
 
     @property
     def name(self) -> str:
-        """The name of the check."""
+        """Return the name of the check."""
         return self.check.__name__
 
 
