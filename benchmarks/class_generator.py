@@ -100,11 +100,11 @@ _COLLISION = '</visual>\n    <collision><geometry><box size="1 1 1"/></geometry>
 
 
 def _left(*criteria: str) -> str:
-    return "".join(f" left-wheel-{each}" for each in criteria)
+    return "".join(f" left-wheel-{criterion}" for criterion in criteria)
 
 
 def _right(*criteria: str) -> str:
-    return "".join(f" right-wheel-{each}" for each in criteria)
+    return "".join(f" right-wheel-{criterion}" for criterion in criteria)
 
 
 def _lidar_at(name: str, weight: int, xyz: str, lost: str) -> Way:
@@ -274,7 +274,7 @@ def elements() -> dict[str, str]:
 def criteria() -> tuple[str, ...]:
     """The criteria of a URDF, in the order of the rubric."""
     rubric = tomllib.loads(RUBRIC.read_text(encoding="utf-8"))
-    return tuple(each["id"] for each in rubric["criterion"] if each["part"] == "task1")
+    return tuple(criterion["id"] for criterion in rubric["criterion"] if criterion["part"] == "task1")
 
 
 def make_urdf(dice: Dice, author: str) -> Made:
@@ -310,7 +310,7 @@ def built(dice: Dice, author: str, sort: str, ways: Sequence[Way]) -> Made:
         for edit in way.edits:
             parts[edit.element] = parts[edit.element].replace(edit.old, edit.new, 1) if edit.old else ""
     lost = {criterion for way in ways for criterion in way.lost.split()}
-    named = tuple(each for each in criteria() if each in lost or _EVERYTHING in lost)
+    named = tuple(criterion for criterion in criteria() if criterion in lost or _EVERYTHING in lost)
     text = _spoilt(dice, _written(dice, author, parts), ways)
     return Made(text, sort, tuple(way.name for way in ways), named)
 
@@ -676,7 +676,7 @@ class ClassSubmission(NamedTuple):
     made: Made | None
 
 
-def hand_ins(count: int, seed: int, kind: str) -> Iterator[ClassSubmission]:
+def submissions(count: int, seed: int, kind: str) -> Iterator[ClassSubmission]:
     """A class of so many students. A mixed one has one more, who is nobody in it and comes last."""
     is_mixed = kind == "mixed"
     for index in range(count + is_mixed):
@@ -704,10 +704,10 @@ def _deck(seed: int, number: int) -> list[str]:
 ENDINGS = (".urdf.xacro", ".tar.gz", ".urdf", ".zip")
 
 
-def in_folders(hand_in: ClassSubmission) -> Iterator[Item]:
+def in_folders(submission: ClassSubmission) -> Iterator[Item]:
     """A file that is named after the student, or a folder; later attempts are numbered as browsers do."""
-    for number, items in enumerate(hand_in.attempts):
-        key = f"{hand_in.person.key} ({number})" if number else hand_in.person.key
+    for number, items in enumerate(submission.attempts):
+        key = f"{submission.person.key} ({number})" if number else submission.person.key
         ending = _only_ending(items)
         if ending:
             yield items[0]._replace(path=key + ending)
@@ -716,10 +716,10 @@ def in_folders(hand_in: ClassSubmission) -> Iterator[Item]:
             yield from _below(key, items)
 
 
-def in_canvas(hand_in: ClassSubmission) -> Iterator[Item]:
+def in_canvas(submission: ClassSubmission) -> Iterator[Item]:
     """Files side by side; what is a folder was zipped. The same name in a later attempt is numbered."""
-    who = hand_in.person
-    for number, items in enumerate(hand_in.attempts):
+    who = submission.person
+    for number, items in enumerate(submission.attempts):
         is_flat = all(item.data is not None and "/" not in item.path for item in items)
         files = items if is_flat else [Item("lab6.zip", zipped(_plainly(items)))]
         for position, item in enumerate(files):
@@ -730,13 +730,13 @@ def in_canvas(hand_in: ClassSubmission) -> Iterator[Item]:
             yield item._replace(path=f"{canvas_name(who)}{late}_{canvas_id(who)}_{attachment}_{name}")
 
 
-def in_moodle(hand_in: ClassSubmission) -> Iterator[Item]:
+def in_moodle(submission: ClassSubmission) -> Iterator[Item]:
     """A folder for each participant, with the last attempt in it."""
-    who = hand_in.person
-    if hand_in.attempts:
+    who = submission.person
+    if submission.attempts:
         top = f"{moodle_name(who)}_{moodle_id(who)}_assignsubmission_file"
         yield Item(top)
-        yield from _below(top, hand_in.attempts[-1])
+        yield from _below(top, submission.attempts[-1])
 
 
 _PLACING = {"folders": in_folders, "canvas": in_canvas, "moodle": in_moodle}
@@ -813,12 +813,12 @@ def make_class(
     """Write a class into a folder, one submission after the other."""
     folder.mkdir(parents=True, exist_ok=True)
     root, place = str(folder), _PLACING[layout]
-    for hand_in in hand_ins(count, seed, kind):
+    for submission in submissions(count, seed, kind):
         tops: dict[str, None] = {}
-        for item in place(hand_in):
+        for item in place(submission):
             write(root, item)
             tops[item.path.partition("/")[0]] = None
-        yield Written(hand_in.person, hand_in.kind, tuple(tops), hand_in.made)
+        yield Written(submission.person, submission.kind, tuple(tops), submission.made)
 
 
 def roster(people: Iterable[Person]) -> str:
@@ -909,14 +909,14 @@ def write_beside(
     written: Sequence[Written], count: int, layout: str, expected: Path | None, people: Path | None, lms: Path | None
 ) -> None:
     """Write what belongs to a class and is not in it. Who comes behind the first `count` is in no list."""
-    students = [each.person for each in written[:count]]
+    students = [submission.person for submission in written[:count]]
     if expected:
-        known = {each.person.key: expectation(each) for each in written}
+        known = {submission.person.key: expectation(submission) for submission in written}
         expected.write_text(json.dumps(known, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     if people:
         people.write_bytes(roster(students).encode())
     if lms:
-        handed_in = {each.person for each in written if each.paths}
+        handed_in = {submission.person for submission in written if submission.paths}
         text = moodle_worksheet(students, handed_in) if layout == "moodle" else canvas_gradebook(students)
         lms.write_bytes(text.encode())
 

@@ -34,8 +34,10 @@ def run_with_input(
     arguments: Sequence[object], stdin: bytes, variables: Mapping[str, str] = {}, folder: Path = ROOT
 ) -> Done:
     """As `run`, with something on standard input, or from another folder."""
-    words = [os.fsdecode(each) if isinstance(each, bytes) else str(each) for each in arguments]
-    own = any(each in words for each in _OWN_PROCESS) or any(each.startswith(_READ_AT_START) for each in variables)
+    words = [os.fsdecode(argument) if isinstance(argument, bytes) else str(argument) for argument in arguments]
+    own = any(option in words for option in _OWN_PROCESS) or any(
+        variable.startswith(_READ_AT_START) for variable in variables
+    )
     if own or current_thread() is not main_thread():  # the streams, the variables and the folder are the process's
         return run_process(words, stdin, variables, folder)
     with TemporaryFile() as given, TemporaryFile() as out, TemporaryFile() as err:
@@ -44,9 +46,9 @@ def run_with_input(
         with chdir(folder), _process_state(words, {**surroundings(), **variables}, (given, out, err)):
             code = _exit_code()
         texts = []
-        for each in (out, err):
-            each.seek(0)
-            texts.append(each.read())
+        for stream in (out, err):
+            stream.seek(0)
+            texts.append(stream.read())
     return subprocess.CompletedProcess(words, code, *texts)
 
 

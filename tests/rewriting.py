@@ -130,8 +130,8 @@ def place_frame(tree: Element, link: Element, change: Matrix) -> None:
     axis = held.find("axis")
     if axis is not None:
         axis.set("xyz", written(back[:3, :3] @ numbers_of(axis, "xyz")))
-    for each in link:
-        put(each, back @ pose(each))
+    for element in link:
+        put(element, back @ pose(element))
     for joint in tree.iterchildren("joint"):
         if end(joint, "parent").get("link") == name:
             put(joint, back @ pose(joint))
@@ -198,7 +198,7 @@ def split_joint(draw: st.DrawFn, tree: Element) -> None:
 
 def add_hub(draw: st.DrawFn, tree: Element) -> None:
     """Let a wheel's joint turn a hub on which the wheel is fixed, somewhere along the joint's axis."""
-    joint = _one_of(draw, (each for each in tree.iterchildren("joint") if each.get("type") == "continuous"))
+    joint = _one_of(draw, (joint for joint in tree.iterchildren("joint") if joint.get("type") == "continuous"))
     if joint is None or not _turns_about_z(joint):
         return
     hub, child, shift = fresh(tree, "link"), end(joint, "child"), draw(_along_z)
@@ -271,7 +271,7 @@ def scale_axis(draw: st.DrawFn, tree: Element) -> None:
     axis = _one_of(draw, tree.iter("axis"))
     assert axis is not None
     factor = 10 ** draw(st.floats(-3, 3))
-    axis.set("xyz", written(factor * each for each in numbers_of(axis, "xyz")))
+    axis.set("xyz", written(factor * number for number in numbers_of(axis, "xyz")))
 
 
 def nudge(draw: st.DrawFn, tree: Element) -> None:
@@ -279,7 +279,7 @@ def nudge(draw: st.DrawFn, tree: Element) -> None:
     if tree.get("nudged"):
         return
     tree.set("nudged", "true")
-    places = [(each, "xyz") for each in tree.iter("origin")]
+    places = [(origin, "xyz") for origin in tree.iter("origin")]
     sizes = [
         (shape, str(name))
         for shape in tree.iter("box", "cylinder", "sphere")
@@ -400,7 +400,7 @@ def materials_into_links(draw: st.DrawFn, tree: Element) -> None:
     if material is None:
         return
     user = next(
-        (each for each in tree.iterfind("link/visual/material") if each.get("name") == material.get("name")), None
+        (other for other in tree.iterfind("link/visual/material") if other.get("name") == material.get("name")), None
     )
     if user is not None and not len(user):
         user.extend(list(material))
@@ -459,7 +459,7 @@ class Style:
         """An element as text."""
         pick = self.random.choice
         tight = self.blanks if self.orders else ("",)
-        loose = [each for each in tight if each] or [" "]
+        loose = [space for space in tight if space] or [" "]
         attributes = [(name, value) for name, value in element.attrib.items() if name not in ("nudged", "shaded")]
         if self.orders:
             self.random.shuffle(attributes)

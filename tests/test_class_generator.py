@@ -68,26 +68,29 @@ def test_chance_falls_the_same_way_on_every_python() -> None:
 
 def test_no_two_urdfs_are_alike() -> None:
     """Nothing that is kept by its content helps with the next one."""
-    texts = {hand_in.made.text for hand_in in made_up.hand_ins(500, SEED, "urdf") if hand_in.made}
+    texts = {submission.made.text for submission in made_up.submissions(500, SEED, "urdf") if submission.made}
     assert len(texts) == 500
 
 
 def test_the_proportions_are_those_of_real_classes() -> None:
     """Some 37 in 100 are right, half of them with other numbers; 6 are broken; the commonest mistakes lead."""
-    made = [hand_in.made for hand_in in made_up.hand_ins(2_000, SEED, "urdf") if hand_in.made]
-    share = {sort: sum(each.sort == sort for each in made) / len(made) for sort in {each.sort for each in made}}
+    made = [submission.made for submission in made_up.submissions(2_000, SEED, "urdf") if submission.made]
+    share = {
+        sort: sum(submission.sort == sort for submission in made) / len(made)
+        for sort in {submission.sort for submission in made}
+    }
     wanted = {"as told": 0.185, "equivalent": 0.185, "mistaken": 0.57, "broken": 0.06}
     assert share == pytest.approx(wanted, abs=0.03)
-    met = {way.name: sum(way.name in each.ways for each in made) for way in ALL_WAYS}
+    met = {way.name: sum(way.name in submission.ways for submission in made) for way in ALL_WAYS}
     assert all(met.values())
     assert {"right-mirrored", "lidar-buried"} == set(sorted(met, key=lambda name: met[name])[-2:])
 
 
 def test_a_made_up_class_loses_what_it_should() -> None:
     """Every URDF of a class gets the marks that it was made for."""
-    for hand_in in made_up.hand_ins(150, SEED, "urdf"):
-        assert hand_in.made is not None
-        assert lost(hand_in.made.text) == set(hand_in.made.lost), hand_in.made
+    for submission in made_up.submissions(150, SEED, "urdf"):
+        assert submission.made is not None
+        assert lost(submission.made.text) == set(submission.made.lost), submission.made
 
 
 @pytest.mark.parametrize("way", ALL_WAYS, ids=lambda way: way.name)
@@ -114,13 +117,13 @@ def test_two_mistakes_do_not_hide_each_other() -> None:
 def test_all_kinds_and_names_are_there(tmp_path: Path) -> None:
     """Each kind of hand-in and each awkward name occurs in a class of 300, and is on the disk as far as it can hold it."""
     written = every(made_up.make_class(tmp_path, MIXED, SEED, "mixed"))
-    assert {each.kind for each in written} == set(made_up.KINDS)
-    names = {each.person.name for each in written}
+    assert {submission.kind for submission in written} == set(made_up.KINDS)
+    names = {submission.person.name for submission in written}
     assert {f"{first} {last}" for first, last in made_up.AWKWARD} <= names
-    assert all(os.path.lexists(tmp_path / path) for each in written for path in each.paths)
-    assert any(path.endswith(" (1).urdf") for each in written for path in each.paths)
-    assert [each.kind for each in written if not each.paths] == ["nothing"] * sum(
-        each.kind == "nothing" for each in written
+    assert all(os.path.lexists(tmp_path / path) for submission in written for path in submission.paths)
+    assert any(path.endswith(" (1).urdf") for submission in written for path in submission.paths)
+    assert [submission.kind for submission in written if not submission.paths] == ["nothing"] * sum(
+        submission.kind == "nothing" for submission in written
     )
     assert written[-1].person.login.endswith(str(MIXED))
 
@@ -130,29 +133,32 @@ def test_every_mixed_hand_in_is_opened(layout: str, tmp_path: Path) -> None:
     """None of them is a fault of ours, and where it is certain what one is worth, that is what it gets."""
     folder = tmp_path / "class"
     written = every(made_up.make_class(folder, MIXED, SEED, "mixed", layout))
-    by_path = {path: each for each in written for path in each.paths}
-    graded = {path: each for path, each in _graded(folder)}
+    by_path = {path: submission for submission in written for path in submission.paths}
+    graded = {path: submission for path, submission in _graded(folder)}
     assert set(graded) <= set(by_path)
-    assert {each.verdict for each in graded.values()} == {"graded", "unreadable"}
-    assert len(graded) == sum(bool(each.paths) for each in written)
-    for path, each in graded.items():
+    assert {submission.verdict for submission in graded.values()} == {"graded", "unreadable"}
+    assert len(graded) == sum(bool(submission.paths) for submission in written)
+    for path, submission in graded.items():
         made = by_path[path].made
-        assert made is None or (each.verdict, _lost(each)) == ("graded", set(made.lost)), (by_path[path].kind, made)
-    refused = {by_path[path].kind for path, each in graded.items() if each.verdict == "unreadable"}
+        assert made is None or (submission.verdict, _lost(submission)) == ("graded", set(made.lost)), (
+            by_path[path].kind,
+            made,
+        )
+    refused = {by_path[path].kind for path, submission in graded.items() if submission.verdict == "unreadable"}
     assert layout == "moodle" or refused >= {"broken-zip", "garbage-zip", "zip-bomb"}
 
 
 def _graded(folder: Path) -> Iterable[tuple[str, GradingResult]]:
     """The result of each hand-in, with the top name of what counted."""
     common = ClassContext(str(folder), LAB6.data, str(LAB6.path))
-    for hand_in in read_class(folder).submissions():
-        (graded,) = grade_all(common, [Task(hand_in.student.key, hand_in.paths, hand_in.names)])
-        yield hand_in.paths[0].partition("/")[0], graded
+    for submission in read_class(folder).submissions():
+        (graded,) = grade_all(common, [Task(submission.student.key, submission.paths, submission.names)])
+        yield submission.paths[0].partition("/")[0], graded
 
 
 def _lost(graded: GradingResult) -> set[str]:
     """The criteria of the URDF that failed or were skipped."""
-    lost = {each.id for each, sign in zip(LAB6.criteria, graded.statuses, strict=True) if sign in "fs"}
+    lost = {criterion.id for criterion, sign in zip(LAB6.criteria, graded.statuses, strict=True) if sign in "fs"}
     return lost & set(made_up.criteria())
 
 
@@ -166,7 +172,7 @@ def test_the_lists_match_the_class(layout: str, list_name: str, tmp_path: Path) 
     intake = read_class(folder, read_roster(tmp_path / list_name))
     assert intake.layout == layout
     assert len(intake.unmatched) == 1
-    assert len(intake.absent) == sum(not each.paths for each in written)
+    assert len(intake.absent) == sum(not submission.paths for submission in written)
 
 
 def test_expectations_are_kept_beside_the_class(tmp_path: Path) -> None:

@@ -121,7 +121,7 @@ def test_a_new_rubric(project: Path) -> None:
     python(project, "-m", "grader", "rubric", "check", "lab0")
     passes(project, "tests/test_submissions.py::test_a_reference_gets_full_marks", "tests/grading/test_rubric.py",
            "tests/cli/test_completion.py", "tests/cli/test_answers.py", "tests/bundle/test_bundle.py::test_the_files",
-           "tests/bundle/test_bundle.py::test_files_that_are_not_ours")  # fmt: skip
+           "tests/bundle/test_bundle.py::test_unrelated_files_are_excluded")  # fmt: skip
 
 
 @pytest.mark.skipif(not (ROOT / "grader/report/formats.py").exists(), reason="the registry of formats is not there yet")

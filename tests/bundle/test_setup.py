@@ -1,4 +1,4 @@
-"""setup.sh, as Gradescope runs it once for each autograder."""
+"""setup.sh, run as Gradescope runs it once for each autograder."""
 
 import os
 import shutil
@@ -37,7 +37,7 @@ def set_up(source: Path, start: Path, **variables: str) -> subprocess.CompletedP
 
 @pytest.mark.slow
 def test_from_the_zip_to_a_grade(bundle: Path, tmp_path: Path) -> None:
-    """pip installs what is needed, for which wheels stand that need no network, and the reference gets its points."""
+    """pip installs the requirements (here from local wheels), and the reference gets its points."""
     root = tmp_path / "auto grader"
     source = unpacked(bundle, root / "source")
     (tmp_path / "wheels").mkdir()
@@ -49,12 +49,12 @@ def test_from_the_zip_to_a_grade(bundle: Path, tmp_path: Path) -> None:
     assert installed.stdout.count(str(root / "venv")) == 4
     (tmp_path / "again").mkdir()
     autograder = Autograder(tmp_path / "again", source, root / "venv")
-    autograder.hand_in("reference")
+    autograder.submit("reference")
     assert autograder.run()["score"] == 90
 
 
 def image(folder: Path, **programs: str) -> str:
-    """The PATH of a machine that has these programs, scripts of a shell."""
+    """Return the PATH of a machine that has these programs, which are shell scripts."""
     place = folder / "bin"
     place.mkdir()
     for name in TOOLS:
@@ -74,8 +74,8 @@ OLD = "exit 1"
 @pytest.mark.parametrize(
     ("python3", "packages"), [(OLD, "python3.11 python3.11-venv"), (NEW, "python3-venv")], ids=["22.04", "24.04"]
 )
-def test_python_is_installed_where_it_lacks(source: Path, tmp_path: Path, python3: str, packages: str) -> None:
-    """Beside an old Python a newer one, for a new one what makes virtual environments; the system's own is not replaced."""
+def test_python_is_installed_if_needed(source: Path, tmp_path: Path, python3: str, packages: str) -> None:
+    """setup.sh installs a newer Python beside an old one, or the venv package for a new one; the system's Python stays."""
     newer = {"python3_11": '[ -e "$LOG.done" ] && echo it runs >>"$LOG"'} if python3 == OLD else {}
     path = image(tmp_path, python3=python3, apt_get=APT, **newer)
     (tmp_path / "root").mkdir()
@@ -96,8 +96,8 @@ def test_without_a_python(source: Path, tmp_path: Path, programs: dict[str, str]
     )
 
 
-def test_a_rubric_that_is_broken_after_all(bundle: Path, tmp_path: Path) -> None:
-    """What somebody has broken in the unpacked files is found when the image is built."""
+def test_a_rubric_broken_after_bundling(bundle: Path, tmp_path: Path) -> None:
+    """A rubric that was broken in the unpacked files is detected when the image is built."""
     source = unpacked(bundle, tmp_path / "source")
     (source / "autograder.json").write_text('{"rubric": "source/rubric.toml", "sha256": "", "seconds": 1}')
     (source / "rubric.toml").write_text("id = 1\n")

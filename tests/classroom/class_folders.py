@@ -8,7 +8,7 @@ from grader.classroom.intake.intake import Intake
 
 
 def lay_out(top: Path, *paths: str) -> Path:
-    """Make a folder with these files in it, empty ones; a folder is a path that ends in a slash."""
+    """Make a folder with these empty files; a path that ends in a slash is a folder."""
     top.mkdir(parents=True, exist_ok=True)
     for path in paths:
         place = top / path
@@ -21,13 +21,13 @@ def lay_out(top: Path, *paths: str) -> Path:
 
 
 def pack(place: Path, names: Iterable[str]) -> Path:
-    """Make a zip with these members, empty ones."""
+    """Make a zip with these empty members."""
     with zipfile.ZipFile(place, "w") as archive:
         for name in names:
             archive.writestr(name, b"")
     return place
 
 
-def taken(intake: Intake) -> dict[str, tuple[str, ...]]:
+def assigned(intake: Intake) -> dict[str, tuple[str, ...]]:
     """Return the paths of each submission by its student's key, in order."""
-    return {each.student.key: each.paths for each in intake.submissions()}
+    return {submission.student.key: submission.paths for submission in intake.submissions()}

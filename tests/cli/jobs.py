@@ -35,4 +35,4 @@ class Job:
         """The files that a path's annotations are put on."""
         done = self.run("grade", path, start=start, around=around)
         assert done.returncode in (0, 1), done.stderr
-        return {each.get("file") for each in commands(done.stderr.decode())} - {None}
+        return {command.get("file") for command in commands(done.stderr.decode())} - {None}

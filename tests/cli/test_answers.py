@@ -45,7 +45,7 @@ def test_no_report_of_grade_or_batch_holds_one(graded_class: Path, tmp_path: Pat
     summary = {"GITHUB_ACTIONS": "true", "GITHUB_STEP_SUMMARY": str(out / "summary")}
     done = grader("grade", top / "class" / "anna", "--rubric", rubric, *saves, **CLASSROOM50, **summary)
     assert done.returncode == 0, done.stderr
-    formats = [each for each in Format if each.needs != "identity"]
+    formats = [file_format for file_format in Format if file_format.needs != "identity"]
     wanted = [part for kind in formats for part in ("--report-format", kind)]
     graded = batch(top, "--reports", out / "reports", *wanted, "--csv", out / "csv")
     assert graded.returncode == 0, graded.stderr
@@ -73,7 +73,7 @@ def test_those_who_grade_are_shown_them(top: Path) -> None:
     anna = ("grade", top / "class" / "anna", "--rubric", rubric, "--answers", "--format")
     assert SECRET in grader(*anna, "terminal").stdout
     assert f"\n  {SECRET}\n  ```\n" in grader(*anna, "markdown").stdout
-    (essay,) = [each for each in json.loads(grader(*anna, "json").stdout)["results"] if each["id"] == "essay"]
+    (essay,) = [result for result in json.loads(grader(*anna, "json").stdout)["results"] if result["id"] == "essay"]
     assert essay["expected"] == SECRET
     assert batch(top, "--force").returncode == 0
     for file in top.glob("*.toml"):
@@ -165,11 +165,11 @@ def test_lab6_keeps_its_answers_apart() -> None:
     assert "lab6" in shipped_rubrics()
     assert "lab6.answers" not in shipped_rubrics()
     shown = grader("rubric", "show", "lab6", "--answers").stdout
-    assert all(each in " ".join(shown.split()) for each in OF_LAB6)
+    assert all(answer in " ".join(shown.split()) for answer in OF_LAB6)
     text = " ".join((ROOT / "rubrics" / "lab6.toml").read_text(encoding="utf-8").split())
     for arguments in (("rubric", "show", "lab6"), ("grade", REFERENCE), ("grade", REFERENCE, "--format", "json")):
         text += " ".join(grader(*arguments).stdout.split())
-    assert not any(each in text for each in OF_LAB6)
+    assert not any(answer in text for answer in OF_LAB6)
 
 
 def test_a_gradebook_of_an_earlier_grader(top: Path) -> None:
@@ -187,7 +187,7 @@ def test_a_gradebook_of_an_earlier_grader(top: Path) -> None:
     done = batch(top, "--reports", reports, "--report-format", "json", "--report-format", "markdown")
     assert done.returncode == 0, done.stderr
     anna_has = json.loads((reports / "anna.json").read_text(encoding="utf-8"))
-    (picture,) = [each for each in anna_has["results"] if each["id"] == "picture"]
+    (picture,) = [result for result in anna_has["results"] if result["id"] == "picture"]
     assert picture["mark"] == {"points": 1, "by": "", "comment": "fine"}
     assert "Marked manually: fine." in (reports / "anna.md").read_text(encoding="utf-8")
     text = "".join(path.read_text(encoding="utf-8") for path in reports.iterdir())

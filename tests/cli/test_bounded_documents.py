@@ -35,7 +35,7 @@ def slow_docx() -> bytes:
     return data.getvalue()
 
 
-def hand_in(folder: Path) -> Path:
+def write_submission(folder: Path) -> Path:
     """The reference solution with a slow document beside it."""
     shutil.copytree(REFERENCE, folder / "my_robot")
     (folder / "answers.docx").write_bytes(slow_docx())
@@ -48,7 +48,7 @@ def test_a_slow_document_leaves_its_criteria_to_a_person(
 ) -> None:
     """It is not read, everything else has its result, and another document is read all the same."""
     monkeypatch.setattr("grader.documents.collection.MAX_SECONDS", 1.0)
-    assert run(["grade", str(hand_in(tmp_path / "alice"))]) == 0
+    assert run(["grade", str(write_submission(tmp_path / "alice"))]) == 0
     shown = " ".join(capsys.readouterr().out.split())
     assert shown.count("the Word and PDF files take longer than 1 s in all; needs manual grading") == 2
     assert "The answer in notes.md, from line 1, needs manual grading" in shown
@@ -58,7 +58,7 @@ def test_a_slow_document_leaves_its_criteria_to_a_person(
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, -15), (signal.SIGKILL, -9)])
 def test_no_converter_outlives_a_grader_that_is_ended(number: signal.Signals, code: int, tmp_path: Path) -> None:
     """However the grader ends, the process that reads a document for it ends, too."""
-    with started("grade", hand_in(tmp_path / "alice")) as process:
+    with started("grade", write_submission(tmp_path / "alice")) as process:
         _stop_converter(process)
         process.send_signal(number)  # to the grader alone
         assert process.wait(PATIENCE) == code
@@ -67,7 +67,7 @@ def test_no_converter_outlives_a_grader_that_is_ended(number: signal.Signals, co
 
 def test_no_converter_outlives_a_batch_that_is_ended(tmp_path: Path) -> None:
     """A worker that is ended takes its converter with it."""
-    hand_in(tmp_path / "class" / "alice")
+    write_submission(tmp_path / "class" / "alice")
     with started("batch", tmp_path / "class", "--gradebook", tmp_path / "lab.db", "--jobs", "1") as process:
         _stop_converter(process)
         process.kill()
@@ -83,10 +83,10 @@ def _stop_converter(process: "subprocess.Popen[str]") -> None:
 def _converters(process: "subprocess.Popen[str]") -> list[int]:
     """The processes that have limited their processor time, which they do after all else is set up."""
     found = []
-    for each in session_of(process):
+    for pid in session_of(process):
         with suppress(OSError):
-            if not re.search(r"Max cpu time +unlimited", Path(f"/proc/{each}/limits").read_text()):
-                found.append(each)
+            if not re.search(r"Max cpu time +unlimited", Path(f"/proc/{pid}/limits").read_text()):
+                found.append(pid)
     return found
 
 
@@ -122,7 +122,7 @@ def test_a_converter_whose_parent_is_gone_ends_at_once() -> None:
 
 def test_a_mark_never_depends_on_a_document(tmp_path: Path) -> None:
     """A submission whose grading is lost to a document is graded without it, and has the points of one that has none."""
-    hand_in(tmp_path / "class" / "alice")
+    write_submission(tmp_path / "class" / "alice")
     shutil.copytree(REFERENCE, tmp_path / "class" / "bob" / "my_robot")
     book = tmp_path / "lab.db"
     done = grader("batch", tmp_path / "class", "--gradebook", book, "--timeout", "4", "--jobs", "2")

@@ -237,7 +237,7 @@ def sparse(place: Path, megabytes: int) -> Path:
     return place
 
 
-def large_hand_in(kind: str, place: Path, size: int) -> Path:
+def large_submission(kind: str, place: Path, size: int) -> Path:
     """The reference's URDF beside a video of so many bytes, none of which a test has to write where that can be."""
     video = "Task3_Step3.mp4"
     if kind == "folder":
@@ -265,7 +265,7 @@ def large_hand_in(kind: str, place: Path, size: int) -> Path:
 def test_a_video_is_ignored_by_name(kind: str, tmp_path: Path) -> None:
     """The rest is graded, the report names the file with its size, and it is evidence all the same."""
     size = 100_000_000 if kind == "tar.gz" else 600_000_000  # what is decompressed has to be written first
-    used = cost("grade", large_hand_in(kind, tmp_path / f"lab6.{kind}", size), "--part", "task1", "--part", "task3")
+    used = cost("grade", large_submission(kind, tmp_path / f"lab6.{kind}", size), "--part", "task1", "--part", "task3")
     said = " ".join(used.out.split())
     assert (
         f"Task3_Step3.mp4 ({size // 1_000_000} MB) is larger than 64 MiB, the limit for one file, and was ignored"
@@ -279,7 +279,7 @@ def test_a_video_is_ignored_by_name(kind: str, tmp_path: Path) -> None:
 
 def test_a_compressed_tar_is_read_to_a_limit(tmp_path: Path) -> None:
     """A file that is ignored has to be decompressed all the same: so much and no more; the message names the limit."""
-    place = large_hand_in("tar.gz", tmp_path / "plain.tar.gz", 80_000_000)
+    place = large_submission("tar.gz", tmp_path / "plain.tar.gz", 80_000_000)
     packed = tmp_path / "lab6.tar.gz"
     packed.write_bytes(gzip.compress(gzip.decompress(place.read_bytes())))
     used = cost("grade", packed)

@@ -69,7 +69,7 @@ def in_bash(line: str) -> list[str]:
 )
 def test_what_is_offered(line: str, offered: list[str]) -> None:
     """Commands, options, and the names that an option or argument takes."""
-    assert [each for each in in_bash(line) if each in offered] == offered
+    assert [word for word in in_bash(line) if word in offered] == offered
     assert len(in_bash(line)) == len(set(in_bash(line)) & set(offered))
 
 
@@ -138,8 +138,8 @@ def test_fish() -> None:
     line = {"_GRADER_COMPLETE": "complete_fish", "_TYPER_COMPLETE_ARGS": "grader explain URDF05"}
     assert run((), **line, _TYPER_COMPLETE_FISH_ACTION="is-args").returncode == 0
     words = run((), **line, _TYPER_COMPLETE_FISH_ACTION="get-args").stdout.decode().splitlines()
-    assert [each.partition("\t")[0] for each in words] == codes("URDF05")
-    assert all(each.partition("\t")[2] for each in words)
+    assert [word.partition("\t")[0] for word in words] == codes("URDF05")
+    assert all(word.partition("\t")[2] for word in words)
     line["_TYPER_COMPLETE_ARGS"] = "grader grade "
     assert run((), **line, _TYPER_COMPLETE_FISH_ACTION="is-args").returncode == 1
 
@@ -232,7 +232,7 @@ def test_it_is_put_where_the_shell_reads_it(shell: str, file: str, tmp_path: Pat
     assert (tmp_path / file).read_bytes().strip() == run(("--show-completion", shell)).stdout.strip()
     lines = (tmp_path / ".bashrc").read_text().split("\n")
     assert lines[0] == "alias ll='ls -l'"
-    assert [each for each in lines[1:] if each] == ([f"source '{tmp_path / file}'"] if shell == "bash" else [])
+    assert [line for line in lines[1:] if line] == ([f"source '{tmp_path / file}'"] if shell == "bash" else [])
 
 
 def refuse(words: str, *arguments: str, **variables: str) -> None:

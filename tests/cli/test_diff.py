@@ -9,7 +9,17 @@ from typing import Any
 import jsonschema
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from tests.classroom.gradebooks import batch, came_out, graded_into, grader, hand_in, lab, lab_text, refusal, urdf
+from tests.classroom.gradebooks import (
+    batch,
+    graded_as,
+    grader,
+    lab,
+    lab_text,
+    record_run,
+    refusal,
+    urdf,
+    write_submission,
+)
 
 
 def diff(top: Path, *more: object) -> str:
@@ -41,7 +51,7 @@ def test_all_reasons(top: Path) -> None:
     assert diff(top) == "nothing changed\n"
     assert as_json(top / "book.db")["students"] == []
     (top / "class" / "anna" / "robot.urdf").write_text(urdf("2 2 2"))
-    hand_in(top / "class" / "dora")
+    write_submission(top / "class" / "dora")
     batch(top)
     assert diff(top) == (
         "anna: 6 to 3 (-3)\n  the submission changed\n    box: 2.5 to 0 (-2.5)\n    tall: 0.5 to 0 (-0.5)\n"
@@ -62,7 +72,7 @@ def test_all_reasons(top: Path) -> None:
 def test_two_gradebooks(top: Path, tmp_path: Path) -> None:
     """Who was in one only is told, and the JSON form has all of it."""
     shutil.copy(top / "book.db", tmp_path / "before.db")
-    hand_in(top / "class" / "zoe")
+    write_submission(top / "class" / "zoe")
     batch(top)
     grader("mark", "emil", "essay", "0", "--gradebook", top / "book.db")
     data = as_json(tmp_path / "before.db", top / "book.db")
@@ -73,7 +83,7 @@ def test_two_gradebooks(top: Path, tmp_path: Path) -> None:
         {"id": "zoe", "before": None, "after": 6, "because": ["first submission"], "criteria": []},
     ]
     back = as_json(top / "book.db", tmp_path / "before.db")["students"]
-    assert [each["because"] for each in back] == [["manual marks changed"], ["no longer there"]]
+    assert [change["because"] for change in back] == [["manual marks changed"], ["no longer there"]]
     both = refusal(grader("diff", top / "book.db", tmp_path / "before.db", "--from", 1))
     assert both == "--from and --to choose runs of one gradebook: give one gradebook, or omit them"
     assert "there is no gradebook" in refusal(grader("diff", top / "book.db", tmp_path / "none.db"))
@@ -87,8 +97,8 @@ def test_one_damaged_zip_is_a_few_lines(tmp_path: Path) -> None:
         ("many", lab(**{f"c{number}": str(number) for number in numbers})),
     ):
         with Gradebook(tmp_path / f"{name}.db", create=True) as book:
-            graded_into(book, rubric, [came_out(rubric, "anna", "ppp??" + "f" * 30)])
-            graded_into(book, rubric, [came_out(rubric, "anna", "fff??" + "?" * 15 + "p" * 15, "b")])
+            record_run(book, rubric, [graded_as(rubric, "anna", "ppp??" + "f" * 30)])
+            record_run(book, rubric, [graded_as(rubric, "anna", "fff??" + "?" * 15 + "p" * 15, "b")])
     lines = grader("diff", tmp_path / "few.db").stdout.splitlines()
     assert lines[3:] == [
         "    loads: 3 to 0 (-3)",
@@ -108,8 +118,8 @@ def test_only_the_verdict_changed(tmp_path: Path) -> None:
     """No step is made up where no criterion took one."""
     rubric = lab()
     with Gradebook(tmp_path / "book.db", create=True) as book:
-        graded_into(book, rubric, [came_out(rubric, "anna", "?????")])
-        graded_into(book, rubric, [came_out(rubric, "anna", "?????", "b", "it is no zip")])
+        record_run(book, rubric, [graded_as(rubric, "anna", "?????")])
+        record_run(book, rubric, [graded_as(rubric, "anna", "?????", "b", "it is no zip")])
     assert diff(tmp_path) == (
         "anna: 0 as before, only the status changed\n  the submission changed; it was graded, and is unreadable\n"
     )
@@ -117,7 +127,7 @@ def test_only_the_verdict_changed(tmp_path: Path) -> None:
 
 def test_names_are_harmless(top: Path) -> None:
     """A key that would colour or turn the terminal is spelt out."""
-    hand_in(top / "class" / "x[red]\x1b[31m\u202ey")
+    write_submission(top / "class" / "x[red]\x1b[31m\u202ey")
     batch(top)
     text = diff(top)
     assert "[red]" in text

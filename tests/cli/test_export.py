@@ -28,7 +28,17 @@ from grader.errors import InputError
 from grader.files.opening import ARCHIVES
 from grader.grading.grade import grade
 from grader.usecases.export import preflight_lines
-from tests.classroom.gradebooks import batch, came_out, graded_into, grader, hand_in, lab, lab_text, make_class, refusal
+from tests.classroom.gradebooks import (
+    batch,
+    graded_as,
+    grader,
+    lab,
+    lab_text,
+    make_class,
+    record_run,
+    refusal,
+    write_submission,
+)
 from tests.samples import LAB6, ROOT, opened
 
 sys.path.insert(0, str(ROOT / "benchmarks"))  # a folder of scripts
@@ -53,8 +63,8 @@ def mark(top: Path, key: str, **points: str) -> None:
     with Gradebook(top / "book.db") as book:
         standings = Grades(book)
         standing = standings.find(key)
-        for name, each in points.items():
-            add_mark(book, standing, criterion_of(standings.rubric(standing.rubric), name), Decimal(each), "me", "")
+        for name, value in points.items():
+            add_mark(book, standing, criterion_of(standings.rubric(standing.rubric), name), Decimal(value), "me", "")
 
 
 # --- For a spreadsheet, and for programs ------------------------------------------------------------------------------
@@ -89,7 +99,7 @@ def test_the_view_the_csv_and_the_json_say_the_same(top: Path) -> None:
     rows = table(export(top, "csv").stdout)
     data = json.loads(export(top, "json").stdout)
     jsonschema.validate(data, json.loads(grader("schema", "class").stdout))
-    told = {each["id"]: each for each in data["students"]}
+    told = {student["id"]: student for student in data["students"]}
     with Gradebook(top / "book.db") as book:
         view = {row[0]: row[1:] for row in book.rows("SELECT key, verdict, score, out_of, pending FROM grade")}
     assert view.keys() == rows.keys() == told.keys()
@@ -99,7 +109,7 @@ def test_the_view_the_csv_and_the_json_say_the_same(top: Path) -> None:
             exact = None if number is None else Decimal(number) / 10_000
             assert exact == (Decimal(rows[key][name]) if rows[key][name] else None)
             assert exact == (None if told[key][name] is None else Decimal(str(told[key][name])))
-        cells = [Decimal(rows[key][each] or 0) for each in ("loads", "box", "tall", "essay", "picture")]
+        cells = [Decimal(rows[key][column] or 0) for column in ("loads", "box", "tall", "essay", "picture")]
         assert sum(cells) == Decimal(rows[key]["score"] or 0)
 
 
@@ -120,7 +130,7 @@ AWKWARD = {
 
 def test_no_spreadsheet_runs_what_students_call_themselves(tmp_path: Path) -> None:
     """Formulas get an apostrophe, what turns or colours is spelt out, all other names stay."""
-    hand_in(tmp_path / "class" / "anna")
+    write_submission(tmp_path / "class" / "anna")
     lines = io.StringIO(newline="")
     csv.writer(lines).writerows([("id", "name"), *((f"s{number}", name) for number, name in enumerate(AWKWARD))])
     (tmp_path / "roster.csv").write_bytes(lines.getvalue().encode())
@@ -147,7 +157,7 @@ POLICY = "due = 2026-09-10T12:00:00Z\ngrace_minutes = 60\npercent_per_day = 10\n
 def test_lateness_is_a_line_of_its_own(tmp_path: Path) -> None:
     """In CSV, JSON, the student's report and the LMS; no criterion's points change by it."""
     for key in ("anna", "ben", "cleo", "dora", "emil"):
-        hand_in(tmp_path / "class" / key)
+        write_submission(tmp_path / "class" / key)
     (tmp_path / "roster.csv").write_text(LATE_ROSTER)
     (tmp_path / "small.toml").write_text(lab_text(POLICY))
     formats = ("--report-format", "json", "--report-format", "terminal")
@@ -166,7 +176,7 @@ def test_lateness_is_a_line_of_its_own(tmp_path: Path) -> None:
     assert {tuple(row[name] for name in ("loads", "box", "tall", "essay", "picture")) for row in rows.values()} == {
         ("3", "2.5", "0.5", "4", "1")
     }
-    told = {each["id"]: each for each in json.loads(export(tmp_path, "json").stdout)["students"]}
+    told = {student["id"]: student for student in json.loads(export(tmp_path, "json").stdout)["students"]}
     words = "2 days late: submitted 2026-09-12T10:00:00Z, deadline 2026-09-10T12:00+00:00"
     assert told["anna"]["late"] == {"days": 2, "points": -2.2, "because": words}
     assert (told["anna"]["score"], told["anna"]["total"]) == (11, 8.8)
@@ -276,12 +286,12 @@ def test_the_gradebook_is_never_replaced(name: str, top: Path) -> None:
     mark(top, "anna", essay="3.5")
     (top / "link.db").symlink_to("book.db")
     (top / "hard.db").hardlink_to(top / "book.db")
-    before = {each.name: each.read_bytes() for each in top.iterdir() if each.is_file()}
+    before = {path.name: path.read_bytes() for path in top.iterdir() if path.is_file()}
     why = "this would overwrite the gradebook and all its manual marks"
     assert refusal(export(top, "csv", "--output", top / name)) == f"cannot write {top / name}: {why}"
     book = ("--gradebook", top / "link.db")
     assert refusal(grader("export", "csv", *book, "--output", top / name)).endswith(why)
-    assert {each.name: each.read_bytes() for each in top.iterdir() if each.is_file()} == before
+    assert {path.name: path.read_bytes() for path in top.iterdir() if path.is_file()} == before
 
 
 @pytest.mark.parametrize("name", ["lms.csv", "../small/lms.csv", "link.csv", "hard.csv"])
@@ -306,11 +316,11 @@ def test_without_an_output_no_file_is_written(top: Path) -> None:
     """The filled file is printed, and the one that was read stays as it was."""
     (top / "canvas.csv").write_text(canvas(ben="102"))
     for arguments in (("csv",), ("json",), ("canvas", "--into", top / "canvas.csv")):
-        before = {each: (each.read_bytes(), each.stat().st_mtime_ns) for each in top.rglob("*") if each.is_file()}
+        before = {path: (path.read_bytes(), path.stat().st_mtime_ns) for path in top.rglob("*") if path.is_file()}
         done = export(top, *arguments)
         assert done.returncode == 0, done.stderr
         assert done.stdout
-        after = {each: (each.read_bytes(), each.stat().st_mtime_ns) for each in top.rglob("*") if each.is_file()}
+        after = {path: (path.read_bytes(), path.stat().st_mtime_ns) for path in top.rglob("*") if path.is_file()}
         assert after == before
 
 
@@ -367,7 +377,7 @@ def test_almost_all_points_are_not_all(tmp_path: Path) -> None:
     """99.996 of 100 is 99.99 where there are two decimals, and itself everywhere else."""
     rubric = lab(loads="95.996", box="0.004", tall="0", essay="0", picture="4")
     with Gradebook(tmp_path / "book.db", create=True) as book:
-        graded_into(book, rubric, [came_out(rubric, "anna", "pfppp")])
+        record_run(book, rubric, [graded_as(rubric, "anna", "pfppp")])
     (tmp_path / "canvas.csv").write_text(canvas("100", anna="101"))
     head = "Identifier,Full name,Username,Grade,Maximum grade,Last modified (grade),Feedback comments"
     (tmp_path / "moodle.csv").write_text(f"{head}\nParticipant 1,Anna,anna,,100.00,-,\n")
@@ -431,10 +441,10 @@ class Trip(NamedTuple):
         assert done.returncode == 0, done.stderr
         return done
 
-    def hand_ins(self) -> Iterator[ClassSubmission]:
+    def submissions(self) -> Iterator[ClassSubmission]:
         """Whoever is on the roster and has handed something in."""
         intake = read_class(self.top / "class", read_roster(self.top / "roster.csv"))
-        return (each for each in intake.submissions() if each.student.key not in intake.unmatched)
+        return (submission for submission in intake.submissions() if submission.student.key not in intake.unmatched)
 
 
 @pytest.fixture(scope="module", params=["canvas", "moodle"])
@@ -450,13 +460,13 @@ def trip(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
     return Trip(request.param, top)
 
 
-def by_itself(trip: Trip, each: ClassSubmission, scratch: Path) -> Decimal | None:
+def points_alone(trip: Trip, entry: ClassSubmission, scratch: Path) -> Decimal | None:
     """The points of `grader grade` on what one student has handed in; None where it is refused, or nothing in it can be read."""
-    path = trip.top / "class" / each.paths[0]
-    if len(each.paths) > 1:
-        path = scratch / each.student.key
+    path = trip.top / "class" / entry.paths[0]
+    if len(entry.paths) > 1:
+        path = scratch / entry.student.key
         path.mkdir()
-        for name, file in zip(each.names, each.paths, strict=True):
+        for name, file in zip(entry.names, entry.paths, strict=True):
             shutil.copy(trip.top / "class" / file, path / name)
     try:
         submission = opened(path)
@@ -472,10 +482,10 @@ def test_everyone_has_the_points_of_grader_grade(trip: Trip, tmp_path: Path) -> 
     filled = cells(trip, "class.csv")
     given = cells(trip, "lms.csv")
     wanted = {}
-    for each in trip.hand_ins():
-        points = by_itself(trip, each, tmp_path)
+    for submission in trip.submissions():
+        points = points_alone(trip, submission, tmp_path)
         if points is not None:
-            wanted[number_of(trip, each)] = f"{points:.2f}"
+            wanted[number_of(trip, submission)] = f"{points:.2f}"
     assert {number: row[grade_column(trip)] for number, row in filled.items()} == wanted
     assert len(wanted) > SIZE // 2
     left_out = re.findall(r"without a grade, .*: (\d+) \(", done.stderr)
@@ -492,9 +502,9 @@ def grade_column(trip: Trip) -> int:
     return 5 if trip.layout == "canvas" else 4
 
 
-def number_of(trip: Trip, each: ClassSubmission) -> str:
+def number_of(trip: Trip, submission: ClassSubmission) -> str:
     """What the LMS's file has for a student."""
-    return each.student.canvas if trip.layout == "canvas" else f"Participant {each.student.moodle}"
+    return submission.student.canvas if trip.layout == "canvas" else f"Participant {submission.student.moodle}"
 
 
 def cells(trip: Trip, name: str) -> dict[str, list[str]]:

@@ -17,8 +17,8 @@ PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
 def walk(command: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
     """Every command below this one and itself, by what is typed."""
     yield path, command
-    for name, each in getattr(command, "commands", {}).items():
-        yield from walk(each, (*path, name))
+    for name, subcommand in getattr(command, "commands", {}).items():
+        yield from walk(subcommand, (*path, name))
 
 
 PATHS = [path for path, _ in walk(get_command(make_app(COMMANDS)))]
@@ -47,7 +47,7 @@ def test_help_at_eighty_columns(path: tuple[str, ...]) -> None:
     assert max(map(len, text.splitlines())) <= 80
     examples = re.search(r"\n  Examples:\n\n((?:    .*\n|\n)+)", text)
     assert examples is not None
-    lines = [each.strip() for each in examples[1].splitlines() if each.strip()]
+    lines = [line.strip() for line in examples[1].splitlines() if line.strip()]
     assert lines
     for line in lines:
         assert line.startswith(" ".join(("grader", *path))), line

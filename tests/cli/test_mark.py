@@ -16,7 +16,7 @@ from grader.classroom.gradebook.grades import Grades
 from grader.report.formats import Format, OutputFormat
 from grader.report.schemas import REPORT_SCHEMA
 from grader.usecases.class_summary import class_summary
-from tests.classroom.gradebooks import ENVIRONMENT, HOSTILE, batch, grader, hand_in, lab_text, refusal, urdf
+from tests.classroom.gradebooks import ENVIRONMENT, HOSTILE, batch, grader, lab_text, refusal, urdf, write_submission
 from tests.command_line import PATIENCE
 from tests.samples import ROOT
 
@@ -34,7 +34,7 @@ def student(top: Path, key: str) -> dict[str, Any]:
     """A student's grade, as `grader export json` has it, which is what the view has."""
     with Gradebook(top / "book.db") as book:
         data = json.loads(class_summary(Grades(book), OutputFormat.JSON))
-        (found,) = [each for each in data["students"] if each["id"] == key]
+        (found,) = [student for student in data["students"] if student["id"] == key]
         ((score, out_of, pending, marks),) = book.rows(
             "SELECT score, out_of, pending, marks FROM grade WHERE key = ?", key
         )
@@ -172,7 +172,7 @@ def test_no_run_loses_a_mark(top: Path) -> None:
     (top / "without.toml").write_text(lab_text().replace('"essay"', '"answer"'))
     assert score_after(rubric=top / "without.toml") == 4  # nobody asks for an essay any more
     assert score_after() == 7
-    hand_in(top / "elsewhere" / "zoe")
+    write_submission(top / "elsewhere" / "zoe")
     added = ("batch", top / "elsewhere", "--gradebook", top / "book.db", "--rubric", top / "small.toml", "--add")
     assert grader(*added).returncode == 0
     assert (marks(top), student(top, "anna")["score"]) == (kept, 7)
@@ -192,7 +192,7 @@ def test_a_comment_is_text(top: Path) -> None:
     assert not set(text) & set("\x1b\x07\r\u202e")
     report = json.loads((top / "reports" / "anna.json").read_text())
     jsonschema.validate(report, REPORT_SCHEMA)
-    (essay,) = [each for each in report["results"] if each["id"] == "essay"]
+    (essay,) = [result for result in report["results"] if result["id"] == "essay"]
     assert essay["mark"] == {"points": 1, "by": "[red]\x1b[31mme", "comment": HARMFUL}
 
 
@@ -215,13 +215,16 @@ def test_marks_at_the_same_time(top: Path) -> None:
     book = str(top / "book.db")
     started = [
         subprocess.Popen(
-            [*command, "mark", *each, "0.5", "--gradebook", book], cwd=ROOT, env=ENVIRONMENT, stdout=subprocess.DEVNULL
+            [*command, "mark", *words, "0.5", "--gradebook", book],
+            cwd=ROOT,
+            env=ENVIRONMENT,
+            stdout=subprocess.DEVNULL,
         )
-        for each in wanted
+        for words in wanted
     ]
     done = batch(top, "--force")
     assert done.returncode == 0, done.stderr
-    assert [each.wait(PATIENCE) for each in started] == [0] * len(wanted)
+    assert [process.wait(PATIENCE) for process in started] == [0] * len(wanted)
     assert len(marks(top)) == len(wanted)
     assert student(top, "anna")["score"] == 2.5
     assert student(top, "emil")["score"] == 2

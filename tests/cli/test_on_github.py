@@ -53,7 +53,7 @@ def test_the_summary_is_added_to(job: Job) -> None:
     for _ in range(2):
         job.run("grade", "my_robot.urdf")
     root = read_as_github(job.summary.read_text(encoding="utf-8"))
-    assert [each.text_content() for each in root.iter("h1")] == [
+    assert [heading.text_content() for heading in root.iter("h1")] == [
         "Built",
         *["42 / 70 points: IRP Lab 6: a wheeled base"] * 2,
     ]
@@ -131,7 +131,7 @@ def test_the_threshold_decides_whether_the_step_fails(job: Job, threshold: str, 
     """Annotations of errors alone fail no step."""
     done = job.run("grade", "my_robot.urdf", "--fail-under", threshold)
     assert done.returncode == code
-    assert {each.name for each in commands(done.stderr.decode())} == {"notice", "error"}
+    assert {command.name for command in commands(done.stderr.decode())} == {"notice", "error"}
 
 
 def test_help_is_plain_text_in_a_job(job: Job) -> None:

@@ -98,14 +98,14 @@ def test_on_gitlab(job: Job) -> None:
         *("grade", "lab 6/my_robot.urdf", "--format", "codeclimate"),
         around={"GITHUB_ACTIONS": "", "GITHUB_WORKSPACE": "", "CI_PROJECT_DIR": str(job.checkout)},
     )
-    assert {each["location"]["path"] for each in json.loads(done.stdout)} == {"lab 6/my_robot.urdf"}
+    assert {issue["location"]["path"] for issue in json.loads(done.stdout)} == {"lab 6/my_robot.urdf"}
     assert done.stderr == b""
 
 
 def test_standard_input(job: Job) -> None:
     """It has no file that an annotation could be put on but the one that everyone calls so."""
     done = run_with_input(("grade", "-", "--format", "sarif"), MISTAKEN.read_bytes(), folder=job.checkout)
-    places = [each["locations"][0]["physicalLocation"] for each in json.loads(done.stdout)["runs"][0]["results"]]
+    places = [result["locations"][0]["physicalLocation"] for result in json.loads(done.stdout)["runs"][0]["results"]]
     assert {place["artifactLocation"]["uri"] for place in places} == {"-"}
 
 

@@ -26,7 +26,7 @@ def test_every_format_can_be_saved_at_once(tmp_path: Path) -> None:
     assert len(set(names.values())) == len(Format)
     done = saved(*(f"{kind}={tmp_path / name}" for kind, name in names.items()))
     assert (done.returncode, done.stderr) == (1, b"")
-    assert sorted(each.name for each in tmp_path.iterdir()) == sorted(names.values())
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(names.values())
     for kind, name in names.items():
         assert (tmp_path / name).read_bytes() == run(("grade", MISTAKEN, "--format", kind), **CLASSROOM50).stdout
 

@@ -8,7 +8,7 @@ import jsonschema
 import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from tests.classroom.gradebooks import batch, came_out, graded_into, grader, hand_in, lab, refusal
+from tests.classroom.gradebooks import batch, graded_as, grader, lab, record_run, refusal, write_submission
 
 
 def stats(path: Path, *more: object, **variables: str) -> str:
@@ -81,7 +81,7 @@ def test_few_or_none(signs: dict[str, str], tmp_path: Path) -> None:
     """A run without hand-ins, of one student, and one in which nobody could be graded."""
     rubric = lab()
     with Gradebook(tmp_path / "book.db", create=True) as book:
-        graded_into(book, rubric, [came_out(rubric, key, each) for key, each in signs.items()])
+        record_run(book, rubric, [graded_as(rubric, key, row) for key, row in signs.items()])
     text = stats(tmp_path / "book.db")
     data = as_json(tmp_path / "book.db")
     assert len(data["students"]) == len(signs)
@@ -94,8 +94,8 @@ def test_almost_all_is_not_all(tmp_path: Path) -> None:
     """A mean just below full marks is not rounded up to them, nor is a share up to all or down to nothing."""
     rubric = lab()
     with Gradebook(tmp_path / "book.db", create=True) as book:
-        found = [came_out(rubric, f"s{number}", "ppppp" if number else "ppppf") for number in range(300)]
-        graded_into(book, rubric, found)
+        found = [graded_as(rubric, f"s{number}", "ppppp" if number else "ppppf") for number in range(300)]
+        record_run(book, rubric, found)
     text = stats(tmp_path / "book.db")
     assert "Grades out of 11: mean 10.9, standard deviation 0.1" in text
     assert "picture         1     299  300    99%" in text
@@ -106,8 +106,8 @@ def test_who_is_left_behind_by_a_new_rubric(tmp_path: Path) -> None:
     """What does not count is said."""
     old, new = lab(), lab(loads="1")
     with Gradebook(tmp_path / "book.db", create=True) as book:
-        graded_into(book, old, [came_out(old, key, "ppppp") for key in ("anna", "ben")])
-        graded_into(book, new, [came_out(new, "anna", "ppppp")])
+        record_run(book, old, [graded_as(old, key, "ppppp") for key in ("anna", "ben")])
+        record_run(book, new, [graded_as(new, "anna", "ppppp")])
     text = stats(tmp_path / "book.db")
     assert "2 graded\n1 graded by an earlier rubric only: not in these statistics\n" in text
     assert "  ben: graded with an earlier version of the rubric\n" in text
@@ -115,7 +115,7 @@ def test_who_is_left_behind_by_a_new_rubric(tmp_path: Path) -> None:
 
 def test_names_are_harmless(top: Path) -> None:
     """Nothing that students call themselves or their files colours, turns or ends the terminal's text."""
-    hand_in(top / "class" / "x[red]\x1b[31m\u202ey")
+    write_submission(top / "class" / "x[red]\x1b[31m\u202ey")
     (top / "class" / "[bold]\x1b]0;z\x07.zip").write_bytes(b"no zip")
     (top / "roster.csv").write_bytes("id,name\nanna,\u202eA\x1b[31mn[red]\n".encode())
     done = batch(top)

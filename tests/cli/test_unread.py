@@ -86,7 +86,7 @@ def test_findings_in_an_archive_of_a_folder_are_on_the_archive(tmp_path: Path) -
     assert "::error file=lab6.zip,title=base-green (6 points lost)::" in told
     assert "In lab6.zip/my_robot.urdf:6:14." in told
     done = run(("grade", str(tmp_path), "--format", "codeclimate"))
-    assert {each["location"]["path"] for each in json.loads(done.stdout)} <= {"lab6.zip", "lab6.zip/my_robot.urdf"}
+    assert {issue["location"]["path"] for issue in json.loads(done.stdout)} <= {"lab6.zip", "lab6.zip/my_robot.urdf"}
 
 
 def test_what_causes_most_is_told_first() -> None:

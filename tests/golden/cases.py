@@ -44,7 +44,10 @@ def _in_every_format(name: str, path: str, exit_code: int) -> tuple[Golden, ...]
     """A case for each format that is made for a platform."""
     formats = ("markdown", "junit", "sarif", "github", "gradescope", "classroom50", "codeclimate")
     around = {"CI_PROJECT_DIR": str(ROOT), **CLASSROOM50}  # paths are ours, whatever repository this one stands in
-    return tuple(Golden(f"{name}-{each}", ("grade", path, "--format", each), exit_code, around) for each in formats)
+    return tuple(
+        Golden(f"{name}-{file_format}", ("grade", path, "--format", file_format), exit_code, around)
+        for file_format in formats
+    )
 
 
 GOLDEN = (

@@ -470,7 +470,7 @@ def worth(*points: str, total: str = "", part: str = "") -> str:
     declared = f"points = {total}\n" if total else ""
     own = f"points = {part}\n" if part else ""
     head = f'id = "r"\ntitle = "R"\n{declared}[[part]]\nid = "a"\ntitle = "A"\n{own}'
-    return head + "".join(row(f"c{index}", points=each) for index, each in enumerate(points))
+    return head + "".join(row(f"c{index}", points=value) for index, value in enumerate(points))
 
 
 @pytest.mark.parametrize(

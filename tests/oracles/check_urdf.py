@@ -89,6 +89,6 @@ def _children(process: subprocess.Popen[bytes]) -> Iterator[tuple[int, bytes]]:
 
 def _left_out(text: bytes, printed: set[bytes]) -> set[bytes]:
     tags = [match[1] or b"" for match in _MARKUP.finditer(text)]
-    links, children = ({found[2] for tag in tags if (found := each.match(tag))} for each in (_LINK, _CHILD))
+    links, children = ({found[2] for tag in tags if (found := pattern.match(tag))} for pattern in (_LINK, _CHILD))
     # How a name with an entity or a line end is printed is for the oracle to say.
     return {name for name in (links & children) - printed if not re.search(rb"[&\r\n]", name)}

@@ -85,7 +85,7 @@ def _node(package: str, executable: str) -> str:
 def _fault(fault: LaunchFault) -> str:
     """A fault with its line; the words of the parsers themselves differ between their versions."""
     parsers = ("Python cannot read the file", "not readable as XML", "not readable as YAML")
-    message = next((each for each in parsers if fault.message.startswith(f"{each}: ")), fault.message)
+    message = next((parser for parser in parsers if fault.message.startswith(f"{parser}: ")), fault.message)
     return f"{fault.location.line}: {message}"
 
 

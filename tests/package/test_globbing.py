@@ -150,7 +150,7 @@ def test_a_path_leads_where_the_system_says(tree: Tree, parts: list[str]) -> Non
     with on_disk(tree) as root:
         inside = os.path.join(root, "")
         real = [getattr(os.path, function)(inside + path if path else "") for function in ("exists", "isfile", "isdir")]
-    if any(isinstance(each, Unknown) for each in told):
+    if any(isinstance(path, Unknown) for path in told):
         assert not path or ".." in parts or any(part.startswith(".") for part in parts)
     else:
         assert told == real
@@ -181,8 +181,8 @@ def test_folders_hold_what_they_hold(tree: Tree, folder: str) -> None:
             assert not isinstance(told[1], list)
         for found, index in ((told[2], 2), (told[3], 1)):
             real = [os.path.join(step[0], name) for step in walked for name in step[index]]
-            assert sorted(os.path.normpath(each) for each in found) == sorted(
-                os.path.relpath(each, root) for each in real
+            assert sorted(os.path.normpath(path) for path in found) == sorted(
+                os.path.relpath(path, root) for path in real
             )
 
 

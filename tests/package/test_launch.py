@@ -472,9 +472,9 @@ def doubling(last: str, name: str = "x", levels: int = 60) -> str:
 
 def chained(levels: int = 60) -> str:
     """Launch arguments, each with the one before it twice."""
-    each = "DeclareLaunchArgument('a{}', default_value=[LaunchConfiguration('a{}'), LaunchConfiguration('a{}')])"
+    declaration = "DeclareLaunchArgument('a{}', default_value=[LaunchConfiguration('a{}'), LaunchConfiguration('a{}')])"
     return "DeclareLaunchArgument('a0', default_value='ab'), " + ", ".join(
-        each.format(n, n - 1, n - 1) for n in range(1, levels)
+        declaration.format(n, n - 1, n - 1) for n in range(1, levels)
     )
 
 
@@ -586,11 +586,11 @@ def is_well_formed(launch: Launch) -> bool:
     """Whether what is told is bounded, with places in the file."""
     told = [*launch.nodes, *launch.forgotten]
     faults = [*launch.faults, *launch.unknown, *filter(None, [launch.syntax])]
-    places = [each.location for part in (told, launch.references, faults) for each in part]
-    return len(places) < 20_000 and all(each.line > 0 and each.column > 0 for each in places)
+    places = [item.location for part in (told, launch.references, faults) for item in part]
+    return len(places) < 20_000 and all(place.line > 0 and place.column > 0 for place in places)
 
 
-@pytest.mark.parametrize(("name", "data"), [pytest.param(*each, id=each[0]) for each in hostile()])
+@pytest.mark.parametrize(("name", "data"), [pytest.param(*name, id=name[0]) for name in hostile()])
 def test_hostile_files(name: str, data: bytes) -> None:
     """Nothing raises or takes long, whatever a launch file is made of."""
     with processor_time(2):
@@ -621,7 +621,7 @@ def test_many_includes() -> None:
     others = {f"{FOLDER}/f{n}.launch.xml": TWO.format(f"f{n + 1}", f"f{n + 1}").encode() for n in range(40)}
     with processor_time(2):
         launch = read(others[f"{FOLDER}/f0.launch.xml"], "f0.launch.xml", others)
-    assert "it includes more than 10 launch files" in {each.message for each in launch.unknown}
+    assert "it includes more than 10 launch files" in {unknown.message for unknown in launch.unknown}
     assert len(launch.nodes) < 50
 
 
@@ -638,7 +638,7 @@ def test_arguments_are_shared_with_what_follows_an_include() -> None:
 </launch>
 """
     launch = read(text.encode(), "x.launch.xml")
-    assert [each.path for each in launch.named("rviz")] == ["/opt/given.rviz", "/opt/own.rviz"]
+    assert [node.path for node in launch.named("rviz")] == ["/opt/given.rviz", "/opt/own.rviz"]
 
 
 PIECES = st.sampled_from(

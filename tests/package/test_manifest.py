@@ -34,7 +34,10 @@ def read(text: str) -> Manifest:
 
 def said(found: Manifest) -> list[str]:
     """Its problems, each with its line and column."""
-    return [f"{each.location.line}:{each.location.column} {each.kind.code} {each.message}" for each in found.problems]
+    return [
+        f"{problem.location.line}:{problem.location.column} {problem.kind.code} {problem.message}"
+        for problem in found.problems
+    ]
 
 
 def test_a_complete_file() -> None:
@@ -83,7 +86,7 @@ def test_what_is_missing(old: str, new: str, expected: list[str]) -> None:
 def test_unreadable_files(text: str, line: int, words: str) -> None:
     """A file that is no package.xml says so once; no name is known then."""
     found = read(text)
-    assert [(each.kind.code, each.location.line) for each in found.problems] == [("PKG001", line)]
+    assert [(problem.kind.code, problem.location.line) for problem in found.problems] == [("PKG001", line)]
     assert words in found.problems[0].message
     assert found.name is None
     assert found.build_type == ""

@@ -85,7 +85,7 @@ def test_a_saved_file() -> None:
     assert found.fixed_frame == "base_footprint"
     assert SAVED.splitlines()[found.frame_location.line - 1] == "    Fixed Frame: base_footprint"
     assert found.frame_location.column == 18
-    assert [(each.package, each.kind, each.name, each.enabled) for each in found.displays] == [
+    assert [(display.package, display.kind, display.name, display.enabled) for display in found.displays] == [
         ("rviz_default_plugins", "Grid", "Grid", True),
         ("rviz_default_plugins", "RobotModel", "My robot: the model", True),
         ("rviz_default_plugins", "TF", "TF", False),
@@ -95,8 +95,11 @@ def test_a_saved_file() -> None:
         ("rviz_default_plugins", "LaserScan", "Scan", False),
     ]
     lines = SAVED.splitlines()
-    assert all(lines[each.location.line - 1].endswith(f"Class: {each.package}/{each.kind}") for each in found.displays)
-    assert len({each.location for each in found.displays}) == 7
+    assert all(
+        lines[display.location.line - 1].endswith(f"Class: {display.package}/{display.kind}")
+        for display in found.displays
+    )
+    assert len({display.location for display in found.displays}) == 7
     topic = found.displays[1].node.get("Description Topic", "Value")
     assert topic is not None
     assert topic.text == "/robot_description"
@@ -106,7 +109,7 @@ def test_what_is_worth_saying() -> None:
     """A TF display that is off is as good as none; a class of ROS 1 is named at its place."""
     assert [problem.kind.code for problem in read(SAVED).problems] == ["RVZ003"]
     old = displays("Class: rviz/RobotModel, Enabled: true", "Class: rviz/TF, Enabled: true, Name: TF")
-    assert [(each.kind.code, each.location.line) for each in old.problems] == [("RVZ002", 3), ("RVZ002", 4)]
+    assert [(problem.kind.code, problem.location.line) for problem in old.problems] == [("RVZ002", 3), ("RVZ002", 4)]
     assert "in ROS 2 it is rviz_default_plugins/RobotModel" in old.problems[0].message
     assert displays("Class: rviz_default_plugins/TF, Enabled: true").problems == ()
 
@@ -149,7 +152,7 @@ def test_odd_shapes(text: str) -> None:
     found = read(text)
     assert found.fault is None
     assert found.fixed_frame is None
-    assert all(each.kind == each.package == "" and not each.enabled for each in found.displays)
+    assert all(display.kind == display.package == "" and not display.enabled for display in found.displays)
 
 
 @pytest.mark.parametrize(
@@ -160,12 +163,12 @@ def test_odd_shapes(text: str) -> None:
 )  # fmt: skip
 def test_enabled(settings: str, is_on: bool) -> None:
     """Whether a display is on is told as RViz tells it."""
-    assert [each.enabled for each in displays(f"Class: a/B, {settings}").displays] == [is_on]
+    assert [display.enabled for display in displays(f"Class: a/B, {settings}").displays] == [is_on]
 
 
 def test_switched_on() -> None:
     """What is not there is as by default; a list is no setting."""
-    assert [switched_on(None, default=each) for each in (True, False)] == [True, False]
+    assert [switched_on(None, default=value) for value in (True, False)] == [True, False]
     assert [switched_on(node(text), default=False) for text in ("[a]", "no", "off", "0", "0.0")] == [
         False,
         True,
@@ -183,7 +186,7 @@ def node(text: str) -> Node:
 def test_class_without_a_package() -> None:
     """A class is told apart at its last slash."""
     found = displays("Class: RobotModel", "Class: a/b/C", "Class: ''").displays
-    assert [(each.package, each.kind) for each in found] == [("", "RobotModel"), ("a/b", "C"), ("", "")]
+    assert [(display.package, display.kind) for display in found] == [("", "RobotModel"), ("a/b", "C"), ("", "")]
 
 
 def test_the_last_of_equal_keys_counts() -> None:

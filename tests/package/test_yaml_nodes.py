@@ -44,8 +44,8 @@ VALUES = st.recursive(
 def plain(node: Node) -> Any:
     """A node's values without their places."""
     if isinstance(node.value, dict):
-        return {key: plain(each) for key, each in node.value.items()}
-    return [plain(each) for each in node.value] if isinstance(node.value, list) else node.value
+        return {key: plain(item) for key, item in node.value.items()}
+    return [plain(item) for item in node.value] if isinstance(node.value, list) else node.value
 
 
 @settings(max_examples=300)
@@ -99,9 +99,9 @@ def test_places() -> None:
     found = {key: root.get(*key.split("/")) for key in ("ä", "list", "é")}
     items = found["list"].items if found["list"] is not None else []
     nodes = [*found.values(), *items, items[1].get("two"), items[1].get("drei")]
-    places = [(each.location.line, each.location.column) for each in nodes if each is not None]
+    places = [(node.location.line, node.location.column) for node in nodes if node is not None]
     assert places == [(2, 4), (4, 3), (6, 6), (4, 5), (5, 5), (5, 11), (5, 20)]
-    assert all(each is not None and each.location.path == "a.yaml" for each in nodes)
+    assert all(node is not None and node.location.path == "a.yaml" for node in nodes)
 
 
 def test_places_behind_a_byte_order_mark_and_with_windows_ends() -> None:
@@ -137,7 +137,7 @@ def test_faults(text: str, words: str, line: int, column: int) -> None:
 def test_quotes_are_told() -> None:
     """A text in quotes is told from a plain one."""
     root = read_yaml(b"a: 'true'\nb: true\nc: \"1\"\nd: |\n  1\n", "a.yaml")
-    assert {key: each.quoted for key, each in plain_items(root)} == {"a": True, "b": False, "c": True, "d": False}
+    assert {key: item.quoted for key, item in plain_items(root)} == {"a": True, "b": False, "c": True, "d": False}
 
 
 def plain_items(node: Node) -> list[tuple[str, Node]]:

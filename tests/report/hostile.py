@@ -79,7 +79,7 @@ BREAKING = ("box", "raw", "package", "setup", "launch", "frame", "task")  # what
 Texts = Mapping[str, str]
 
 
-def hand_in(folder: Path, texts: Texts) -> None:
+def write_submission(folder: Path, texts: Texts) -> None:
     """Write the reference solution with these texts in its slots; what has no text is as it should be."""
     for file in REFERENCE.rglob("*"):
         if file.is_file() and file.name != "expected.toml":

@@ -144,7 +144,7 @@ def json_structure(text: str) -> Any:
 
 
 def _tags(root: Any) -> list[str]:
-    return [each.tag for each in root.iter()]
+    return [element.tag for element in root.iter()]
 
 
 # A snippet is left out where it is long; of problems a report in other words has only those that nothing else tells.
@@ -153,10 +153,10 @@ _UNEQUAL = {"snippet", "problems"}
 
 def _shape(value: Any) -> Any:
     if isinstance(value, dict):
-        return {key: _shape(each) for key, each in value.items() if key not in _UNEQUAL}
-    if isinstance(value, list) and all(isinstance(each, str) for each in value):
+        return {key: _shape(item) for key, item in value.items() if key not in _UNEQUAL}
+    if isinstance(value, list) and all(isinstance(item, str) for item in value):
         return "lines"
-    return [_shape(each) for each in value] if isinstance(value, list) else type(value).__name__
+    return [_shape(item) for item in value] if isinstance(value, list) else type(value).__name__
 
 
 def markdown_text(text: str) -> str:
@@ -164,12 +164,15 @@ def markdown_text(text: str) -> str:
 
 
 def junit_text(text: str) -> str:
-    return "\n".join(piece for each in read_junit(text).iter() for piece in (*each.attrib.values(), each.text or ""))
+    return "\n".join(
+        piece for element in read_junit(text).iter() for piece in (*element.attrib.values(), element.text or "")
+    )
 
 
 def commands_text(text: str) -> str:
     return "\n".join(
-        f"{each.get('title')}\n{each.get('file')}:{each.get('line')}\n{each.data}" for each in read_commands(text)
+        f"{command.get('title')}\n{command.get('file')}:{command.get('line')}\n{command.data}"
+        for command in read_commands(text)
     )
 
 
@@ -194,21 +197,21 @@ def _values(value: Any) -> Iterator[str]:
     if isinstance(value, str):
         yield value
     elif isinstance(value, list):
-        for each in value:
-            yield from _values(each)
+        for item in value:
+            yield from _values(item)
     elif isinstance(value, dict):
         if {"path", "line"} <= set(value):
             yield f"{value['path']}:{value['line']}"
         if {"path", "lines"} <= set(value):
             yield f"{value['path']}:{value['lines']['begin']}"
-        for each in value.values():
-            yield from _values(each)
+        for item in value.values():
+            yield from _values(item)
 
 
 def gradescope_text(text: str) -> str:
     data = json.loads(text)
     return "\n".join(
-        (json_text(text), markdown_text(data["output"]), *(markdown_text(each["output"]) for each in data["tests"]))
+        (json_text(text), markdown_text(data["output"]), *(markdown_text(test["output"]) for test in data["tests"]))
     )
 
 

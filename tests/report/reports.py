@@ -44,7 +44,7 @@ def marked() -> Report:
     report = SAMPLES["launch-home-path"].grade()
     rulings: dict[str, ManualMark] = {}
     for status, share in (("failed", 1), ("passed", 0), ("pending", Decimal("0.5"))):
-        chosen = next(each for each in report.results if each.outcome.status == status)
+        chosen = next(result for result in report.results if result.outcome.status == status)
         rulings[chosen.criterion.id] = ManualMark(chosen.criterion.points * share, "Ada", "so it\nis")
-    results = tuple(each._replace(manual_mark=rulings.get(each.criterion.id)) for each in report.results)
+    results = tuple(result._replace(manual_mark=rulings.get(result.criterion.id)) for result in report.results)
     return replace(report, results=results)

@@ -21,11 +21,11 @@ MISTAKEN = "submissions/several-mistakes/my_robot.urdf"
 def result_of(report: Report) -> Any:
     """The data of a report: whole numbers, none of them a truth value, no score above its maximum, and sums that are right."""
     data = READ(render_classroom50(report, identity_from(os.environ)))
-    for each in (data, *data["tests"]):
-        assert {type(each["score"]), type(each["max-score"])} == {int}
-        assert 0 <= each["score"] <= each["max-score"]
+    for scored in (data, *data["tests"]):
+        assert {type(scored["score"]), type(scored["max-score"])} == {int}
+        assert 0 <= scored["score"] <= scored["max-score"]
     for key in ("score", "max-score"):
-        assert sum(each[key] for each in data["tests"]) == data[key]
+        assert sum(test[key] for test in data["tests"]) == data[key]
     scale = Decimal(data["max-score"]) / report.max_score
     assert data["score"] == report.score * scale
     return data
@@ -46,7 +46,7 @@ def test_every_criterion_is_a_test(name: str) -> None:
 def test_fractions_are_made_whole(tmp_path: Path) -> None:
     """Eighths are given in thousandths; what was skipped has not passed, though it is worth nothing."""
     data = result_of(half_points(tmp_path))
-    assert [(each["score"], each["max-score"], each["passed"]) for each in data["tests"]] == [
+    assert [(test["score"], test["max-score"], test["passed"]) for test in data["tests"]] == [
         (0, 500, False),
         (250, 250, True),
         (0, 0, False),

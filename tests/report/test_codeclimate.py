@@ -18,7 +18,7 @@ SEVERITIES = {"error": "major", "warning": "minor", "note": "info"}
 def issues(report: Report, base: Base = Base("lab/")) -> Any:  # noqa: B008  immutable
     """The issues of a report, whose fingerprints all differ."""
     found = READ(render_codeclimate(report, base))
-    assert len({each["fingerprint"] for each in found}) == len(found)
+    assert len({issue["fingerprint"] for issue in found}) == len(found)
     return found
 
 
@@ -27,14 +27,14 @@ def test_every_finding_is_an_issue(name: str) -> None:
     """Its rule, its severity, its words and its line in the repository are those of the finding."""
     report = SAMPLES[name].grade()
     found = findings(report, Base("lab/"))
-    for issue, each in zip(issues(report), found, strict=True):
-        assert (issue["check_name"], issue["severity"]) == (each.rule, SEVERITIES[each.level])
-        assert each.text.replace("\n", " ") in issue["description"]
+    for issue, finding in zip(issues(report), found, strict=True):
+        assert (issue["check_name"], issue["severity"]) == (finding.rule, SEVERITIES[finding.level])
+        assert finding.text.replace("\n", " ") in issue["description"]
         assert issue["location"]["path"].startswith("lab")
-        if each.location is not None:
-            assert issue["location"] == {"path": each.location.path, "lines": {"begin": each.location.line}}
-        if each.lost:
-            assert f"({each.lost} point{'' if each.lost == 1 else 's'} lost)" in issue["description"]
+        if finding.location is not None:
+            assert issue["location"] == {"path": finding.location.path, "lines": {"begin": finding.location.line}}
+        if finding.lost:
+            assert f"({finding.lost} point{'' if finding.lost == 1 else 's'} lost)" in issue["description"]
 
 
 def test_nothing_to_mend_is_an_empty_list() -> None:

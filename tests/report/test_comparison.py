@@ -23,7 +23,9 @@ def turned(status: Status, message: str = "so it is") -> Change:
 def changed(report: Report, **changes: Change) -> Report:
     """A report with other results for some criteria, which are named with underscores."""
     known = {name.replace("_", "-"): change for name, change in changes.items()}
-    results = [known[each.criterion.id](each) if each.criterion.id in known else each for each in report.results]
+    results = [
+        known[result.criterion.id](result) if result.criterion.id in known else result for result in report.results
+    ]
     return replace(report, results=tuple(results))
 
 
@@ -76,7 +78,7 @@ def test_nothing_has_changed() -> None:
 
 def test_many_are_counted() -> None:
     """Of many criteria the first eight are named."""
-    after = replace(SHORT, results=tuple(turned("skipped")(each) for each in SHORT.results))
+    after = replace(SHORT, results=tuple(turned("skipped")(result) for result in SHORT.results))
     score, line = comparison_lines(SHORT, after)
     assert score == "64 -> 0 of 70 points (-64)"
     assert line.startswith("now skipped: urdf-loads (-3), base-box (-2), ")
@@ -95,8 +97,8 @@ def test_another_rubric() -> None:
         f"with other points: {second.criterion.id} (+0.5)",
         f"removed: {first.criterion.id} (-3)",
     ]
-    failing = next(each for each in SHORT.results if each.outcome.status == "failed")
-    cheaper = {"lidar_frame": lambda each: each._replace(criterion=replace(failing.criterion, points=Decimal(5)))}
+    failing = next(result for result in SHORT.results if result.outcome.status == "failed")
+    cheaper = {"lidar_frame": lambda item: item._replace(criterion=replace(failing.criterion, points=Decimal(5)))}
     assert comparison_lines(SHORT, changed(SHORT, **cheaper)) == [
         "64 of 70 -> 64 of 69 points",
         "with other points: lidar-frame",

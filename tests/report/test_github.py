@@ -34,10 +34,14 @@ def test_each_finding_is_on_its_line() -> None:
     report = SAMPLES["several-mistakes"].grade()
     lines = (ROOT / "submissions/several-mistakes/my_robot.urdf").read_text(encoding="utf-8").splitlines()
     lost = sorted(
-        (each for each in report.results if each.outcome.status == "failed"), key=lambda each: -each.criterion.points
+        (result for result in report.results if result.outcome.status == "failed"),
+        key=lambda item: -item.criterion.points,
     )
     summary, *found = annotated(report)
-    assert [each.get("title") for each in found][:2] == ["base-green (6 points lost)", "lidar-frame (6 points lost)"]
+    assert [command.get("title") for command in found][:2] == [
+        "base-green (6 points lost)",
+        "lidar-frame (6 points lost)",
+    ]
     assert len(found) == len(lost) == 7
     for told, result in zip(found, lost, strict=True):
         assert told.name == "error"
@@ -73,21 +77,23 @@ def test_no_more_than_are_shown_and_all_are_counted(name: str) -> None:
     shown = annotated(report)
     assert shown[0].get("title") == f"{report.score} / {report.max_score} points: {report.rubric.title}"
     for level, called in NAMES.items():
-        own = [each for each in found if each.level == level]
-        told = [each for each in shown[1:] if each.name == called]
+        own = [command for command in found if command.level == level]
+        told = [command for command in shown[1:] if command.name == called]
         assert len(told) + (called == "notice") <= MOST
-        rest = [each for each in told if "more" in (each.get("title") or "").split(" (")[0].split()]
+        rest = [command for command in told if "more" in (command.get("title") or "").split(" (")[0].split()]
         more = int((rest[0].get("title") or "").split()[0]) if rest else 0
         assert len(told) - len(rest) + more == len(own)
         assert len(told) == min(len(own), MOST - (called == "notice"))
-        words = "\n".join(f"{each.get('title')} {each.data}" for each in told)
-        assert all(each.rule in words for each in own)
-        if rest and any(each.lost for each in own):
-            lost = sum((each.lost for each in own[len(told) - 1 :]), Decimal(0))
+        words = "\n".join(f"{command.get('title')} {command.data}" for command in told)
+        assert all(finding.rule in words for finding in own)
+        if rest and any(finding.lost for finding in own):
+            lost = sum((finding.lost for finding in own[len(told) - 1 :]), Decimal(0))
             assert f"{more} more ({lost} point" in (rest[0].get("title") or "")
     words = shown[0].data
     assert all(
-        each.criterion.id in words for each in report.results if each.is_open or each.outcome.status == "skipped"
+        result.criterion.id in words
+        for result in report.results
+        if result.is_open or result.outcome.status == "skipped"
     )
 
 
@@ -99,7 +105,7 @@ def test_ten_are_all_shown_and_eleven_are_nine_and_the_rest() -> None:
             Problem(UNDEFINED_MATERIAL, f"message {number}", Location("a.urdf", number, 1))
             for number in range(1, count + 1)
         )
-        found = [each for each in annotated(replace(report, problems=problems)) if each.name == "warning"]
+        found = [command for command in annotated(replace(report, problems=problems)) if command.name == "warning"]
         assert len(found) == MOST
         assert found[-1].get("title") == last
 

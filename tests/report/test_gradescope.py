@@ -18,8 +18,8 @@ READ = read_by_schema("gradescope")
 def results(report: Report) -> Any:
     """The data of a report; each of its scores is an exact decimal, and their sum is the score."""
     data = READ(render_gradescope(report))
-    assert _sum(each.get("score", 0) for each in data["tests"]) == _exact(data["score"]) == report.score
-    most = _sum(each.get("max_score", 0) for each in data["tests"])
+    assert _sum(test.get("score", 0) for test in data["tests"]) == _exact(data["score"]) == report.score
+    most = _sum(test.get("max_score", 0) for test in data["tests"])
     assert most + _exact(data["extra_data"]["pending"]) == report.max_score
     return data
 
@@ -61,7 +61,7 @@ def test_one_part_alone_keeps_its_numbers() -> None:
 def test_points_are_exact(tmp_path: Path) -> None:
     """Halves, quarters and eighths add up; a test that is worth nothing has a score of 0."""
     data = results(half_points(tmp_path))
-    assert [(each["score"], each["max_score"], each["status"]) for each in data["tests"]] == [
+    assert [(test["score"], test["max_score"], test["status"]) for test in data["tests"]] == [
         (0, 0.5, "failed"),
         (0.25, 0.25, "passed"),
         (0, 0, "failed"),
@@ -91,7 +91,7 @@ def test_the_output_is_markdown_that_stands_for_itself() -> None:
     data = results(SAMPLES["several-mistakes"].grade())
     assert read_as_github(data["output"]).findtext("h1") == "42 / 70 points: IRP Lab 6: a wheeled base"
     by_id = {test["tags"][0]: read_as_github(test["output"]) for test in data["tests"]}
-    assert [each.tag for each in by_id["base-green"]] == ["p", "p", "p", "pre", "p"]
+    assert [element.tag for element in by_id["base-green"]] == ["p", "p", "p", "pre", "p"]
     assert by_id["base-green"].findtext("pre/code") == '6 | <color rgba="0 1 0 1" />\n  |        --------------\n'
     assert data["visibility"] == "visible"
     assert data["stdout_visibility"] == "hidden"

@@ -21,7 +21,7 @@ from grader.grading.report import Report
 from grader.report.formats import Format, render
 from grader.report.locations import Base
 from grader.submission.submission import read_submission
-from tests.report.hostile import BREAKING, PIECES, SLOTS, TEXT, UNASKED, hand_in, name_of
+from tests.report.hostile import BREAKING, PIECES, SLOTS, TEXT, UNASKED, name_of, write_submission
 from tests.report.readers import reader
 from tests.report.recast import recast
 from tests.report.workflow_commands import commands
@@ -38,13 +38,13 @@ FENCES = {"answer": "`" * 300 + "\n![x](http://e.org/y.png)\n# h\n", "file": "`"
 def is_harmless(text: str, kind: Format | None = None) -> None:
     """UTF-8, all of it visible, and of GitHub's commands none but annotations, which only their own format holds."""
     text.encode()
-    unseen = {each for each in text if not each.isprintable()} - {"\n"}
+    unseen = {character for character in text if not character.isprintable()} - {"\n"}
     assert unseen <= ({"\u2060"} if kind is Format.MARKDOWN else set())  # it keeps mentions from being found
     found = commands(text) if kind is not Format.MARKDOWN else []
     assert kind is Format.GITHUB or not found
-    assert {each.name for each in found} <= ANNOTATIONS
-    for each in found:
-        keys = [key for key, _ in each.properties]
+    assert {command.name for command in found} <= ANNOTATIONS
+    for command in found:
+        keys = [key for key, _ in command.properties]
         assert set(keys) <= PROPERTIES
         assert len(set(keys)) == len(keys)
 
@@ -70,9 +70,9 @@ def written(texts: Mapping[str, str]) -> Report:
     """The report on a hand-in with these texts, from files on disk."""
     with tempfile.TemporaryDirectory() as folder:
         place = Path(os.fsdecode(os.path.join(os.fsencode(folder), name_of(texts.get("note", "x")))))
-        hand_in(place, texts)
+        write_submission(place, texts)
         report = grade(LAB6, opened(place))
-        assert not report.counts("errored"), [each.traceback for each in report.results if each.traceback]
+        assert not report.counts("errored"), [result.traceback for result in report.results if result.traceback]
         holds(report, Base(f"{place.name}/"))
         return report
 
@@ -145,7 +145,7 @@ def test_what_is_printed_in_a_job_is_harmless(texts: Mapping[str, str]) -> None:
     """Reports, warnings and inspections hold no command; standard error holds annotations, and the summary is Markdown."""
     with tempfile.TemporaryDirectory() as folder:
         place = Path(os.fsdecode(os.path.join(os.fsencode(folder), name_of(texts.get("note", "x")))))
-        hand_in(place, texts)
+        write_submission(place, texts)
         summary = Path(folder) / "summary"
         job = {"GITHUB_ACTIONS": "true", "GITHUB_WORKSPACE": folder, "GITHUB_STEP_SUMMARY": str(summary)}
         code, out, err = cli("grade", str(place), **job)
@@ -174,5 +174,5 @@ def test_a_path_that_is_not_there_is_told_harmlessly(text: str) -> None:
         code, out, err = cli("grade", f"{folder}/{name}", **job)
         assert (code, out) == (2, "")
         is_harmless(err, Format.GITHUB)
-        assert [each.get("title") for each in commands(err)] == ["Nothing was graded"]
+        assert [command.get("title") for command in commands(err)] == ["Nothing was graded"]
         is_harmless(summary.read_text(encoding="utf-8"), Format.MARKDOWN)

@@ -63,7 +63,9 @@ def test_reports_are_valid(name: str) -> None:
 @pytest.mark.slow
 def test_reports_and_inspections_of_every_edge_case_are_valid() -> None:
     """Whatever the file: no exception, no NaN, no invalid Unicode."""
-    report_schema, inspect_schema = (jsonschema.Draft202012Validator(each) for each in (REPORT_SCHEMA, INSPECT_SCHEMA))
+    report_schema, inspect_schema = (
+        jsonschema.Draft202012Validator(schema) for schema in (REPORT_SCHEMA, INSPECT_SCHEMA)
+    )
     for case in EDGE_CASES:
         if len(case.text) > 20_000:
             continue

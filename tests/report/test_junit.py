@@ -45,8 +45,8 @@ def test_every_criterion_is_a_test_case(name: str) -> None:
     assert sum(suite.skipped for suite in xml) == report.counts("skipped", "pending")
     assert [suite.name for suite in xml] == [report.rubric.part(part).title for part in report.parts]
     for part, suite in zip(report.parts, xml, strict=True):
-        own = [each for each in report.results if each.criterion.part == part]
-        assert (suite.tests, suite.failures) == (len(own), sum(each.outcome.status == "failed" for each in own))
+        own = [result for result in report.results if result.criterion.part == part]
+        assert (suite.tests, suite.failures) == (len(own), sum(result.outcome.status == "failed" for result in own))
     for result, case in cases(report):
         _is_equal(result, case)
 
@@ -55,10 +55,10 @@ def _is_equal(result: Result, case: Any) -> None:
     criterion, outcome = result.criterion, result.outcome
     assert case.name == f"{criterion.title} ({criterion.id})"
     assert case.classname == f"lab6.{criterion.part}"
-    points = {each.name: each.value for each in case.properties()}["points"]
+    points = {entry.name: entry.value for entry in case.properties()}["points"]
     assert tuple(map(Decimal, points.split("/"))) == (result.points, criterion.points)
     wanted = KINDS[outcome.status]
-    assert [type(each) for each in case.result] == ([wanted] if wanted else [])
+    assert [type(result) for result in case.result] == ([wanted] if wanted else [])
     for found in case.result:
         assert found.type == outcome.status
         assert found.text.startswith(found.message + "\n")
@@ -71,7 +71,7 @@ def test_the_whole_submission_is_in_the_properties() -> None:
     """Score, what waits, and where all this comes from; strings, and exact."""
     report = SAMPLES["reference"].grade()
     (first, *others) = read_back(report)
-    assert {each.name: each.value for each in first.properties()} == {
+    assert {entry.name: entry.value for entry in first.properties()} == {
         "score": "90",
         "max_score": "100",
         "pending": "10",
@@ -93,12 +93,12 @@ def test_a_file_in_an_archive_has_no_line_in_the_repository() -> None:
 def test_what_a_person_has_decided_counts() -> None:
     """Full points by hand are no failure, whatever the check has found; fewer are one."""
     found = [(result, case.result) for result, case in cases(marked()) if result.manual_mark is not None]
-    assert sorted((result.outcome.status, [type(each) for each in told]) for result, told in found) == [
+    assert sorted((result.outcome.status, [type(item) for item in told]) for result, told in found) == [
         ("failed", []),
         ("passed", [Failure]),
         ("pending", [Failure]),
     ]
-    assert {each.type for _, told in found for each in told} == {"manual mark"}
+    assert {item.type for _, told in found for item in told} == {"manual mark"}
 
 
 def test_a_fault_of_ours_is_an_error_and_points_are_exact(tmp_path: Path) -> None:
@@ -106,7 +106,7 @@ def test_a_fault_of_ours_is_an_error_and_points_are_exact(tmp_path: Path) -> Non
     report = half_points(tmp_path)
     shown = [next(iter(case.properties())).value for _, case in cases(report)]
     assert shown == ["0/0.5", "0.25/0.25", "0/0", "0/0", "0/0.125"]
-    assert [type(each).__name__ for _, case in cases(report) for each in case.result] == [
+    assert [type(result).__name__ for _, case in cases(report) for result in case.result] == [
         "Failure",
         "Failure",
         "Skipped",

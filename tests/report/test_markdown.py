@@ -39,19 +39,22 @@ def test_the_structure_is_that_of_the_report(name: str) -> None:
     (top,) = root.findall("h1")
     assert top.text_content() == f"{report.score} / {report.max_score} points: {report.rubric.title}"
     more = ("Evidence", "Other problems in the file", "Other problems in the files")
-    parts = [each.text_content() for each in root.findall("h2")]
-    assert [each.rpartition(" (")[0] for each in parts if each not in more] == [
+    parts = [heading.text_content() for heading in root.findall("h2")]
+    assert [part.rpartition(" (")[0] for part in parts if part not in more] == [
         report.rubric.part(part).title for part in report.parts
     ]
-    assert all(GROUP.fullmatch(each.text_content()) for each in root.findall("h3"))
-    items = [each.text_content().strip().split("\n")[0] for each in root.iterfind(".//li")]
-    criteria = [each for each in items if ITEM.fullmatch(each)]
+    assert all(GROUP.fullmatch(heading.text_content()) for heading in root.findall("h3"))
+    items = [element.text_content().strip().split("\n")[0] for element in root.iterfind(".//li")]
+    criteria = [item for item in items if ITEM.fullmatch(item)]
     for shown, result in zip(criteria, report.results, strict=True):
         status = result.outcome.status
         assert (result.criterion.title in shown) == (status in ("passed", "pending"))  # else it would read as a fact
         assert (result.criterion.id in shown) == (status != "passed")
-    assert {each.tag for each in root.iter()} <= ELEMENTS
-    assert any(_plain(each.text_content()).endswith(f"sha256 {report.rubric.sha256}") for each in root.findall("p")[:4])
+    assert {element.tag for element in root.iter()} <= ELEMENTS
+    assert any(
+        _plain(paragraph.text_content()).endswith(f"sha256 {report.rubric.sha256}")
+        for paragraph in root.findall("p")[:4]
+    )
 
 
 def _plain(text: str) -> str:
@@ -88,7 +91,7 @@ def test_a_cut_report_keeps_its_limit(name: str, most: int) -> None:
 
 
 def _contents(text: str) -> list[tuple[str, str]]:
-    return [(each.type, each.content) for each in read_markdown(text) if each.content]
+    return [(token.type, token.content) for token in read_markdown(text) if token.content]
 
 
 # Where text may stand, and what stands before it there.
@@ -105,9 +108,9 @@ def test_escaped_text_is_shown_as_it_is(layout: str, text: str) -> None:
     root = read_as_github(written)
     assert _plain(root.text_content()).strip().removeprefix(LAYOUTS[layout]).strip() == text.strip()
     ours = read_as_github(layout.format("plain"))
-    assert [each.tag for each in root.iter()] == [each.tag for each in ours.iter()]
-    assert not {each.type for each in read_markdown(written)} - {
-        each.type for each in read_markdown(layout.format("plain"))
+    assert [element.tag for element in root.iter()] == [element.tag for element in ours.iter()]
+    assert not {token.type for token in read_markdown(written)} - {
+        token.type for token in read_markdown(layout.format("plain"))
     }
     assert not re.search(r"@\w|#\d", root.text_content())
 
@@ -119,7 +122,7 @@ def test_code_in_a_line_is_shown_as_it_is(text: str) -> None:
     """Backticks in it do not end it; more of them than GitHub takes for code come as text."""
     root = read_as_github(f"- x {code(text)} y\n")
     is_code = "`" * 80 not in text
-    assert [each.tag for each in root.iter()] == ["div", "ul", "li", *(["code"] if is_code else [])]
+    assert [element.tag for element in root.iter()] == ["div", "ul", "li", *(["code"] if is_code else [])]
     assert _plain(root.text_content()).strip() == (f"x {text} y" if is_code else f"x {text.strip()} y")
 
 
@@ -129,7 +132,7 @@ def test_code_in_a_line_is_shown_as_it_is(text: str) -> None:
 def test_a_block_of_code_ends_where_we_end_it(lines: list[str]) -> None:
     """Whatever stands in it, at any length: GitHub counts no more than 255 backticks of a fence."""
     root = read_as_github(f"- x\n\n{indent(fenced(lines), '  ')}\n\ny\n")
-    assert [each.tag for each in root.iter()] == ["div", "ul", "li", "p", "pre", "code", "p"]
+    assert [element.tag for element in root.iter()] == ["div", "ul", "li", "p", "pre", "code", "p"]
     assert root.find(".//code").text_content() == "".join(f"{line}\n" for line in lines)
 
 

@@ -34,9 +34,9 @@ def facts(report: Report) -> Iterator[Fact]:
         for spellings in ((problem.code,), (message,), places):
             yield Fact("problem", spellings, problem.code)
     submission = report.submission
-    yield from (Fact("note", (each,)) for each in report.notes)
-    yield from (Fact("aside", (words,)) for each in submission.other_candidates for words in each)
-    yield from (Fact("aside", (each,)) for each in submission.ignored)
+    yield from (Fact("note", (note,)) for note in report.notes)
+    yield from (Fact("aside", (words,)) for candidate in submission.other_candidates for words in candidate)
+    yield from (Fact("aside", (path,)) for path in submission.ignored)
     if submission.package is not None and any(report.rubric.part(part).needs == "package" for part in report.parts):
         yield Fact("package", (submission.package.folder or submission.package.name,))
     score, most, waits = map(format_points, (report.score, report.max_score, report.pending))
@@ -81,9 +81,9 @@ def missing_from(kind: Format, report: Report) -> Iterator[Fact]:
         text = render(report, kind)
     shown = _plain(READERS[kind].text(text))
     told = read_commands(text) if kind is Format.GITHUB else []
-    named = {name for each in told for name in each.data.partition("See the report for: ")[2].split(", ")} - {""}
+    named = {name for command in told for name in command.data.partition("See the report for: ")[2].split(", ")} - {""}
     for fact in facts(report):
-        if fact.rule not in named and not any(_plain(each) in shown for each in fact.spellings):
+        if fact.rule not in named and not any(_plain(spelling) in shown for spelling in fact.spellings):
             yield fact
 
 

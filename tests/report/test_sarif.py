@@ -43,7 +43,7 @@ def run_of(report: Report, base: Base = Base(FOLDER)) -> Any:  # noqa: B008  imm
         (location,) = result["locations"]
         _is_relative(location["physicalLocation"])
     prints = [result["partialFingerprints"]["primaryLocationLineHash"] for result in run["results"]]
-    assert all(re.fullmatch("[0-9a-f]{16}:[1-9][0-9]*", each) for each in prints)
+    assert all(re.fullmatch("[0-9a-f]{16}:[1-9][0-9]*", fingerprint) for fingerprint in prints)
     assert len(set(prints)) == len(prints) <= MOST
     return run
 
@@ -64,12 +64,12 @@ def _texts(value: Any) -> Iterator[str]:
     if isinstance(value, str):
         yield value
     elif isinstance(value, list):
-        for each in value:
-            yield from _texts(each)
+        for item in value:
+            yield from _texts(item)
     elif isinstance(value, dict):
-        for key, each in value.items():
+        for key, item in value.items():
             if key != "properties":
-                yield from _texts(each)
+                yield from _texts(item)
 
 
 @pytest.mark.parametrize("name", SAMPLES)
@@ -78,15 +78,15 @@ def test_every_finding_is_a_result(name: str) -> None:
     report = SAMPLES[name].grade()
     run = run_of(report)
     found = findings(report, Base(FOLDER))
-    assert [each["ruleId"] for each in run["results"]] == [each.rule for each in found]
-    for told, each in zip(run["results"], found, strict=True):
+    assert [result["ruleId"] for result in run["results"]] == [finding.rule for finding in found]
+    for told, finding in zip(run["results"], found, strict=True):
         place = told["locations"][0]["physicalLocation"]
-        assert told["level"] == each.level
+        assert told["level"] == finding.level
         assert unquote(place["artifactLocation"]["uri"]).startswith(FOLDER.rstrip("/"))
-        if each.location is not None:
-            assert unquote(place["artifactLocation"]["uri"]) == each.location.path
-            assert place["region"]["startLine"] == each.location.line
-    lost = sum(Decimal(str(each.get("properties", {}).get("points", 0))) for each in run["results"])
+        if finding.location is not None:
+            assert unquote(place["artifactLocation"]["uri"]) == finding.location.path
+            assert place["region"]["startLine"] == finding.location.line
+    lost = sum(Decimal(str(result.get("properties", {}).get("points", 0))) for result in run["results"])
     assert report.score + lost + report.pending == report.max_score  # what is skipped counts for what it is due to
 
 
@@ -94,8 +94,8 @@ def test_what_is_quoted_is_what_is_meant() -> None:
     """The region of a file from its first column to the one before its last is the snippet, counted in characters."""
     text = MISTAKEN.read_text(encoding="utf-8").replace("<origin", "<!-- \U0001f600 \u00fc --><origin")
     report = grade(LAB6, read_submission(text.encode(), identity="a", path="my_robot.urdf"))
-    regions = [each["locations"][0]["physicalLocation"]["region"] for each in run_of(report)["results"]]
-    quoted = [each for each in regions if "snippet" in each]
+    regions = [result["locations"][0]["physicalLocation"]["region"] for result in run_of(report)["results"]]
+    quoted = [region for region in regions if "snippet" in region]
     assert len(quoted) == 6
     for region in quoted:
         line = text.splitlines()[region["startLine"] - 1]
@@ -109,7 +109,8 @@ def test_a_finding_is_known_again_where_it_has_moved() -> None:
     def prints(data: bytes) -> dict[str, str]:
         report = grade(LAB6, read_submission(data, identity="a", path="my_robot.urdf"))
         return {
-            each["ruleId"]: each["partialFingerprints"]["primaryLocationLineHash"] for each in run_of(report)["results"]
+            result["ruleId"]: result["partialFingerprints"]["primaryLocationLineHash"]
+            for result in run_of(report)["results"]
         }
 
     before = prints(text)
@@ -126,7 +127,7 @@ def test_no_more_results_than_are_shown() -> None:
     run = run_of(replace(report, problems=problems))
     assert len(run["results"]) == MOST
     assert run["properties"]["leftOut"] == 107
-    assert [each["ruleId"] for each in run["results"][:2]] == ["base-green", "lidar-frame"]
+    assert [result["ruleId"] for result in run["results"][:2]] == ["base-green", "lidar-frame"]
 
 
 def test_a_file_in_one_long_line_stays_small() -> None:
@@ -154,7 +155,9 @@ def test_the_rest_of_the_report_is_in_the_properties() -> None:
     said = run["properties"]
     assert (said["score"], said["maxScore"], said["pending"]) == (90, 100, 10)
     assert said["rubric"] == {"id": "lab6", "sha256": report.rubric.sha256}
-    assert [each["status"] for each in said["criteria"]] == [each.outcome.status for each in report.results]
+    assert [criterion["status"] for criterion in said["criteria"]] == [
+        result.outcome.status for result in report.results
+    ]
     assert run["automationDetails"]["id"] == "grader/lab6/"
     assert run["columnKind"] == "unicodeCodePoints"
 
@@ -162,6 +165,6 @@ def test_the_rest_of_the_report_is_in_the_properties() -> None:
 def test_a_message_holds_no_link() -> None:
     """Viewers make links of what is written as in Markdown, and leave everything else as it is."""
     report = recast(SAMPLES["several-mistakes"].grade(), lambda: "[x](http://e.org) ![y](z)")
-    messages = [each["message"]["text"] for each in run_of(report)["results"]]
-    assert all("[x]" in each for each in messages)
-    assert not any("](" in each for each in messages)
+    messages = [result["message"]["text"] for result in run_of(report)["results"]]
+    assert all("[x]" in message for message in messages)
+    assert not any("](" in message for message in messages)

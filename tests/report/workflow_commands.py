@@ -31,7 +31,7 @@ class Command(NamedTuple):
 
 def commands(log: str) -> list[Command]:
     """Every command in a log, in either of the two forms that a runner knows."""
-    return [each for line in re.split("\r\n|\r|\n", log) for each in _commands(line)]
+    return [_command for line in re.split("\r\n|\r|\n", log) for _command in _commands(line)]
 
 
 def _commands(line: str) -> Iterator[Command]:
@@ -62,7 +62,7 @@ def _command(inside: str, separator: str, escapes: Sequence[tuple[str, str]], da
     name, _, listed = inside.partition(" ")
     if name.lower() not in REGISTERED:
         return None
-    pairs = (each.partition("=") for each in listed.strip().split(separator))
+    pairs = (item.partition("=") for item in listed.strip().split(separator))
     properties = tuple((key, _unescaped(value, escapes)) for key, _, value in pairs if key and value)
     return Command(name.lower(), properties, data)
 

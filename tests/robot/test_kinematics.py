@@ -37,7 +37,7 @@ def joint(ends: str, kind: str = "fixed", **more: Any) -> Joint:
 
 def robot(*joints: Joint, alone: str = "") -> Robot:
     """A robot of these joints, with the links that they name in this order, and others."""
-    names = dict.fromkeys([*(end for each in joints for end in (each.parent, each.child)), *alone])
+    names = dict.fromkeys([*(end for joint in joints for end in (joint.parent, joint.child)), *alone])
     return Robot("r", tuple(Link(name) for name in names if name), joints)
 
 
@@ -52,10 +52,10 @@ def transform(origin: Origin) -> Transform:
     return Transform(rotation_from_rpy(origin.rpy), origin.xyz)
 
 
-def motion(each: Joint, position: float) -> Transform:
+def motion(joint: Joint, position: float) -> Transform:
     """What a joint of one axis, or none, adds to its origin."""
-    x, y, z = unit(each.axis or Z) or Z
-    match each.type:
+    x, y, z = unit(joint.axis or Z) or Z
+    match joint.type:
         case "continuous":
             return Transform(rotation_about((x, y, z), position))
         case "prismatic":
@@ -220,7 +220,7 @@ def test_a_mimic_that_is_moved_itself_does_not_follow() -> None:
         joint("ad", "prismatic", mimic=Mimic("ac", 3.0)),
     )
     configuration = Configuration(following, {"ab": 1.0, "ac": 5.0})
-    assert [configuration.pose(each).translation[0] for each in "bcd"] == [1.0, 5.0, 15.0]
+    assert [configuration.pose(name).translation[0] for name in "bcd"] == [1.0, 5.0, 15.0]
     assert Configuration(following, {"ab": 1.0}).moved("ac", 0.0).pose("d").translation[0] == 0.0
 
 
@@ -231,9 +231,9 @@ def test_mimics_in_a_circle_stand_still(length: int) -> None:
         Joint(f"j{index}", "prismatic", "a", f"b{index}", mimic=Mimic(f"j{(index + 1) % length}", 2.0, 1.0))
         for index in range(length)
     ]
-    names = ("a", *(each.child for each in circle))
+    names = ("a", *(joint.child for joint in circle))
     configuration = Configuration(Robot("r", tuple(map(Link, names)), tuple(circle)))
-    assert all(configuration.pose(each.child) == IDENTITY for each in circle)
+    assert all(configuration.pose(joint.child) == IDENTITY for joint in circle)
 
 
 def test_a_circle_of_mimics_is_opened_by_a_position() -> None:
@@ -242,7 +242,7 @@ def test_a_circle_of_mimics_is_opened_by_a_position() -> None:
         joint("ab", "prismatic", mimic=Mimic("ac", 2.0)), joint("ac", "prismatic", mimic=Mimic("ab", 3.0, 1.0))
     )
     configuration = Configuration(circle, {"ab": 1.0})
-    assert [configuration.pose(each).translation[0] for each in "bc"] == [1.0, 4.0]
+    assert [configuration.pose(name).translation[0] for name in "bc"] == [1.0, 4.0]
 
 
 def test_a_mimic_of_a_missing_joint_is_at_its_offset() -> None:
@@ -282,16 +282,16 @@ def trees(draw: st.DrawFn) -> Robot:
 @given(tree=trees(), draw=st.data())
 def test_poses_are_products_along_the_tree(tree: Robot, draw: st.DataObject) -> None:
     """A child's pose is its parent's, the joint's origin and the joint's motion, in whichever order one asks."""
-    positions = {each.name: draw.draw(angles) for each in tree.joints if each.type != "fixed"}
+    positions = {joint.name: draw.draw(angles) for joint in tree.joints if joint.type != "fixed"}
     configuration = Configuration(tree, positions)
     assert configuration.roots == ("l0",)
     assert configuration.pose("l0") == IDENTITY
-    for each in draw.draw(st.permutations(tree.joints)):
-        assert each.origin is not None
-        step = transform(each.origin) @ motion(each, positions.get(each.name, 0.0))
-        expected = configuration.pose(each.parent) @ step
-        assert near(configuration.pose(each.child), expected, within=1e-8)
-        assert configuration.root_of(each.child) == "l0"
+    for joint in draw.draw(st.permutations(tree.joints)):
+        assert joint.origin is not None
+        step = transform(joint.origin) @ motion(joint, positions.get(joint.name, 0.0))
+        expected = configuration.pose(joint.parent) @ step
+        assert near(configuration.pose(joint.child), expected, within=1e-8)
+        assert configuration.root_of(joint.child) == "l0"
 
 
 @given(tree=trees(), draw=st.data())
@@ -331,8 +331,8 @@ def test_chains_lead_down(tree: Robot, draw: st.DataObject) -> None:
     link, above = draw.draw(links), draw.draw(links)
     chain = configuration.chain(link)
     assert chain is not None
-    passed = ["l0", *(each.child for each in chain)]
-    assert [each.parent for each in chain] == passed[:-1]
+    passed = ["l0", *(joint.child for joint in chain)]
+    assert [joint.parent for joint in chain] == passed[:-1]
     assert passed[-1] == link
     part = configuration.chain(link, above=above)
     assert part == (chain[passed.index(above) :] if above in passed else None)
@@ -407,7 +407,7 @@ def test_an_unreadable_origin_begins_a_frame_group() -> None:
         with pytest.raises(MissingElement, match=r"is undefined: its origin cannot be read .joint 'bc'"):
             configuration.pose(one, relative_to=other)
     assert configuration.root_of("e") == "a"
-    assert [each.name for each in configuration.between("e", "a")] == ["ce", "bc", "ab"]
+    assert [joint.name for joint in configuration.between("e", "a")] == ["ce", "bc", "ab"]
 
 
 def test_two_frame_groups_name_a_joint_between_them() -> None:
@@ -567,7 +567,7 @@ def assert_finite_or_missing(configuration: Configuration) -> None:
                 pose = configuration.pose(link, relative_to=relative_to)
             except MissingElement:
                 continue
-            assert all(isfinite(each) for each in (*pose.rotation, *pose.translation)), (link, relative_to)
+            assert all(isfinite(number) for number in (*pose.rotation, *pose.translation)), (link, relative_to)
 
 
 huge = st.sampled_from((1.7e308, -1.7e308, 1e308, 1e300, 1e154, 1.0, 0.0, -1e-300)) | st.floats(

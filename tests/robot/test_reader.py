@@ -82,22 +82,24 @@ def test_whatever_was_read_can_be_asked(raw: bytes) -> None:
 def test_a_problem_is_found_where_it_is(sample: Sample) -> None:
     """Its line and column are those of the attribute or tag that is meant, and it brings no other problems with it."""
     read = read_urdf(sample.data, "sample.urdf")
-    places = [(each.location.line, each.location.column) for each in read.problems if each.code == sample.code]
-    assert sample.place in places, [(each.code, each.message, each.location) for each in read.problems]
+    places = [
+        (problem.location.line, problem.location.column) for problem in read.problems if problem.code == sample.code
+    ]
+    assert sample.place in places, [(problem.code, problem.message, problem.location) for problem in read.problems]
     assert set(codes(read)) == {sample.code, *sample.also.split()}
 
 
 @pytest.mark.parametrize(
     "sample",
-    [each for each in SAMPLES if each.code not in _AT_THE_TOP and "<?xml" not in each.marked[:6]],
+    [sample for sample in SAMPLES if sample.code not in _AT_THE_TOP and "<?xml" not in sample.marked[:6]],
     ids=lambda sample: f"{sample.code}-{sample.name}",
 )
 def test_a_problem_stays_where_it_is_in_another_file(sample: Sample) -> None:
     """Three lines of comment in front, with CR LF, move it by three lines and change nothing else."""
     here = read_urdf(sample.data).problems
     there = read_urdf(b"<!--\r\n\r\n-->\r\n" + sample.data.replace(b"\n", b"\r\n")).problems
-    assert [(each.code, each.location.line - 3, each.location.column) for each in there] == [
-        (each.code, each.location.line, each.location.column) for each in here
+    assert [(problem.code, problem.location.line - 3, problem.location.column) for problem in there] == [
+        (problem.code, problem.location.line, problem.location.column) for problem in here
     ]
 
 
@@ -228,7 +230,7 @@ def test_several_malformed_tags_are_found_in_one_run() -> None:
     """A broken tag does not hide the next one."""
     text = robot('\n<link name=a/>\n<link name="b", c="d"/>\n<parent="x"/>\n<link name="e"/>\n')
     read = read_urdf(text.encode())
-    assert [(each.code, each.location.line) for each in read.problems] == [
+    assert [(problem.code, problem.location.line) for problem in read.problems] == [
         ("URDF001", 2),
         ("URDF001", 3),
         ("URDF001", 4),

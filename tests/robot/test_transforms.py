@@ -216,7 +216,7 @@ def test_unit_vectors_of_any_size(vector: Vector) -> None:
         return
     assert found is not None
     assert hypot(*found) == pytest.approx(1.0, abs=1e-15)
-    assert all(a * b >= 0 for a, b in zip(found, (np.sign(each) for each in vector), strict=True))
+    assert all(a * b >= 0 for a, b in zip(found, (np.sign(coordinate) for coordinate in vector), strict=True))
 
 
 @pytest.mark.parametrize(
@@ -231,7 +231,7 @@ def test_what_has_no_direction(vector: Vector) -> None:
 def test_the_direction_does_not_depend_on_the_length(vector: Vector, scale: float) -> None:
     """Scaling a vector leaves its direction."""
     scaled = (vector[0] * scale, vector[1] * scale, vector[2] * scale)
-    assume(all(isfinite(each) for each in scaled))
+    assume(all(isfinite(coordinate) for coordinate in scaled))
     assert unit(scaled) == pytest.approx(unit(vector), abs=1e-14)
 
 

@@ -17,13 +17,13 @@ def joint(name: str, parent: str, child: str) -> Joint:
 
 def robot(*joints: Joint, rejected: bool = True) -> Robot:
     """A robot of these joints and the links that they name; by default ROS 2 rejects it."""
-    names = dict.fromkeys(end for each in joints for end in (each.parent, each.child))
+    names = dict.fromkeys(end for joint in joints for end in (joint.parent, joint.child))
     return Robot("r", tuple(map(Link, names)), joints, rejected=rejected)
 
 
 def parents(*joints: Joint, rejected: bool = True) -> dict[str, str]:
     """The name of each link's parent joint."""
-    return {link: each.name for link, each in parent_joints(robot(*joints, rejected=rejected)).items()}
+    return {link: joint.name for link, joint in parent_joints(robot(*joints, rejected=rejected)).items()}
 
 
 FOOT, WHEEL = joint("base_joint", "foot", "base"), joint("base_wheel_joint", "base", "wheel")
@@ -73,7 +73,7 @@ def test_the_joint_that_closes_a_loop_is_ignored() -> None:
     ring = [joint("p", "a", "b"), joint("q", "b", "c"), joint("r", "c", "a")]
     branch = joint("s", "c", "d")
     for order in permutations(ring):
-        expected = {each.child: each.name for each in order[:2]}
+        expected = {joint.child: joint.name for joint in order[:2]}
         assert parents(*order, branch) == {**expected, "d": "s"}
         assert len(Configuration(robot(*order, branch)).roots) == 1
 
@@ -115,7 +115,7 @@ def test_plausibility_counts_only_in_a_rejected_file() -> None:
         text = f'<robot name="r">{"".join(map(parts, ("a", "b", "c")))}{"".join(joints)}</robot>'
         found = read_urdf(text.encode(), "r.urdf").robot
         assert found is not None
-        return {link: each.name for link, each in parent_joints(found).items()}
+        return {link: joint.name for link, joint in parent_joints(found).items()}
 
     two = (written("p", "a", "b"), written("q", "a", "b"))
     assert read(*two, written("r", "b", "c")) == {"b": "q", "c": "r"}

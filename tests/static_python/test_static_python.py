@@ -91,7 +91,7 @@ _EXPRESSIONS = st.recursive(_NAMES | _LITERALS, _inner, max_leaves=6)
 
 
 def _indented(lines: list[str]) -> str:
-    return "\n".join("    " + line for each in lines for line in each.split("\n")) or "    pass"
+    return "\n".join("    " + line for text in lines for line in text.split("\n")) or "    pass"
 
 
 def _compound(statements: st.SearchStrategy[str]) -> st.SearchStrategy[str]:

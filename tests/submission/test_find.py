@@ -53,7 +53,7 @@ def manifest(name: str) -> bytes:
 
 def why(found: UrdfChoice) -> dict[str, str]:
     """The other candidates, and why they are not graded."""
-    return {each.path: each.reason for each in found.others}
+    return {other.path: other.reason for other in found.others}
 
 
 def test_every_tier() -> None:
@@ -246,8 +246,11 @@ def test_the_package_that_is_graded(names: dict[str, str | None], folder: str, n
 def test_packages_know_each_other() -> None:
     """Every package is known by its name, the graded one first among equals."""
     found = packages("my_robot", {"b/my_robot": "my_robot", "a/my_robot": "my_robot", "c": "other"})
-    assert [each.folder for each in found] == ["a/my_robot", "b/my_robot", "c"]
-    assert {name: each.folder for name, each in found[1].packages.items()} == {"my_robot": "a/my_robot", "other": "c"}
+    assert [submission.folder for submission in found] == ["a/my_robot", "b/my_robot", "c"]
+    assert {name: package.folder for name, package in found[1].packages.items()} == {
+        "my_robot": "a/my_robot",
+        "other": "c",
+    }
 
 
 def test_no_package() -> None:
@@ -259,8 +262,8 @@ def team(first: list[str], second: list[str]) -> Tree:
     """What a team of two has in one repository: a package my_robot for each."""
     paths = [
         "README.md",
-        *(f"Lab6/Adams/my_robot/{each}" for each in first),
-        *(f"Lab6/Brown/my_robot/{each}" for each in second),
+        *(f"Lab6/Adams/my_robot/{path}" for path in first),
+        *(f"Lab6/Brown/my_robot/{path}" for path in second),
     ]
     return tree_of(*paths, package=manifest("my_robot"))
 
@@ -272,7 +275,7 @@ def test_a_team_of_two() -> None:
     assert found.path == "Lab6/Adams/my_robot/urdf/my_robot.urdf"
     assert found.package is not None
     assert found.package.folder == "Lab6/Adams/my_robot"
-    assert {each.path: each.reason for each in found.other_candidates} == {
+    assert {candidate.path: candidate.reason for candidate in found.other_candidates} == {
         "Lab6/Brown/my_robot/urdf/my_robot.urdf": OUTSIDE,
         "Lab6/Brown/my_robot/package.xml": LATER,
     }

@@ -19,7 +19,7 @@ def test_a_report_is_no_answer(tmp_path: Path, kind: Format) -> None:
     before = grade(LAB6, opened(work))
     (work / f"a_report.{kind.ending}").write_text(render(before, kind), encoding="utf-8")
     after = grade(LAB6, opened(work))
-    assert [each.outcome for each in after.results] == [each.outcome for each in before.results]
+    assert [result.outcome for result in after.results] == [result.outcome for result in before.results]
     assert after.problems == before.problems
 
 
@@ -30,7 +30,9 @@ def test_an_answer_is_in_the_line_that_an_editor_shows(tmp_path: Path, odd: str,
     text = end.join(["# Lab 6", f"some{odd}thing", "", "## Task 1 step 15", "The tree has two roots.", ""])
     (tmp_path / "answers.md").write_bytes(text.encode())
     found = [
-        each.outcome for each in grade(LAB6, opened(tmp_path)).results if each.criterion.id == "answer-floating-link"
+        result.outcome
+        for result in grade(LAB6, opened(tmp_path)).results
+        if result.criterion.id == "answer-floating-link"
     ]
     assert found[0].location is not None
     assert (found[0].location.line, "two roots" in str(found[0].measured)) == (4, True)

@@ -36,8 +36,8 @@ def attributes(document: xml.dom.minidom.Document) -> list[tuple[str, list[tuple
     """Every element with its attributes, in order."""
     elements = document.getElementsByTagName("*")
     return [
-        (each.tagName, sorted((n, v) for n, v in each.attributes.items() if not n.startswith("xmlns")))
-        for each in elements
+        (element.tagName, sorted((n, v) for n, v in element.attributes.items() if not n.startswith("xmlns")))
+        for element in elements
     ]
 
 

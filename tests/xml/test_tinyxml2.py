@@ -181,8 +181,8 @@ def test_both_ways_to_read_give_the_same_robot(text: str) -> None:
     plain, other = read_urdf(text.encode()), read_urdf(f"{head}<![CDATA[]]></{tail}".encode())
     assert other.robot == plain.robot
     assert other.verdict == plain.verdict
-    assert [(each.code, each.message, each.location) for each in other.problems] == [
-        (each.code, each.message, each.location) for each in plain.problems
+    assert [(problem.code, problem.message, problem.location) for problem in other.problems] == [
+        (problem.code, problem.message, problem.location) for problem in plain.problems
     ]
 
 

@@ -1,4 +1,4 @@
-"""Processes that do the work: whatever is done in them, each promise is kept in time."""
+"""The pool of worker processes: whatever runs in them, each future completes in time."""
 
 import multiprocessing
 import os
@@ -20,13 +20,13 @@ MEMORY = 512 * 1024**2
 
 @pytest.fixture(scope="module")
 def pool() -> Iterator[Processes]:
-    """Two workers, each with half a gigabyte."""
+    """Return a pool of two workers with half a gigabyte each."""
     with Processes(2, PATIENCE, prepare, MEMORY) as processes:
         yield processes
 
 
 def lost(future: "Future[Any]") -> str:
-    """Why there is no result."""
+    """Return why there is no result."""
     error = future.exception(PATIENCE)
     assert isinstance(error, WorkerError), error
     return str(error)
@@ -49,13 +49,13 @@ def _unspeakable() -> object:
 
 
 def test_results_come_back(pool: Processes) -> None:
-    """Whatever can be sent is, with arguments by place and by name."""
+    """Anything that can be sent is returned, with positional and keyword arguments."""
     assert pool.submit(sorted, [3, 1, 2], reverse=True).result(PATIENCE) == [3, 2, 1]
     assert len(pool.submit(bytes, 10**7).result(PATIENCE)) == 10**7
 
 
-def test_errors_come_back_as_they_are(pool: Processes) -> None:
-    """An error of what was asked is that error; what cannot be sent is told, too."""
+def test_errors_are_raised(pool: Processes) -> None:
+    """An error of the function is raised; a result that cannot be sent is reported, too."""
     with pytest.raises(ZeroDivisionError):
         pool.submit(divmod, 1, 0).result(PATIENCE)
     with pytest.raises(ValueError, match="as asked"):
@@ -70,7 +70,7 @@ def _stop() -> None:
 
 
 def test_no_more_memory_than_allowed(pool: Processes) -> None:
-    """What needs more is lost, and its worker goes on."""
+    """A task that needs more memory is lost, and its worker continues."""
     assert lost(pool.submit(_eat)) == "grading it needs more memory than a worker may use (2 GiB)"
     assert pool.submit(len, "abc").result(PATIENCE) == 3
 
@@ -90,25 +90,25 @@ def test_no_more_memory_than_allowed(pool: Processes) -> None:
         (time.sleep, (600,), "grading it took longer than 1.5 s (--timeout raises the limit)"),
     ],
 )
-def test_what_ends_or_holds_a_worker_is_lost(
+def test_a_task_that_ends_or_blocks_its_worker_is_lost(
     function: Any, arguments: tuple[Any, ...], reason: str, pool: Processes
 ) -> None:
-    """And nothing else with it."""
+    """Nothing else is lost with it."""
     ended = pool.submit_within(1.5, function, arguments, {})
     others = [pool.submit(pow, number, 2) for number in range(20)]
     assert lost(ended) in (reason, "grading it took longer than 1.5 s (--timeout raises the limit)")
-    assert [each.result(PATIENCE) for each in others] == [number**2 for number in range(20)]
+    assert [other.result(PATIENCE) for other in others] == [number**2 for number in range(20)]
 
 
-def test_workers_find_nothing_in_the_current_folder(pool: Processes) -> None:
-    """A module there would be the class's; nor do they hear Ctrl-C."""
+def test_workers_ignore_the_current_folder_and_ctrl_c(pool: Processes) -> None:
+    """Modules in the current folder, which may be the class's, are not imported."""
     assert pool.submit(eval, "__import__('sys').flags.safe_path").result(PATIENCE)
     assert pool.submit(signal.getsignal, signal.SIGINT).result(PATIENCE) is signal.SIG_IGN
     assert "" not in pool.submit(eval, "__import__('sys').path").result(PATIENCE)
 
 
-def test_all_workers_ended_at_once(pool: Processes) -> None:
-    """As where memory is short: what is asked afterwards is done."""
+def test_all_workers_killed_at_once(pool: Processes) -> None:
+    """As when memory is short: later tasks are done."""
     pids = {pool.submit(_pid_after, 0.2).result(PATIENCE) for _ in range(4)}
     for pid in pids:
         os.kill(pid, signal.SIGKILL)
@@ -117,7 +117,7 @@ def test_all_workers_ended_at_once(pool: Processes) -> None:
         future = pool.submit(len, "abc")
         results.append(future.exception(PATIENCE) or future.result())
     assert results[-1] == 3
-    assert all(each == 3 or isinstance(each, WorkerError) for each in results)
+    assert all(result == 3 or isinstance(result, WorkerError) for result in results)
 
 
 def _pid_after(seconds: float) -> int:
@@ -125,8 +125,8 @@ def _pid_after(seconds: float) -> int:
     return os.getpid()
 
 
-def test_shut_in_the_midst_of_work() -> None:
-    """Whoever leaves does not wait for what hangs."""
+def test_shutdown_during_work() -> None:
+    """Shutting down does not wait for tasks that hang."""
     processes = Processes(1, 10 * PATIENCE, prepare)
     pid = processes.submit(os.getpid).result(PATIENCE)
     processes.submit(time.sleep, 10 * PATIENCE)
@@ -137,8 +137,8 @@ def test_shut_in_the_midst_of_work() -> None:
         os.kill(pid, 0)
 
 
-def test_shut_before_any_work() -> None:
-    """Where nothing was asked nothing is started."""
+def test_shutdown_before_any_work() -> None:
+    """Without a task no process is started."""
     before = multiprocessing.active_children()
     with Processes(2, PATIENCE, prepare) as processes:
         assert not processes._has_begun
@@ -147,5 +147,5 @@ def test_shut_before_any_work() -> None:
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="asks the kernel")
 def test_as_many_workers_as_processors() -> None:
-    """Those that this process may use."""
+    """The pool has as many workers as this process may use processors."""
     assert processors() == len(os.sched_getaffinity(0))
