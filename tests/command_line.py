@@ -26,14 +26,14 @@ _READ_AT_START = ("PYTHON", "LANG", "LC_", "TZ")
 
 
 def run(arguments: Sequence[object], **variables: str) -> Done:
-    """Run the command line from the project's root, in this process where that shows the same."""
+    """Run the command line from the project's root, in this process if the result is the same."""
     return run_with_input(arguments, b"", variables)
 
 
 def run_with_input(
     arguments: Sequence[object], stdin: bytes, variables: Mapping[str, str] = {}, folder: Path = ROOT
 ) -> Done:
-    """As `run`, with something on standard input, or from another folder."""
+    """Run the command line like `run`, with standard input or from another folder."""
     words = [os.fsdecode(argument) if isinstance(argument, bytes) else str(argument) for argument in arguments]
     own = any(option in words for option in _OWN_PROCESS) or any(
         variable.startswith(_READ_AT_START) for variable in variables
@@ -43,7 +43,7 @@ def run_with_input(
     with TemporaryFile() as given, TemporaryFile() as out, TemporaryFile() as err:
         given.write(stdin)
         given.seek(0)
-        with chdir(folder), _process_state(words, {**surroundings(), **variables}, (given, out, err)):
+        with chdir(folder), _process_state(words, {**clean_environment(), **variables}, (given, out, err)):
             code = _exit_code()
         texts = []
         for stream in (out, err):
@@ -59,7 +59,7 @@ def run_process(
     return subprocess.run(
         [*GRADER, *arguments],
         cwd=folder,
-        env={**surroundings(), **variables},
+        env={**clean_environment(), **variables},
         input=stdin,
         capture_output=True,
         check=False,
@@ -67,8 +67,8 @@ def run_process(
     )
 
 
-def surroundings() -> dict[str, str]:
-    """The variables of a command: 80 columns, UTF-8, and nothing else that changes what is printed."""
+def clean_environment() -> dict[str, str]:
+    """Return the variables of a command: 80 columns, UTF-8, and nothing else that changes the output."""
     return {**os.environ, "COLUMNS": "80", "PYTHONIOENCODING": "utf-8"}
 
 
@@ -83,7 +83,7 @@ def _exit_code() -> int:
 
 @contextmanager
 def _process_state(words: list[str], variables: Mapping[str, str], files: tuple[IO[bytes], ...]) -> Iterator[None]:
-    """Set what a process is started with: arguments, variables and standard streams; put everything back."""
+    """Set arguments, variables and standard streams as at the start of a process, and restore them."""
     with (
         patch.dict(os.environ, variables, clear=True),
         patch.object(sys, "argv", ["grader", *words]),

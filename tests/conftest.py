@@ -1,4 +1,4 @@
-"""What holds for all tests: they depend on no variable of the machine, and files with slow tests are started first."""
+"""Settings for all tests: they depend on no variable of the machine, and files with slow tests start first."""
 
 import gc
 import os
@@ -28,17 +28,17 @@ os.environ |= {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_NOSYSTEM": "1"}
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Start with the files that hold slow tests: each file is run by one worker, and none shall wait for it in the end."""
+    """Start with the files that contain slow tests, because one worker runs a file and no other should wait for it."""
     slow = {item.path for item in items if item.get_closest_marker("slow")}
     items.sort(key=lambda item: item.path not in slow)
 
 
 def pytest_xdist_auto_num_workers() -> int:
-    """One worker more than there are processors: some tests wait for a process, a limit of time or a connection."""
+    """Return one worker more than there are processors, because some tests wait for a process, a timer or a connection."""
     return (os.cpu_count() or 1) + 1
 
 
 def pytest_collection_finish() -> None:
-    """Take the objects of ten thousand tests out of the garbage collector, which would look through them again and again."""
+    """Exclude the objects of ten thousand tests from the garbage collector, which would scan them again and again."""
     gc.collect()
     gc.freeze()

@@ -26,14 +26,14 @@ every_related_case = pytest.mark.parametrize("case", RELATED, ids=[case.name for
 def test_the_passing_robot_passes(case: Case) -> None:
     """A check passes a correct robot, says what it found, and has no location."""
     outcome = ask(case.check, case.passing, **case.arguments)
-    assert (outcome.status, outcome.message, outcome.location) == ("passed", case.says, None)
+    assert (outcome.status, outcome.message, outcome.location) == ("passed", case.pass_message, None)
 
 
 @every_case
 def test_the_failing_robot_fails(case: Case) -> None:
     """A check fails an incorrect robot, says what it found and expected, and points into the file."""
     outcome = ask(case.check, case.failing, **case.arguments)
-    assert (outcome.status, outcome.message) == ("failed", case.complains)
+    assert (outcome.status, outcome.message) == ("failed", case.fail_message)
     assert outcome.location == (None if case.at is None else case.failing.place(case.at))
 
 
@@ -78,7 +78,7 @@ def test_a_loop_of_joints_stops_no_check(case: Case) -> None:
 def test_a_mesh_has_a_frame_and_a_colour_but_no_size(case: Case) -> None:
     """Measuring a mesh needs manual grading; a mesh is no box, cylinder or sphere."""
     outcome = graded(case.check, case.passing.with_shape(mesh()), **case.arguments)
-    assert outcome.status == case.of_a_mesh
+    assert outcome.status == case.mesh_status
 
 
 def test_a_pending_outcome_names_the_mesh() -> None:

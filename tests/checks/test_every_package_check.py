@@ -29,14 +29,14 @@ ODD = {
 def test_the_passing_submission_passes(case: PackageCase) -> None:
     """A check passes a correct submission, says what it found, and has no location."""
     outcome = ask(case.check, case.passing, **case.arguments)
-    assert (outcome.status, outcome.message, outcome.location) == ("passed", case.says, None)
+    assert (outcome.status, outcome.message, outcome.location) == ("passed", case.pass_message, None)
 
 
 @every_case
 def test_the_failing_submission_fails(case: PackageCase) -> None:
     """A check fails an incorrect submission, says what it found, and points into the file."""
     outcome = ask(case.check, case.failing, **case.arguments)
-    assert (outcome.status, outcome.message) == ("failed", case.complains)
+    assert (outcome.status, outcome.message) == ("failed", case.fail_message)
     assert outcome.location == (None if case.at is None else case.failing.place(*case.at))
 
 

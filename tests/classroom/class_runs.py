@@ -15,7 +15,7 @@ from typing import Any
 
 from grader.cli.app import run as run_here
 from grader.usecases.class_reports import INDEX
-from tests.command_line import GRADER, PATIENCE, run, run_process, surroundings
+from tests.command_line import GRADER, PATIENCE, clean_environment, run, run_process
 from tests.samples import ROOT
 
 sys.path.insert(0, str(ROOT / "benchmarks"))  # a folder of scripts
@@ -48,7 +48,7 @@ def run_in_process(*arguments: str | Path) -> Done:
 
 def environment(**variables: str) -> dict[str, str]:
     """Return the environment of a command, 80 columns wide."""
-    return {**surroundings(), **variables}
+    return {**clean_environment(), **variables}
 
 
 @contextmanager
@@ -95,7 +95,10 @@ def eventually(condition: Callable[[], Any]) -> bool:
 
 
 def shell_code(code: int) -> int:
-    """Return the exit code as a shell reports it: 130 as well if CPython ends itself by the signal of Ctrl-C. CPython does this if Ctrl-C arrives while it executes source text, as dataclasses do on import."""
+    """Return the exit code as a shell reports it: 130 as well if CPython ends itself by the signal of Ctrl-C.
+
+    CPython does this if Ctrl-C arrives while it executes source text, as dataclasses do on import.
+    """
     return 128 - code if code < 0 else code
 
 

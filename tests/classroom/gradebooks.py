@@ -14,7 +14,7 @@ from grader.classroom.students import ClassSubmission, Student
 from grader.files.reading import sha256_of
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric, read_rubric
-from tests.command_line import run_with_input, surroundings
+from tests.command_line import clean_environment, run_with_input
 from tests.samples import ROOT
 
 POINTS = {"loads": "3", "box": "2.5", "tall": "0.5", "essay": "4", "picture": "1"}
@@ -30,7 +30,7 @@ _CRITERIA = {
     "picture": 'part = "report"\ncheck = "evidence_shown"\nwith = { names = ["screen"] }',
 }
 _STATUSES = {sign: status for status, sign in STATUS_LETTERS.items()}
-ENVIRONMENT = surroundings()
+ENVIRONMENT = clean_environment()
 HOSTILE = ROOT / "tests" / "classroom" / "hostile"
 
 

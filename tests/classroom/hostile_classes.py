@@ -67,7 +67,7 @@ _CRITERION = RUBRIC.criteria[-1]
 
 
 def work(owner: str) -> bytes:
-    """A URDF that tells whose it is."""
+    """Return a URDF that tells whose it is."""
     return f"<robot name='{owner}'><link name='{owner}'/></robot>".encode()
 
 
@@ -123,7 +123,10 @@ class Class:
                 return name
 
     def is_own(self, name: str) -> bool:
-        """Return whether a folder of this name is a student's own by the roster: exactly a key, login or address of it. The instructor or the platform names these folders, but not files in a team's folder or names in an LMS."""
+        """Return whether a folder of this name is a student's own by the roster: exactly a key, login or address of it.
+
+        The instructor or the platform names these folders, but not files in a team's folder or names in an LMS.
+        """
         words = {word for owner in NAMES for word in (owner, f"k{_NUMBER[owner]}", f"{owner}@example.org")}
         is_named_by_instructor = self.layout in ("folders", "prefixed", "nbgrader")
         stem = name.removeprefix("./").removeprefix("lab6-").split(".urdf")[0].split(".zip")[0]

@@ -1,4 +1,4 @@
-"""A Word file that takes for ever: what it costs, what it does to a mark, and what is left of the process that reads it."""
+"""A Word file that takes very long: its cost, its effect on a mark, and the end of the process that reads it."""
 
 import io
 import os
@@ -23,7 +23,7 @@ _SPAN = 100_000  # columns that a cell of the table declares: each costs as much
 
 
 def slow_docx() -> bytes:
-    """A Word file of a few kilobytes that takes minutes to read."""
+    """Return a Word file of a few kilobytes that takes minutes to read."""
     module = pytest.importorskip("docx")
     document = module.Document()
     table = document.add_table(rows=500, cols=1)
@@ -36,14 +36,14 @@ def slow_docx() -> bytes:
 
 
 def write_submission(folder: Path) -> Path:
-    """The reference solution with a slow document beside it."""
+    """Write the reference solution with a slow document beside it."""
     shutil.copytree(REFERENCE, folder / "my_robot")
     (folder / "answers.docx").write_bytes(slow_docx())
     (folder / "notes.md").write_text("Task 1 step 15: It vanishes.\n")
     return folder
 
 
-def test_a_slow_document_leaves_its_criteria_to_a_person(
+def test_a_slow_document_needs_manual_grading(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """It is not read, everything else has its result, and another document is read all the same."""
@@ -56,8 +56,8 @@ def test_a_slow_document_leaves_its_criteria_to_a_person(
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, -15), (signal.SIGKILL, -9)])
-def test_no_converter_outlives_a_grader_that_is_ended(number: signal.Signals, code: int, tmp_path: Path) -> None:
-    """However the grader ends, the process that reads a document for it ends, too."""
+def test_no_converter_outlives_the_grader(number: signal.Signals, code: int, tmp_path: Path) -> None:
+    """However the grader ends, its converter process ends, too."""
     with started("grade", write_submission(tmp_path / "alice")) as process:
         _stop_converter(process)
         process.send_signal(number)  # to the grader alone
@@ -65,8 +65,8 @@ def test_no_converter_outlives_a_grader_that_is_ended(number: signal.Signals, co
         assert eventually(lambda: not session_of(process))
 
 
-def test_no_converter_outlives_a_batch_that_is_ended(tmp_path: Path) -> None:
-    """A worker that is ended takes its converter with it."""
+def test_no_converter_outlives_a_killed_batch(tmp_path: Path) -> None:
+    """A worker that is killed takes its converter with it."""
     write_submission(tmp_path / "class" / "alice")
     with started("batch", tmp_path / "class", "--gradebook", tmp_path / "lab.db", "--jobs", "1") as process:
         _stop_converter(process)
@@ -75,13 +75,13 @@ def test_no_converter_outlives_a_batch_that_is_ended(tmp_path: Path) -> None:
 
 
 def _stop_converter(process: "subprocess.Popen[str]") -> None:
-    """Wait for the converter, and stop it: it must be ended from outside, and not end by its own limits."""
+    """Wait for the converter, and stop it, so that it can only be killed and does not reach its own limits."""
     assert eventually(lambda: _converters(process))
     os.kill(_converters(process)[0], signal.SIGSTOP)
 
 
 def _converters(process: "subprocess.Popen[str]") -> list[int]:
-    """The processes that have limited their processor time, which they do after all else is set up."""
+    """Return the processes that have limited their processor time, which is the last step of a converter's start."""
     found = []
     for pid in session_of(process):
         with suppress(OSError):
@@ -91,7 +91,7 @@ def _converters(process: "subprocess.Popen[str]") -> list[int]:
 
 
 def test_a_converter_without_a_death_signal_watches_its_parent(tmp_path: Path) -> None:
-    """Where the kernel does not end it, a thread does: that of a system without PR_SET_PDEATHSIG."""
+    """A thread ends the converter on systems without PR_SET_PDEATHSIG."""
     child = (
         f"import sys, time; sys.path.insert(0, {str(ROOT)!r}); from grader.documents import converter as it\n"
         "it._has_death_signal = lambda: False\n"
@@ -113,15 +113,15 @@ def test_a_converter_without_a_death_signal_watches_its_parent(tmp_path: Path) -
         assert eventually(lambda: not session_of(process))
 
 
-def test_a_converter_whose_parent_is_gone_ends_at_once() -> None:
-    """A parent that ends before the kernel is told of it leaves nothing behind."""
+def test_a_converter_without_a_parent_ends_at_once() -> None:
+    """A parent that ends before the kernel is told about it leaves no converter."""
     other = os.getppid()  # not the parent of what is started here
     done = subprocess.run([sys.executable, "-P", converter, "docx", "600", str(other)], timeout=PATIENCE, check=False)
     assert done.returncode == 1
 
 
 def test_a_mark_never_depends_on_a_document(tmp_path: Path) -> None:
-    """A submission whose grading is lost to a document is graded without it, and has the points of one that has none."""
+    """If grading fails because of a document, the submission is graded again without it, with the same points."""
     write_submission(tmp_path / "class" / "alice")
     shutil.copytree(REFERENCE, tmp_path / "class" / "bob" / "my_robot")
     book = tmp_path / "lab.db"

@@ -1,4 +1,4 @@
-"""grader diff: who changed between two runs or gradebooks, and why, for a person and for programs."""
+"""grader diff: who changed between two runs or gradebooks, and why, for people and programs."""
 
 import json
 import re
@@ -23,7 +23,7 @@ from tests.classroom.gradebooks import (
 
 
 def diff(top: Path, *more: object) -> str:
-    """What it says, without the line that names the runs."""
+    """Return the output without the line that names the runs."""
     done = grader("diff", top / "book.db", *more)
     assert (done.returncode, done.stderr) == (0, "")
     first, rest = done.stdout.split("\nrun 2", 1)[0], done.stdout
@@ -32,7 +32,7 @@ def diff(top: Path, *more: object) -> str:
 
 
 def as_json(*arguments: object) -> dict[str, Any]:
-    """The same as JSON, which the schema knows."""
+    """Return the same as JSON, valid under its schema."""
     data = json.loads(grader("diff", *arguments, "--format", "json").stdout)
     jsonschema.validate(data, json.loads(grader("schema", "diff").stdout))
     return dict(data)
@@ -46,7 +46,7 @@ def test_one_run_is_not_enough(graded_class: Path) -> None:
 
 
 def test_all_reasons(top: Path) -> None:
-    """Nothing changed, then one thing after the other did."""
+    """First no change, then one reason after the other."""
     batch(top)
     assert diff(top) == "nothing changed\n"
     assert as_json(top / "book.db")["students"] == []
@@ -70,7 +70,7 @@ def test_all_reasons(top: Path) -> None:
 
 
 def test_two_gradebooks(top: Path, tmp_path: Path) -> None:
-    """Who was in one only is told, and the JSON form has all of it."""
+    """Students in only one of them are reported, and the JSON form is complete."""
     shutil.copy(top / "book.db", tmp_path / "before.db")
     write_submission(top / "class" / "zoe")
     batch(top)
@@ -90,7 +90,7 @@ def test_two_gradebooks(top: Path, tmp_path: Path) -> None:
 
 
 def test_one_damaged_zip_is_a_few_lines(tmp_path: Path) -> None:
-    """Many criteria that took the same step are one line, there are at most twelve, and a verdict alone is said to be."""
+    """Many criteria with the same change are one line, there are at most twelve, and a change of the verdict alone is reported."""
     numbers = range(1, 31)
     for name, rubric in (
         ("few", lab(**{f"c{number}": "1" for number in numbers})),
@@ -115,7 +115,7 @@ def test_one_damaged_zip_is_a_few_lines(tmp_path: Path) -> None:
 
 
 def test_only_the_verdict_changed(tmp_path: Path) -> None:
-    """No step is made up where no criterion took one."""
+    """No criterion is reported if none changed."""
     rubric = lab()
     with Gradebook(tmp_path / "book.db", create=True) as book:
         record_run(book, rubric, [graded_as(rubric, "anna", "?????")])
@@ -125,8 +125,8 @@ def test_only_the_verdict_changed(tmp_path: Path) -> None:
     )
 
 
-def test_names_are_harmless(top: Path) -> None:
-    """A key that would colour or turn the terminal is spelt out."""
+def test_names_are_escaped(top: Path) -> None:
+    """Escape sequences and bidirectional marks in a key are escaped."""
     write_submission(top / "class" / "x[red]\x1b[31m\u202ey")
     batch(top)
     text = diff(top)

@@ -1,4 +1,4 @@
-"""Where there is a next step, the message says what to type."""
+"""If there is a next step, the message says what to type."""
 
 import re
 import shutil
@@ -17,7 +17,7 @@ BATCH = "grader batch PATH --gradebook book.db"
 
 @pytest.fixture
 def place(tmp_path: Path) -> Path:
-    """A folder to type in: a URDF, a class of one, a text, a package."""
+    """Return a folder with a URDF, a class of one, a text and a package."""
     shutil.copy(SAMPLE, tmp_path / "my_robot.urdf")
     (tmp_path / "class" / "anna").mkdir(parents=True)
     shutil.copy(SAMPLE, tmp_path / "class" / "anna")
@@ -28,12 +28,12 @@ def place(tmp_path: Path) -> Path:
 
 
 def typed(line: str, place: Path) -> Done:
-    """What comes of a line that is typed there."""
+    """Run a line as if it were typed there."""
     return run_with_input(line.split(), b"", folder=place)
 
 
 def refused(line: str, place: Path) -> str:
-    """The last line of what a command says that does not do what it is asked."""
+    """Return the last line of a command that fails."""
     done = typed(line, place)
     assert (done.returncode, done.stdout) == (2, b"")
     message = done.stderr.decode().splitlines()[-1]
@@ -72,15 +72,15 @@ def refused(line: str, place: Path) -> str:
         ("export canvas --gradebook book.db", "give it with --into"),
     ],
 )
-def test_what_to_type_is_said(line: str, why: str, place: Path) -> None:
-    """In the same line that says what is wrong, and every command that it names is one of ours."""
+def test_the_next_command_is_named(line: str, why: str, place: Path) -> None:
+    """It is on the line that says what is wrong, and every named command exists."""
     message = refused(line, place)
     assert why in message
     assert set(re.findall(r"\bgrader ([a-z]+)", message)) <= set(COMMANDS)
 
 
-def test_what_to_type_with_a_gradebook(place: Path) -> None:
-    """Whom and what to name, and how to come to something to compare."""
+def test_the_next_command_with_a_gradebook(place: Path) -> None:
+    """The messages name students, criteria and runs to choose from."""
     assert typed("batch class --gradebook book.db", place).returncode == 0
     for line, why in (
         ("mark zoe lidar-frame 1 --gradebook book.db", "; grader export csv --gradebook book.db lists all students"),

@@ -1,4 +1,4 @@
-"""A student's files are read and never run, whatever they are called and wherever the grader is started."""
+"""A student's files are read and never run, whatever their names and wherever the grader starts."""
 
 import os
 import shutil
@@ -31,7 +31,7 @@ MODULES = (
 
 @pytest.fixture
 def trapped(tmp_path: Path) -> Path:
-    """A hand-in full of modules that leave a mark when they are imported, and of code that leaves one when it is run."""
+    """Return a submission full of modules and code that leave a trace when imported or run."""
     folder = tmp_path / "handed-in"
     shutil.copytree(REFERENCE, folder)
     package = folder / "roscourse_sim_ws/src/my_robot"
@@ -48,8 +48,8 @@ def trapped(tmp_path: Path) -> Path:
 
 @pytest.mark.parametrize("command", [["-m", "grader"], ["-c", "from grader.__main__ import main; main()"]])
 @pytest.mark.parametrize("start", [".", "roscourse_sim_ws/src/my_robot"])
-def test_nothing_of_a_hand_in_is_imported_or_run(trapped: Path, start: str, command: list[str]) -> None:
-    """Not even where the grader is started in the student's folder, which Python would search for modules first."""
+def test_nothing_of_a_submission_is_imported_or_run(trapped: Path, start: str, command: list[str]) -> None:
+    """Even if the grader starts in the student's folder, which Python searches for modules first."""
     done = subprocess.run(
         [sys.executable, *(["-P"] if "-c" in command else []), *command, "grade", str(trapped), "--format", "json"],
         cwd=trapped / start,
@@ -65,7 +65,7 @@ def test_nothing_of_a_hand_in_is_imported_or_run(trapped: Path, start: str, comm
 
 
 def test_nothing_is_written(trapped: Path) -> None:
-    """The hand-in is as it was before, and no temporary file is left."""
+    """The submission is unchanged, and no temporary file remains."""
     before = sorted(trapped.rglob("*"))
     temporary = trapped.parent / "temporary"
     temporary.mkdir()

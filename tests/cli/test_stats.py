@@ -1,4 +1,4 @@
-"""grader stats: a class at a glance, for a person at any terminal and for programs."""
+"""grader stats: a class at a glance, for people at any terminal and for programs."""
 
 import json
 from pathlib import Path
@@ -12,21 +12,21 @@ from tests.classroom.gradebooks import batch, graded_as, grader, lab, record_run
 
 
 def stats(path: Path, *more: object, **variables: str) -> str:
-    """What it says of a gradebook."""
+    """Return the output for a gradebook."""
     done = grader("stats", "--gradebook", path, *more, **variables)
     assert (done.returncode, done.stderr) == (0, "")
     return done.stdout
 
 
 def as_json(path: Path) -> dict[str, Any]:
-    """The same as JSON, which the schema knows."""
+    """Return the same as JSON, valid under its schema."""
     data = json.loads(stats(path, "--format", "json"))
     jsonschema.validate(data, json.loads(grader("schema", "class").stdout))
     return dict(data)
 
 
 def test_at_a_glance(top: Path) -> None:
-    """Marks, criteria, failures, and who needs a look."""
+    """Marks, criteria, failures, and who needs attention."""
     for key in ("anna", "emil"):
         grader("mark", key, "essay", "1.5", "--gradebook", top / "book.db")
     text = stats(top / "book.db")
@@ -43,7 +43,7 @@ def test_at_a_glance(top: Path) -> None:
 
 
 def test_as_json(top: Path) -> None:
-    """Batch, stats and export say the same."""
+    """Batch, stats and export give the same."""
     done = batch(top, "--format", "json")
     told = json.loads(done.stdout)
     jsonschema.validate(told, json.loads(grader("schema", "class").stdout))
@@ -60,7 +60,7 @@ def test_as_json(top: Path) -> None:
     [{"COLUMNS": "40"}, {"COLUMNS": "1"}, {"COLUMNS": "9999"}, {"NO_COLOR": "1"}, {"PYTHONIOENCODING": "ascii"}],
 )
 def test_any_terminal(variables: dict[str, str], graded_class: Path) -> None:
-    """No line is longer than asked for, and a pipe gets no colour."""
+    """No line is longer than the width, and a pipe gets no colour."""
     text = stats(graded_class / "book.db", **variables)
     width = min(500, max(40, int(variables.get("COLUMNS", "80"))))
     assert max(map(len, text.splitlines())) <= width
@@ -69,7 +69,7 @@ def test_any_terminal(variables: dict[str, str], graded_class: Path) -> None:
 
 
 def test_an_empty_gradebook(tmp_path: Path) -> None:
-    """One that nothing was graded into is told of in a line."""
+    """A gradebook without results is reported in a line."""
     book = tmp_path / "book.db"
     Gradebook(book, create=True).close()
     why = f"nothing has been graded into {book} yet: run grader batch PATH --gradebook {book}"
@@ -78,7 +78,7 @@ def test_an_empty_gradebook(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("signs", [{}, {"anna": "pps?f"}, {"anna": "?!p!?"}])
 def test_few_or_none(signs: dict[str, str], tmp_path: Path) -> None:
-    """A run without hand-ins, of one student, and one in which nobody could be graded."""
+    """A run without submissions, of one student, and with only unreadable submissions."""
     rubric = lab()
     with Gradebook(tmp_path / "book.db", create=True) as book:
         record_run(book, rubric, [graded_as(rubric, key, row) for key, row in signs.items()])
@@ -91,7 +91,7 @@ def test_few_or_none(signs: dict[str, str], tmp_path: Path) -> None:
 
 
 def test_almost_all_is_not_all(tmp_path: Path) -> None:
-    """A mean just below full marks is not rounded up to them, nor is a share up to all or down to nothing."""
+    """A mean just below full marks is not rounded up to them, nor is a share to 100 % or 0 %."""
     rubric = lab()
     with Gradebook(tmp_path / "book.db", create=True) as book:
         found = [graded_as(rubric, f"s{number}", "ppppp" if number else "ppppf") for number in range(300)]
@@ -102,8 +102,8 @@ def test_almost_all_is_not_all(tmp_path: Path) -> None:
     assert "essay           4     300  300   100%" in text
 
 
-def test_who_is_left_behind_by_a_new_rubric(tmp_path: Path) -> None:
-    """What does not count is said."""
+def test_older_rubrics_are_reported(tmp_path: Path) -> None:
+    """Grades that do not count are mentioned."""
     old, new = lab(), lab(loads="1")
     with Gradebook(tmp_path / "book.db", create=True) as book:
         record_run(book, old, [graded_as(old, key, "ppppp") for key in ("anna", "ben")])
@@ -113,8 +113,8 @@ def test_who_is_left_behind_by_a_new_rubric(tmp_path: Path) -> None:
     assert "  ben: graded with an earlier version of the rubric\n" in text
 
 
-def test_names_are_harmless(top: Path) -> None:
-    """Nothing that students call themselves or their files colours, turns or ends the terminal's text."""
+def test_names_are_escaped(top: Path) -> None:
+    """Names of students and files cannot colour, reverse or end the terminal's text."""
     write_submission(top / "class" / "x[red]\x1b[31m\u202ey")
     (top / "class" / "[bold]\x1b]0;z\x07.zip").write_bytes(b"no zip")
     (top / "roster.csv").write_bytes("id,name\nanna,\u202eA\x1b[31mn[red]\n".encode())

@@ -1,4 +1,4 @@
-"""Which task and step a name speaks of, however it is spelt."""
+"""Labels: the task and step that a name refers to, in any spelling."""
 
 import pytest
 from hypothesis import given
@@ -76,7 +76,7 @@ def test_labels(text: str, task: int | None, steps: set[int]) -> None:
     ],
 )
 def test_meaning(wanted: str, found: str, known: int | None, is_it: bool) -> None:
-    """A name speaks of what is wanted if task, steps and words agree."""
+    """A name matches if task, steps and words agree."""
     assert matches(read_label(wanted), read_label(found), known) is is_it
 
 
@@ -92,7 +92,7 @@ def test_any_text(wanted: str, found: str, known: int | None) -> None:
     st.sampled_from(["task{}_step{}", "T{}S{}", "Task {} - Question {}", "{0}/task{0}/step{1}"]),
 )
 def test_numbers_are_found_in_every_spelling(task: int, step: int, spelling: str) -> None:
-    """Whatever the numbers are."""
+    """In every spelling the numbers are found."""
     found = read_label(spelling.format(task, step))
     assert (found.task, set(found.steps)) == (task, {step})
 

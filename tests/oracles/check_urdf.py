@@ -28,7 +28,7 @@ _OUT_OF_TIME = (-signal.SIGXCPU, -signal.SIGKILL)  # how the system ends what ha
 
 @dataclass(frozen=True, slots=True)
 class OracleVerdict:
-    """What `check_urdf` said of one file, how it ended, and the errors that it printed."""
+    """The verdict of `check_urdf` on a file, how it ended, and the errors that it printed."""
 
     verdict: Literal["clean", "degraded", "rejected"]
     ending: Literal["finished", "hung", "aborted"]
@@ -37,7 +37,7 @@ class OracleVerdict:
 
 @cache
 def check_urdf_path() -> Path | None:
-    """The path of the program; None if the distribution is not installed or holds none for this platform."""
+    """Return the path of the program; None if it is not installed or not available for this platform."""
     try:
         path = Path(str(distribution("cmeel-urdfdom").locate_file("cmeel.prefix/bin/check_urdf")))
     except PackageNotFoundError:
@@ -46,9 +46,9 @@ def check_urdf_path() -> Path | None:
 
 
 def check_urdf(text: bytes, seconds: int = 2) -> OracleVerdict:
-    """Run `check_urdf` on a file with this content: it hangs if it takes more than so many seconds of processor time.
+    """Run `check_urdf` on a file with this content; it hangs if it takes more than so many seconds of processor time.
 
-    Skips the test that asks if the program is not installed.
+    Skips the calling test if the program is not installed.
     """
     binary = check_urdf_path()
     if binary is None:

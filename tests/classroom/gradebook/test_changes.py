@@ -22,7 +22,7 @@ OTHER = lab(box="5")
 
 @pytest.fixture
 def book(tmp_path: Path) -> Any:
-    """Return an empty gradebook."""
+    """Yield an empty gradebook."""
     with Gradebook(tmp_path / "book.db", create=True) as opened:
         yield opened
 

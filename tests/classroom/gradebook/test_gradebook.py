@@ -29,7 +29,7 @@ NAMES = ("loads", "box", "tall", "essay", "picture", "extra")
 
 @pytest.fixture
 def book(tmp_path: Path) -> Iterator[Gradebook]:
-    """Return a gradebook with one submission and one mark."""
+    """Yield a gradebook with one submission and one mark."""
     with Gradebook(tmp_path / "book.db", create=True) as opened:
         record_run(opened, LABS[0], [graded_as(LABS[0], "anna", "pps??")])
         put(opened, "anna", "essay", Decimal(3), "good")

@@ -27,7 +27,7 @@ PEOPLE = (
 
 @pytest.fixture
 def book(tmp_path: Path) -> Iterator[Gradebook]:
-    """Return a gradebook with a few students."""
+    """Yield a gradebook with a few students."""
     with Gradebook(tmp_path / "book.db", create=True) as opened:
         with opened.transaction():
             for person in PEOPLE:

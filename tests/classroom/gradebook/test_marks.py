@@ -21,7 +21,7 @@ ESSAY = criterion_of(LAB, "essay")
 
 @pytest.fixture
 def standings(tmp_path: Path) -> Iterator[Grades]:
-    """Return a gradebook with four submissions: two with both questions open, a single URDF, and an unreadable one."""
+    """Yield a gradebook with four submissions: two with both questions open, a single URDF, and an unreadable one."""
     with Gradebook(tmp_path / "book.db", create=True) as book:
         came = [("anna", "ppp??"), ("ben", "fsp??"), ("cleo", "ppp--")]
         graded = [graded_as(LAB, key, signs) for key, signs in came]

@@ -38,7 +38,7 @@ def path(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def book(path: Path) -> Iterator[Gradebook]:
-    """Return the same gradebook, opened by this version."""
+    """Yield the same gradebook, opened by this version."""
     with Gradebook(path) as opened:
         yield opened
 

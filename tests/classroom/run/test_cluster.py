@@ -242,7 +242,7 @@ def test_no_scheduler(address: str, tmp_path: Path) -> None:
 
 @pytest.fixture(scope="module")
 def idle_scheduler(tmp_path_factory: pytest.TempPathFactory) -> Iterator[DaskCluster]:
-    """Return a scheduler without workers, shared by tests."""
+    """Yield a scheduler without workers, shared by tests."""
     with scheduler(tmp_path_factory.mktemp("idle_scheduler")) as found:
         yield found
 

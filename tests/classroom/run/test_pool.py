@@ -20,7 +20,7 @@ MEMORY = 512 * 1024**2
 
 @pytest.fixture(scope="module")
 def pool() -> Iterator[Processes]:
-    """Return a pool of two workers with half a gigabyte each."""
+    """Yield a pool of two workers with half a gigabyte each."""
     with Processes(2, PATIENCE, prepare, MEMORY) as processes:
         yield processes
 
