@@ -1,6 +1,7 @@
-"""Measure how whole classes are graded: `python benchmarks/batch.py`. Quote the ratios; absolute figures depend on the machine.
+"""Measure the grading of whole classes: `python benchmarks/batch.py`.
 
-Classes are generated (class_generator.py), and all their files differ. Alternatives are timed in turn, A B A B. Name figures to run
+Quote the ratios; absolute figures depend on the machine. Classes are generated
+(class_generator.py), and all their files differ. Alternatives are timed alternately, A B A B. Name figures to run
 only these: `python benchmarks/batch.py speed memory`.
 """
 
@@ -36,7 +37,7 @@ _PATIENCE = 60.0  # seconds in which all workers have to show up
 
 
 class Bench(NamedTuple):
-    """The folder of the classes, their sizes, and how often each figure is measured."""
+    """The folder of the classes, their sizes, and the number of repetitions."""
 
     top: Path
     sizes: Sequence[int]
@@ -45,11 +46,11 @@ class Bench(NamedTuple):
 
     @property
     def usual(self) -> int:
-        """The size of a class for figures that take one: about a thousand."""
+        """Return the size of the class for figures that need one: about a thousand."""
         return max(size for size in self.sizes if size <= 1_000 or size == min(self.sizes))
 
     def folder(self, count: int) -> Path:
-        """A class of so many URDFs, made when it is first asked for."""
+        """Return a class of so many URDFs, generated when it is first needed."""
         folder = self.top / f"class-{count}"
         if not folder.exists():
             for _ in make_class(folder, count, seed=count):
@@ -58,7 +59,7 @@ class Bench(NamedTuple):
 
 
 def main() -> None:
-    """Print the figures that are asked for, or all."""
+    """Print the requested figures, or all."""
     parser = argparse.ArgumentParser(description="Measure how whole classes are graded.")
     parser.add_argument(
         "figures", nargs="*", metavar="figure", help=f"any of: {', '.join(FIGURES)}; all of them if left out"
@@ -84,7 +85,7 @@ def main() -> None:
 
 
 def speed(bench: Bench) -> None:
-    """Submissions a second with warm workers, gradebook included, for every size of a class."""
+    """Measure submissions per second with warm workers, including the gradebook, for every size of a class."""
     with workers(bench, bench.jobs) as executor:
         runs = {size: _fresh(bench, size, bench.jobs, executor) for size in bench.sizes}
         times = in_turn({str(size): run for size, run in runs.items() if size <= _REPEATED}, bench.runs)
@@ -110,7 +111,7 @@ def parallel(bench: Bench) -> None:
 
 
 def against_check_urdf(bench: Bench) -> None:
-    """Grading a class against a shell loop over urdfdom's own check_urdf, which only parses."""
+    """Compare grading a class with a shell loop over urdfdom's own check_urdf, which only parses."""
     program = check_urdf()
     if program is None or shutil.which("sh") is None:
         print("\ncheck_urdf is not installed: pip install --editable '.[test]'")
@@ -135,7 +136,7 @@ def against_check_urdf(bench: Bench) -> None:
 
 
 def again(bench: Bench) -> None:
-    """The first run over a class against the second one, when nothing has changed."""
+    """Compare the first run over a class with the second one, when nothing has changed."""
     size = bench.usual
     with workers(bench, bench.jobs) as executor:
         _compare_runs(
@@ -152,7 +153,7 @@ def again(bench: Bench) -> None:
 
 
 def memory(bench: Bench) -> None:
-    """The peak of memory of the whole process tree, for the smallest class of a thousand or so and for the largest."""
+    """Measure the peak memory of the whole process tree, for the smallest class of a thousand or so and for the largest."""
     if not Path("/proc/self/smaps_rollup").exists() or not _has_command():
         print("\nThe memory of a batch is measured where there is /proc/PID/smaps_rollup, and a command `grader batch`")
         return
@@ -178,7 +179,7 @@ FIGURES: dict[str, Callable[[Bench], None]] = {
 
 @contextmanager
 def workers(bench: Bench, jobs: int) -> Iterator[Executor]:
-    """Workers, each of which has graded a few dozen submissions that are in no class."""
+    """Yield workers, each of which has graded a few dozen submissions that are in no class."""
     executor = Processes(jobs, _TIMEOUT, prepare, preload=PRELOAD)
     folder, rubric = bench.folder(_WARMING), load_rubric("lab6")
     common = ClassContext(str(folder), rubric.data, str(rubric.path))
@@ -194,13 +195,13 @@ def workers(bench: Bench, jobs: int) -> Iterator[Executor]:
 
 
 def warmed(common: ClassContext, tasks: Sequence[Task]) -> int:
-    """Grade these in a worker; which process that is."""
+    """Grade submissions in a worker and return its process id."""
     grade_all(common, tasks)
     return os.getpid()
 
 
 def fresh_run(bench: Bench, count: int, jobs: int, executor: Executor) -> float:
-    """Seconds that a class takes into a new gradebook."""
+    """Return the seconds that a class takes into a new gradebook."""
     folder = bench.folder(count)
     with tempfile.TemporaryDirectory(dir=bench.top) as top:
         return once(lambda: grade_class(folder, count, jobs, executor, Path(top, "gradebook.db")))
@@ -211,7 +212,7 @@ def _fresh(bench: Bench, count: int, jobs: int, executor: Executor) -> Callable[
 
 
 def grade_class(folder: Path, count: int, jobs: int, executor: Executor, book: Path) -> Progress:
-    """Grade a class into a gradebook; every submission gets a mark or has been marked before."""
+    """Grade a class into a gradebook; every submission gets a mark or was graded before."""
     root, rubric = str(folder), load_rubric("lab6")
     with Gradebook(book, create=True) as opened:
         progress = Batch(opened, rubric, RunSettings(root, "folders", count, jobs), executor).grade(read_class(folder))
@@ -237,7 +238,7 @@ def _has_command() -> bool:
 
 
 def _compare_runs(title: str, run: Callable[[Path], float], bench: Bench) -> None:
-    """Time pairs of runs into one gradebook each, behind a pair that does not count."""
+    """Time pairs of runs into one gradebook each, after a pair that does not count."""
     times: dict[str, list[float]] = {"first": [], "second": []}
     for number in range(bench.runs + 1):
         with tempfile.TemporaryDirectory(dir=bench.top) as top:
@@ -250,7 +251,7 @@ def _compare_runs(title: str, run: Callable[[Path], float], bench: Bench) -> Non
 
 
 def _ratios(times: dict[str, list[float]], base: str, what: str = "a submission") -> None:
-    """Print medians, and how many times as fast as the base each is."""
+    """Print medians, and the speed of each relative to the base."""
     middle = statistics.median(times[base])
     for name, values in times.items():
         median = statistics.median(values)
@@ -261,7 +262,7 @@ def _ratios(times: dict[str, list[float]], base: str, what: str = "a submission"
 
 
 def peak_memory(command: list[str]) -> int:
-    """The most bytes that a process and all below it have at once; a page that several share is counted once in all."""
+    """Return the peak memory of a process and all below it; a shared page is counted once."""
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     peak = 0
     while process.poll() is None:
@@ -273,7 +274,7 @@ def peak_memory(command: list[str]) -> int:
 
 
 def _tree(top: int) -> list[int]:
-    """A process and all below it."""
+    """Return a process and all below it."""
     below: dict[int, list[int]] = {}
     for place in Path("/proc").glob("[0-9]*/stat"):
         try:
@@ -288,7 +289,7 @@ def _tree(top: int) -> list[int]:
 
 
 def _share(process: int) -> int:
-    """A process's share of the memory in bytes: what is its own, and its part of what it shares (PSS)."""
+    """Return a process's share of the memory in bytes: its own, and its part of what it shares (PSS)."""
     try:
         lines = Path(f"/proc/{process}/smaps_rollup").read_text(encoding="ascii").splitlines()
     except OSError:

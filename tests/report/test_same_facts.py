@@ -1,4 +1,4 @@
-"""Every format tells the same: what one of them has no room for is excused in its row of READERS, and nothing else is."""
+"""Every format contains the same facts, except those that its row of READERS excuses."""
 
 import os
 import re
@@ -17,7 +17,7 @@ from tests.samples import SAMPLES
 
 
 class Fact(NamedTuple):
-    """One thing that a format has to tell, in one of several spellings; of a criterion or problem with its id or code."""
+    """A fact that a format must contain, in one of several spellings; for a criterion or problem with its id or code."""
 
     kind: str
     spellings: tuple[str, ...]
@@ -25,7 +25,7 @@ class Fact(NamedTuple):
 
 
 def facts(report: Report) -> Iterator[Fact]:
-    """All that a report tells."""
+    """Yield all facts of a report."""
     for result in report.results:
         yield from _of_criterion(result, report)
     for problem in other_problems(report):
@@ -71,12 +71,15 @@ def _of_criterion(result: Result, report: Report) -> Iterator[Fact]:
 
 
 def _plain(text: str) -> str:
-    """A text without white space and capitals, which are layout, and without what stops mentions and ends sentences."""
+    """Return a text without white space, capitals, and characters that prevent mentions or end sentences."""
     return re.sub(r"[\s\u2060]+|\.$", "", text).casefold()
 
 
 def missing_from(kind: Format, report: Report) -> Iterator[Fact]:
-    """What a format leaves out. Of more than ten annotations of a type GitHub shows none: the last one names the others."""
+    """Yield the facts that a format omits.
+
+    GitHub shows at most ten annotations of a type; the last one names the others.
+    """
     with patch.dict(os.environ, {"COLUMNS": "500"}):
         text = render(report, kind)
     shown = _plain(READERS[kind].text(text))
@@ -88,15 +91,15 @@ def missing_from(kind: Format, report: Report) -> Iterator[Fact]:
 
 
 @pytest.mark.parametrize("name", SAMPLES)
-def test_all_formats_tell_the_same(name: str) -> None:
-    """Of each criterion its title, its message, its place and its feedback; of the submission all that is said of it."""
+def test_all_formats_contain_the_same_facts(name: str) -> None:
+    """For each criterion its title, message, location and feedback; for the submission all of its facts."""
     report = SAMPLES[name].grade()
     left_out = {(kind.value, fact) for kind in READERS for fact in missing_from(kind, report)}
     assert not {(kind, fact) for kind, fact in left_out if fact.kind not in READERS[Format(kind)].excused}
 
 
 def test_every_excuse_is_needed() -> None:
-    """What a format tells after all is excused no longer."""
+    """A format that contains a fact needs no excuse for it."""
     reports = [sample.grade() for sample in SAMPLES.values()]
     for kind, read in READERS.items():
         assert set(read.excused) == {fact.kind for report in reports for fact in missing_from(kind, report)}

@@ -1,4 +1,4 @@
-"""SARIF: valid under the published schema, and under what GitHub's code scanning asks for beyond it."""
+"""SARIF: valid under the published schema, and under the additional rules of GitHub's code scanning."""
 
 import re
 from collections.abc import Iterator
@@ -23,20 +23,20 @@ from tests.report.recast import recast
 from tests.samples import LAB6, ROOT, SAMPLES
 
 MISTAKEN = ROOT / "submissions/several-mistakes/my_robot.urdf"
-MOST = 5000  # results that GitHub shows
-LONGEST = 1024  # characters of a rule's descriptions
+MAX_RESULTS = 5000  # results that GitHub shows
+MAX_DESCRIPTION = 1024  # characters of a rule's descriptions
 FOLDER = "a lab #1/50%/ü?:x/"
 
 
 def run_of(report: Report, base: Base = Base(FOLDER)) -> Any:  # noqa: B008  immutable
-    """The run of a report, which holds what GitHub asks for."""
+    """Return the run of a report, which satisfies GitHub's rules."""
     run = read_sarif(render_sarif(report, base))
     assert all(text.strip() for text in _texts(run))
     rules = run["tool"]["driver"]["rules"]
     assert len({rule["id"] for rule in rules}) == len(rules)
     for rule in rules:
         for key in ("shortDescription", "fullDescription", "help"):
-            assert 0 < len(rule[key]["text"]) <= LONGEST
+            assert 0 < len(rule[key]["text"]) <= MAX_DESCRIPTION
     for result in run["results"]:
         assert rules[result["ruleIndex"]]["id"] == result["ruleId"]
         assert result["message"]["text"]
@@ -44,7 +44,7 @@ def run_of(report: Report, base: Base = Base(FOLDER)) -> Any:  # noqa: B008  imm
         _is_relative(location["physicalLocation"])
     prints = [result["partialFingerprints"]["primaryLocationLineHash"] for result in run["results"]]
     assert all(re.fullmatch("[0-9a-f]{16}:[1-9][0-9]*", fingerprint) for fingerprint in prints)
-    assert len(set(prints)) == len(prints) <= MOST
+    assert len(set(prints)) == len(prints) <= MAX_RESULTS
     return run
 
 
@@ -60,7 +60,7 @@ def _is_relative(place: dict[str, Any]) -> None:
 
 
 def _texts(value: Any) -> Iterator[str]:
-    """Every string but the properties, which no viewer reads."""
+    """Yield every string but those in properties, which no viewer shows."""
     if isinstance(value, str):
         yield value
     elif isinstance(value, list):
@@ -74,7 +74,7 @@ def _texts(value: Any) -> Iterator[str]:
 
 @pytest.mark.parametrize("name", SAMPLES)
 def test_every_finding_is_a_result(name: str) -> None:
-    """Rule, level, place and message are those of the finding, and the points that it costs add up."""
+    """Rule, level, location and message are those of the finding, and the lost points add up."""
     report = SAMPLES[name].grade()
     run = run_of(report)
     found = findings(report, Base(FOLDER))
@@ -90,7 +90,7 @@ def test_every_finding_is_a_result(name: str) -> None:
     assert report.score + lost + report.pending == report.max_score  # what is skipped counts for what it is due to
 
 
-def test_what_is_quoted_is_what_is_meant() -> None:
+def test_snippets_match_their_regions() -> None:
     """The region of a file from its first column to the one before its last is the snippet, counted in characters."""
     text = MISTAKEN.read_text(encoding="utf-8").replace("<origin", "<!-- \U0001f600 \u00fc --><origin")
     report = grade(LAB6, read_submission(text.encode(), identity="a", path="my_robot.urdf"))
@@ -102,8 +102,8 @@ def test_what_is_quoted_is_what_is_meant() -> None:
         assert line[region["startColumn"] - 1 : region["endColumn"] - 1] == region["snippet"]["text"]
 
 
-def test_a_finding_is_known_again_where_it_has_moved() -> None:
-    """Lines that are inserted above change no fingerprint; another line does."""
+def test_a_moved_finding_keeps_its_fingerprint() -> None:
+    """Lines inserted above change no fingerprint; a change of the line does."""
     text = MISTAKEN.read_bytes()
 
     def prints(data: bytes) -> dict[str, str]:
@@ -120,18 +120,20 @@ def test_a_finding_is_known_again_where_it_has_moved() -> None:
     assert {name for name in before if before[name] != after.get(name)} == {"lidar-frame"}
 
 
-def test_no_more_results_than_are_shown() -> None:
-    """Of more the first stay, which are those that cost points, and the run says how many are missing."""
+def test_the_number_of_results_is_limited() -> None:
+    """The first ones are kept, which cost points, and the run says how many are missing."""
     report = SAMPLES["several-mistakes"].grade()
-    problems = tuple(Problem(UNDEFINED_MATERIAL, "no such colour", Location("a.urdf", 1, 1)) for _ in range(MOST + 100))
+    problems = tuple(
+        Problem(UNDEFINED_MATERIAL, "no such colour", Location("a.urdf", 1, 1)) for _ in range(MAX_RESULTS + 100)
+    )
     run = run_of(replace(report, problems=problems))
-    assert len(run["results"]) == MOST
+    assert len(run["results"]) == MAX_RESULTS
     assert run["properties"]["leftOut"] == 107
     assert [result["ruleId"] for result in run["results"][:2]] == ["base-green", "lidar-frame"]
 
 
-def test_a_file_in_one_long_line_stays_small() -> None:
-    """Nobody's report is a thousand times as large as what was handed in."""
+def test_a_file_of_one_long_line_has_a_small_report() -> None:
+    """No report is a thousand times as large as its submission."""
     joints = "".join(f"<joint name='j{number}' type='q'/>" for number in range(3000))
     text = f"<robot name='r'><link name='a'/>{joints}</robot>"
     report = grade(LAB6, read_submission(text.encode(), identity="a", path="a.urdf"))
@@ -139,8 +141,8 @@ def test_a_file_in_one_long_line_stays_small() -> None:
     assert len(render_sarif(report, Base())) < 10 * len(text)
 
 
-def test_what_is_in_an_archive_is_placed_at_the_archive() -> None:
-    """Code scanning knows files of the repository only, and wants a line of each."""
+def test_findings_in_an_archive_are_at_the_archive() -> None:
+    """Code scanning only knows files of the repository, and needs a line for each."""
     run = run_of(SAMPLES["several-mistakes"].grade(), Base(archive="lab 6.zip"))
     for result in run["results"]:
         place = result["locations"][0]["physicalLocation"]
@@ -149,7 +151,7 @@ def test_what_is_in_an_archive_is_placed_at_the_archive() -> None:
 
 
 def test_the_rest_of_the_report_is_in_the_properties() -> None:
-    """Points, every criterion, and where all this comes from."""
+    """Points, every criterion, versions and paths."""
     report = SAMPLES["reference"].grade()
     run = run_of(report)
     said = run["properties"]
@@ -162,8 +164,8 @@ def test_the_rest_of_the_report_is_in_the_properties() -> None:
     assert run["columnKind"] == "unicodeCodePoints"
 
 
-def test_a_message_holds_no_link() -> None:
-    """Viewers make links of what is written as in Markdown, and leave everything else as it is."""
+def test_a_message_contains_no_link() -> None:
+    """Viewers interpret links as in Markdown, and nothing else."""
     report = recast(SAMPLES["several-mistakes"].grade(), lambda: "[x](http://e.org) ![y](z)")
     messages = [result["message"]["text"] for result in run_of(report)["results"]]
     assert all("[x]" in message for message in messages)

@@ -1,4 +1,4 @@
-"""Workflow commands, as the runner of GitHub Actions finds them in the lines that a step prints."""
+"""Workflow commands, as the runner of GitHub Actions finds them in the output of a step."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -18,24 +18,24 @@ _UNSEEN = re.compile("[\u00ad\u034f\u061c\u180e\u200b-\u200f\u202a-\u202e\u2060-
 
 
 class Command(NamedTuple):
-    """One command: its name in lower case, its properties in their order, and its data, all of it unescaped."""
+    """A command: its name in lower case, its properties in order, and its data, all unescaped."""
 
     name: str
     properties: tuple[tuple[str, str], ...]
     data: str
 
     def get(self, key: str) -> str | None:
-        """A property; the last one counts where it is given twice."""
+        """Return a property; the last one counts if it is given twice."""
         return dict(self.properties).get(key)
 
 
 def commands(log: str) -> list[Command]:
-    """Every command in a log, in either of the two forms that a runner knows."""
+    """Return every command in a log, in both forms that a runner knows."""
     return [_command for line in re.split("\r\n|\r|\n", log) for _command in _commands(line)]
 
 
 def _commands(line: str) -> Iterator[Command]:
-    """The command that a line is, if any; whatever a runner may take for one, however it compares text."""
+    """Yield the command on a line, if any, by any rule that a runner has ever used."""
     for read in dict.fromkeys((line, _UNSEEN.sub("", line))):
         found = _newer(read.lstrip()) or _older(read)
         if found is not None:
@@ -44,7 +44,7 @@ def _commands(line: str) -> Iterator[Command]:
 
 
 def _newer(line: str) -> Command | None:
-    """`::name key=value,key=value::data`, at the beginning of a line."""
+    """Return a command `::name key=value,key=value::data` at the start of a line."""
     inside, end, data = line[2:].partition("::")
     if not line.startswith("::") or not end:
         return None
@@ -52,7 +52,7 @@ def _newer(line: str) -> Command | None:
 
 
 def _older(line: str) -> Command | None:
-    """`##[name key=value;key=value]data`, anywhere in a line."""
+    """Return a command `##[name key=value;key=value]data` anywhere in a line."""
     _, start, rest = line.partition("##[")
     inside, end, data = rest.partition("]")
     return _command(inside, ";", _OLDER, _unescaped(data, _OLDER)) if start and end else None

@@ -1,4 +1,4 @@
-"""Random text in which a URDF's pieces, and what goes wrong between them, are likely."""
+"""Random text in which pieces of a URDF, and errors between them, are likely."""
 
 from hypothesis import strategies as st
 

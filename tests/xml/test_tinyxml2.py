@@ -1,4 +1,4 @@
-"""TinyXML2's dialect: never a crash, always XML that lxml reads, and the same tree where no translation is needed."""
+"""TinyXML2's dialect: never a crash, always XML that lxml reads, and the same tree if no translation is needed."""
 
 import pytest
 from hypothesis import assume, example, given, settings
@@ -17,12 +17,12 @@ _PARSER = etree.XMLParser(
 
 
 def decoded(raw: bytes) -> str:
-    """A file's text as the reader hands it over."""
+    """Return a file's text as the reader decodes it."""
     return raw.decode("utf-8", "surrogateescape")
 
 
 def assert_sound(scan: Scan, text: str) -> None:
-    """The XML parses and has an offset for each element, at its <; without XML there is a reason, or no robot."""
+    """Assert that the XML parses and has an offset for each element, at its <; without XML there is a reason, or no robot."""
     for found in scan.differences:
         assert 0 <= found.offset <= len(text)
         assert found.message
@@ -53,7 +53,7 @@ def test_translation_is_sound(raw: bytes) -> None:
 @settings(max_examples=300, deadline=None)
 @given(text=st.text(max_size=200))
 def test_any_text_is_translated_or_refused(text: str) -> None:
-    """Text without any tags in mind."""
+    """The same for text without any tags in mind."""
     assert_sound(translate(text), text)
 
 
@@ -114,12 +114,12 @@ _robots = st.builds("{}{}{}".format, _start, _elements("robot", 3), _blank)
 
 
 def tree(root: etree._Element) -> list[tuple[str, dict[str, str]]]:
-    """Tags and attributes in document order."""
+    """Return tags and attributes in document order."""
     return [(str(element.tag), {str(k): str(v) for k, v in element.attrib.items()}) for element in root.iter()]
 
 
 def assert_same_if_plain(text: str) -> None:
-    """If the text counts as plain and lxml reads it, the translation has the same tags and attributes."""
+    """Assert that the translation has the same tags and attributes if the text is plain and lxml reads it."""
     raw = text.encode()
     if is_plain(raw):
         try:
@@ -132,7 +132,7 @@ def assert_same_if_plain(text: str) -> None:
 @settings(max_examples=300, deadline=None)
 @given(text=_robots)
 def test_plain_text_means_the_same_to_lxml(text: str) -> None:
-    """Where no translation is needed, lxml reads the same tags and attributes from the text and the translation."""
+    """If no translation is needed, lxml reads the same tags and attributes from the text and the translation."""
     assume(is_plain(text.encode()))
     assert_same_if_plain(text)
 
@@ -156,7 +156,7 @@ def test_values_with_line_breaks_are_not_plain(values: list[str], quote: str, ga
 @settings(max_examples=1500, deadline=None)
 @given(raw=data)
 def test_plain_soup_means_the_same_to_lxml(raw: bytes) -> None:
-    """Even if the text makes no sense; names that XML and TinyXML2 read differently are excluded."""
+    """Also for text without meaning, except names that XML and TinyXML2 read differently."""
     assume(is_plain(raw))
     try:
         root = etree.fromstring(raw, _PARSER)
@@ -173,8 +173,8 @@ def test_plain_soup_means_the_same_to_lxml(raw: bytes) -> None:
 
 @settings(max_examples=400, deadline=None)
 @given(text=_robots)
-def test_both_ways_to_read_give_the_same_robot(text: str) -> None:
-    """An empty CDATA section sends a file through the translation: robot, problems and places stay as they are."""
+def test_both_readings_give_the_same_robot(text: str) -> None:
+    """An empty CDATA section forces the translation: robot, problems and locations stay the same."""
     head, end, tail = text.rpartition("</")
     assume(end)
     assume(tail.startswith("robot"))
@@ -206,7 +206,7 @@ def test_both_ways_to_read_give_the_same_robot(text: str) -> None:
         "<robot/>\0",
     ],
 )
-def test_what_the_two_read_apart_is_not_plain(text: str) -> None:
+def test_text_that_both_read_differently_is_not_plain(text: str) -> None:
     """Values with line breaks, CDATA, DOCTYPE, namespaces and odd declarations are not plain, or mean the same."""
     assert_same_if_plain(text)
 

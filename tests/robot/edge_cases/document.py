@@ -1,4 +1,4 @@
-"""Text around the root, and how the bytes are encoded: TinyXML2's rules, not XML's."""
+"""Text around the root, and encodings: TinyXML2's rules, not XML's."""
 
 from codecs import BOM_UTF8, BOM_UTF16_BE, BOM_UTF16_LE, BOM_UTF32_BE, BOM_UTF32_LE
 
