@@ -19,7 +19,7 @@ _FEW, _MANY = 100.0, 1e7  # from here on: no decimals, an exponent
 
 
 class Outcome(NamedTuple):
-    """What one check found: a sentence, where to look, and the values that it measured, in `unit`.
+    """The result of one check: a message, its location, and the measured values, in `unit`.
 
     `mistake` is the message without what differs between students who made the same mistake, such as the names of their
     joints: statistics count equal mistakes. It is empty where the message holds nothing of that kind.
@@ -108,7 +108,7 @@ def judged(
 
 
 def location_of(at: AnyPlace) -> Location | None:
-    """Return the place in the file, worked out only now: most places are never looked at."""
+    """Return the location in the file, computed only now because most locations are never used."""
     return at.resolve() if isinstance(at, LazyLocation) else at
 
 

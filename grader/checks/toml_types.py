@@ -27,7 +27,7 @@ class TomlType:
 
 @dataclass(frozen=True, slots=True)
 class Constraint:
-    """What a value must be beyond its type, for `Annotated`: `must_be` ends the message "... must be", `schema` adds to it."""
+    """A constraint on a value beyond its type, for `Annotated`: `must_be` ends the message "... must be", `schema` adds to it."""
 
     must_be: str
     holds: Callable[[Any], bool]

@@ -48,7 +48,7 @@ class Result(NamedTuple):
 
     @property
     def is_open(self) -> bool:
-        """Whether the criterion still needs manual grading."""
+        """Return whether the criterion still needs manual grading."""
         return self.outcome.status == "pending" and self.manual_mark is None
 
 
@@ -68,9 +68,9 @@ class GradedPackage(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class GradedSubmission:
-    """What a report says of the submission itself. `path`, `sha256` and `verdict` are those of the URDF.
+    """The submission in a report. `path`, `sha256` and `verdict` are those of the URDF.
 
-    `is_single` tells a URDF on its own from a folder or archive; `unread` says why the URDF could not be read. `quote` returns
+    `is_single` is True for a single URDF, False for a folder or archive; `unread` says why the URDF could not be read. `quote` returns
     the text of one of the files, or None where it cannot be read.
     """
 

@@ -104,7 +104,7 @@ class Rubric:
 
     @property
     def is_shipped(self) -> bool:
-        """Whether it comes with the grader and is named by its id."""
+        """Return whether the rubric is shipped with the grader and named by its id."""
         return shipped_rubrics().get(self.id) == self.path
 
     @property

@@ -70,7 +70,7 @@ class Submission:
 
     @property
     def has_urdf(self) -> bool:
-        """Whether there is a URDF that could be read, even if ROS 2 rejects it."""
+        """Return whether there is a URDF that could be read, even if ROS 2 rejects it."""
         return isinstance(self.urdf, Read | NeedsExpansion)
 
     @property
