@@ -32,8 +32,8 @@ from grader.grading.rubric import load_rubric
 _TIMEOUT = 60.0  # seconds for one submission
 _WARMING = 50  # submissions that each worker grades before the clock starts
 _REPEATED = 10_000  # submissions of the largest class that is graded more than once
-_SAMPLED = 0.05  # seconds between two looks at the memory
-_PATIENCE = 60.0  # seconds in which all workers have to show up
+_SAMPLED = 0.05  # seconds between two measurements of the memory
+_PATIENCE = 60.0  # seconds in which all workers must start
 
 
 class Bench(NamedTuple):
@@ -127,7 +127,7 @@ def against_check_urdf(bench: Bench) -> None:
     installed = Path(sys.executable).with_name("check_urdf")
     with workers(bench, bench.jobs) as executor:
         runs = {"bare program": loop(program)}
-        if installed.exists():  # what pip puts on the path: a few lines of Python that start the program
+        if installed.exists():  # the console script that pip installs
             runs["pip's command"] = loop(installed)
         runs["grader"] = lambda: fresh_run(bench, size, bench.jobs, executor) / size
         times = in_turn(runs, bench.runs)
@@ -276,12 +276,12 @@ def peak_memory(command: list[str]) -> int:
 def _tree(top: int) -> list[int]:
     """Return a process and all below it."""
     below: dict[int, list[int]] = {}
-    for place in Path("/proc").glob("[0-9]*/stat"):
+    for target in Path("/proc").glob("[0-9]*/stat"):
         try:
-            fields = place.read_text(errors="replace").rpartition(")")[2].split()
+            fields = target.read_text(errors="replace").rpartition(")")[2].split()
         except OSError:  # it has ended meanwhile
             continue
-        below.setdefault(int(fields[1]), []).append(int(place.parent.name))
+        below.setdefault(int(fields[1]), []).append(int(target.parent.name))
     found = [top]
     for process in found:
         found += below.get(process, [])

@@ -127,7 +127,7 @@ def _quarter_turns() -> Iterator[Variant]:
 
 
 # fmt: off
-# The counts of the first ones are those of the 51 submissions, so that the proportions are theirs; the rest is met now and then.
+# The weights of the first ones are their counts in the 51 submissions; the others are less frequent.
 MISTAKES = (
     Variant("right-mirrored", 10, _RIGHT_SIDE, "right-wheel-forward right-wheel-axis", (_RIGHT_TURNED, _RIGHT_OUTWARD)),
     Variant("right-mirrored-into-base", 3, _RIGHT_SIDE, _right("placed", "forward", "axis", "clear"), (_RIGHT_TURNED,)),
@@ -201,7 +201,7 @@ EQUIVALENTS = (
     Variant("without-rpy", 3, "rpy", "", (Edit(_LIDAR, ' rpy="0 0 0"'), Edit(_CASTER, ' rpy="0 0 0"'))),
 )
 
-# What has no edits is done to the whole text.
+# Variants without edits change the whole text.
 BROKEN = (
     Variant("tag-parent", 2, "", _EVERYTHING, (Edit(_LIDAR, "<parent link=", "<parent="),)),
     Variant("tag-origin", 2, "", _EVERYTHING, (Edit(_FOOTPRINT, "<origin xyz=", "<origin="),)),
@@ -628,7 +628,7 @@ def _folder(data: Callable[[ItemFactory], list[Item]]) -> Kind:
     return build
 
 
-# How many of each there are in a hundred or so students, in a class of all kinds. An empty list is no submission at all.
+# The number of each kind in a class of about a hundred. An empty list is a missing submission.
 KINDS: dict[str, tuple[int, Kind]] = {
     "nothing": (4, lambda _: []),
     "urdf": (22, _once(single)),
@@ -815,10 +815,10 @@ def make_class(
 ) -> Iterator[WrittenSubmission]:
     """Write a class into a folder, one submission after the other."""
     folder.mkdir(parents=True, exist_ok=True)
-    root, place = str(folder), _PLACING[layout]
+    root, target = str(folder), _PLACING[layout]
     for submission in submissions(count, seed, kind):
         tops: dict[str, None] = {}
-        for item in place(submission):
+        for item in target(submission):
             write(root, item)
             tops[item.path.partition("/")[0]] = None
         yield WrittenSubmission(submission.person, submission.kind, tuple(tops), submission.made)
@@ -842,7 +842,7 @@ def canvas_gradebook(people: Iterable[Person]) -> str:
     return _csv(header, [points, *rows], "\n")
 
 
-def moodle_worksheet(people: Iterable[Person], handed_in: set[Person]) -> str:
+def moodle_worksheet(people: Iterable[Person], submitted: set[Person]) -> str:
     """Return a Moodle grading worksheet without grades."""
     header = [
         "Identifier", "Full name", "Email address", "Status", "Grade", "Maximum grade", "Grade can be changed",
@@ -851,8 +851,8 @@ def moodle_worksheet(people: Iterable[Person], handed_in: set[Person]) -> str:
     rows = (
         [
             f"Participant {moodle_id(who)}", who.name, _email(who),
-            "Submitted for grading" if who in handed_in else "No submission", "", "100.00", "Yes",
-            "Tuesday, 1 September 2026, 10:00 AM" if who in handed_in else "-", "-", "",
+            "Submitted for grading" if who in submitted else "No submission", "", "100.00", "Yes",
+            "Tuesday, 1 September 2026, 10:00 AM" if who in submitted else "-", "-", "",
         ]
         for who in people
     )  # fmt: skip
@@ -924,8 +924,8 @@ def write_beside(
     if people:
         people.write_bytes(roster(students).encode())
     if lms:
-        handed_in = {submission.person for submission in written if submission.paths}
-        text = moodle_worksheet(students, handed_in) if layout == "moodle" else canvas_gradebook(students)
+        submitted = {submission.person for submission in written if submission.paths}
+        text = moodle_worksheet(students, submitted) if layout == "moodle" else canvas_gradebook(students)
         lms.write_bytes(text.encode())
 
 

@@ -72,8 +72,8 @@ def whole_process(runs: int = 15) -> None:
 def whole_packages(runs: int = 15) -> None:
     """Compare a package, a workspace with answers and pictures, and a zip of it with the URDF in them alone, as processes."""
     module = [sys.executable, "-m", "grader"]
-    handed_in = {"the URDF alone": URDF, "package": PACKAGE, "workspace": WORKSPACE, "zip": ZIPPED}
-    times = in_turn({name: process([*module, "grade", str(path)]) for name, path in handed_in.items()}, runs)
+    submitted = {"the URDF alone": URDF, "package": PACKAGE, "workspace": WORKSPACE, "zip": ZIPPED}
+    times = in_turn({name: process([*module, "grade", str(path)]) for name, path in submitted.items()}, runs)
     table("Whole hand-ins as a whole process", times, "the URDF alone", "grade my_robot.urdf")
 
 
@@ -99,8 +99,8 @@ def warm_packages(runs: int = 15) -> None:
     def grading(path: Path) -> Callable[[], object]:
         return lambda: grade(rubric, open_submission(str(path), wanted=rubric.urdf, package=rubric.package))
 
-    handed_in = {"the URDF alone": URDF, "package": PACKAGE, "workspace": WORKSPACE, "zip": ZIPPED}
-    times = in_turn({name: repeated(grading(path), 10) for name, path in handed_in.items()}, runs)
+    submitted = {"the URDF alone": URDF, "package": PACKAGE, "workspace": WORKSPACE, "zip": ZIPPED}
+    times = in_turn({name: repeated(grading(path), 10) for name, path in submitted.items()}, runs)
     table("Whole hand-ins, warm, from a path to the report", times, "the URDF alone", "grade my_robot.urdf")
 
 

@@ -15,7 +15,7 @@ from unittest.mock import patch
 from grader.__main__ import main
 
 ROOT = Path(__file__).parent.parent
-PATIENCE = 300.0  # seconds after which a command counts as hanging, also on a busy machine
+PATIENCE = 300.0  # seconds after which a command counts as hanging, even on a busy machine
 
 GRADER = (sys.executable, "-W", "error", "-m", "grader")
 Done = subprocess.CompletedProcess[bytes]
@@ -38,7 +38,7 @@ def run_with_input(
     own = any(option in words for option in _OWN_PROCESS) or any(
         variable.startswith(_READ_AT_START) for variable in variables
     )
-    if own or current_thread() is not main_thread():  # the streams, the variables and the folder are the process's
+    if own or current_thread() is not main_thread():  # streams, variables and the current folder belong to the process
         return run_process(words, stdin, variables, folder)
     with TemporaryFile() as given, TemporaryFile() as out, TemporaryFile() as err:
         given.write(stdin)

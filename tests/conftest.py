@@ -10,12 +10,12 @@ from hypothesis import settings
 settings.register_profile("patient", settings(), deadline=None)  # examples have no time limit of their own
 settings.load_profile("patient")
 
-# A shell that runs a command behind `&` has it ignore Ctrl-C, and so would the commands that the tests start and interrupt.
+# A command that a shell starts with `&` ignores Ctrl-C, and so would the commands that the tests start and interrupt.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-# On a CI system the grader annotates, and takes the checkout for the repository; in a git hook git is told of another
-# repository; colours and widths change what is printed; pip may be told to install elsewhere. Tests that want it so say so.
+# On a CI system the grader annotates, and takes the checkout for the repository; a git hook sets variables for another
+# repository; colours and widths change the output; pip may have another target. Tests that need a variable set it.
 _NAMES = (
     "CI", "CI_PROJECT_DIR", "CLICOLOR_FORCE", "COLUMNS", "FORCE_COLOR", "NO_COLOR", "PYTHONDONTWRITEBYTECODE",
     "PYTHONHASHSEED", "PYTHONOPTIMIZE", "PYTHONWARNINGS", "TTY_COMPATIBLE", "TTY_INTERACTIVE",
@@ -23,7 +23,7 @@ _NAMES = (
 _BEGINNINGS = ("GITHUB_", "GIT_", "GRADER_", "PIP_", "_TYPER_")
 for name in [name for name in os.environ if name in _NAMES or name.startswith(_BEGINNINGS)]:
     del os.environ[name]
-# Nor do the settings of a user's git count.
+# The user's git settings are ignored as well.
 os.environ |= {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_NOSYSTEM": "1"}
 
 

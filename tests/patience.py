@@ -7,7 +7,7 @@ from threading import current_thread, main_thread
 from time import process_time
 from types import FrameType
 
-# The limits tell linear time from quadratic, which takes twenty seconds and more for a megabyte. A busy machine, and a
+# The limits separate linear time from quadratic time, which takes twenty seconds and more for a megabyte. A busy machine, and a
 # process that holds the objects of five thousand tests, take three times as long as a quiet one.
 BUSY = 2.5
 

@@ -94,13 +94,13 @@ def pose(owner: Element) -> Matrix:
     return matrix(numbers_of(origin, "xyz"), numbers_of(origin, "rpy"))
 
 
-def put(owner: Element, place: Matrix) -> None:
+def put(owner: Element, transform: Matrix) -> None:
     """Write a pose into the `<origin>` of a joint or a visual."""
     origin = owner.find("origin")
     if origin is None:
         origin = etree.SubElement(owner, "origin")
-    origin.set("xyz", written(place[:3, 3]))
-    origin.set("rpy", written(angles(place)))
+    origin.set("xyz", written(transform[:3, 3]))
+    origin.set("rpy", written(angles(transform)))
 
 
 def link_named(tree: Element, name: str) -> Element | None:
@@ -142,12 +142,12 @@ def fresh(tree: Element, kind: str) -> str:
     return f"extra_{kind}_{len(tree)}"
 
 
-def add_joint(tree: Element, name: str, parent: str, child: str, place: Matrix) -> Element:
+def add_joint(tree: Element, name: str, parent: str, child: str, transform: Matrix) -> Element:
     """Add a fixed joint."""
     joint = etree.SubElement(tree, "joint", {"name": name, "type": "fixed"})
     etree.SubElement(joint, "parent", {"link": parent})
     etree.SubElement(joint, "child", {"link": child})
-    put(joint, place)
+    put(joint, transform)
     return joint
 
 
@@ -279,7 +279,7 @@ def nudge(draw: st.DrawFn, tree: Element) -> None:
     if tree.get("nudged"):
         return
     tree.set("nudged", "true")
-    places = [(origin, "xyz") for origin in tree.iter("origin")]
+    locations = [(origin, "xyz") for origin in tree.iter("origin")]
     sizes = [
         (shape, str(name))
         for shape in tree.iter("box", "cylinder", "sphere")
@@ -289,7 +289,7 @@ def nudge(draw: st.DrawFn, tree: Element) -> None:
     count = draw(st.integers(1, 3))
     off = st.floats(-0.001 / count, 0.001 / count)
     for _ in range(count):
-        element, name = draw(st.sampled_from(places + sizes))
+        element, name = draw(st.sampled_from(locations + sizes))
         element.set(name, written(value + draw(off) for value in numbers_of(element, name)))
 
 

@@ -23,7 +23,7 @@ LAYERS = (
     ("cli",),
     ("__main__",),
 )
-# The same inside a package that is large enough to have layers of its own.
+# The layers inside a package that is large enough to have its own.
 INNER = {
     "classroom": (("students",), ("matching",), ("intake", "lms"), ("gradebook",), ("run",)),
 }
@@ -73,20 +73,20 @@ def height(layers: tuple[tuple[str, ...], ...], name: str) -> int:
 @pytest.mark.parametrize("module", MODULES)
 def test_imports_point_down(module: str) -> None:
     """No module imports from a higher layer or from another package of its own, and each library has its packages."""
-    _, *here = module.split(".")
-    if not here:
+    _, *first = module.split(".")
+    if not first:
         return
     for imported in imports(module):
-        top, *there = imported.split(".")
+        top, *second = imported.split(".")
         allowed = LIBRARIES.get(top)
-        assert allowed is None or here[0] in allowed, f"{module} imports {imported}"
-        if top != "grader" or not there:
+        assert allowed is None or first[0] in allowed, f"{module} imports {imported}"
+        if top != "grader" or not second:
             continue
-        if there[0] != here[0]:
-            assert height(LAYERS, there[0]) < height(LAYERS, here[0]), f"{module} imports {imported}"
-        elif here[0] in INNER and len(here) > 1 and there[1] != here[1]:
-            inner = INNER[here[0]]
-            assert height(inner, there[1]) < height(inner, here[1]), f"{module} imports {imported}"
+        if second[0] != first[0]:
+            assert height(LAYERS, second[0]) < height(LAYERS, first[0]), f"{module} imports {imported}"
+        elif first[0] in INNER and len(first) > 1 and second[1] != first[1]:
+            inner = INNER[first[0]]
+            assert height(inner, second[1]) < height(inner, first[1]), f"{module} imports {imported}"
 
 
 def test_no_import_cycle() -> None:

@@ -79,8 +79,8 @@ def test_the_proportions_are_those_of_real_classes() -> None:
         sort: sum(submission.sort == sort for submission in made) / len(made)
         for sort in {submission.sort for submission in made}
     }
-    wanted = {"as told": 0.185, "equivalent": 0.185, "mistaken": 0.57, "broken": 0.06}
-    assert share == pytest.approx(wanted, abs=0.03)
+    expected = {"as told": 0.185, "equivalent": 0.185, "mistaken": 0.57, "broken": 0.06}
+    assert share == pytest.approx(expected, abs=0.03)
     met = {variant.name: sum(variant.name in submission.variants for submission in made) for variant in ALL_VARIANTS}
     assert all(met.values())
     assert {"right-mirrored", "lidar-buried"} == set(sorted(met, key=lambda name: met[name])[-2:])

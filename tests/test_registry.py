@@ -144,15 +144,15 @@ def shows_box(robot: Configuration) -> Outcome:
 @pytest.fixture
 def installed(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Return a function that registers checks as if another distribution did; the requested groups are recorded."""
-    asked: list[str] = []
+    requested: list[str] = []
     points = [EntryPoint(name, f"{__name__}:{name}", ENTRY_POINTS) for name in ("has_links", "shows_box")]
 
     def entry_points(*, group: str) -> EntryPoints:
-        asked.append(group)
+        requested.append(group)
         return EntryPoints(points if group == ENTRY_POINTS else [])
 
     monkeypatch.setattr("importlib.metadata.entry_points", entry_points)
-    return asked
+    return requested
 
 
 def test_another_distribution_adds_a_check(installed: list[str]) -> None:

@@ -18,12 +18,12 @@ def offline(folder: Path) -> dict[str, str]:
     """Make such wheels for all dependencies of the grader; return the variables that make pip install only these."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     declared = project["project"]
-    wanted = [
+    expected = [
         *project["build-system"]["requires"],
         *declared["dependencies"],
         *declared["optional-dependencies"]["documents"],
     ]
-    for requirement in wanted:
+    for requirement in expected:
         _write_wheel(Requirement(requirement).name, folder)
     return {"PIP_NO_INDEX": "1", "PIP_FIND_LINKS": str(folder), "PIP_CONFIG_FILE": "/dev/null"}
 

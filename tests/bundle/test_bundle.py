@@ -43,12 +43,12 @@ def test_the_files(bundle: Path) -> None:
     """The files that Gradescope needs are in the root, the grader is complete, and nothing else is in the zip."""
     names = members(bundle)
     files = (path.relative_to(ROOT) for path in (ROOT / "grader").rglob("*.*"))
-    there = {path.as_posix() for path in files if "__pycache__" not in path.parts}
+    second = {path.as_posix() for path in files if "__pycache__" not in path.parts}
     assert {name for name in names if "/" not in name} == {
         "setup.sh", "run_autograder", "autograder.py", "autograder.json", "requirements.txt",
     }  # fmt: skip
-    ours = {name for name in names if name.startswith("grader/")}
-    assert ours == {*there, "grader/bundle/on_gradescope/run_autograder", *RUBRICS}
+    rendered = {name for name in names if name.startswith("grader/")}
+    assert rendered == {*second, "grader/bundle/on_gradescope/run_autograder", *RUBRICS}
     assert [name for name in names if "rubrics/" in name] == RUBRICS
     assert not [name for name in names if "__pycache__" in name or name.endswith(".pyc") or "tests" in name]
     assert list(names) == sorted(names)
@@ -116,10 +116,10 @@ def as_wheel(into: Path) -> Path:
     shutil.copytree(ROOT / "grader", into / "grader", ignore=skipped)
     shutil.copytree(ROOT / "rubrics", into / "grader" / "rubrics", ignore=skipped)
     lines = [f"Requires-Dist: {in_order(dependency)}" for dependency in PROJECT["dependencies"]]
-    for extra, wanted in PROJECT["optional-dependencies"].items():
+    for extra, expected in PROJECT["optional-dependencies"].items():
         lines += [
             f"Provides-Extra: {extra}",
-            *(f"Requires-Dist: {in_order(requirement)}; extra == '{extra}'" for requirement in wanted),
+            *(f"Requires-Dist: {in_order(requirement)}; extra == '{extra}'" for requirement in expected),
         ]
     (into / "urdf_grader-9.9.dist-info").mkdir()
     head = "Metadata-Version: 2.4\nName: urdf-grader\nVersion: 9.9\n"
@@ -129,9 +129,9 @@ def as_wheel(into: Path) -> Path:
 
 def test_from_a_wheel(bundle: Path, tmp_path: Path) -> None:
     """A bundle from an installed wheel has the same bytes as one from a checkout."""
-    place = as_wheel(tmp_path / "packages")
+    target = as_wheel(tmp_path / "packages")
     out = tmp_path / "out.zip"
-    start = f"import sys; sys.path.insert(0, {str(place)!r}); from grader.__main__ import main; main()"
+    start = f"import sys; sys.path.insert(0, {str(target)!r}); from grader.__main__ import main; main()"
     subprocess.run([sys.executable, "-I", "-c", start, "bundle", "gradescope", str(out)], cwd=tmp_path, check=True)
     assert out.read_bytes() == bundle.read_bytes()
 
@@ -247,10 +247,10 @@ def test_manual_points_are_those_that_the_reference_lacks() -> None:
     """The criteria listed for manual grading are those that stay pending for the reference."""
     report = grade(LAB6, opened("submissions/reference"))
     pending = [result.criterion for result in report.results if result.outcome.status == "pending"]
-    said = command._next_step(LAB6)
+    output = command._next_step(LAB6)
     assert (
         f"{sum(criterion.points for criterion in pending)} points for {', '.join(f'{criterion.id} ({criterion.points})' for criterion in pending)}"
-        in said
+        in output
     )
 
 

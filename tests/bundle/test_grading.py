@@ -161,12 +161,12 @@ def test_nothing_of_a_submission_is_imported(autograder: Autograder) -> None:
     autograder.submit("reference")
     mark = autograder.root.parent / "ran"
     program = f"open({str(mark)!r}, 'w').close()\n"
-    for place in (autograder.submission, autograder.root):
+    for target in (autograder.submission, autograder.root):
         for name in MODULES:
-            (place / f"{name}.py").write_text(program)
-        (place / "grader").mkdir()
+            (target / f"{name}.py").write_text(program)
+        (target / "grader").mkdir()
         for name in ("__init__", "__main__", "errors"):
-            (place / "grader" / f"{name}.py").write_text(program)
+            (target / "grader" / f"{name}.py").write_text(program)
     folder = str(autograder.submission)
     results = autograder.run(
         PYTHONPATH=folder, PYTHONHOME=folder, PYTHONUSERBASE=folder, PYTHONSTARTUP=f"{folder}/os.py"

@@ -17,7 +17,7 @@ import docx, pypdf
 from importlib.metadata import distribution
 print(*(distribution(each).locate_file("") for each in ("pypdf", "python-docx", "numpy", "lxml")))
 """
-# In a PATH of its own: what a base image has, with other Pythons than here.
+# The tools of a base image, for a PATH with other Pythons than this one.
 TOOLS = ("bash", "env", "dirname", "cat", "rm", "touch")
 
 
@@ -55,15 +55,15 @@ def test_from_the_zip_to_a_grade(bundle: Path, tmp_path: Path) -> None:
 
 def image(folder: Path, **programs: str) -> str:
     """Return the PATH of a machine that has these programs, which are shell scripts."""
-    place = folder / "bin"
-    place.mkdir()
+    target = folder / "bin"
+    target.mkdir()
     for name in TOOLS:
-        (place / name).symlink_to(shutil.which(name) or name)
+        (target / name).symlink_to(shutil.which(name) or name)
     for name, script in programs.items():
-        path = place / name.replace("_", ".").replace("apt.get", "apt-get")
+        path = target / name.replace("_", ".").replace("apt.get", "apt-get")
         path.write_text(f"#!{shutil.which('bash')}\n{script}\n")
         path.chmod(0o755)
-    return str(place)
+    return str(target)
 
 
 APT = 'echo "$*" >>"$LOG"; [ "$1" = update ] || touch "$LOG.done"'

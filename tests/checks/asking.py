@@ -72,9 +72,9 @@ def fails(check: AnyCheck, scene: Scene, *, at: str | None = None, **arguments: 
     """Return the message of a check, which must fail; `at` is the text at its location."""
     outcome = graded(check, scene, **arguments)
     assert outcome.status == "failed", outcome
-    expected: Location | None = scene.place(at) if at is not None else outcome.location
+    expected: Location | None = scene.location_of(at) if at is not None else outcome.location
     assert outcome.location == expected, (outcome, expected)
-    return own_words(outcome)
+    return own_message(outcome)
 
 
 def _subject(check: AnyCheck, of: Scene | Submitted) -> object:
@@ -84,6 +84,6 @@ def _subject(check: AnyCheck, of: Scene | Submitted) -> object:
     return of.reading if subject == "urdf" else of.robot
 
 
-def own_words(outcome: Outcome) -> str:
+def own_message(outcome: Outcome) -> str:
     """Return a message without the problem of the reader that a grade run adds in parentheses."""
     return _EXPLANATION.sub("", outcome.message)

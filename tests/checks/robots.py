@@ -41,7 +41,7 @@ class Scene:
         """Return the names of the links in file order."""
         return tuple(_LINK.findall(self.text))
 
-    def place(self, fragment: str) -> Location:
+    def location_of(self, fragment: str) -> Location:
         """Return the location of a fragment, which must occur exactly once in the text."""
         assert self.text.count(fragment) == 1, f"{fragment!r} stands {self.text.count(fragment)} times in\n{self.text}"
         before = self.text[: self.text.index(fragment)]

@@ -83,7 +83,7 @@ class Submitted:
         assert old in text, f"{old!r} does not stand in {path}:\n{text}"
         return self.with_files({path: text.replace(old, new)})
 
-    def place(self, path: str, text: str) -> Location:
+    def location_of(self, path: str, text: str) -> Location:
         """Return the location of a text in a file, which must occur exactly once."""
         whole = self.data(path).decode()
         assert whole.count(text) == 1, f"{text!r} stands {whole.count(text)} times in {path}:\n{whole}"

@@ -204,20 +204,20 @@ def test_of_several_spheres_the_nearest_counts() -> None:
 
 
 SHAPES = {"box": box(0.6, 0.4, 0.2), "cylinder": cylinder(), "sphere": sphere(0.05), "mesh": mesh()}
-WANTED = {"box": shows_box, "cylinder": shows_cylinder, "sphere": shows_sphere}
+EXPECTED = {"box": shows_box, "cylinder": shows_cylinder, "sphere": shows_sphere}
 
 
-@pytest.mark.parametrize(("wanted", "shown"), [pair for pair in product(WANTED, SHAPES) if pair[0] != pair[1]])
-def test_another_shape_is_named(wanted: str, shown: str) -> None:
+@pytest.mark.parametrize(("required", "shown"), [pair for pair in product(EXPECTED, SHAPES) if pair[0] != pair[1]])
+def test_another_shape_is_named(required: str, shown: str) -> None:
     """If a link shows another shape than the expected one, the message names both."""
-    case = CASE[f"shows_{wanted}"]
+    case = CASE[f"shows_{required}"]
     name = case.arguments["link"]
     found = scene(link(name, visual(SHAPES[shown])))
     error = missing(case.check, found, **case.arguments)
-    assert (error.kind, error.name) == (wanted, name)
+    assert (error.kind, error.name) == (required, name)
     assert (
         fails(case.check, found, at=f"<{shown}", **case.arguments)
-        == f"{name!r} shows a {shown}; it should show a {wanted}"
+        == f"{name!r} shows a {shown}; it should show a {required}"
     )
 
 

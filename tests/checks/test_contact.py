@@ -12,7 +12,7 @@ from tests.checks.robots import box, cylinder, joint, link, scene, sphere, turne
 ON: Arguments = {"link": "lidar", "on": "base", "tolerance": 0.002}
 CLEAR: Arguments = {"link": "wheel", "of": "base", "tolerance": 0.002}
 
-# Offsets in metres from what is expected, and whether a tolerance of 2 mm takes them.
+# Offsets in metres from the expected value, and whether they are within a tolerance of 2 mm.
 OFFSETS = [(0.0, True), (0.0019, True), (0.002, True), (-0.002, True), (0.0021, False), (-0.0021, False)]
 
 
@@ -190,11 +190,11 @@ def test_all_visuals_of_a_link_count() -> None:
 
 def test_too_many_shapes_need_manual_grading() -> None:
     """At most 2,000 pairs are compared; beyond that manual grading is needed, even if some overlap."""
-    for ours, theirs, depth in ((40, 50, 0.0), (40, 50, 0.1), (1, 2001, 0.1), (2001, 1, 0.0)):
-        one, other = link("base", *[visual(sphere(0.5))] * theirs), link("wheel", *[visual(sphere(0.5))] * ours)
+    for own, theirs, depth in ((40, 50, 0.0), (40, 50, 0.1), (1, 2001, 0.1), (2001, 1, 0.0)):
+        one, other = link("base", *[visual(sphere(0.5))] * theirs), link("wheel", *[visual(sphere(0.5))] * own)
         found = scene(one, other, joint("j", "fixed", "base", "wheel", xyz=(1.0 - depth, 0.0, 0.0)))
         outcome = graded(clear_of, found, **CLEAR)
-        if ours * theirs > 2000:
+        if own * theirs > 2000:
             assert outcome.status == "pending"
             assert outcome.message == "'wheel' and 'base' show too many shapes to compare; needs manual grading"
         else:

@@ -7,10 +7,10 @@ from tests.checks.asking import ask, graded, missing
 from tests.checks.cases import CASES, Case
 from tests.checks.robots import Scene, box, joint, mesh
 
-# The arguments that name links, and the checks that ask how one link stands to another.
+# The arguments that name links, and the checks of the relation of two links.
 NAMING = ("link", "relative_to", "parent", "holds", "on", "of", "base")
 LISTING = ("links", "wheels")
-OPTIONAL = {("joints_named", "parent")}  # a joint that holds a link has its name, whatever the parent is called
+OPTIONAL = {("joints_named", "parent")}  # a parent joint has its name, whatever the parent link is called
 RELATED = [case for case in CASES if case.name != "joints_named" and set(NAMING) & set(case.arguments) - {"link"}]
 RELATED = [case for case in RELATED if case.arguments.get("relative_to") != case.arguments.get("link")]
 
@@ -34,7 +34,7 @@ def test_the_failing_robot_fails(case: Case) -> None:
     """A check fails an incorrect robot, says what it found and expected, and points into the file."""
     outcome = ask(case.check, case.failing, **case.arguments)
     assert (outcome.status, outcome.message) == ("failed", case.fail_message)
-    assert outcome.location == (None if case.at is None else case.failing.place(case.at))
+    assert outcome.location == (None if case.at is None else case.failing.location_of(case.at))
 
 
 @every_case

@@ -10,7 +10,7 @@ from tests.checks.submitted import FOLDER, LAUNCH, MANIFEST, REFERENCE, RVIZ, SE
 every_case = pytest.mark.parametrize("case", PACKAGE_CASES, ids=[case.name for case in PACKAGE_CASES])
 every_pending_case = pytest.mark.parametrize("case", PENDING_CASES, ids=[case.name for case in PENDING_CASES])
 
-# Contents that no file of a package should have, and that no check may stumble over.
+# Contents that no file of a package should have, and that must not break a check.
 ODD = {
     "empty": b"",
     "binary": bytes(range(256)) * 20,
@@ -37,15 +37,15 @@ def test_the_failing_submission_fails(case: PackageCase) -> None:
     """A check fails an incorrect submission, says what it found, and points into the file."""
     outcome = ask(case.check, case.failing, **case.arguments)
     assert (outcome.status, outcome.message) == ("failed", case.fail_message)
-    assert outcome.location == (None if case.at is None else case.failing.place(*case.at))
+    assert outcome.location == (None if case.at is None else case.failing.location_of(*case.at))
 
 
 @every_pending_case
 def test_manual_checks_are_pending(case: PendingCase) -> None:
     """A check that needs manual grading shows what was found, or says that nothing was."""
     found, nothing = (ask(case.check, submitted, **case.arguments) for submitted in (REFERENCE, case.without))
-    place = None if case.at is None else REFERENCE.place(*case.at)
-    assert (found.status, found.message, found.location) == ("pending", case.found, place)
+    at_location = None if case.at is None else REFERENCE.location_of(*case.at)
+    assert (found.status, found.message, found.location) == ("pending", case.found, at_location)
     assert (nothing.status, nothing.message, nothing.location) == ("pending", case.not_found, None)
 
 
@@ -98,6 +98,6 @@ def test_the_folder_of_the_package_does_not_matter(case: PackageCase) -> None:
                 for path, content in submitted.files.items()
             }
         )
-        here, there = (ask(case.check, files, **case.arguments) for files in (submitted, moved))
-        assert there.status == here.status
-        assert there.message == here.message
+        first, second = (ask(case.check, files, **case.arguments) for files in (submitted, moved))
+        assert second.status == first.status
+        assert second.message == first.message

@@ -264,8 +264,8 @@ def test_other_nodes_do_not_matter() -> None:
 )  # fmt: skip
 def test_a_missing_node_is_named(submitted: Submitted, missing: str, running: str, at: str | None) -> None:
     """The message names the missing node and the started ones, and points to a similar node."""
-    place = submitted.place(LAUNCH, at) if at is not None else None
-    assert starts(submitted) == ("failed", f"the launch file does not start {missing}; it starts {running}", place)
+    location = submitted.location_of(LAUNCH, at) if at is not None else None
+    assert starts(submitted) == ("failed", f"the launch file does not start {missing}; it starts {running}", location)
 
 
 def test_a_node_outside_the_launch_description() -> None:
@@ -276,7 +276,7 @@ def test_a_node_outside_the_launch_description() -> None:
         "the launch file does not start rviz2; it starts joint_state_publisher_gui, robot_state_publisher. "
         "It creates the node rviz2, but the LaunchDescription does not contain it"
     )
-    assert starts(submitted) == ("failed", message, submitted.place(LAUNCH, "Node(package='rviz2'"))
+    assert starts(submitted) == ("failed", message, submitted.location_of(LAUNCH, "Node(package='rviz2'"))
 
 
 def test_a_false_condition() -> None:
@@ -288,7 +288,7 @@ def test_a_false_condition() -> None:
         "the launch file does not start rviz2; it starts joint_state_publisher_gui, robot_state_publisher. "
         "A condition keeps rviz2 from starting, unless an argument is given"
     )
-    assert starts(submitted) == ("failed", message, submitted.place(LAUNCH, "Node(\n            package='rviz2'"))
+    assert starts(submitted) == ("failed", message, submitted.location_of(LAUNCH, "Node(\n            package='rviz2'"))
 
 
 def test_an_argument_without_default_needs_manual_grading() -> None:
@@ -309,8 +309,8 @@ def test_an_argument_without_default_needs_manual_grading() -> None:
 def test_values_known_only_at_run_time_need_manual_grading() -> None:
     """Nodes that depend on the machine, or on launch files that are not in the submission, are pending."""
     submitted = launch("executable='rviz2'", "executable=os.environ['VIEWER']")
-    status, message, place = starts(submitted)
-    assert (status, place) == ("pending", None)
+    status, message, location = starts(submitted)
+    assert (status, location) == ("pending", None)
     assert message.startswith("cannot determine statically whether rviz2 is started: ")
     foreign = DISPLAY.replacing(LAUNCH, "'urdf_launch'", "'urdf_tutorial'")
     reason = "it includes share/urdf_tutorial/launch/display.launch.py, which the submission does not install"
@@ -365,7 +365,7 @@ def test_values_known_only_at_run_time_need_manual_grading() -> None:
 )
 def test_errors_that_stop_the_launch_fail(submitted: Submitted, message: str, at: str) -> None:
     """An error that stops ros2 launch is reported once, at its location; the files count as found or pending."""
-    assert starts(submitted) == ("failed", message, submitted.place(LAUNCH, at))
+    assert starts(submitted) == ("failed", message, submitted.location_of(LAUNCH, at))
     assert finds_files(submitted)[0] in ("passed", "pending")
 
 
@@ -409,12 +409,12 @@ def test_several_faults_are_counted() -> None:
 def test_an_unreadable_launch_file_is_missed_once(submitted: Submitted, message: str, at: str | None) -> None:
     """A fault that hides everything is reported once, under one key, by both checks."""
     for check, arguments in ((launch_starts, {"nodes": NODES}), (launch_finds_files, {})):
-        *key, place = lacks(check, submitted, name=NAME, **arguments)
+        *key, location = lacks(check, submitted, name=NAME, **arguments)
         assert key == ["launch file", "launch/my_robot_rviz.launch.py", message]
         if at is None:
-            assert place == start_of(LAUNCH)
+            assert location == start_of(LAUNCH)
         elif at != ")\n":
-            assert place == submitted.place(LAUNCH, at)
+            assert location == submitted.location_of(LAUNCH, at)
     assert finds(launch_found, submitted, name=NAME)[0] == "passed"
 
 
@@ -445,11 +445,11 @@ def test_an_unreadable_launch_file_is_missed_once(submitted: Submitted, message:
 )
 def test_xml_and_yaml_that_cannot_be_read(submitted: Submitted, path: str, message: str, at: str) -> None:
     """An unreadable launch file in XML or YAML is reported in the same way."""
-    kind, name, words, place = lacks(launch_starts, submitted, name=NAME, nodes=NODES)
+    kind, name, words, location = lacks(launch_starts, submitted, name=NAME, nodes=NODES)
     assert (kind, name) == ("launch file", path.removeprefix("my_robot/"))
     assert words.startswith(message)
-    assert place is not None
-    assert (place.path, place.line) == (path, submitted.place(path, at).line)
+    assert location is not None
+    assert (location.path, location.line) == (path, submitted.location_of(path, at).line)
 
 
 @pytest.mark.parametrize(
@@ -505,7 +505,7 @@ def test_found_files_are_named() -> None:
     ],
     ids=["open", "f", "plus", "command", "value", "substitution", "pieces", "cat", "process_file", "pretty"],
 )
-def test_ways_to_read_the_urdf(code: str) -> None:
+def test_equivalent_code_that_reads_the_urdf(code: str) -> None:
     """However the URDF is read, the path that is used counts."""
     assert finds_files(described(code)) == ("passed", FOUND, None)
     assert starts(described(code)) == ("passed", STARTED, None)
@@ -541,13 +541,13 @@ NESTED = REFERENCE.replacing(
 
 def test_launch_file_and_setup_py_must_agree() -> None:
     """The launch file and setup.py must use the same location, flat or nested."""
-    wanted = launch(URDF_PATH, "os.path.join(share, 'urdf', 'my_robot.urdf')")
+    required = launch(URDF_PATH, "os.path.join(share, 'urdf', 'my_robot.urdf')")
     flat, nested = "share/my_robot/my_robot.urdf", "share/my_robot/urdf/my_robot.urdf"
-    agreeing = Submitted({**NESTED.files, LAUNCH: wanted.files[LAUNCH]})
+    agreeing = Submitted({**NESTED.files, LAUNCH: required.files[LAUNCH]})
     assert finds_files(agreeing) == ("passed", FOUND.replace(flat, nested), None)
-    for submitted, asked, put in ((NESTED, flat, nested), (wanted, nested, flat)):
-        message = f"it looks for the URDF at {asked}, but a build installs it as {put}"
-        assert finds_files(submitted) == ("failed", message, submitted.place(LAUNCH, "open("))
+    for submitted, requested, put in ((NESTED, flat, nested), (required, nested, flat)):
+        message = f"it looks for the URDF at {requested}, but a build installs it as {put}"
+        assert finds_files(submitted) == ("failed", message, submitted.location_of(LAUNCH, "open("))
 
 
 @pytest.mark.parametrize(
@@ -647,7 +647,7 @@ def test_launch_file_and_setup_py_must_agree() -> None:
 )  # fmt: skip
 def test_a_file_at_the_wrong_path(submitted: Submitted, message: str, at: str) -> None:
     """Each kind of wrong path has its own message where the path is written; the nodes still count as started."""
-    assert finds_files(submitted) == ("failed", message, submitted.place(LAUNCH, at))
+    assert finds_files(submitted) == ("failed", message, submitted.location_of(LAUNCH, at))
     assert starts(submitted)[0] == "passed"
 
 
@@ -655,7 +655,7 @@ def test_xml_and_yaml_are_held_to_the_same_paths() -> None:
     """Launch files in XML and YAML are checked for the same paths."""
     wrong = IN_XML.replacing(XML, "/my_robot.urdf", "/urdf/my_robot.urdf")
     message = "it looks for the URDF at share/my_robot/urdf/my_robot.urdf, but a build installs it as share/my_robot/my_robot.urdf"
-    at = wrong.place(XML, "<param")
+    at = wrong.location_of(XML, "<param")
     assert finds_files(wrong) == ("failed", message, at)
     other = IN_YAML.replacing(YAML, "/my_robot.rviz", "/rviz/my_robot.rviz")
     words = "it looks for the RViz file at share/my_robot/rviz/my_robot.rviz, but a build installs it as share/my_robot/my_robot.rviz"
@@ -665,8 +665,8 @@ def test_xml_and_yaml_are_held_to_the_same_paths() -> None:
 def test_two_wrong_paths_are_both_reported() -> None:
     """One fault does not hide the other."""
     submitted = launch(RVIZ_PATH, "'my_robot.rviz'", launch(URDF_PATH, "'/home/me/my_robot.urdf'"))
-    status, message, place = finds_files(submitted)
-    assert (status, place) == ("failed", submitted.place(LAUNCH, "open("))
+    status, message, location = finds_files(submitted)
+    assert (status, location) == ("failed", submitted.location_of(LAUNCH, "open("))
     assert "/home/me/my_robot.urdf" in message
     assert "; it looks for the RViz file at my_robot.rviz, in the folder" in message
 
@@ -779,8 +779,8 @@ def test_another_name_in_package_xml_is_ignored() -> None:
 )
 def test_a_missing_included_file(submitted: Submitted, message: str) -> None:
     """An included launch file must exist at its path; its nodes are unknown and pending."""
-    place = submitted.place(LAUNCH, "IncludeLaunchDescription(P")
-    assert finds_files(submitted) == ("failed", message, place)
+    location = submitted.location_of(LAUNCH, "IncludeLaunchDescription(P")
+    assert finds_files(submitted) == ("failed", message, location)
     assert starts(submitted)[0] == "pending"
 
 
@@ -789,8 +789,8 @@ def test_an_included_file_that_is_not_installed() -> None:
     entry = "glob(os.path.join('launch', '*launch.[pxy][yma]*'))"
     submitted = INCLUDES.replacing(SETUP, entry, "['launch/my_robot_rviz.launch.py']")
     message = "it looks for the launch file at share/my_robot/launch/robot.launch.py, but a build does not install robot.launch.py"
-    place = submitted.place(LAUNCH, "IncludeLaunchDescription(P")
-    assert lacks(launch_finds_files, submitted, name=NAME) == ("installed include", FOLDER, message, place)
+    location = submitted.location_of(LAUNCH, "IncludeLaunchDescription(P")
+    assert lacks(launch_finds_files, submitted, name=NAME) == ("installed include", FOLDER, message, location)
 
 
 def test_a_fault_in_an_included_file() -> None:
@@ -800,15 +800,15 @@ def test_a_fault_in_an_included_file() -> None:
     assert starts(fault) == (
         "failed",
         message,
-        fault.place(INNER, "Node(\n            package='joint_state_publisher',"),
+        fault.location_of(INNER, "Node(\n            package='joint_state_publisher',"),
     )
     broken = INCLUDES.replacing(INNER, "    ])\n", "")
-    place = broken.place(INNER, "[\n        DeclareLaunchArgument")
+    location = broken.location_of(INNER, "[\n        DeclareLaunchArgument")
     expected = (
         "launch file",
         "launch/my_robot_rviz.launch.py",
         "Python cannot read the file: '[' was never closed",
-        place,
+        location,
     )
     assert lacks(launch_starts, broken, name=NAME, nodes=NODES) == expected
     assert lacks(launch_finds_files, broken, name=NAME) == expected

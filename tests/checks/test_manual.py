@@ -26,17 +26,17 @@ ALONE = Submitted({URDF: REFERENCE.files[URDF]})
 NOT_FOUND = "What happens? No answer was found under 'task 1 step 15' or 'step 15'"
 
 
-def answer_in(submitted: Submitted, places: Sequence[str] = PLACES) -> Outcome:
+def answer_in(submitted: Submitted, locations: Sequence[str] = PLACES) -> Outcome:
     """Return the message about the answer to step 15; it is always pending and never contains the model answer."""
-    outcome = ask(answered, submitted, question=QUESTION, answer=ANSWER, places=list(places))
+    outcome = ask(answered, submitted, question=QUESTION, answer=ANSWER, places=list(locations))
     assert (outcome.status, outcome.expected) == ("pending", None)
     assert ANSWER not in repr(outcome)
     return outcome
 
 
-def passage(files: dict[str, str | bytes], places: Sequence[str] = PLACES) -> tuple[object, Location | None]:
+def passage(files: dict[str, str | bytes], locations: Sequence[str] = PLACES) -> tuple[object, Location | None]:
     """Return the passage shown from some documents and its location."""
-    outcome = answer_in(ALONE.with_files(files), places)
+    outcome = answer_in(ALONE.with_files(files), locations)
     if outcome.location is not None:
         at = outcome.location
         assert outcome.message == f"What happens? The answer in {at.path}, from line {at.line}, needs manual grading"
@@ -60,7 +60,7 @@ def test_the_passage_is_shown() -> None:
     assert outcome.measured == (
         "## Task 1, step 15\n\nThe robot vanishes: two links have no parent, and a robot has one root."
     )
-    assert outcome.location == REFERENCE.place(ANSWERS, "## Task 1")
+    assert outcome.location == REFERENCE.location_of(ANSWERS, "## Task 1")
 
 
 @pytest.mark.parametrize(
@@ -240,7 +240,7 @@ def test_without_the_readers_the_document_is_named(name: str, monkeypatch: pytes
     assert message in answer_in(ALONE.with_files({name: b"no document"})).message
 
 
-SLOW = b"import time; time.sleep(60)"  # a converter that does not end
+SLOW = b"import time; time.sleep(60)"  # a converter that never ends
 TOO_LATE = "was not read: the Word and PDF files take longer than 0.5 s in all; needs manual grading"
 
 
@@ -279,8 +279,8 @@ def test_a_document_is_converted_once(tmp_path: Path, monkeypatch: pytest.Monkey
     text = "Step 15: It vanishes.\nStep 18: yes"
     converter(f"open({str(log)!r}, 'a').write('x'); print({text!r})".encode(), tmp_path / "count.py", monkeypatch)
     submission = ALONE.with_files({"a.pdf": b""}).submission
-    for place, text in (("step 15", "Step 15: It vanishes."), ("step 18", "Step 18: yes")):
-        assert answered(submission, question=QUESTION, answer=ANSWER, places=[place]).measured == text
+    for at_location, text in (("step 15", "Step 15: It vanishes."), ("step 18", "Step 18: yes")):
+        assert answered(submission, question=QUESTION, answer=ANSWER, places=[at_location]).measured == text
     assert log.read_text() == "x"
 
 
@@ -324,8 +324,8 @@ def test_the_number_of_documents_is_capped_with_a_note() -> None:
     assert message.endswith("(not read: 5 documents after the first 40, the limit)")
 
 
-def test_documents_that_grading_was_lost_with_are_left_to_a_person() -> None:
-    """The model answer stays beside the question, and nothing is converted."""
+def test_documents_that_broke_the_grading_need_manual_grading() -> None:
+    """The model answer stays beside the question, and no document is converted."""
     submission = replace(REFERENCE.submission, no_documents="it took long")
     outcome = answered(submission, question=QUESTION, answer=ANSWER, places=PLACES)
     message = "What happens? The documents cannot be read: it took long; needs manual grading"
@@ -352,8 +352,8 @@ def test_documents_that_grading_was_lost_with_are_left_to_a_person() -> None:
         "pictures/task1.8.png",
     ],
 )
-def test_pictures_are_found_however_they_are_named(path: str) -> None:
-    """Task and step are found in the name or in the folders, in every spelling; size and dimensions are told."""
+def test_pictures_are_found_in_every_spelling(path: str) -> None:
+    """Task and step are found in the name or in the folders; the message has size and dimensions."""
     size = len(png())
     expected = (f"needs manual grading: {path} (640 x 480 pixels, {size} bytes)", (path,))
     assert pictures(ALONE.with_files({path: png()})) == expected
@@ -362,14 +362,14 @@ def test_pictures_are_found_however_they_are_named(path: str) -> None:
 @pytest.mark.parametrize(
     "path", ["Task1_Step18.png", "Task2_Step8.png", "Task 2/Step 8.png", "Task1/Task2_Step8.png", "step8.png", "8.png"]
 )
-def test_pictures_of_other_steps_are_not_meant(path: str) -> None:
-    """Step 18 is not step 8, and that of another task is not meant; what there is is listed."""
+def test_pictures_of_other_steps_are_not_shown(path: str) -> None:
+    """Step 18 is not step 8, and a step of another task is not shown; existing pictures are listed."""
     message = f"no picture or PDF is named 'task 1 step 8'; the submission has {path}; needs manual grading"
     assert pictures(ALONE.with_files({path: png()})) == (message, None)
 
 
 def test_no_pictures_at_all() -> None:
-    """That there is nothing to look at is said, and a person decides."""
+    """Without pictures manual grading is needed, and the message says so."""
     message = "no picture or PDF is named 'task 1 step 8'; the submission has no pictures; needs manual grading"
     assert pictures(ALONE) == (message, None)
     assert pictures(ALONE.with_files({"Task1_Step8.txt": "a text is no picture"})) == (message, None)
@@ -378,13 +378,13 @@ def test_no_pictures_at_all() -> None:
 @pytest.mark.parametrize(
     "path", ["Task 3/Step 3.png", "Task3_Step3.png", "Task 3/anything.png", "webcam.png", "my_WebCam_image.png", "Cameras.png"]
 )  # fmt: skip
-def test_pictures_by_plain_words(path: str) -> None:
-    """Evidence may be named by words, too, whole or as a beginning."""
+def test_pictures_by_words(path: str) -> None:
+    """Evidence may also be named by words, whole or as a prefix."""
     assert pictures(ALONE.with_files({path: png()}), WEBCAM)[1] == (path,)
 
 
-def test_several_names_are_listed() -> None:
-    """At most three names are told, and at most six files in words, but all of them in the report's data."""
+def test_long_lists_are_cut() -> None:
+    """At most three names, and at most six files are in the message, but all of them in the report's data."""
     message, _ = pictures(ALONE, WEBCAM)
     assert "is named 'task 3 step 3', 'task 3' or 'webcam'" in message
     paths = [f"Task1_Step8_{number}.png" for number in range(9)]
@@ -410,12 +410,12 @@ def test_several_names_are_listed() -> None:
     ],
     ids=["jpeg", "gif", "kB", "MB", "pdf", "film", "heic", "damaged", "cut", "no-picture", "empty"],
 )
-def test_what_is_told_of_a_file(path: str, data: bytes, words: str) -> None:
-    """A picture is told with its dimensions, where they can be read; a damaged one and other files with their size."""
+def test_the_description_of_a_file(path: str, data: bytes, words: str) -> None:
+    """A picture has its dimensions, if they can be read; damaged pictures and other files have their size."""
     assert pictures(ALONE.with_files({path: data})) == (f"needs manual grading: {path} ({words})", (path,))
 
 
-def test_the_reference_shows_what_is_asked_for() -> None:
+def test_the_pictures_of_the_reference_are_found() -> None:
     """The pictures of the reference are found."""
     for names, path in (
         (STEP_8, "Task1_Step8.png"),

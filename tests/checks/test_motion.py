@@ -379,7 +379,7 @@ def test_a_wobble_has_a_tolerance(off: float, fine: bool) -> None:
         assert outcome.message == (
             f"'wheel' wobbles: its joint axis is {abs(off):g} degrees off the cylinder's axis; it should be along it (joint 'wheel_joint')"
         )
-        assert outcome.location == found.place('xyz="0 0 1"')
+        assert outcome.location == found.location_of('xyz="0 0 1"')
 
 
 @pytest.mark.parametrize(
@@ -398,7 +398,7 @@ def test_an_eccentric_axle_has_a_tolerance(axis: str, off: float, fine: bool) ->
         assert outcome.message == (
             "'wheel' turns off centre: its joint axis is 2.1 mm beside the cylinder's axis; it should be on it (joint 'wheel_joint')"
         )
-        assert outcome.location == found.place(f'xyz="{xyz}"')
+        assert outcome.location == found.location_of(f'xyz="{xyz}"')
 
 
 def test_a_wheel_without_a_cylinder_has_no_axis() -> None:

@@ -43,7 +43,7 @@ def manifest(old: str, new: str) -> Submitted:
     return REFERENCE.replacing(MANIFEST, old, new)
 
 
-def said(submitted: Submitted) -> dict[str, str]:
+def statuses(submitted: Submitted) -> dict[str, str]:
     """Return the status for each kind of file, or what is missing."""
     found: dict[str, str] = {}
     for kind, name in KINDS.items():
@@ -73,7 +73,7 @@ def test_another_name_is_reported() -> None:
     """A package.xml with another name fails at that name."""
     other = manifest("<name>my_robot</name>", "<name>my_robt</name>")
     message = "the package is named 'my_robt'; it should be named 'my_robot'"
-    assert finds(package_found, other, name="my_robot") == ("failed", message, other.place(MANIFEST, "<name>"))
+    assert finds(package_found, other, name="my_robot") == ("failed", message, other.location_of(MANIFEST, "<name>"))
 
 
 def test_the_name_is_case_sensitive() -> None:
@@ -113,7 +113,7 @@ def test_a_package_without_package_xml() -> None:
 
 def test_a_missing_package_xml_fails_no_installed_file() -> None:
     """A package.xml that setup.py lists but does not exist is not counted twice."""
-    assert said(REFERENCE.without(MANIFEST)) == dict.fromkeys(KINDS, "passed")
+    assert statuses(REFERENCE.without(MANIFEST)) == dict.fromkeys(KINDS, "passed")
 
 
 @pytest.mark.parametrize(
@@ -147,10 +147,10 @@ def test_a_package_without_name() -> None:
     assert finds(package_found, none, name="my_robot") == (
         "failed",
         "package.xml has no <name>",
-        none.place(MANIFEST, "<package"),
+        none.location_of(MANIFEST, "<package"),
     )
     message = "<name> of package.xml is empty"
-    assert finds(package_found, empty, name="my_robot") == ("failed", message, empty.place(MANIFEST, "<name>"))
+    assert finds(package_found, empty, name="my_robot") == ("failed", message, empty.location_of(MANIFEST, "<name>"))
     for files in (none, empty):
         assert finds(package_type, files, build_type="ament_python")[0] == "passed"
 
@@ -182,7 +182,7 @@ def test_another_build_type_fails(old: str, new: str, message: str, at: str) -> 
     assert finds(package_type, submitted, build_type="ament_python") == (
         "failed",
         message,
-        submitted.place(MANIFEST, at),
+        submitted.location_of(MANIFEST, at),
     )
 
 
@@ -230,7 +230,7 @@ def test_equivalent_data_files_pass(submitted: Submitted) -> None:
             SETUP, " glob('rviz", " glob.glob('rviz"
         )
         submitted = submitted.replacing(SETUP, " glob(os", " glob.glob(os")
-    assert said(submitted) == dict.fromkeys(KINDS, "passed")
+    assert statuses(submitted) == dict.fromkeys(KINDS, "passed")
     assert finds(setup_imports, submitted)[0] == "passed"
 
 
@@ -254,13 +254,13 @@ def entries():
 
 setup(name=package_name, packages=[package_name], data_files=entries())
 """
-    assert said(REFERENCE.with_files({SETUP: text})) == dict.fromkeys(KINDS, "passed")
+    assert statuses(REFERENCE.with_files({SETUP: text})) == dict.fromkeys(KINDS, "passed")
 
 
 def test_another_name_of_the_file_passes() -> None:
     """A URDF or RViz file of another name is accepted if there is no other."""
     other = REFERENCE.renaming(URDF, "my_robot/urdf/robot.urdf.xacro").renaming(RVIZ, "my_robot/rviz/view.rviz")
-    assert said(other) == dict.fromkeys(KINDS, "passed")
+    assert statuses(other) == dict.fromkeys(KINDS, "passed")
 
 
 @pytest.mark.parametrize(
@@ -271,7 +271,7 @@ def test_a_missing_entry_is_reported(kind: str, entry: str) -> None:
     submitted = setup(f"        {entry}\n", "")
     message = f"a build does not install {SOURCES[kind]}: no entry of data_files in setup.py names it"
     assert lacks(build_installs, submitted, kind=kind, name=KINDS[kind]) == (f"installed {kind}", FOLDER, message, None)
-    assert said(submitted) == {**dict.fromkeys(KINDS, "passed"), kind: f"installed {kind}"}
+    assert statuses(submitted) == {**dict.fromkeys(KINDS, "passed"), kind: f"installed {kind}"}
 
 
 @pytest.mark.parametrize(
@@ -313,7 +313,7 @@ def test_a_missing_entry_is_reported(kind: str, entry: str) -> None:
 def test_a_pattern_without_a_match_is_reported(submitted: Submitted, kind: str, reason: str, at: str) -> None:
     """A glob without a match installs nothing, silently: it is reported with its location."""
     message = f"a build does not install {SOURCES[kind]}: {reason}"
-    expected = (f"installed {kind}", FOLDER, message, submitted.place(SETUP, at))
+    expected = (f"installed {kind}", FOLDER, message, submitted.location_of(SETUP, at))
     assert lacks(build_installs, submitted, kind=kind, name=KINDS[kind]) == expected
 
 
@@ -361,7 +361,7 @@ def test_a_launch_file_without_extension_does_not_match() -> None:
         "a build does not install launch/my_robot_rviz: the pattern 'launch/*launch.[pxy][yma]*' in setup.py matches no file; "
         "there is launch/my_robot_rviz"
     )
-    expected = ("installed launch", FOLDER, message, bare.place(SETUP, "glob(os.path"))
+    expected = ("installed launch", FOLDER, message, bare.location_of(SETUP, "glob(os.path"))
     assert lacks(build_installs, bare, kind="launch", name=KINDS["launch"]) == expected
     all_files = setup("'*launch.[pxy][yma]*'", "'*'", bare)
     assert finds(build_installs, all_files, kind="launch", name=KINDS["launch"])[0] == "passed"
@@ -378,16 +378,16 @@ def test_a_file_installed_elsewhere_fails(folder: str, target: str) -> None:
     message = (
         f"a build installs urdf/my_robot.urdf as {target}; ROS 2 looks for the package's files below share/my_robot/"
     )
-    expected = ("failed", message, submitted.place(SETUP, "glob('urdf/*')"))
+    expected = ("failed", message, submitted.location_of(SETUP, "glob('urdf/*')"))
     assert finds(build_installs, submitted, kind="urdf", name="my_robot.urdf") == expected
 
 
 def test_the_name_in_the_resource_index_counts() -> None:
     """ROS 2 finds a package by its entry in the resource index, so another name in package.xml is one fault, not four."""
     other = manifest(">my_robot<", ">robot_lab<")
-    assert said(other) == dict.fromkeys(KINDS, "passed")
+    assert statuses(other) == dict.fromkeys(KINDS, "passed")
     marker = "        ('share/ament_index/resource_index/packages', ['resource/' + package_name]),\n"
-    assert said(setup(marker, "", other)) == dict.fromkeys(KINDS, "failed")
+    assert statuses(setup(marker, "", other)) == dict.fromkeys(KINDS, "failed")
 
 
 @pytest.mark.parametrize(
@@ -436,9 +436,9 @@ def test_an_entry_that_stops_the_build_fails_its_own_kind(
     submitted: Submitted, kind: str, at: str, reason: str
 ) -> None:
     """An entry that cannot be installed fails only the kind of file that it is about."""
-    expected = ("failed", f"the build stops here: {reason}", submitted.place(SETUP, at))
+    expected = ("failed", f"the build stops here: {reason}", submitted.location_of(SETUP, at))
     assert finds(build_installs, submitted, kind=kind, name=KINDS[kind]) == expected
-    assert said(submitted) == {**dict.fromkeys(KINDS, "passed"), kind: "failed"}
+    assert statuses(submitted) == {**dict.fromkeys(KINDS, "passed"), kind: "failed"}
 
 
 @pytest.mark.parametrize(
@@ -484,7 +484,7 @@ def test_a_setup_py_with_a_syntax_error_is_missed() -> None:
     """Python's own message is reported at Python's location, under one key for all checks that need setup.py."""
     comma = setup("zip_safe=True,", "zip_safe=True")
     message = "Python cannot read setup.py: invalid syntax. Perhaps you forgot a comma?"
-    expected = ("setup.py", FOLDER, message, comma.place(SETUP, "True\n"))
+    expected = ("setup.py", FOLDER, message, comma.location_of(SETUP, "True\n"))
     bracket = setup("    ],\n    install", "    install")
     for kind, file in KINDS.items():
         assert lacks(build_installs, comma, kind=kind, name=file) == expected
@@ -496,9 +496,9 @@ def test_a_setup_py_in_another_encoding_is_missed() -> None:
     """Python reads UTF-8 by default."""
     umlaut = REFERENCE.with_files({SETUP: b"# caf\xe9\n" + REFERENCE.data(SETUP)})
     assert lacks(setup_imports, umlaut)[0::3] == ("setup.py", start_of(SETUP))
-    told = REFERENCE.with_files({SETUP: b"# -*- coding: latin-1 -*-\n# caf\xe9\n" + REFERENCE.data(SETUP)})
-    assert finds(setup_imports, told)[0] == "passed"
-    assert said(told) == dict.fromkeys(KINDS, "passed")
+    declared = REFERENCE.with_files({SETUP: b"# -*- coding: latin-1 -*-\n# caf\xe9\n" + REFERENCE.data(SETUP)})
+    assert finds(setup_imports, declared)[0] == "passed"
+    assert statuses(declared) == dict.fromkeys(KINDS, "passed")
 
 
 @pytest.mark.parametrize("text", ["", "from setuptools import setup\n", "import os\n\nprint(os.getcwd())\n"])
@@ -514,7 +514,7 @@ def test_a_setup_py_without_setup_is_one_fault(text: str) -> None:
 def test_setup_below_the_main_guard_is_called() -> None:
     """A build runs setup.py as the main program."""
     body = str(REFERENCE.files[SETUP]).replace("\nsetup(", "\nif __name__ == '__main__':\n  setup(")
-    assert said(REFERENCE.with_files({SETUP: body})) == dict.fromkeys(KINDS, "passed")
+    assert statuses(REFERENCE.with_files({SETUP: body})) == dict.fromkeys(KINDS, "passed")
 
 
 @every_kind
@@ -537,11 +537,11 @@ def test_cmake_packages_need_manual_grading(kind: str) -> None:
 def test_entries_known_only_at_run_time_need_manual_grading(kind: str) -> None:
     """Entries that cannot be determined statically leave every file pending that is not known to be installed."""
     submitted = setup("glob('urdf/*')", "os.environ['FILES'].split()")
-    status, message, place = finds(build_installs, submitted, kind=kind, name=KINDS[kind])
+    status, message, location = finds(build_installs, submitted, kind=kind, name=KINDS[kind])
     if kind != "urdf":
         assert status == "passed"
         return
-    assert (status, place) == ("pending", None)
+    assert (status, location) == ("pending", None)
     assert message.startswith("cannot determine statically whether a build installs urdf/my_robot.urdf: ")
     assert message.endswith(" of setup.py); needs manual grading")
 
@@ -606,13 +606,13 @@ def test_files_by_patterns() -> None:
 )
 def test_an_undefined_name(submitted: Submitted, message: str, at: str) -> None:
     """An undefined name is reported once, at its first use."""
-    assert finds(setup_imports, submitted) == ("failed", message, submitted.place(SETUP, at))
+    assert finds(setup_imports, submitted) == ("failed", message, submitted.location_of(SETUP, at))
 
 
 @pytest.mark.parametrize("line", ["import os\n", "from glob import glob\n"])
 def test_a_missing_import_fails_no_installed_file(line: str) -> None:
     """The import fails once, and the files count as installed."""
-    assert said(setup(line, "")) == dict.fromkeys(KINDS, "passed")
+    assert statuses(setup(line, "")) == dict.fromkeys(KINDS, "passed")
 
 
 def test_several_undefined_names_are_listed() -> None:

@@ -22,7 +22,7 @@ ON: Arguments = {"link": "lidar", "on": "base", "tolerance": 0.002}
 CLEAR: Arguments = {"link": "wheel", "of": "base", "tolerance": 0.002}
 UNDER: Arguments = {"link": "foot", "base": "base", "wheels": ["wheel"], "tolerance": 0.002, "angle": 1.0}
 
-# Offsets in metres from what is expected, and whether a tolerance of 2 mm takes them.
+# Offsets in metres from the expected value, and whether they are within a tolerance of 2 mm.
 OFFSETS = [(0.0, True), (0.0019, True), (0.002, True), (-0.002, True), (0.0021, False), (-0.0021, False)]
 
 
@@ -301,7 +301,7 @@ def test_a_bottom_has_a_tolerance(offset: tuple[float, bool]) -> None:
             outcome.message
             == f"the bottom of 'base' in the frame 'base' is at z = {off} m; it should be 0 m (2.1 mm too {side})"
         )
-        assert outcome.location == found.place('xyz="')
+        assert outcome.location == found.location_of('xyz="')
 
 
 @pytest.mark.parametrize(
@@ -373,7 +373,7 @@ def test_every_bottom_has_the_tolerance(offset: tuple[float, bool]) -> None:
         assert outcome.message.endswith(
             f" m in 'foot'; they should be at 0 m ('wheel' 2.1 mm too {'high' if off > 0 else 'low'})"
         )
-        assert outcome.location == found.place('xyz="-0.15 0.225')
+        assert outcome.location == found.location_of('xyz="-0.15 0.225')
 
 
 def test_all_wrong_bottoms_are_reported() -> None:
@@ -425,7 +425,7 @@ def test_a_footprint_has_a_tolerance_in_height(offset: tuple[float, bool]) -> No
     assert outcome.measured == pytest.approx((0.0, 0.0, off))
     if not fine:
         assert outcome.message.endswith(f": the lowest point of 'wheel' is 2.1 mm {'above' if off > 0 else 'below'} it")
-        assert outcome.location == found.place('xyz="0 0 0.')
+        assert outcome.location == found.location_of('xyz="0 0 0.')
 
 
 @pytest.mark.parametrize(("axis", "offset"), list(product("xy", OFFSETS)))

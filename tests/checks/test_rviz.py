@@ -102,8 +102,8 @@ def test_the_opened_file_is_graded() -> None:
     assert frame_of(two)[0] == "passed"
     opened = two.replacing(LAUNCH, "'my_robot.rviz'", "'a.rviz'")
     assert finds(rviz_found, opened, name=NAME, launch=BY_LAUNCH)[1] == "the RViz file is rviz/a.rviz"
-    place = opened.place("my_robot/rviz/a.rviz", "map\n    Frame Rate")
-    assert frame_of(opened)[0::2] == ("failed", place)
+    location = opened.location_of("my_robot/rviz/a.rviz", "map\n    Frame Rate")
+    assert frame_of(opened)[0::2] == ("failed", location)
 
 
 def test_a_missing_rviz_file_is_one_fault() -> None:
@@ -140,13 +140,13 @@ def test_a_missing_package_is_reported() -> None:
 def test_an_unreadable_file_is_missed(text: str, message: str, line: int) -> None:
     """A file that RViz cannot read is missed once, with its location; the check of its existence passes."""
     submitted = REFERENCE.with_files({RVIZ: text})
-    kind, name, words, place = lacks(rviz_fixed_frame, submitted, name=NAME, frame=FRAME)
+    kind, name, words, location = lacks(rviz_fixed_frame, submitted, name=NAME, frame=FRAME)
     assert (kind, name) == ("RViz file", "rviz/my_robot.rviz")
     assert words.startswith(message)
-    assert place is not None
-    assert (place.path, place.line) == (RVIZ, line)
-    assert lacks(rviz_shows_robot, submitted, name=NAME) == (kind, name, words, place)
-    assert lacks(rviz_display_on, submitted, name=NAME, kind="TF") == (kind, name, words, place)
+    assert location is not None
+    assert (location.path, location.line) == (RVIZ, line)
+    assert lacks(rviz_shows_robot, submitted, name=NAME) == (kind, name, words, location)
+    assert lacks(rviz_display_on, submitted, name=NAME, kind="TF") == (kind, name, words, location)
     assert finds(rviz_found, submitted, name=NAME)[0] == "passed"
 
 
@@ -175,16 +175,16 @@ def test_another_fixed_frame_fails(frame: str, hint: str) -> None:
     """Another frame fails at its value; the message says if the robot does not have that frame."""
     submitted = rviz("Fixed Frame: base_footprint", f"Fixed Frame: {frame}")
     message = f"the Fixed Frame is {frame!r}; it should be 'base_footprint'{hint}"
-    assert frame_of(submitted) == ("failed", message, submitted.place(RVIZ, f"{frame}\n    Frame Rate"))
+    assert frame_of(submitted) == ("failed", message, submitted.location_of(RVIZ, f"{frame}\n    Frame Rate"))
 
 
 @pytest.mark.parametrize("line", ["", "    Fixed Frame:\n", '    Fixed Frame: ""\n'], ids=["none", "nothing", "empty"])
 def test_no_fixed_frame_fails(line: str) -> None:
     """A frame that is absent or empty is not set."""
-    status, message, place = frame_of(rviz("    Fixed Frame: base_footprint\n", line))
+    status, message, location = frame_of(rviz("    Fixed Frame: base_footprint\n", line))
     assert (status, message) == ("failed", "the RViz file sets no Fixed Frame; it should be 'base_footprint'")
-    assert place is not None
-    assert (place.path, place.line) == (RVIZ, 40 if line else 7)
+    assert location is not None
+    assert (location.path, location.line) == (RVIZ, 40 if line else 7)
 
 
 def test_a_frame_missing_in_the_urdf_passes() -> None:
@@ -273,8 +273,8 @@ def test_a_robot_model_that_shows_nothing_fails(submitted: Submitted, message: s
     """The message says why the robot is not shown, at the class of the display."""
     lines = enumerate(str(submitted.files[RVIZ]).splitlines(), start=1)
     number, line = next((number, line) for number, line in lines if "RobotModel" in line)
-    place = Location(RVIZ, number, line.index("Class: ") + len("Class: ") + 1)
-    assert robot_in(submitted) == ("failed", message, place)
+    location = Location(RVIZ, number, line.index("Class: ") + len("Class: ") + 1)
+    assert robot_in(submitted) == ("failed", message, location)
 
 
 def test_no_robot_model_fails() -> None:
@@ -301,8 +301,8 @@ def test_no_robot_model_fails() -> None:
 )
 def test_a_robot_model_that_may_show_something_needs_manual_grading(submitted: Submitted, message: str) -> None:
     """A display that depends on a file or plug-in of another machine is pending, whether another display is off or not."""
-    place = submitted.place(RVIZ, str(submitted.files[RVIZ]).splitlines()[16].strip().removeprefix("Class: "))
-    assert robot_in(submitted) == ("pending", message, place)
+    location = submitted.location_of(RVIZ, str(submitted.files[RVIZ]).splitlines()[16].strip().removeprefix("Class: "))
+    assert robot_in(submitted) == ("pending", message, location)
     off = MODEL.replace("Enabled: true\n      Name", "Enabled: false\n      Name")
     assert robot_in(rviz("    - Alpha: 1\n", off + "    - Alpha: 1\n", submitted))[:2] == ("pending", message)
 
@@ -335,8 +335,8 @@ def test_an_enabled_display_passes(kind: str) -> None:
 def test_a_disabled_display_fails(old: str, new: str, message: str) -> None:
     """A display that is disabled, or of ROS 1, fails at its class."""
     submitted = rviz(old, new)
-    place = submitted.place(RVIZ, new.split("\n", maxsplit=1)[0] + "\n")
-    assert finds(rviz_display_on, submitted, name=NAME, kind="TF") == ("failed", message, place)
+    location = submitted.location_of(RVIZ, new.split("\n", maxsplit=1)[0] + "\n")
+    assert finds(rviz_display_on, submitted, name=NAME, kind="TF") == ("failed", message, location)
 
 
 def test_a_missing_display_fails() -> None:

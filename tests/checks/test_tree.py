@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from grader.checks.tree import held_by, joints_named, root_of_tree, urdf_loads
 from grader.robot.joints import JOINT_TYPES
-from tests.checks.asking import Arguments, ask, fails, graded, missing, own_words, passes
+from tests.checks.asking import Arguments, ask, fails, graded, missing, own_message, passes
 from tests.checks.cases import BASE, FOOT, LIDAR, WHEEL, Case, cases_of, mounted
 from tests.checks.robots import Scene, joint, link, mesh, scene, visual
 
@@ -45,18 +45,18 @@ def test_facts_about_joints_have_no_measurement(case: Case) -> None:
 # --- held_by ----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("wanted", JOINT_TYPES)
+@pytest.mark.parametrize("required", JOINT_TYPES)
 @pytest.mark.parametrize("kind", JOINT_TYPES)
-def test_the_type_of_the_joint_decides(kind: str, wanted: str) -> None:
+def test_the_type_of_the_joint_decides(kind: str, required: str) -> None:
     """Each type of joint passes for itself and for no other."""
-    outcome = graded(held_by, joined(kind), link="wheel", parent="base", joint_type=wanted)
-    assert outcome.status == ("passed" if kind == wanted else "failed")
-    if kind == wanted:
+    outcome = graded(held_by, joined(kind), link="wheel", parent="base", joint_type=required)
+    assert outcome.status == ("passed" if kind == required else "failed")
+    if kind == required:
         assert outcome.message == f"the {kind} joint 'j' connects 'wheel' to 'base'"
     elif kind == "fixed":
-        assert own_words(outcome) == f"'wheel' cannot move: its joint is fixed; it should be {wanted} (joint 'j')"
+        assert own_message(outcome) == f"'wheel' cannot move: its joint is fixed; it should be {required} (joint 'j')"
     else:
-        assert own_words(outcome) == f"the joint that moves 'wheel' is {kind}; it should be {wanted} (joint 'j')"
+        assert own_message(outcome) == f"the joint that moves 'wheel' is {kind}; it should be {required} (joint 'j')"
 
 
 def test_a_wrong_type_has_a_location() -> None:
@@ -209,12 +209,12 @@ def test_links_on_a_loop_have_no_connection() -> None:
 
 
 @settings(deadline=None, max_examples=60)
-@given(kinds=st.lists(st.sampled_from(JOINT_TYPES), min_size=1, max_size=5), wanted=st.sampled_from(JOINT_TYPES))
-def test_a_chain_passes_exactly_for_its_moving_joints(kinds: list[str], wanted: str) -> None:
+@given(kinds=st.lists(st.sampled_from(JOINT_TYPES), min_size=1, max_size=5), required=st.sampled_from(JOINT_TYPES))
+def test_a_chain_passes_exactly_for_its_moving_joints(kinds: list[str], required: str) -> None:
     """Only the moving joints of a chain count: none for a fixed one, else one of the type."""
     moving = [kind for kind in kinds if kind != "fixed"]
-    outcome = graded(held_by, in_line(*kinds), link="wheel", parent="base", joint_type=wanted)
-    assert (outcome.status == "passed") == (moving == ([] if wanted == "fixed" else [wanted]))
+    outcome = graded(held_by, in_line(*kinds), link="wheel", parent="base", joint_type=required)
+    assert (outcome.status == "passed") == (moving == ([] if required == "fixed" else [required]))
 
 
 # --- joints_named -----------------------------------------------------------------------------------------------------

@@ -243,15 +243,15 @@ def test_the_class_workflow(tmp_path: Path, published: Path) -> None:
     runner.actions[CHECKOUT] = checkout
     limits = {**{name: str(value) for name, value in workflow["env"].items()}, "MAX_MEGABYTES": "2", "MAX_FILES": "200"}
     assert runner.job(workflow["jobs"]["grade"]["steps"], limits) == 0, runner.done
-    said = "".join(done.stdout for _, done in runner.done)
+    printed = "".join(done.stdout for _, done in runner.done)
     for name in ("gone", "pushed"):
         why = "Not graded: this repository could not be fetched, or is larger than MAX_MEGABYTES (2)."
-        assert f"::warning title=lab6-{name}::{why}" in said
+        assert f"::warning title=lab6-{name}::{why}" in printed
     for name in ("many", "zeros"):
         why = "Not graded: it has more than MAX_MEGABYTES (2) or MAX_FILES (200) in this workflow."
-        assert f"::warning title=lab6-{name}::{why}" in said
+        assert f"::warning title=lab6-{name}::{why}" in printed
     assert {path.name for path in (runner.temp / "class").iterdir()} == {"lab6-ada", "lab6-grace", "lab6-none"}
-    assert "::warning title=lab6-none::This repository is empty." in said
+    assert "::warning title=lab6-none::This repository is empty." in printed
     grades = (runner.temp / "grades.csv").read_text(encoding="utf-8")
     assert len(grades.splitlines()) == 5  # a header, the roster, and the empty one
     assert {path.name for path in (runner.temp / "reports").iterdir()} == {"ada.md", "grace.md", "index.csv", "none.md"}

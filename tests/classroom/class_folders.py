@@ -11,21 +11,21 @@ def lay_out(top: Path, *paths: str) -> Path:
     """Make a folder with these empty files; a path that ends in a slash is a folder."""
     top.mkdir(parents=True, exist_ok=True)
     for path in paths:
-        place = top / path
+        folder = top / path
         if path.endswith("/"):
-            place.mkdir(parents=True, exist_ok=True)
+            folder.mkdir(parents=True, exist_ok=True)
         else:
-            place.parent.mkdir(parents=True, exist_ok=True)
-            place.touch()
+            folder.parent.mkdir(parents=True, exist_ok=True)
+            folder.touch()
     return top
 
 
-def pack(place: Path, names: Iterable[str]) -> Path:
+def pack(folder: Path, names: Iterable[str]) -> Path:
     """Make a zip with these empty members."""
-    with zipfile.ZipFile(place, "w") as archive:
+    with zipfile.ZipFile(folder, "w") as archive:
         for name in names:
             archive.writestr(name, b"")
-    return place
+    return folder
 
 
 def assigned(intake: Intake) -> dict[str, tuple[str, ...]]:

@@ -28,7 +28,7 @@ WITH_HOSTILE = {"PYTHONPATH": str(HOSTILE)}
 HOSTILE_RUBRIC = str(HOSTILE / "hostile.toml")
 
 Done = subprocess.CompletedProcess[str]
-_SKIPPED = ("latin-name", "links-out", "deep-folders")  # what a zip holds otherwise than a folder does
+_SKIPPED = ("latin-name", "links-out", "deep-folders")  # what a zip cannot hold as a folder does
 
 
 def grader(*arguments: str | Path, cwd: str = "", **variables: str) -> Done:
@@ -40,10 +40,10 @@ def grader(*arguments: str | Path, cwd: str = "", **variables: str) -> Done:
 
 def run_in_process(*arguments: str | Path) -> Done:
     """Run the command line in this process: its worker pool is reused, so that many small classes are fast."""
-    said, complained = io.StringIO(), io.StringIO()
-    with redirect_stdout(said), redirect_stderr(complained):
+    output, complained = io.StringIO(), io.StringIO()
+    with redirect_stdout(output), redirect_stderr(complained):
         code = run_here([str(argument) for argument in arguments])
-    return Done(arguments, code, said.getvalue(), complained.getvalue())
+    return Done(arguments, code, output.getvalue(), complained.getvalue())
 
 
 def environment(**variables: str) -> dict[str, str]:
@@ -146,13 +146,13 @@ def contents(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in folder.iterdir() if path.name != INDEX}
 
 
-def report_here(path: Path, to: Path) -> tuple[int, bytes | str]:
+def report_in_process(path: Path, to: Path) -> tuple[int, bytes | str]:
     """Return the exit code and report of `grader grade PATH --format json`, run in this process; its error if there is no report."""
-    said = io.StringIO()
+    output = io.StringIO()
     to.unlink(missing_ok=True)
-    with redirect_stdout(io.StringIO()), redirect_stderr(said):
+    with redirect_stdout(io.StringIO()), redirect_stderr(output):
         code = run_here(["grade", "--save", f"json={to}", "--format", "json", "--", str(path)])
-    return code, to.read_bytes() if to.exists() else said.getvalue()
+    return code, to.read_bytes() if to.exists() else output.getvalue()
 
 
 def urdf_class(folder: Path, count: int, seed: int = 1) -> Path:
@@ -167,8 +167,8 @@ def mixed_class(folder: Path, count: int, layout: str = "folders", seed: int = 1
     for submission in made_up.make_class(folder, count, seed, "mixed", layout):
         if for_zip and (submission.kind in _SKIPPED or not submission.person.name.isprintable()):
             for path in submission.paths:
-                place = folder / path
-                shutil.rmtree(place) if place.is_dir() else place.unlink(missing_ok=True)
+                target = folder / path
+                shutil.rmtree(target) if target.is_dir() else target.unlink(missing_ok=True)
     return folder
 
 

@@ -1,4 +1,4 @@
-"""Classes that hostile students have written to: whatever they do, nobody's result or mark is anybody else's.
+"""Classes with hostile students: whatever they write, every result and mark stays with its own student.
 
 A class is laid out as one of the layouts, with or without a roster, graded, and marked. Then a student adds what a student can
 add: further folders and files in every odd spelling, symlinks to others' work, attempts, archives. After each addition the class
@@ -71,7 +71,7 @@ def work(owner: str) -> bytes:
     return f"<robot name='{owner}'><link name='{owner}'/></robot>".encode()
 
 
-class Here(Executor):
+class InlineExecutor(Executor):
     """An executor that runs functions in this process, at once."""
 
     def submit(self, function: Callable[..., Any], /, *arguments: Any, **named: Any) -> "Future[Any]":
@@ -271,8 +271,8 @@ class HostileClass(RuleBasedStateMachine):
         intake = read_class(self.source, roster, layout, rubric_id="lab6")
         for submission in intake.submissions():
             self._check_files(submission.paths, submission.names, submission.student.key)
-        told = RunSettings(str(self.source), layout, len(intake), 1, roster=roster)
-        Batch(self.book, RUBRIC, told, Here()).grade(intake)
+        reported = RunSettings(str(self.source), layout, len(intake), 1, roster=roster)
+        Batch(self.book, RUBRIC, reported, InlineExecutor()).grade(intake)
 
     def _check_files(self, paths: tuple[str, ...], names: tuple[str, ...], key: str) -> None:
         """Assert that the files read for a submission belong to the owner of its folder."""
@@ -349,7 +349,7 @@ def try_classes(number: int) -> None:
 
 
 if __name__ == "__main__":
-    asked = int(sys.argv[1])
+    requested = int(sys.argv[1])
     start = time.monotonic()
-    try_classes(asked)
-    print(f"{asked} classes, {time.monotonic() - start:.0f} s: no result and no mark of anybody was anybody else's")
+    try_classes(requested)
+    print(f"{requested} classes, {time.monotonic() - start:.0f} s: no result and no mark of anybody was anybody else's")

@@ -25,13 +25,13 @@ CAL = Student("300", "José de la Cruz", "ann@other.example")
 DEE = Student("400", "André Dee", "andr\u00e9@example.org")
 CLASS = (ANN, BEA, CAL, DEE)
 
-Asked = Callable[[str], Student | None]
+Matcher = Callable[[str], Student | None]
 
 
 def in_roster(name: str) -> Student | None:
     """Return the student of a folder of this name."""
-    place = Roster(map(RosterEntry, CLASS)).match(Student(name)).position
-    return None if place is None else CLASS[place]
+    path = Roster(map(RosterEntry, CLASS)).match(Student(name)).position
+    return None if path is None else CLASS[path]
 
 
 def in_a_team(name: str) -> Student | None:
@@ -77,7 +77,7 @@ SURE = [  # in every place
 
 @pytest.mark.parametrize(("name", "student"), SURE)
 @pytest.mark.parametrize("ask", [in_roster, in_a_team, in_lms])
-def test_a_name_means_the_same_everywhere(ask: Asked, name: str, student: Student | None) -> None:
+def test_a_name_means_the_same_everywhere(ask: Matcher, name: str, student: Student | None) -> None:
     """A name means the same student as a folder, a folder of a team, or a row of an LMS file."""
     assert ask(name) == student
 
@@ -120,10 +120,10 @@ def test_lms_numbers_take_precedence() -> None:
 def test_unmatched_submissions_match_an_lms_by_number_only() -> None:
     """A folder named Ann Ash gets no row of an LMS file; one with the LMS's number does."""
     row = LmsStudent(1, "Ann Ash", Student("", "Ann Ash", login="aash", canvas="7"))
-    stranger = LmsGrade(Student("aash", "Ann Ash"), Decimal(1), is_on_roster=False)
+    unmatched = LmsGrade(Student("aash", "Ann Ash"), Decimal(1), is_on_roster=False)
     numbered = LmsGrade(Student("aash", "Ann Ash", canvas="7"), Decimal(1), is_on_roster=False)
-    assert not join([row], [stranger])
-    assert join([row], [stranger, LmsGrade(ANN, Decimal(2))])[1].student == ANN
+    assert not join([row], [unmatched])
+    assert join([row], [unmatched, LmsGrade(ANN, Decimal(2))])[1].student == ANN
     assert join([row], [numbered])[1] == numbered
 
 

@@ -15,9 +15,9 @@ GOOD, BAD = ROOT / "submissions" / "reference", ROOT / "submissions" / "lidar-bu
 TEAMS = "id,login,name,group\n1,alice,Alice Ash,team2\n2,mallory,Mallory Moss,team1\n"
 
 
-def submit(place: Path, source: Path = GOOD) -> None:
+def submit(folder: Path, source: Path = GOOD) -> None:
     """Write a submission."""
-    shutil.copytree(source, place)
+    shutil.copytree(source, folder)
 
 
 def batch(top: Path, *more: str | Path, roster: str = "", into: str = "g.db") -> Done:
@@ -147,15 +147,15 @@ def test_contested_submissions_change_nothing(tmp_path: Path) -> None:
 )
 def test_a_symlink_to_another_students_work_is_not_followed(tmp_path: Path, start: str, link: str, target: str) -> None:
     """In every layout, neither as the submission nor as an attempt."""
-    for place in (
+    for folder in (
         "class/lab6-bob",
         "class/submitted/bob/lab6",
         "class/red/Lab6/bob",
         "class/red/Lab6/ann",
         "class/blue/Lab6/bob",
     ):
-        if place.startswith(start):
-            submit(tmp_path / place)
+        if folder.startswith(start):
+            submit(tmp_path / folder)
     (tmp_path / start / link).parent.mkdir(parents=True, exist_ok=True)
     (tmp_path / start / link).symlink_to(target)
     batch(tmp_path)
@@ -233,8 +233,8 @@ def test_another_assignment_of_moodle_is_refused(tmp_path: Path) -> None:
         submit(tmp_path / f"class/Jane Doe {number}_{number}_assignsubmission_file/my_robot", BAD)
     batch(tmp_path)
     for number in (12, 13):
-        place = tmp_path / "class" / f"Jane Doe {number}_{number}_assignsubmission_file"
-        place.rename(tmp_path / "class" / f"Jane Doe {number}_{number + 70}_assignsubmission_file")
+        folder = tmp_path / "class" / f"Jane Doe {number}_{number}_assignsubmission_file"
+        folder.rename(tmp_path / "class" / f"Jane Doe {number}_{number + 70}_assignsubmission_file")
     done = batch(tmp_path)
     assert done.returncode == 2
     assert "the Moodle ids of its students are not those of this class" in done.stderr
@@ -243,17 +243,17 @@ def test_another_assignment_of_moodle_is_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize("layout", ["moodle", "canvas"])
 def test_a_display_name_takes_over_nothing_later(tmp_path: Path, layout: str) -> None:
     """The gradebook knows a student's number even if the roster has only the name: the same name with another number differs."""
-    places = {
+    paths = {
         "moodle": ("Bob Birch_12_assignsubmission_file", "Bob Birch_99_assignsubmission_file"),
         "canvas": ("birchbob_12_1001_robot", "birchbob_99_1002_robot"),
     }[layout]
-    submit(tmp_path / "class" / places[0], BAD)
-    submit(tmp_path / "class" / places[0].replace("12", "13").replace("Bob", "Eve").replace("bob", "eve"), BAD)
+    submit(tmp_path / "class" / paths[0], BAD)
+    submit(tmp_path / "class" / paths[0].replace("12", "13").replace("Bob", "Eve").replace("bob", "eve"), BAD)
     batch(tmp_path, "--layout", layout, roster="id,name\nbob,Bob Birch\neve,Eve Birch\n")
     mark(tmp_path, "bob")
     before = students(tmp_path)["bob"]
-    (tmp_path / "class" / places[0]).rename(tmp_path / "away")
-    submit(tmp_path / "class" / places[1])
+    (tmp_path / "class" / paths[0]).rename(tmp_path / "away")
+    submit(tmp_path / "class" / paths[1])
     done = batch(tmp_path, "--layout", layout)
     assert "has the name of bob, but another number: left unassigned" in done.stderr
     after = students(tmp_path)["bob"]
@@ -276,8 +276,8 @@ def test_a_display_name_removes_nobody(tmp_path: Path) -> None:
 @pytest.mark.parametrize("roster", ["", "id,login\nalice,alice\n", "id,login,group\nalice,alice,team2\n"])
 def test_marks_stay_in_their_team(tmp_path: Path, roster: str) -> None:
     """A folder of the same name in another team gets nothing of a removed team, with or without a roster."""
-    for place in ("team1/Lab6/mallory", "team1/Lab6/dave", "team2/Lab6/alice", "team2/Lab6/bob"):
-        submit(tmp_path / "class" / place, BAD)
+    for folder in ("team1/Lab6/mallory", "team1/Lab6/dave", "team2/Lab6/alice", "team2/Lab6/bob"):
+        submit(tmp_path / "class" / folder, BAD)
     batch(tmp_path)
     mark(tmp_path, "team2/alice")
     (tmp_path / "class/team2").rename(tmp_path / "away")

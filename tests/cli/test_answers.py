@@ -46,10 +46,10 @@ def test_no_report_of_grade_or_batch_contains_one(graded_class: Path, tmp_path: 
     done = grader("grade", top / "class" / "anna", "--rubric", rubric, *saves, **CLASSROOM50, **summary)
     assert done.returncode == 0, done.stderr
     formats = [file_format for file_format in Format if file_format.needs != "identity"]
-    wanted = [part for kind in formats for part in ("--report-format", kind)]
-    graded = batch(top, "--reports", out / "reports", *wanted, "--csv", out / "csv")
+    expected = [part for kind in formats for part in ("--report-format", kind)]
+    graded = batch(top, "--reports", out / "reports", *expected, "--csv", out / "csv")
     assert graded.returncode == 0, graded.stderr
-    said = [done.stdout, done.stderr, graded.stdout, graded.stderr]
+    output = [done.stdout, done.stderr, graded.stdout, graded.stderr]
     for arguments in (
         ("explain", "essay", "--rubric", rubric),
         ("rubric", "show", rubric),
@@ -59,11 +59,11 @@ def test_no_report_of_grade_or_batch_contains_one(graded_class: Path, tmp_path: 
     ):
         shown = grader(*arguments)
         assert shown.returncode == 0, shown.stderr
-        said.append(shown.stdout + shown.stderr)
+        output.append(shown.stdout + shown.stderr)
     files = [path.read_text(encoding="utf-8") for path in out.rglob("*") if path.is_file()]
     assert len(files) > 2 * len(Format)
     assert any("The roots." in text for text in files)  # what the student has answered
-    assert all("of the roots" not in text for text in (*files, *said))
+    assert all("of the roots" not in text for text in (*files, *output))
 
 
 def test_those_who_grade_see_them(top: Path) -> None:

@@ -35,7 +35,7 @@ class Cost(NamedTuple):
     err: str
 
 
-# A process in between: what is measured of a child begins with the memory of the process that it was forked from.
+# An intermediate process, because a child's peak memory starts with that of the process that forked it.
 _MEASURED = """
 import json, os, subprocess, sys
 process = subprocess.Popen(sys.argv[2:])
@@ -165,9 +165,9 @@ def test_documents_of_a_megabyte(kind: str, tmp_path: Path) -> None:
     assert used.bytes < _MEMORY
 
 
-def tarred(place: Path, files: dict[str, bytes], links: dict[str, str]) -> Path:
+def tarred(path: Path, files: dict[str, bytes], links: dict[str, str]) -> Path:
     """Make a tar.gz of some files and symlinks."""
-    with tarfile.open(place, "w:gz") as archive:
+    with tarfile.open(path, "w:gz") as archive:
         for name, data in files.items():
             info = tarfile.TarInfo(name)
             info.size = len(data)
@@ -176,7 +176,7 @@ def tarred(place: Path, files: dict[str, bytes], links: dict[str, str]) -> Path:
             info = tarfile.TarInfo(name)
             info.type, info.linkname = tarfile.SYMTYPE, target
             archive.addfile(info)
-    return place
+    return path
 
 
 @pytest.mark.parametrize(
@@ -230,35 +230,35 @@ def test_a_class_zip_of_archives_is_read_in_chunks(tmp_path: Path) -> None:
 # --- One large file -----------------------------------------------------------------------------------------------------
 
 
-def sparse(place: Path, megabytes: int) -> Path:
+def sparse(path: Path, megabytes: int) -> Path:
     """Make a sparse file of so many megabytes."""
-    with place.open("wb") as file:
+    with path.open("wb") as file:
         file.truncate(megabytes * 1_000_000)
-    return place
+    return path
 
 
-def large_submission(kind: str, place: Path, size: int) -> Path:
+def large_submission(kind: str, path: Path, size: int) -> Path:
     """Write the reference's URDF beside a video of so many bytes, sparse where possible."""
     video = "Task3_Step3.mp4"
     if kind == "folder":
-        place.mkdir()
-        (place / "my_robot.urdf").write_bytes(URDF)
-        sparse(place / video, size // 1_000_000)
+        path.mkdir()
+        (path / "my_robot.urdf").write_bytes(URDF)
+        sparse(path / video, size // 1_000_000)
     elif kind == "zip":
-        with zipfile.ZipFile(place, "w") as archive:
+        with zipfile.ZipFile(path, "w") as archive:
             archive.writestr(video, b"")
             archive.writestr("my_robot.urdf", URDF)
             archive.infolist()[0].file_size = size
     else:
         head, small = tarfile.TarInfo(video), tarfile.TarInfo("my_robot.urdf")
         head.size, small.size = size, len(URDF)
-        with place.open("wb") as file:
+        with path.open("wb") as file:
             file.write(head.tobuf())
             file.seek(size + -size % 512, io.SEEK_CUR)
             file.write(small.tobuf() + URDF + bytes(-len(URDF) % 512 + 1024))
         if kind == "tar.gz":
-            place.write_bytes(gzip.compress(place.read_bytes(), 0))
-    return place
+            path.write_bytes(gzip.compress(path.read_bytes(), 0))
+    return path
 
 
 @pytest.mark.parametrize("kind", ["folder", "zip", "tar", "tar.gz"])
@@ -266,22 +266,22 @@ def test_a_video_is_ignored_and_named(kind: str, tmp_path: Path) -> None:
     """The rest is graded, the report names the file with its size, and it counts as evidence all the same."""
     size = 100_000_000 if kind == "tar.gz" else 600_000_000  # what is decompressed has to be written first
     used = cost("grade", large_submission(kind, tmp_path / f"lab6.{kind}", size), "--part", "task1", "--part", "task3")
-    said = " ".join(used.out.split())
+    output = " ".join(used.out.split())
     assert (
         f"Task3_Step3.mp4 ({size // 1_000_000} MB) is larger than 64 MiB, the limit for one file, and was ignored"
-        in said
+        in output
     )
-    assert f"Task3_Step3.mp4 ({size // 1_000_000}.0 MB)" in said
-    assert (used.code, "70 / 72 points" in said) == (0, True), said
+    assert f"Task3_Step3.mp4 ({size // 1_000_000}.0 MB)" in output
+    assert (used.code, "70 / 72 points" in output) == (0, True), output
     assert used.seconds < _SECONDS * 1.5
     assert used.bytes < _MEMORY
 
 
 def test_a_compressed_tar_is_read_to_a_limit(tmp_path: Path) -> None:
     """An ignored file must be decompressed all the same, up to a limit that the message names."""
-    place = large_submission("tar.gz", tmp_path / "plain.tar.gz", 80_000_000)
+    path = large_submission("tar.gz", tmp_path / "plain.tar.gz", 80_000_000)
     packed = tmp_path / "lab6.tar.gz"
-    packed.write_bytes(gzip.compress(gzip.decompress(place.read_bytes())))
+    packed.write_bytes(gzip.compress(gzip.decompress(path.read_bytes())))
     used = cost("grade", packed)
     assert used.code == 2
     assert "would unpack to more than 33554432 bytes, the limit for an archive, and was not read" in used.err

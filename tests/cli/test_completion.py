@@ -113,10 +113,10 @@ def test_invalid_requests_print_nothing(variables: dict[str, str]) -> None:
 
 def test_closed_standard_output_is_no_error() -> None:
     """A shell that closes standard output causes no error."""
-    asked = {**os.environ, "_GRADER_COMPLETE": "complete_bash", "COMP_WORDS": "grader g", "COMP_CWORD": "1"}
+    requested = {**os.environ, "_GRADER_COMPLETE": "complete_bash", "COMP_WORDS": "grader g", "COMP_CWORD": "1"}
     for redirected in (">&-", "> /dev/full"):
         command = ["bash", "-c", f'"{sys.executable}" -m grader {redirected}']
-        done = subprocess.run(command, cwd=ROOT, env=asked, capture_output=True, check=False, timeout=PATIENCE)
+        done = subprocess.run(command, cwd=ROOT, env=requested, capture_output=True, check=False, timeout=PATIENCE)
         assert (done.returncode, done.stderr) == (0, b"")
 
 

@@ -110,8 +110,8 @@ def test_one_damaged_zip_is_a_few_lines(tmp_path: Path) -> None:
     lines = grader("diff", tmp_path / "many.db").stdout.splitlines()
     assert len(lines) == 3 + 12 + 1
     assert lines[-2:] == ["    c23: 0 to 23 (+23)", "    ... and 7 more"]
-    told = as_json(tmp_path / "many.db")["students"][0]["criteria"]
-    assert len(told) == 33
+    reported = as_json(tmp_path / "many.db")["students"][0]["criteria"]
+    assert len(reported) == 33
 
 
 def test_only_the_verdict_changed(tmp_path: Path) -> None:

@@ -99,16 +99,16 @@ def test_view_csv_and_json_agree(top: Path) -> None:
     rows = table(export(top, "csv").stdout)
     data = json.loads(export(top, "json").stdout)
     jsonschema.validate(data, json.loads(grader("schema", "class").stdout))
-    told = {student["id"]: student for student in data["students"]}
+    reported = {student["id"]: student for student in data["students"]}
     with Gradebook(top / "book.db") as book:
         view = {row[0]: row[1:] for row in book.rows("SELECT key, verdict, score, out_of, pending FROM grade")}
-    assert view.keys() == rows.keys() == told.keys()
+    assert view.keys() == rows.keys() == reported.keys()
     for key, (verdict, *numbers) in view.items():
-        assert verdict == rows[key]["status"] == told[key]["status"]
+        assert verdict == rows[key]["status"] == reported[key]["status"]
         for name, number in zip(("score", "max_score", "pending"), numbers, strict=True):
             exact = None if number is None else Decimal(number) / 10_000
             assert exact == (Decimal(rows[key][name]) if rows[key][name] else None)
-            assert exact == (None if told[key][name] is None else Decimal(str(told[key][name])))
+            assert exact == (None if reported[key][name] is None else Decimal(str(reported[key][name])))
         cells = [Decimal(rows[key][column] or 0) for column in ("loads", "box", "tall", "essay", "picture")]
         assert sum(cells) == Decimal(rows[key]["score"] or 0)
 
@@ -170,20 +170,20 @@ def test_the_late_penalty_is_a_line_of_its_own(tmp_path: Path) -> None:
         "anna": ("11", "2", "-2.2", "8.8"),
         "ben": ("11", "1", "-1.1", "9.9"),
         "cleo": ("11", "0", "0", "11"),
-        "dora": ("11", "1", "-1.1", "9.9"),  # nobody knows when
+        "dora": ("11", "1", "-1.1", "9.9"),  # the time is unknown
         "emil": ("11", "5", "-5.5", "5.5"),
     }
     assert {tuple(row[name] for name in ("loads", "box", "tall", "essay", "picture")) for row in rows.values()} == {
         ("3", "2.5", "0.5", "4", "1")
     }
-    told = {student["id"]: student for student in json.loads(export(tmp_path, "json").stdout)["students"]}
+    reported = {student["id"]: student for student in json.loads(export(tmp_path, "json").stdout)["students"]}
     words = "2 days late: submitted 2026-09-12T10:00:00Z, deadline 2026-09-10T12:00+00:00"
-    assert told["anna"]["late"] == {"days": 2, "points": -2.2, "because": words}
-    assert (told["anna"]["score"], told["anna"]["total"]) == (11, 8.8)
+    assert reported["anna"]["late"] == {"days": 2, "points": -2.2, "because": words}
+    assert (reported["anna"]["score"], reported["anna"]["total"]) == (11, 8.8)
     report = json.loads((tmp_path / "reports" / "anna.json").read_text())
     jsonschema.validate(report, json.loads(grader("schema", "report").stdout))
     assert report["score"] == 6
-    assert report["notes"] == [f"{words}: the late penalty is 1.6 points, the total is 4.4"]  # no deeper than the floor
+    assert report["notes"] == [f"{words}: the late penalty is 1.6 points, the total is 4.4"]  # not below the floor
     assert f"Note: {report['notes'][0]}" in " ".join((tmp_path / "reports" / "anna.txt").read_text().split())
     later = table(export(tmp_path, "csv", "--due", "2026-09-11T12:00:00Z").stdout)
     assert {key: row["late_days"] for key, row in later.items()} == {
@@ -355,12 +355,12 @@ def test_another_maximum_is_refused(top: Path) -> None:
 
 def test_the_output_for_a_large_class_is_short() -> None:
     """Students without a grade are one line for each reason, and every kind of line is limited."""
-    waits = [RowNote(number, f"Student {number}", "10 points need manual grading") for number in range(3, 41)]
+    pending = [RowNote(number, f"Student {number}", "10 points need manual grading") for number in range(3, 41)]
     late = [RowNote(number, f"Doe, {number}", "nothing was submitted") for number in (41, 42)]
     one = [RowNote(43, "Zoe", "has a grade that is locked in Moodle")]
     unknown = [RowNote(number, "x\x1b", "nobody") for number in range(50, 103)]
     conflicts = [Conflict(number, "y", "1", "2") for number in range(50)]
-    found = Preflight("Grade", 0, 0, conflicts, [*waits, *late, *one], unknown, warnings=["warned"])
+    found = Preflight("Grade", 0, 0, conflicts, [*pending, *late, *one], unknown, warnings=["warned"])
     lines = list(preflight_lines(found))
     assert lines[0] == "column 'Grade': 0 filled in, 0 already the same"
     assert lines[1:51] == [f"row {number}, y: was 1, becomes 2" for number in range(50)]
@@ -481,15 +481,15 @@ def test_everyone_has_the_points_of_grader_grade(lms_class: LmsClass, tmp_path: 
     done = lms_class.export("class")
     filled = cells(lms_class, "class.csv")
     given = cells(lms_class, "lms.csv")
-    wanted = {}
+    expected = {}
     for submission in lms_class.submissions():
         points = points_alone(lms_class, submission, tmp_path)
         if points is not None:
-            wanted[number_of(lms_class, submission)] = f"{points:.2f}"
-    assert {number: row[grade_column(lms_class)] for number, row in filled.items()} == wanted
-    assert len(wanted) > SIZE // 2
-    left_out = re.findall(r"without a grade, .*: (\d+) \(", done.stderr)
-    assert sum(map(int, left_out)) == len(given) - len(filled)
+            expected[number_of(lms_class, submission)] = f"{points:.2f}"
+    assert {number: row[grade_column(lms_class)] for number, row in filled.items()} == expected
+    assert len(expected) > SIZE // 2
+    omitted = re.findall(r"without a grade, .*: (\d+) \(", done.stderr)
+    assert sum(map(int, omitted)) == len(given) - len(filled)
     for number, row in filled.items():
         same = [index for index in range(len(row)) if index not in (grade_column(lms_class), 9)]
         assert [row[index] for index in same] == [given[number][index] for index in same]

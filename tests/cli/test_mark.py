@@ -113,7 +113,7 @@ def test_a_later_mark_replaces_an_earlier_one(top: Path) -> None:
         ("emil", "tall", "0.5", 3.5, 11, 5),  # skipped
         ("anna", "loads", "0", 3, 11, 5),  # passed
         ("anna", "picture", "1", 7, 11, 4),  # pending
-        ("ben", "essay", "4", 10, 10, 0),  # not asked of a URDF alone
+        ("ben", "essay", "4", 10, 10, 0),  # not part of the grading of a single URDF
         ("cleo", "box", "2.5", 2.5, 11, 8.5),  # nothing could be read
     ],
 )
@@ -170,7 +170,7 @@ def test_no_run_loses_a_mark(top: Path) -> None:
     (top / "other.toml").write_text(lab_text(loads="2", extra="0.5"))
     assert score_after(rubric=top / "other.toml") == 6.5
     (top / "without.toml").write_text(lab_text().replace('"essay"', '"answer"'))
-    assert score_after(rubric=top / "without.toml") == 4  # nobody asks for an essay any more
+    assert score_after(rubric=top / "without.toml") == 4  # the rubric has no essay any more
     assert score_after() == 7
     write_submission(top / "elsewhere" / "zoe")
     added = ("batch", top / "elsewhere", "--gradebook", top / "book.db", "--rubric", top / "small.toml", "--add")
@@ -210,7 +210,7 @@ def test_the_default_author(top: Path) -> None:
 
 def test_concurrent_marks(top: Path) -> None:
     """Several graders, and a batch that grades everything meanwhile: nothing is lost."""
-    wanted = [(key, name) for key in ("anna", "emil") for name in ("essay", "picture", "box", "loads")]
+    expected = [(key, name) for key in ("anna", "emil") for name in ("essay", "picture", "box", "loads")]
     command = [sys.executable, "-m", "grader"]
     book = str(top / "book.db")
     started = [
@@ -220,12 +220,12 @@ def test_concurrent_marks(top: Path) -> None:
             env=ENVIRONMENT,
             stdout=subprocess.DEVNULL,
         )
-        for words in wanted
+        for words in expected
     ]
     done = batch(top, "--force")
     assert done.returncode == 0, done.stderr
-    assert [process.wait(PATIENCE) for process in started] == [0] * len(wanted)
-    assert len(marks(top)) == len(wanted)
+    assert [process.wait(PATIENCE) for process in started] == [0] * len(expected)
+    assert len(marks(top)) == len(expected)
     assert student(top, "anna")["score"] == 2.5
     assert student(top, "emil")["score"] == 2
 
@@ -275,15 +275,15 @@ def test_no_report_names_an_account(top: Path) -> None:
         encoding="utf-8",
     )
     book = ("--gradebook", top / "book.db")
-    said = [done.stdout, done.stderr]
+    output = [done.stdout, done.stderr]
     for arguments in (("csv",), ("json",), ("moodle", "--into", worksheet, "--pending-as-zero")):
         shown = grader("export", *arguments, *book)
         assert shown.returncode == 0, shown.stderr
-        said.append(shown.stdout + shown.stderr)
-    assert "fine" in said[-1]
+        output.append(shown.stdout + shown.stderr)
+    assert "fine" in output[-1]
     files = [path.read_text(encoding="utf-8") for path in (*out.iterdir(), out.with_suffix(".csv"))]
     assert len(files) > len(Format)
-    assert all("jdoe47" not in text for text in (*files, *said))
+    assert all("jdoe47" not in text for text in (*files, *output))
     assert "Marked manually: fine." in (out / "anna.md").read_text(encoding="utf-8")
     assert "Marked by Kim." in (out / "emil.md").read_text(encoding="utf-8")
     assert [row[3] for row in marks(top)] == ["jdoe47", "Kim", "jdoe47"]

@@ -16,7 +16,7 @@ BATCH = "grader batch PATH --gradebook book.db"
 
 
 @pytest.fixture
-def place(tmp_path: Path) -> Path:
+def path(tmp_path: Path) -> Path:
     """Return a folder with a URDF, a class of one, a text and a package."""
     shutil.copy(SAMPLE, tmp_path / "my_robot.urdf")
     (tmp_path / "class" / "anna").mkdir(parents=True)
@@ -27,14 +27,14 @@ def place(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def typed(line: str, place: Path) -> Done:
+def typed(line: str, path: Path) -> Done:
     """Run a line as if it were typed there."""
-    return run_with_input(line.split(), b"", folder=place)
+    return run_with_input(line.split(), b"", folder=path)
 
 
-def refused(line: str, place: Path) -> str:
+def refused(line: str, path: Path) -> str:
     """Return the last line of a command that fails."""
-    done = typed(line, place)
+    done = typed(line, path)
     assert (done.returncode, done.stdout) == (2, b"")
     message = done.stderr.decode().splitlines()[-1]
     assert message.startswith("grader: ")
@@ -72,20 +72,20 @@ def refused(line: str, place: Path) -> str:
         ("export canvas --gradebook book.db", "give it with --into"),
     ],
 )
-def test_the_next_command_is_named(line: str, why: str, place: Path) -> None:
+def test_the_next_command_is_named(line: str, why: str, path: Path) -> None:
     """It is on the line that says what is wrong, and every named command exists."""
-    message = refused(line, place)
+    message = refused(line, path)
     assert why in message
     assert set(re.findall(r"\bgrader ([a-z]+)", message)) <= set(COMMANDS)
 
 
-def test_the_next_command_with_a_gradebook(place: Path) -> None:
+def test_the_next_command_with_a_gradebook(path: Path) -> None:
     """The messages name students, criteria and runs to choose from."""
-    assert typed("batch class --gradebook book.db", place).returncode == 0
+    assert typed("batch class --gradebook book.db", path).returncode == 0
     for line, why in (
         ("mark zoe lidar-frame 1 --gradebook book.db", "; grader export csv --gradebook book.db lists all students"),
         ("mark anna lidar 1 --gradebook book.db", "has no criterion 'lidar' (grader rubric show lab6 lists them)"),
         ("diff book.db", f"run {BATCH} again, or name a second gradebook"),
         ("export csv --gradebook book.db --output out/a.csv", "there is no folder out (mkdir -p out makes it)"),
     ):
-        assert why in refused(line, place)
+        assert why in refused(line, path)

@@ -8,7 +8,7 @@ from tests.cli.jobs import ELSEWHERE, GithubJob
 from tests.report.readers import read_as_github
 from tests.report.workflow_commands import commands
 
-MAX_SUMMARY = 1024 * 1024  # bytes that GitHub takes of a summary
+MAX_SUMMARY = 1024 * 1024  # bytes that GitHub accepts for a summary
 
 
 @pytest.fixture
@@ -79,12 +79,12 @@ def test_the_summary_respects_githubs_limit(job: GithubJob, room: int) -> None:
         assert room < 200
 
 
-@pytest.mark.parametrize("place", ["folder", "/dev/full", "nowhere/at/all.md"])
-def test_a_summary_that_cannot_be_written_changes_nothing_else(job: GithubJob, place: str) -> None:
+@pytest.mark.parametrize("path", ["folder", "/dev/full", "nowhere/at/all.md"])
+def test_a_summary_that_cannot_be_written_changes_nothing_else(job: GithubJob, path: str) -> None:
     """One line says so; report, annotations and exit code are as always."""
     (job.checkout / "folder").mkdir()
     usual = job.run("grade", "my_robot.urdf")
-    done = job.run("grade", "my_robot.urdf", around={"GITHUB_STEP_SUMMARY": place})
+    done = job.run("grade", "my_robot.urdf", around={"GITHUB_STEP_SUMMARY": path})
     assert (done.stdout, done.returncode) == (usual.stdout, usual.returncode)
     added = done.stderr.removeprefix(usual.stderr)
     assert added.startswith(b"grader: cannot write the job summary: ")
@@ -108,20 +108,20 @@ def test_a_job_without_a_report_says_why(job: GithubJob, arguments: tuple[str, .
     """As an annotation and in the summary, besides the line on standard error; exit code 2."""
     done = job.run("grade", *arguments)
     assert (done.returncode, done.stdout) == (2, b"")
-    (told,) = commands(done.stderr.decode())
-    assert (told.name, told.get("title"), told.get("file")) == ("error", "Nothing was graded", None)
-    assert words in told.data
-    assert done.stderr.decode().splitlines()[1] == f"grader: {told.data}"
+    (reported,) = commands(done.stderr.decode())
+    assert (reported.name, reported.get("title"), reported.get("file")) == ("error", "Nothing was graded", None)
+    assert words in reported.data
+    assert done.stderr.decode().splitlines()[1] == f"grader: {reported.data}"
     root = read_as_github(job.summary.read_text(encoding="utf-8"))
-    assert [root.findtext("h1"), root.findtext("p")] == ["Nothing was graded", told.data]
+    assert [root.findtext("h1"), root.findtext("p")] == ["Nothing was graded", reported.data]
 
 
 def test_every_mistake_of_a_rubric_is_in_the_annotation(job: GithubJob) -> None:
     """Line by line, as on standard error."""
     (job.checkout / "bad.toml").write_text('id = "x"\ntitel = "y"\n')
     done = job.run("grade", "my_robot.urdf", "--rubric", "bad.toml")
-    (told,) = commands(done.stderr.decode())
-    lines = told.data.splitlines()
+    (reported,) = commands(done.stderr.decode())
+    lines = reported.data.splitlines()
     assert len(lines) == 4
     assert done.stderr.decode().splitlines()[1:] == [f"grader: {line}" for line in lines]
 

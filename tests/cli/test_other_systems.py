@@ -11,7 +11,7 @@ import pytest
 from tests.samples import ROOT
 
 REFERENCE = ROOT / "submissions" / "reference"
-# A process in which everything is missing that Windows' Python has not.
+# A process without everything that Windows' Python lacks.
 _WITHOUT = """
 import os, signal, sys
 for name in ("fcntl", "resource", "pwd", "grp", "termios", "tty", "syslog"):
@@ -39,20 +39,20 @@ def elsewhere(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
 @pytest.mark.parametrize("kind", ["folder", "zip", "urdf"])
 def test_grade_needs_nothing_of_posix(tmp_path: Path, kind: str) -> None:
     """A folder, an archive and a URDF get the same report as here."""
-    place = REFERENCE
+    path = REFERENCE
     if kind == "zip":
-        place = Path(shutil.make_archive(str(tmp_path / "lab6"), "zip", REFERENCE))
+        path = Path(shutil.make_archive(str(tmp_path / "lab6"), "zip", REFERENCE))
     elif kind == "urdf":
-        place = ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf"
-    done = elsewhere("grade", place, "--format", "json")
+        path = ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf"
+    done = elsewhere("grade", path, "--format", "json")
     assert (done.returncode, done.stderr) == (0, "")
-    here = subprocess.run(
-        [sys.executable, "-m", "grader", "grade", str(place), "--format", "json"],
+    first = subprocess.run(
+        [sys.executable, "-m", "grader", "grade", str(path), "--format", "json"],
         capture_output=True,
         text=True,
         check=False,
     )
-    assert done.stdout == here.stdout
+    assert done.stdout == first.stdout
 
 
 def test_no_symlink_out_of_a_submission_is_followed(tmp_path: Path) -> None:

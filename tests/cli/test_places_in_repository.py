@@ -84,8 +84,8 @@ def test_without_a_ci_system(job: GithubJob) -> None:
     assert job.files("my_robot.urdf", start=job.checkout / "lab 6", around=alone) == {"lab 6/my_robot.urdf"}
     (job.checkout / "lab 6/.git").write_text("gitdir: ../.git/worktrees/lab\n")
     assert job.files("lab 6/my_robot.urdf", around=alone) == {"my_robot.urdf"}
-    for place in ("lab 6/.git", ".git"):
-        git = job.checkout / place
+    for location in ("lab 6/.git", ".git"):
+        git = job.checkout / location
         git.unlink() if git.is_file() else git.rmdir()
     assert job.files("lab 6/my_robot.urdf", around=alone) == {"lab 6/my_robot.urdf"}
     assert job.files("my_robot.urdf", start=job.checkout / "lab 6", around=alone) == {"my_robot.urdf"}
@@ -105,8 +105,8 @@ def test_on_gitlab(job: GithubJob) -> None:
 def test_standard_input(job: GithubJob) -> None:
     """Annotations have only the conventional name of standard input as file."""
     done = run_with_input(("grade", "-", "--format", "sarif"), MISTAKEN.read_bytes(), folder=job.checkout)
-    places = [result["locations"][0]["physicalLocation"] for result in json.loads(done.stdout)["runs"][0]["results"]]
-    assert {place["artifactLocation"]["uri"] for place in places} == {"-"}
+    locations = [result["locations"][0]["physicalLocation"] for result in json.loads(done.stdout)["runs"][0]["results"]]
+    assert {location["artifactLocation"]["uri"] for location in locations} == {"-"}
 
 
 def test_a_deleted_current_folder(tmp_path: Path) -> None:

@@ -14,9 +14,9 @@ FAULTY = "the check behaves of the package hostile-checks is faulty: "
 
 def robot(folder: Path, name: str) -> str:
     """Write a URDF whose robot's name tells the check how to behave."""
-    place = folder / "my_robot.urdf"
-    place.write_text(f"<robot name='{name}'><link name='base_link'/></robot>")
-    return str(place)
+    path = folder / "my_robot.urdf"
+    path.write_text(f"<robot name='{name}'><link name='base_link'/></robot>")
+    return str(path)
 
 
 @pytest.mark.parametrize(
@@ -41,8 +41,8 @@ def robot(folder: Path, name: str) -> str:
 @pytest.mark.parametrize("threshold", [(), ("--fail-under", "0")])
 def test_a_faulty_check_is_errored(tmp_path: Path, name: str, fault: str, threshold: tuple[str, ...]) -> None:
     """Whatever it raises or returns, the criterion is errored, the message names the package, and the exit code is 3."""
-    asked = ("grade", robot(tmp_path, name), "--rubric", HOSTILE_RUBRIC, "--format", "json", *threshold)
-    done = run(asked, **WITH_HOSTILE)
+    requested = ("grade", robot(tmp_path, name), "--rubric", HOSTILE_RUBRIC, "--format", "json", *threshold)
+    done = run(requested, **WITH_HOSTILE)
     assert done.returncode == 3
     loads, behaves = json.loads(done.stdout)["results"]
     assert (loads["status"], loads["points"]) == ("passed", 1)

@@ -198,19 +198,19 @@ def test_a_third_mark_is_shown_as_well(graded_class: Path, top: Path) -> None:
 
 def test_ctrl_c_keeps_earlier_marks(top: Path) -> None:
     """At a terminal, in the middle of a question."""
-    ours, theirs = pty.openpty()
+    own, theirs = pty.openpty()
     command = [sys.executable, "-m", "grader", "review", "--gradebook", str(top / "book.db")]
     with subprocess.Popen(
         command, cwd=ROOT, env=ENVIRONMENT, stdin=theirs, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
         start_new_session=True,
-    ) as asked:  # fmt: skip
-        os.write(ours, b"3 good\n")
-        assert asked.stdout is not None
+    ) as process:  # fmt: skip
+        os.write(own, b"3 good\n")
+        assert process.stdout is not None
         text = b""
         while text.count(b"points, 0 to 4") < 2:
-            text += os.read(asked.stdout.fileno(), 4096)
-        asked.send_signal(2)
-        assert asked.wait(PATIENCE) == 130
-    os.close(ours)
+            text += os.read(process.stdout.fileno(), 4096)
+        process.send_signal(2)
+        assert process.wait(PATIENCE) == 130
+    os.close(own)
     os.close(theirs)
     assert marks(top) == [("anna", "essay", 3.0, "good")]

@@ -12,7 +12,7 @@ from tests.command_line import PATIENCE
 from tests.samples import ROOT
 
 REFERENCE = ROOT / "submissions" / "reference"
-# Modules that the grader, or what it is built on, loads late.
+# Modules that the grader or its dependencies import late.
 MODULES = (
     "yaml",
     "docx",
@@ -36,9 +36,9 @@ def trapped(tmp_path: Path) -> Path:
     shutil.copytree(REFERENCE, folder)
     package = folder / "roscourse_sim_ws/src/my_robot"
     mark = f"open({str(tmp_path / 'ran')!r}, 'w').close()\n"
-    for place in (folder, package):
+    for target in (folder, package):
         for name in MODULES:
-            (place / f"{name}.py").write_text(mark)
+            (target / f"{name}.py").write_text(mark)
     for path in (package / "setup.py", package / "launch/my_robot_rviz.launch.py"):
         path.write_text(mark + path.read_text())
     (folder / "more.docx").write_bytes(b"PK\x03\x04")

@@ -45,14 +45,16 @@ def test_at_a_glance(top: Path) -> None:
 def test_as_json(top: Path) -> None:
     """Batch, stats and export give the same."""
     done = batch(top, "--format", "json")
-    told = json.loads(done.stdout)
-    jsonschema.validate(told, json.loads(grader("schema", "class").stdout))
-    run = told.pop("run")
+    reported = json.loads(done.stdout)
+    jsonschema.validate(reported, json.loads(grader("schema", "class").stdout))
+    run = reported.pop("run")
     assert (run["total"], run["graded"] + run["unchanged"], run["errored"]) == (4, 4, 0)
     assert (
-        told == as_json(top / "book.db") == json.loads(grader("export", "json", "--gradebook", top / "book.db").stdout)
+        reported
+        == as_json(top / "book.db")
+        == json.loads(grader("export", "json", "--gradebook", top / "book.db").stdout)
     )
-    assert told["needs_a_look"] == 2
+    assert reported["needs_a_look"] == 2
 
 
 @pytest.mark.parametrize(

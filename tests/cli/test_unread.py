@@ -23,14 +23,14 @@ def graded(path: Path, *options: str) -> tuple[int, str]:
 def test_an_unreadable_archive(tmp_path: Path, name: str) -> None:
     """Alone or beside a URDF: its content is undecided, and the check is red."""
     (tmp_path / name).write_bytes(b"no archive")
-    code, told = graded(tmp_path)
+    code, reported = graded(tmp_path)
     assert code == 1
-    assert f"::warning title=urdf-loads::No URDF was found, but {name} could not be opened" in told
+    assert f"::warning title=urdf-loads::No URDF was found, but {name} could not be opened" in reported
     shutil.copy(URDF, tmp_path)
-    code, told = graded(tmp_path)
+    code, reported = graded(tmp_path)
     assert code == 1
-    assert f"::warning title=package-found::No package was found, but {name} could not be opened" in told
-    assert "Could not be decided (20 points): package-found, " in told
+    assert f"::warning title=package-found::No package was found, but {name} could not be opened" in reported
+    assert "Could not be decided (20 points): package-found, " in reported
 
 
 def test_a_urdf_that_is_too_large(tmp_path: Path) -> None:
@@ -38,10 +38,10 @@ def test_a_urdf_that_is_too_large(tmp_path: Path) -> None:
     shutil.copytree(REFERENCE, tmp_path / "work")
     [urdf] = (tmp_path / "work").rglob("*.urdf")
     urdf.write_bytes(urdf.read_bytes() + b"<!-- " + b"x" * 1_100_000 + b" -->")
-    code, told = graded(tmp_path / "work")
+    code, reported = graded(tmp_path / "work")
     assert code == 1
-    assert "::warning title=urdf-loads::" in told or "::warning file=" in told
-    assert "Could not be decided (70 points)" in told
+    assert "::warning title=urdf-loads::" in reported or "::warning file=" in reported
+    assert "Could not be decided (70 points)" in reported
 
 
 def test_regular_manual_grading_is_green() -> None:
@@ -71,9 +71,9 @@ def test_xacro_that_cannot_be_expanded_is_not_green(tmp_path: Path) -> None:
     done = run(("grade", str(tmp_path / "my_robot.urdf.xacro")))
     assert done.returncode == 1
     assert b"grader: exit code 1: could not be decided, and needs manual grading: urdf-loads, base-box, " in done.stderr
-    code, told = graded(tmp_path / "my_robot.urdf.xacro")
+    code, reported = graded(tmp_path / "my_robot.urdf.xacro")
     assert code == 1
-    assert "Could not be decided (70 points): urdf-loads, base-box, " in told
+    assert "Could not be decided (70 points): urdf-loads, base-box, " in reported
     assert graded(tmp_path / "my_robot.urdf.xacro", "--fail-under", "0")[0] == 0
 
 
@@ -82,17 +82,17 @@ def test_findings_in_an_archive_are_on_the_archive(tmp_path: Path) -> None:
     with zipfile.ZipFile(tmp_path / "lab6.zip", "w") as archive:
         archive.write(ROOT / "submissions" / "several-mistakes" / "my_robot.urdf", "my_robot.urdf")
     (tmp_path / ".git").mkdir()
-    _, told = graded(tmp_path)
-    assert "::error file=lab6.zip,title=base-green (6 points lost)::" in told
-    assert "In lab6.zip/my_robot.urdf:6:14." in told
+    _, reported = graded(tmp_path)
+    assert "::error file=lab6.zip,title=base-green (6 points lost)::" in reported
+    assert "In lab6.zip/my_robot.urdf:6:14." in reported
     done = run(("grade", str(tmp_path), "--format", "codeclimate"))
     assert {issue["location"]["path"] for issue in json.loads(done.stdout)} <= {"lab6.zip", "lab6.zip/my_robot.urdf"}
 
 
 def test_the_most_consequential_failure_comes_first() -> None:
     """A criterion counts for those that are skipped because of it."""
-    _, told = graded(ROOT / "submissions" / "several-mistakes")
-    first = told.splitlines()[1]
+    _, reported = graded(ROOT / "submissions" / "several-mistakes")
+    first = reported.splitlines()[1]
     assert "title=package-found (20 points lost)::" in first
     assert "Skipped because of it: 11 more, 19 points." in first
 
@@ -114,14 +114,14 @@ def test_inputs_are_not_overwritten(tmp_path: Path) -> None:
     """Neither the URDF, alone or in its folder, nor the rubric; and nothing else is written then."""
     shutil.copy(URDF, tmp_path / "my_robot.urdf")
     shutil.copy(ROOT / "rubrics" / "lab6.toml", tmp_path / "lab.toml")
-    for place, over in (
+    for folder, over in (
         (tmp_path / "my_robot.urdf", "my_robot.urdf"),
         (tmp_path, "my_robot.urdf"),
         (tmp_path, "lab.toml"),
     ):
         before = (tmp_path / over).read_bytes()
         options = ("--rubric", str(tmp_path / "lab.toml"), "--save", f"json={tmp_path / 'a.json'}")
-        done = run(("grade", str(place), *options, "--save", f"markdown={tmp_path / over}"))
+        done = run(("grade", str(folder), *options, "--save", f"markdown={tmp_path / over}"))
         assert done.returncode == 2
         assert b"which is graded: choose another file" in done.stderr
         assert (tmp_path / over).read_bytes() == before

@@ -195,13 +195,13 @@ def test_a_folder_with_saved_reports_in_it(tmp_path: Path) -> None:
         watch.out.until(FOLDER_END)
         for source, news, end in ((SHORT, "now failed", END), (URDF, "now passed", FOLDER_END)) * 3:
             put(source, urdf)
-            assert f"{news}: lidar-frame" in (said := watch.out.until(end))
-            assert "nothing has changed" not in said
+            assert f"{news}: lidar-frame" in (output := watch.out.until(end))
+            assert "nothing has changed" not in output
             assert '"lidar-frame"' in (folder / "report.json").read_text()
         launch = urdf.parent.parent / "launch"
         launch.rename(launch.with_name("nothing"))
-        said = watch.out.until("now failed: ")
-        assert "nothing has changed" not in said
+        output = watch.out.until("now failed: ")
+        assert "nothing has changed" not in output
         assert "launch" in watch.out.until("\n")
 
 
@@ -234,19 +234,19 @@ def test_a_rubric_in_a_file_is_watched(robot: Path, tmp_path: Path) -> None:
         put("id = [", rubric)
         watch.err.until("not readable as TOML")
         put(text.replace('id = "lidar-frame"', 'id = "lidar-place"'), rubric)
-        said = watch.out.until("64 / 70 points")
-        assert "now failed: lidar-place\nremoved: lidar-frame\n" in said
+        output = watch.out.until("64 / 70 points")
+        assert "now failed: lidar-place\nremoved: lidar-frame\n" in output
 
 
 def test_closed_standard_output(robot: Path) -> None:
     """One line and exit code 2 at the next output, as anywhere else."""
-    ours, theirs = os.pipe()
+    rendered, theirs = os.pipe()
     with Watch(robot, stdout=theirs) as watch:
         os.close(theirs)
         text = b""
         while not text.endswith(END.encode()):
-            text += os.read(ours, 65536)
-        os.close(ours)
+            text += os.read(rendered, 65536)
+        os.close(rendered)
         put(URDF, robot)
         assert watch.process.wait(PATIENCE) == 2
         assert watch.err.rest() == "grader: cannot write the report: standard output: Broken pipe\n"

@@ -48,7 +48,7 @@ def temporary(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.Monk
     """Yield a folder for temporary files, which must be empty at the end."""
     place = tmp_path_factory.mktemp("temporary")
     monkeypatch.setattr(tempfile, "tempdir", str(place))
-    gc.freeze()  # what the tests before have left need not be looked through for each of these
+    gc.freeze()  # objects of earlier tests need not be scanned for each of these
     yield place
     gc.collect()
     assert list(place.iterdir()) == []

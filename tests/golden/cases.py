@@ -8,7 +8,7 @@ from grader.report.formats import Format
 from tests.command_line import ROOT, run
 
 __all__ = ["CLASSROOM50", "GOLDEN", "ROOT", "Golden", "run"]
-HERE = Path(__file__).parent
+FOLDER = Path(__file__).parent
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,11 +23,11 @@ class Golden:
     @property
     def file(self) -> Path:
         """Return the file of the expected output, with the ending of its format."""
-        asked = self.arguments[self.arguments.index("--format") + 1] if "--format" in self.arguments else "terminal"
-        return HERE / f"{self.name}.{Format(asked).ending.rpartition('.')[2]}"
+        requested = self.arguments[self.arguments.index("--format") + 1] if "--format" in self.arguments else "terminal"
+        return FOLDER / f"{self.name}.{Format(requested).ending.rpartition('.')[2]}"
 
 
-# What the runner of Classroom 50 sets around an autograder.
+# The variables that the runner of Classroom 50 sets for an autograder.
 CLASSROOM50 = {
     "CLASSROOM": "robotics",
     "ASSIGNMENT": "lab6",
@@ -43,7 +43,10 @@ CLASSROOM50 = {
 def _in_every_format(name: str, path: str, exit_code: int) -> tuple[Golden, ...]:
     """Return a case for each format of a platform."""
     formats = ("markdown", "junit", "sarif", "github", "gradescope", "classroom50", "codeclimate")
-    around = {"CI_PROJECT_DIR": str(ROOT), **CLASSROOM50}  # paths are ours, whatever repository this one stands in
+    around = {
+        "CI_PROJECT_DIR": str(ROOT),
+        **CLASSROOM50,
+    }  # paths relative to this project, whatever repository contains it
     return tuple(
         Golden(f"{name}-{file_format}", ("grade", path, "--format", file_format), exit_code, around)
         for file_format in formats

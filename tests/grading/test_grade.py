@@ -217,7 +217,7 @@ def test_a_zero_axis_fails_once() -> None:
         on=rolling(axis="0 0 0"),
     )
     assert statuses(report) == ["passed", "failed", "skipped"]
-    assert report.results[1].outcome.location == rolling(axis="0 0 0").place('xyz="0 0 0"')
+    assert report.results[1].outcome.location == rolling(axis="0 0 0").location_of('xyz="0 0 0"')
 
 
 def test_a_missing_joint_fails_once() -> None:
@@ -230,14 +230,14 @@ def test_a_missing_joint_fails_once() -> None:
         on=scene(BASE, LIDAR),
     )
     assert statuses(report) == ["failed", "skipped", "skipped", "passed"]
-    assert report.results[0].outcome.location == scene(BASE, LIDAR).place('<link name="lidar"')
+    assert report.results[0].outcome.location == scene(BASE, LIDAR).location_of('<link name="lidar"')
 
 
 def test_the_location_of_a_missing_thing_is_kept() -> None:
     """A failure for a missing shape points to the existing shape."""
     robot = scene(BASE, LIDAR, MOUNT)
     report = run(ask("box", shows_box, link="lidar", size=(1.0, 1.0, 1.0), tolerance=0.1), on=robot)
-    assert report.results[0].outcome.location == robot.place("<cylinder")
+    assert report.results[0].outcome.location == robot.location_of("<cylinder")
 
 
 # --- Unreadable files -------------------------------------------------------------------------------------------------
@@ -281,7 +281,7 @@ def test_a_rejected_file_is_graded() -> None:
     assert statuses(report) == ["failed", "passed", "passed"]
 
 
-# --- Faults of ours ---------------------------------------------------------------------------------------------------
+# --- Errors of the grader -----------------------------------------------------------------------------------------------
 
 
 def test_an_exception_in_a_check_is_an_error_of_the_grader() -> None:

@@ -25,7 +25,7 @@ CMAKE = (
     .with_files({"my_robot/CMakeLists.txt": "install(DIRECTORY urdf DESTINATION share/my_robot)\n"})
 )
 
-# What is done to the reference: the submission, what it loses with the failed criterion first, what is pending besides.
+# Changes of the reference: the submission, the lost criteria with the failed one first, and additional pending criteria.
 DEFECTS: Mapping[str, tuple[Submitted, Sequence[str], Sequence[str]]] = {
     "nothing": (REFERENCE, (), ()),
     "no answers and no pictures": (REFERENCE.without(ANSWERS, WEBCAM, "Task1_Step8.png"), (), ()),

@@ -148,8 +148,8 @@ def test_a_part_is_found_by_its_id(tmp_path: Path) -> None:
 def test_an_id_is_one_word_and_a_title_one_line(tmp_path: Path) -> None:
     """An id with spaces or control characters is refused; a title may be broken in the file, and is one line in reports."""
     for bad in ("a b", "a\\u001b", "a\\nb"):
-        (told,) = complaints(tmp_path, GOOD.replace('id = "loads"', f'id = "{bad}"'))
-        assert "id must be one printable word" in told
+        (reported,) = complaints(tmp_path, GOOD.replace('id = "loads"', f'id = "{bad}"'))
+        assert "id must be one printable word" in reported
     rubric = loaded(tmp_path, GOOD.replace('title = "Part A"', 'title = """Part\n  A"""'))
     assert rubric.parts[0].title == "Part A"
 
@@ -750,7 +750,7 @@ def test_a_table_in_a_criterion_does_not_move_later_ones(tmp_path: Path) -> None
     assert [line.partition(":")[0] for line in complaints(tmp_path, text)] == ["12", "20"]
 
 
-BEHIND_TEXTS = r'''feedback = """
+AFTER_TEXTS = r'''feedback = """
 [[criterion]]
 id = "not a key"
 # no comment \
@@ -773,7 +773,7 @@ requires = [ # [ ] "
 
 def test_lines_after_multi_line_values(tmp_path: Path) -> None:
     """Multi-line strings, comments and arrays do not move later lines."""
-    assert complaints(tmp_path, GOOD + BEHIND_TEXTS) == [
+    assert complaints(tmp_path, GOOD + AFTER_TEXTS) == [
         "22: title must be a text that is not empty, not ''",
         "24: requires 'lods', which does not exist; did you mean 'loads'?",
         "28: points must be a number from 0 to 1000000, not -1",

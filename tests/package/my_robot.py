@@ -8,7 +8,7 @@ SAMPLES = {
 
 _XML = "<!-- {} -->\n"
 _HASH = "# {}\n"
-# Every file's text is one of its own, so that it tells where an installed file comes from.
+# Every file has a unique text, which identifies the source of an installed file.
 FILES = {
     "README.md": _HASH,
     "config/params.yaml": _HASH,

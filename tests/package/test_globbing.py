@@ -88,13 +88,13 @@ def pythons_glob(pattern: str, root: str, *, recursive: bool = True, hidden: boo
 def test_glob_finds_what_pythons_glob_finds(tree: Tree, pattern: str, recursive: bool, hidden: bool) -> None:
     """The same paths in the same spelling, for any pattern that stays inside the file tree."""
     try:
-        told = [PackageListing(tree, order).glob(pattern, recursive=recursive, hidden=hidden) for order in ORDERS]
+        reported = [PackageListing(tree, order).glob(pattern, recursive=recursive, hidden=hidden) for order in ORDERS]
     except SearchError:
         assert ".." in pattern
         return
     with on_disk(tree) as folder:
         real = pythons_glob(pattern, folder, recursive=recursive, hidden=hidden)
-    assert [sorted(found) for found in told] == [real] * len(ORDERS)
+    assert [sorted(found) for found in reported] == [real] * len(ORDERS)
 
 
 @settings(max_examples=200)
@@ -115,7 +115,7 @@ def test_glob_with_an_absolute_path(tree: Tree, pattern: str) -> None:
     """A pattern with an absolute path finds the file."""
     with on_disk(tree) as root:
         found = value_of(f"glob(os.path.join(os.getcwd(), {pattern!r}), recursive=True)", tree, root)
-        if isinstance(found, Unknown):  # Python would look through all that the machine has
+        if isinstance(found, Unknown):  # Python would search the whole machine
             assert ".." in pattern
         else:
             assert sorted(found) == pythons_glob(os.path.join(root, pattern), root)
@@ -146,14 +146,14 @@ def test_paths_find_what_pathlib_finds(tree: Tree, pattern: str, folder: str, me
 def test_paths_are_resolved_like_the_system(tree: Tree, parts: list[str]) -> None:
     """Dots, slashes and files used as folders mean what they mean to the system."""
     path = "/".join(parts).lstrip("/")
-    told = [value_of(f"os.path.{function}({path!r})", tree) for function in ("exists", "isfile", "isdir")]
+    reported = [value_of(f"os.path.{function}({path!r})", tree) for function in ("exists", "isfile", "isdir")]
     with on_disk(tree) as root:
         inside = os.path.join(root, "")
         real = [getattr(os.path, function)(inside + path if path else "") for function in ("exists", "isfile", "isdir")]
-    if any(isinstance(path, Unknown) for path in told):
+    if any(isinstance(path, Unknown) for path in reported):
         assert not path or ".." in parts or any(part.startswith(".") for part in parts)
     else:
-        assert told == real
+        assert reported == real
 
 
 @settings(max_examples=100)
@@ -167,19 +167,19 @@ def test_listing_folders(tree: Tree, folder: str) -> None:
         f"[os.path.join(path, name) for path, names, _ in os.walk({folder!r}) for name in names]",
     )
     with on_disk(tree) as root:
-        there = os.path.join(root, folder)
-        is_folder = os.path.isdir(there)
-        names = os.listdir(there) if is_folder else []
-        walked = list(os.walk(there))
+        second = os.path.join(root, folder)
+        is_folder = os.path.isdir(second)
+        names = os.listdir(second) if is_folder else []
+        walked = list(os.walk(second))
     for order in ORDERS:
-        told = [value_of(expression, tree, order=order) for expression in expressions]
+        reported = [value_of(expression, tree, order=order) for expression in expressions]
         if is_folder:
-            assert sorted(told[0]) == sorted(names)
-            assert sorted(told[1]) == sorted(str(Path(folder) / name) for name in names)
+            assert sorted(reported[0]) == sorted(names)
+            assert sorted(reported[1]) == sorted(str(Path(folder) / name) for name in names)
         else:
-            assert not isinstance(told[0], list)
-            assert not isinstance(told[1], list)
-        for found, index in ((told[2], 2), (told[3], 1)):
+            assert not isinstance(reported[0], list)
+            assert not isinstance(reported[1], list)
+        for found, index in ((reported[2], 2), (reported[3], 1)):
             real = [os.path.join(step[0], name) for step in walked for name in step[index]]
             assert sorted(os.path.normpath(path) for path in found) == sorted(
                 os.path.relpath(path, root) for path in real

@@ -586,8 +586,8 @@ def is_well_formed(launch: Launch) -> bool:
     """Return whether the results are bounded and have locations in the file."""
     nodes = [*launch.nodes, *launch.forgotten]
     faults = [*launch.faults, *launch.unknown, *filter(None, [launch.syntax])]
-    places = [item.location for part in (nodes, launch.references, faults) for item in part]
-    return len(places) < 20_000 and all(place.line > 0 and place.column > 0 for place in places)
+    locations = [item.location for part in (nodes, launch.references, faults) for item in part]
+    return len(locations) < 20_000 and all(at_location.line > 0 and at_location.column > 0 for at_location in locations)
 
 
 @pytest.mark.parametrize(("name", "data"), [pytest.param(*name, id=name[0]) for name in hostile()])
@@ -657,8 +657,8 @@ PIECES = st.sampled_from(
 def test_changed_files(sample: str, changes: list[tuple[int, int, bytes]]) -> None:
     """A sample with some text removed and other text inserted is evaluated without an exception."""
     data = SAMPLES[sample].read_bytes()
-    for place, length, piece in changes:
-        at = place % (len(data) + 1)
+    for at_location, length, piece in changes:
+        at = at_location % (len(data) + 1)
         data = data[:at] + piece + data[at + length :]
     with processor_time(2):
         assert is_well_formed(read(data, sample, {**INNER, f"{FOLDER}/{sample}": data}))

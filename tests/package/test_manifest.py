@@ -32,7 +32,7 @@ def read(text: str) -> Manifest:
     return read_manifest(text.encode(), "my_robot/package.xml")
 
 
-def said(found: Manifest) -> list[str]:
+def problems_of(found: Manifest) -> list[str]:
     """Return its problems, each with its line and column."""
     return [
         f"{problem.location.line}:{problem.location.column} {problem.kind.code} {problem.message}"
@@ -69,7 +69,7 @@ def test_a_complete_file() -> None:
 def test_missing_elements(old: str, new: str, expected: list[str]) -> None:
     """Each required element that is missing is reported at its expected location."""
     assert old in COMPLETE
-    assert said(read(COMPLETE.replace(old, new))) == expected
+    assert problems_of(read(COMPLETE.replace(old, new))) == expected
 
 
 @pytest.mark.parametrize(

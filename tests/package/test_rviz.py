@@ -8,7 +8,7 @@ from grader.package.rviz import RvizFile, read_rviz, switched_on
 from grader.package.yaml_nodes import Node, read_yaml
 from tests.patience import processor_time
 
-# As RViz of ROS 2 Jazzy saves it, without the parts that nothing is asked about.
+# As RViz of ROS 2 Jazzy saves it, without irrelevant parts.
 SAVED = """\
 Panels:
   - Class: rviz_common/Displays

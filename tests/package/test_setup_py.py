@@ -15,7 +15,7 @@ from grader.static_python.parse import parse
 from tests.command_line import PATIENCE
 from tests.package.my_robot import SAMPLES, make_package
 
-# The samples of which not everything can be told, and why; no other may have anything unknown.
+# The samples with unknown values, and the reason; no other sample may have any.
 UNKNOWN = {
     "comprehension_first_of_a_listing": "the order in which folders are listed",
     "data_files_in_setup_cfg": "data_files is set in setup.cfg",
@@ -37,7 +37,7 @@ UNKNOWN = {
     "walk_that_is_steered": "list of folders is changed",
     "working_folder_is_left": "a change of the working folder",
 }
-# What install_data says where there are no data files; `setup.py install` does not call it then.
+# The message of install_data without data files; `setup.py install` does not call it then.
 _NOTHING = "TypeError: 'NoneType' object is not iterable"
 
 
@@ -46,16 +46,16 @@ class BuildRun(NamedTuple):
 
     installed: dict[str, str]
     error: str
-    told: Setup
+    reported: Setup
 
 
 def run(sample: str, folder: Path) -> BuildRun:
     """Install a sample's data files with setuptools, and return the statically determined files for the same sample."""
     package, root = folder / "my_robot", folder / "root"
     sources = make_package(sample, package)
-    told = read_setup(parse((package / "setup.py").read_bytes(), "setup.py"), read_folder(package))
+    reported = read_setup(parse((package / "setup.py").read_bytes(), "setup.py"), read_folder(package))
     environment = {name: value for name, value in os.environ.items() if not name.startswith(("MY_", "SETUPTOOLS_"))}
-    # Below a root: of a file that goes to an absolute path nothing is written elsewhere.
+    # Below a root, so that a file with an absolute path is written nowhere else.
     install = ["--quiet", "install_data", "--root", str(root), "--install-dir", str(root / "prefix")]
     done = subprocess.run(
         [sys.executable, "-B", "-W", "ignore", "setup.py", *install],
@@ -77,26 +77,26 @@ def run(sample: str, folder: Path) -> BuildRun:
     return BuildRun(
         {target: sources[text] for target, text in texts.items() if not ignored_part(sources[text])},
         f"status {done.returncode}: {done.stderr}" if done.returncode and _NOTHING not in done.stderr else "",
-        told,
+        reported,
     )
 
 
 @pytest.mark.parametrize("sample", SAMPLES)
 def test_setuptools_installs_the_determined_files(sample: str, tmp_path: Path) -> None:
     """Files and locations are the same; a run that fails is predicted; unknown values have their reason."""
-    installed, error, told = run(sample, tmp_path)
-    foretold = [*filter(None, [told.fault]), *told.faults, *told.stops]
-    reason = "; ".join(unknown.reason for unknown in told.unknown)
+    installed, error, reported = run(sample, tmp_path)
+    foretold = [*filter(None, [reported.fault]), *reported.faults, *reported.stops]
+    reason = "; ".join(unknown.reason for unknown in reported.unknown)
     if sample in UNKNOWN:
         assert UNKNOWN[sample] in reason
         assert not foretold
-        assert told.installed().items() <= installed.items()
+        assert reported.installed().items() <= installed.items()
     elif error:
         assert foretold, error
     else:
         assert not foretold
         assert not reason
-        assert told.installed() == installed
+        assert reported.installed() == installed
 
 
 def test_setuptools_runs(tmp_path: Path) -> None:

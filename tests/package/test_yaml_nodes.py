@@ -99,8 +99,8 @@ def test_locations() -> None:
     found = {key: root.get(*key.split("/")) for key in ("ä", "list", "é")}
     items = found["list"].items if found["list"] is not None else []
     nodes = [*found.values(), *items, items[1].get("two"), items[1].get("drei")]
-    places = [(node.location.line, node.location.column) for node in nodes if node is not None]
-    assert places == [(2, 4), (4, 3), (6, 6), (4, 5), (5, 5), (5, 11), (5, 20)]
+    locations = [(node.location.line, node.location.column) for node in nodes if node is not None]
+    assert locations == [(2, 4), (4, 3), (6, 6), (4, 5), (5, 5), (5, 11), (5, 20)]
     assert all(node is not None and node.location.path == "a.yaml" for node in nodes)
 
 

@@ -12,7 +12,7 @@ from tests.samples import ROOT
 REFERENCE = ROOT / "submissions" / "reference"
 PACKAGE = "roscourse_sim_ws/src/my_robot"
 
-# Each is dangerous to something that shows reports.
+# Each is dangerous to some viewer of reports.
 TERMINALS = (
     "[bold red]",
     "[/]",
@@ -74,8 +74,8 @@ def comment(text: str) -> str:
 
 
 SLOTS = ("robot", "link", "joint", "material", "comment", "file", "folder", "picture", "answer", "note")
-UNASKED = ("robot", "material", "comment", "file", "folder", "note")  # what stands there changes no mark
-BREAKING = ("box", "raw", "package", "setup", "launch", "frame", "task")  # what stands there may cost points
+UNASKED = ("robot", "material", "comment", "file", "folder", "note")  # text in these slots changes no mark
+BREAKING = ("box", "raw", "package", "setup", "launch", "frame", "task")  # text in these slots may lose points
 Texts = Mapping[str, str]
 
 
@@ -128,7 +128,7 @@ def urdf(text: str, texts: Texts) -> str:
     if "link" in texts:
         name, joint = attribute("l" + texts["link"]), attribute("j" + texts.get("joint", ""))
         more += f"<link name={name}/><joint name={joint} type='fixed'><parent link='base_link'/><child link={name}/></joint>"
-    if "task" in texts:  # a joint that holds nothing, of a type that there is not
+    if "task" in texts:  # a joint without links, of an unknown type
         more += f"<joint name='x' type={attribute(texts['task'])}><parent link={attribute(texts['task'])}/></joint>"
     if "box" in texts:
         text = text.replace("0.6 0.4 0.2", attribute(texts["box"])[1:-1], 1)

@@ -21,7 +21,7 @@ from grader.report.formats import Format
 from grader.report.schemas import REPORT_SCHEMA
 from tests.report.workflow_commands import Command, commands
 
-HERE = Path(__file__).parent
+FOLDER = Path(__file__).parent
 MARKDOWN = MarkdownIt("commonmark", {"html": True}).enable(["table", "strikethrough"])
 
 
@@ -35,7 +35,7 @@ def xml_schema(name: str) -> etree.XMLSchema:
 @cache
 def json_validator(name: str) -> Any:
     """Return a validator for one of the schemas beside this file."""
-    schema = json.loads((HERE / "schemas" / f"{name}.json").read_text(encoding="utf-8"))
+    schema = json.loads((FOLDER / "schemas" / f"{name}.json").read_text(encoding="utf-8"))
     jsonschema.Draft202012Validator.check_schema(schema)
     return jsonschema.Draft202012Validator(schema)
 
@@ -117,7 +117,7 @@ def read_commands(text: str) -> list[Command]:
     return found
 
 
-# Words with very many backticks stand in Markdown as text instead of code, or as a block that is indented instead of fenced.
+# Text with very many backticks is plain text in Markdown instead of code, or an indented block instead of a fenced one.
 _ALIKE = {"code_inline": "text", "code_block": "fence"}
 
 
@@ -147,7 +147,7 @@ def _tags(root: Any) -> list[str]:
     return [element.tag for element in root.iter()]
 
 
-# A snippet is left out where it is long; of problems a report in other words has only those that nothing else tells.
+# A long snippet is omitted; a recast report has only the problems that nothing else reports.
 _UNEQUAL = {"snippet", "problems"}
 
 
@@ -183,8 +183,8 @@ def sarif_text(text: str) -> str:
 def _places(value: Any) -> Iterator[str]:
     """Yield the locations of results as other formats write them."""
     for result in value["runs"][0]["results"]:
-        place = result["locations"][0]["physicalLocation"]
-        yield f"{unquote(place['artifactLocation']['uri'])}:{place['region']['startLine']}"
+        path = result["locations"][0]["physicalLocation"]
+        yield f"{unquote(path['artifactLocation']['uri'])}:{path['region']['startLine']}"
 
 
 def json_text(text: str) -> str:
@@ -238,7 +238,7 @@ class FormatReader(NamedTuple):
 READERS: Mapping[Format, FormatReader] = {
     Format.TERMINAL: FormatReader(
         str.splitlines,
-        lambda _: None,  # its lines are of no pieces
+        lambda _: None,  # its lines have no structure
         str,
         {
             **dict.fromkeys(("title of skipped", "title of pending"), _ALIKE_LINES),

@@ -59,12 +59,12 @@ def test_manual_marks_count() -> None:
     """With full points a test has passed, whatever the check found; with half of them it has not."""
     report = marked()
     data = result_of(report)
-    told = {
+    reported = {
         result.outcome.status: test["passed"]
         for test, result in zip(data["tests"], report.results, strict=True)
         if result.manual_mark is not None
     }
-    assert told == {"failed": True, "passed": False, "pending": False}
+    assert reported == {"failed": True, "passed": False, "pending": False}
 
 
 def test_the_identity_is_that_of_the_runner() -> None:
@@ -100,8 +100,8 @@ def test_without_an_identity_nothing_is_graded(
 ) -> None:
     """One line names the missing or invalid variable before anything is written."""
     file = tmp_path / "result.json"
-    wanted = ("--save", f"classroom50={file}") if saved else ("--format", "classroom50")
-    done = run(("grade", MISTAKEN, *wanted), **{**CLASSROOM50, **changed})
+    expected = ("--save", f"classroom50={file}") if saved else ("--format", "classroom50")
+    done = run(("grade", MISTAKEN, *expected), **{**CLASSROOM50, **changed})
     assert (done.returncode, done.stdout) == (2, b"")
     assert words in done.stderr.decode()
     assert done.stderr.count(b"\n") == 1

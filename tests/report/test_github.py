@@ -19,7 +19,7 @@ from tests.report.readers import read_commands
 from tests.report.workflow_commands import Command
 from tests.samples import ROOT, SAMPLES
 
-MAX_ANNOTATIONS = 10  # annotations of a type that GitHub shows of a step
+MAX_ANNOTATIONS = 10  # annotations of each type that GitHub shows for a step
 NAMES = {"error": "error", "warning": "warning", "note": "notice"}
 LAB = Base("lab/")
 
@@ -43,23 +43,23 @@ def test_each_finding_is_on_its_line() -> None:
         "lidar-frame (6 points lost)",
     ]
     assert len(found) == len(lost) == 7
-    for told, result in zip(found, lost, strict=True):
-        assert told.name == "error"
+    for reported, result in zip(found, lost, strict=True):
+        assert reported.name == "error"
         assert (
-            told.get("title")
+            reported.get("title")
             == f"{result.criterion.id} ({result.criterion.points} point{'s' * (result.criterion.points != 1)} lost)"
         )
-        assert result.outcome.message[1:].rstrip(".") in told.data
-        assert result.criterion.title in told.data
-        assert result.criterion.feedback in told.data
+        assert result.outcome.message[1:].rstrip(".") in reported.data
+        assert result.criterion.title in reported.data
+        assert result.criterion.feedback in reported.data
         where = result.outcome.location
-        assert [key for key, _ in told.properties[:-1]] == (
+        assert [key for key, _ in reported.properties[:-1]] == (
             ["file", "line", "endLine", "col", "endColumn"] if where else []
         )
         if where is not None:
-            assert told.get("file") == "lab/my_robot.urdf"
-            assert told.get("line") == told.get("endLine") == str(where.line)
-            start, end = int(told.get("col") or 0), int(told.get("endColumn") or 0)
+            assert reported.get("file") == "lab/my_robot.urdf"
+            assert reported.get("line") == reported.get("endLine") == str(where.line)
+            start, end = int(reported.get("col") or 0), int(reported.get("endColumn") or 0)
             assert start == where.column
             assert lines[where.line - 1][start - 1 : end].endswith('"')
             assert lines[where.line - 1][start - 1 : end].count('"') == 2
@@ -78,16 +78,16 @@ def test_the_number_of_annotations_is_limited(name: str) -> None:
     assert shown[0].get("title") == f"{report.score} / {report.max_score} points: {report.rubric.title}"
     for level, called in NAMES.items():
         own = [command for command in found if command.level == level]
-        told = [command for command in shown[1:] if command.name == called]
-        assert len(told) + (called == "notice") <= MAX_ANNOTATIONS
-        rest = [command for command in told if "more" in (command.get("title") or "").split(" (")[0].split()]
+        reported = [command for command in shown[1:] if command.name == called]
+        assert len(reported) + (called == "notice") <= MAX_ANNOTATIONS
+        rest = [command for command in reported if "more" in (command.get("title") or "").split(" (")[0].split()]
         more = int((rest[0].get("title") or "").split()[0]) if rest else 0
-        assert len(told) - len(rest) + more == len(own)
-        assert len(told) == min(len(own), MAX_ANNOTATIONS - (called == "notice"))
-        words = "\n".join(f"{command.get('title')} {command.data}" for command in told)
+        assert len(reported) - len(rest) + more == len(own)
+        assert len(reported) == min(len(own), MAX_ANNOTATIONS - (called == "notice"))
+        words = "\n".join(f"{command.get('title')} {command.data}" for command in reported)
         assert all(finding.rule in words for finding in own)
         if rest and any(finding.lost for finding in own):
-            lost = sum((finding.lost for finding in own[len(told) - 1 :]), Decimal(0))
+            lost = sum((finding.lost for finding in own[len(reported) - 1 :]), Decimal(0))
             assert f"{more} more ({lost} point" in (rest[0].get("title") or "")
     words = shown[0].data
     assert all(
@@ -113,10 +113,10 @@ def test_eleven_findings_are_nine_and_the_rest() -> None:
 def test_a_whole_archive_is_annotated_as_one_file() -> None:
     """Its lines cannot be shown, so the text has the location inside it."""
     report = SAMPLES["several-mistakes"].grade()
-    for told in annotated(report, Base(archive="lab/lab6.zip"))[1:]:
-        assert told.get("file") in ("lab/lab6.zip", None)
-        assert told.get("line") is None
-        assert ("In my_robot.urdf:" in told.data) == (told.get("file") is not None)
+    for reported in annotated(report, Base(archive="lab/lab6.zip"))[1:]:
+        assert reported.get("file") in ("lab/lab6.zip", None)
+        assert reported.get("line") is None
+        assert ("In my_robot.urdf:" in reported.data) == (reported.get("file") is not None)
 
 
 def test_a_correct_submission_has_one_notice() -> None:
@@ -129,8 +129,8 @@ def test_a_correct_submission_has_one_notice() -> None:
 
 def test_a_long_message_is_cut_before_escaping() -> None:
     """No escape is cut in two."""
-    (told,) = read_commands(command("error", None, "t", "%" * 5000))
-    assert told.data == "%" * 4000 + "..."
+    (reported,) = read_commands(command("error", None, "t", "%" * 5000))
+    assert reported.data == "%" * 4000 + "..."
 
 
 TEXT = st.text().map(printable).filter(lambda text: text == text.strip() and text)
@@ -139,12 +139,12 @@ TEXT = st.text().map(printable).filter(lambda text: text == text.strip() and tex
 @given(st.sampled_from(list(NAMES.values())), TEXT, TEXT, st.lists(TEXT, min_size=1).map("\n".join))
 def test_any_text_survives_escaping(name: str, path: str, title: str, text: str) -> None:
     """Colons, commas, percent signs and line breaks are unchanged in every part of a command."""
-    (told,) = read_commands(command(name, RepositoryLocation(path, 3, 4, 9), title, text))
+    (reported,) = read_commands(command(name, RepositoryLocation(path, 3, 4, 9), title, text))
     expected = (("file", path), ("line", "3"), ("endLine", "3"), ("col", "4"), ("endColumn", "8"), ("title", title))
-    assert told == Command(name, expected, text)
+    assert reported == Command(name, expected, text)
 
 
 def test_an_empty_range_is_one_column_wide() -> None:
     """The end never precedes the beginning, which GitHub would refuse."""
-    for told in annotated(SAMPLES["broken-tag-parent"].grade()):
-        assert int(told.get("endColumn") or 1) >= int(told.get("col") or 1) >= 1
+    for reported in annotated(SAMPLES["broken-tag-parent"].grade()):
+        assert int(reported.get("endColumn") or 1) >= int(reported.get("col") or 1) >= 1

@@ -74,12 +74,12 @@ def test_manual_marks_have_their_points() -> None:
     """A marked criterion is not pending, and passed only with full points."""
     report = marked()
     data = results(report)
-    by_hand = {
+    manual = {
         result.outcome.status: (test["score"], test["status"])
         for test, result in zip(data["tests"], report.results, strict=True)
         if result.manual_mark is not None
     }
-    assert {status: decided for status, (_, decided) in by_hand.items()} == {
+    assert {status: decided for status, (_, decided) in manual.items()} == {
         "failed": "passed",
         "passed": "failed",
         "pending": "failed",

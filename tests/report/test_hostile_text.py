@@ -55,25 +55,25 @@ def harmless_structures(report: Report, base: Base) -> dict[Format, Any]:
     return {kind: reader(kind).structure(render(twin, kind, base)) for kind in Format}
 
 
-def assert_harmless(report: Report, base: Base, wanted: Mapping[Format, Any] | None = None) -> None:
+def assert_harmless(report: Report, base: Base, expected: Mapping[Format, Any] | None = None) -> None:
     """Assert that every format is valid, harmless, and has the same structure as with harmless text."""
-    wanted = harmless_structures(report, base) if wanted is None else wanted
+    expected = harmless_structures(report, base) if expected is None else expected
     for kind in Format:
         text = render(report, kind, base)
         is_harmless(text, kind)
         assert kind is Format.GITHUB or not commands(text)
         reader(kind).parse(text)
-        assert reader(kind).structure(text) == wanted[kind], kind
+        assert reader(kind).structure(text) == expected[kind], kind
 
 
 def written(texts: Mapping[str, str]) -> Report:
     """Return the report on a submission with these texts, from files on disk."""
     with tempfile.TemporaryDirectory() as folder:
-        place = Path(os.fsdecode(os.path.join(os.fsencode(folder), name_of(texts.get("note", "x")))))
-        write_submission(place, texts)
-        report = grade(LAB6, opened(place))
+        target = Path(os.fsdecode(os.path.join(os.fsencode(folder), name_of(texts.get("note", "x")))))
+        write_submission(target, texts)
+        report = grade(LAB6, opened(target))
         assert not report.counts("errored"), [result.traceback for result in report.results if result.traceback]
-        assert_harmless(report, Base(f"{place.name}/"))
+        assert_harmless(report, Base(f"{target.name}/"))
         return report
 
 
@@ -144,21 +144,21 @@ def cli(*arguments: str, **variables: str) -> tuple[int, str, str]:
 def test_output_in_a_job_is_harmless(texts: Mapping[str, str]) -> None:
     """Reports, warnings and inspections contain no command; standard error has annotations, and the summary is Markdown."""
     with tempfile.TemporaryDirectory() as folder:
-        place = Path(os.fsdecode(os.path.join(os.fsencode(folder), name_of(texts.get("note", "x")))))
-        write_submission(place, texts)
+        target = Path(os.fsdecode(os.path.join(os.fsencode(folder), name_of(texts.get("note", "x")))))
+        write_submission(target, texts)
         summary = Path(folder) / "summary"
         job = {"GITHUB_ACTIONS": "true", "GITHUB_WORKSPACE": folder, "GITHUB_STEP_SUMMARY": str(summary)}
-        code, out, err = cli("grade", str(place), **job)
+        code, out, err = cli("grade", str(target), **job)
         assert code in (0, 1)
         is_harmless(out)
         is_harmless(err, Format.GITHUB)
         assert len(commands(err)) == err.count("\n")
         is_harmless(summary.read_text(encoding="utf-8"), Format.MARKDOWN)
         for command in ("grade", "inspect"):
-            _, out, err = cli(command, str(place))
+            _, out, err = cli(command, str(target))
             is_harmless(out)
             is_harmless(err)
-        _, out, err = cli("inspect", str(place), "--format", "json")
+        _, out, err = cli("inspect", str(target), "--format", "json")
         is_harmless(out)
 
 

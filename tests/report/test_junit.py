@@ -57,8 +57,8 @@ def _is_equal(result: Result, case: Any) -> None:
     assert case.classname == f"lab6.{criterion.part}"
     points = {entry.name: entry.value for entry in case.properties()}["points"]
     assert tuple(map(Decimal, points.split("/"))) == (result.points, criterion.points)
-    wanted = KINDS[outcome.status]
-    assert [type(result) for result in case.result] == ([wanted] if wanted else [])
+    expected = KINDS[outcome.status]
+    assert [type(result) for result in case.result] == ([expected] if expected else [])
     for found in case.result:
         assert found.type == outcome.status
         assert found.text.startswith(found.message + "\n")
@@ -93,12 +93,12 @@ def test_a_file_in_an_archive_has_no_line_in_the_repository() -> None:
 def test_manual_marks_count() -> None:
     """Full points are no failure, whatever the check found; fewer are one."""
     found = [(result, case.result) for result, case in cases(marked()) if result.manual_mark is not None]
-    assert sorted((result.outcome.status, [type(item) for item in told]) for result, told in found) == [
+    assert sorted((result.outcome.status, [type(item) for item in reported]) for result, reported in found) == [
         ("failed", []),
         ("passed", [Failure]),
         ("pending", [Failure]),
     ]
-    assert {item.type for _, told in found for item in told} == {"manual mark"}
+    assert {item.type for _, reported in found for item in reported} == {"manual mark"}
 
 
 def test_an_error_of_the_grader_is_an_error(tmp_path: Path) -> None:

@@ -20,7 +20,7 @@ from tests.samples import SAMPLES
 
 NOTICE = "The report is cut off here, because it is too long."
 ELEMENTS = {"div", "h1", "h2", "h3", "p", "ul", "li", "code", "pre", "em", "strong"}
-JOINER = "\u2060"  # stands where GitHub would look for a mention
+JOINER = "\u2060"  # prevents GitHub from finding a mention
 # A part or group with its points, a criterion with its mark and its points.
 GROUP, ITEM = re.compile(r".+ \([0-9.]+/[0-9.]+\)"), re.compile("[\u2713\u2717\u2212?!] [0-9.]+/[0-9.]+ .+")
 
@@ -48,7 +48,9 @@ def test_the_structure_is_that_of_the_report(name: str) -> None:
     criteria = [item for item in items if ITEM.fullmatch(item)]
     for shown, result in zip(criteria, report.results, strict=True):
         status = result.outcome.status
-        assert (result.criterion.title in shown) == (status in ("passed", "pending"))  # else it would read as a fact
+        assert (result.criterion.title in shown) == (
+            status in ("passed", "pending")
+        )  # a failed title without its status would look like a fact
         assert (result.criterion.id in shown) == (status != "passed")
     assert {element.tag for element in root.iter()} <= ELEMENTS
     assert any(
@@ -83,8 +85,8 @@ def test_a_cut_report_keeps_its_limit(name: str, most: int) -> None:
         kept, notice, _ = text.rpartition(f"**{NOTICE}**")
         assert notice
         assert whole.startswith(kept)
-        before, told = _contents(whole), _contents(kept)
-        assert told == before[: len(told)]
+        before, reported = _contents(whole), _contents(kept)
+        assert reported == before[: len(reported)]
         assert read_as_github(text).findall("p")[-1].text_content().startswith(NOTICE)
     else:
         assert most < 200
@@ -94,7 +96,7 @@ def _contents(text: str) -> list[tuple[str, str]]:
     return [(token.type, token.content) for token in read_markdown(text) if token.content]
 
 
-# Where text may stand, and what stands before it there.
+# The places where text may be, with the text before it.
 LAYOUTS = {"{}\n": "", "- \u2717 {}\n": "\u2717", "# {}\n": "", "*{}*\n": "", "- \u2717\n\n  {}\n": "\u2717"}
 
 
@@ -107,8 +109,8 @@ def test_escaped_text_is_shown_unchanged(layout: str, text: str) -> None:
     written = layout.format(escaped(text))
     root = read_as_github(written)
     assert _plain(root.text_content()).strip().removeprefix(LAYOUTS[layout]).strip() == text.strip()
-    ours = read_as_github(layout.format("plain"))
-    assert [element.tag for element in root.iter()] == [element.tag for element in ours.iter()]
+    own = read_as_github(layout.format("plain"))
+    assert [element.tag for element in root.iter()] == [element.tag for element in own.iter()]
     assert not {token.type for token in read_markdown(written)} - {
         token.type for token in read_markdown(layout.format("plain"))
     }

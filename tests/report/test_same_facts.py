@@ -30,8 +30,8 @@ def facts(report: Report) -> Iterator[Fact]:
         yield from _of_criterion(result, report)
     for problem in other_problems(report):
         message, line = printable(problem.message), problem.location.line
-        places = f"{problem.location.path}:{line}", f"line {line}: {message}"
-        for spellings in ((problem.code,), (message,), places):
+        paths = f"{problem.location.path}:{line}", f"line {line}: {message}"
+        for spellings in ((problem.code,), (message,), paths):
             yield Fact("problem", spellings, problem.code)
     submission = report.submission
     yield from (Fact("note", (note,)) for note in report.notes)
@@ -39,9 +39,9 @@ def facts(report: Report) -> Iterator[Fact]:
     yield from (Fact("aside", (path,)) for path in submission.ignored)
     if submission.package is not None and any(report.rubric.part(part).needs == "package" for part in report.parts):
         yield Fact("package", (submission.package.folder or submission.package.name,))
-    score, most, waits = map(format_points, (report.score, report.max_score, report.pending))
+    score, most, is_pending = map(format_points, (report.score, report.max_score, report.pending))
     if report.pending:
-        yield Fact("waits", (f"{waits} points need", f'"pending":{waits},'))
+        yield Fact("waits", (f"{is_pending} points need", f'"pending":{is_pending},'))
     keys = ('"max_score":', '"max-score":', '"maxScore":')
     yield Fact(
         "score",
@@ -83,8 +83,10 @@ def missing_from(kind: Format, report: Report) -> Iterator[Fact]:
     with patch.dict(os.environ, {"COLUMNS": "500"}):
         text = render(report, kind)
     shown = _plain(READERS[kind].text(text))
-    told = read_commands(text) if kind is Format.GITHUB else []
-    named = {name for command in told for name in command.data.partition("See the report for: ")[2].split(", ")} - {""}
+    reported = read_commands(text) if kind is Format.GITHUB else []
+    named = {name for command in reported for name in command.data.partition("See the report for: ")[2].split(", ")} - {
+        ""
+    }
     for fact in facts(report):
         if fact.rule not in named and not any(_plain(spelling) in shown for spelling in fact.spellings):
             yield fact
@@ -94,8 +96,8 @@ def missing_from(kind: Format, report: Report) -> Iterator[Fact]:
 def test_all_formats_contain_the_same_facts(name: str) -> None:
     """For each criterion its title, message, location and feedback; for the submission all of its facts."""
     report = SAMPLES[name].grade()
-    left_out = {(kind.value, fact) for kind in READERS for fact in missing_from(kind, report)}
-    assert not {(kind, fact) for kind, fact in left_out if fact.kind not in READERS[Format(kind)].excused}
+    omitted = {(kind.value, fact) for kind in READERS for fact in missing_from(kind, report)}
+    assert not {(kind, fact) for kind, fact in omitted if fact.kind not in READERS[Format(kind)].excused}
 
 
 def test_every_excuse_is_needed() -> None:

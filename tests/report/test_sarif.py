@@ -48,13 +48,13 @@ def run_of(report: Report, base: Base = Base(FOLDER)) -> Any:  # noqa: B008  imm
     return run
 
 
-def _is_relative(place: dict[str, Any]) -> None:
-    uri = place["artifactLocation"]["uri"]
+def _is_relative(at_location: dict[str, Any]) -> None:
+    uri = at_location["artifactLocation"]["uri"]
     parts = urlsplit(uri)
     assert (parts.scheme, parts.netloc, parts.query, parts.fragment) == ("", "", "", "")
     assert not uri.startswith(("/", "./"))
     assert re.fullmatch(r"(?:[A-Za-z0-9._~/-]|%[0-9A-F]{2})+", uri)
-    region = place["region"]
+    region = at_location["region"]
     assert region["startLine"] >= 1
     assert region.get("endColumn", 1) >= region.get("startColumn", 1) >= 1
 
@@ -79,15 +79,17 @@ def test_every_finding_is_a_result(name: str) -> None:
     run = run_of(report)
     found = findings(report, Base(FOLDER))
     assert [result["ruleId"] for result in run["results"]] == [finding.rule for finding in found]
-    for told, finding in zip(run["results"], found, strict=True):
-        place = told["locations"][0]["physicalLocation"]
-        assert told["level"] == finding.level
-        assert unquote(place["artifactLocation"]["uri"]).startswith(FOLDER.rstrip("/"))
+    for reported, finding in zip(run["results"], found, strict=True):
+        at_location = reported["locations"][0]["physicalLocation"]
+        assert reported["level"] == finding.level
+        assert unquote(at_location["artifactLocation"]["uri"]).startswith(FOLDER.rstrip("/"))
         if finding.location is not None:
-            assert unquote(place["artifactLocation"]["uri"]) == finding.location.path
-            assert place["region"]["startLine"] == finding.location.line
+            assert unquote(at_location["artifactLocation"]["uri"]) == finding.location.path
+            assert at_location["region"]["startLine"] == finding.location.line
     lost = sum(Decimal(str(result.get("properties", {}).get("points", 0))) for result in run["results"])
-    assert report.score + lost + report.pending == report.max_score  # what is skipped counts for what it is due to
+    assert (
+        report.score + lost + report.pending == report.max_score
+    )  # the points of skipped criteria count for the cause
 
 
 def test_snippets_match_their_regions() -> None:
@@ -145,19 +147,19 @@ def test_findings_in_an_archive_are_at_the_archive() -> None:
     """Code scanning only knows files of the repository, and needs a line for each."""
     run = run_of(SAMPLES["several-mistakes"].grade(), Base(archive="lab 6.zip"))
     for result in run["results"]:
-        place = result["locations"][0]["physicalLocation"]
-        assert place["artifactLocation"]["uri"] == "lab%206.zip"
-        assert place["region"] == {"startLine": 1}
+        at_location = result["locations"][0]["physicalLocation"]
+        assert at_location["artifactLocation"]["uri"] == "lab%206.zip"
+        assert at_location["region"] == {"startLine": 1}
 
 
 def test_the_rest_of_the_report_is_in_the_properties() -> None:
     """Points, every criterion, versions and paths."""
     report = SAMPLES["reference"].grade()
     run = run_of(report)
-    said = run["properties"]
-    assert (said["score"], said["maxScore"], said["pending"]) == (90, 100, 10)
-    assert said["rubric"] == {"id": "lab6", "sha256": report.rubric.sha256}
-    assert [criterion["status"] for criterion in said["criteria"]] == [
+    output = run["properties"]
+    assert (output["score"], output["maxScore"], output["pending"]) == (90, 100, 10)
+    assert output["rubric"] == {"id": "lab6", "sha256": report.rubric.sha256}
+    assert [criterion["status"] for criterion in output["criteria"]] == [
         result.outcome.status for result in report.results
     ]
     assert run["automationDetails"]["id"] == "grader/lab6/"

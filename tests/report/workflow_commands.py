@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-# Whatever a runner has ever taken; each in upper or lower case.
+# Every command that any runner has supported, in any case.
 REGISTERED = frozenset(
     {"add-mask", "add-matcher", "add-path", "debug", "echo", "endgroup", "error", "group", "internal-set-repo-path"}
     | {"notice", "remove-matcher", "save-state", "set-env", "set-output", "stop-commands", "warning"}
@@ -13,7 +13,7 @@ REGISTERED = frozenset(
 _DATA = (("%0D", "\r"), ("%0A", "\n"), ("%25", "%"))
 _PROPERTY = (("%0D", "\r"), ("%0A", "\n"), ("%3A", ":"), ("%2C", ","), ("%25", "%"))
 _OLDER = (("%3B", ";"), ("%0D", "\r"), ("%0A", "\n"), ("%5D", "]"), ("%25", "%"))
-# Comparisons of .NET that go by a language take no notice of these.
+# Culture-sensitive comparisons of .NET ignore these.
 _UNSEEN = re.compile("[\u00ad\u034f\u061c\u180e\u200b-\u200f\u202a-\u202e\u2060-\u206f\ufe00-\ufe0f\ufeff]")
 
 

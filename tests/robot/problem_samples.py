@@ -23,7 +23,7 @@ class ProblemSample:
         return self.marked.replace("¦", "").encode("utf-8", "surrogateescape")
 
     @property
-    def place(self) -> tuple[int, int]:
+    def location(self) -> tuple[int, int]:
         """Return line and column of the mark, counted from 1 in characters."""
         before = self.marked[: self.marked.index("¦")]
         return before.count("\n") + 1, len(before) - before.rfind("\n")

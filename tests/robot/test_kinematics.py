@@ -184,12 +184,12 @@ def test_moved_changes_one_joint() -> None:
         still.moved("cd", 1.0)
 
 
-@given(origin=origins, angle=angles, asked=st.booleans())
-def test_moved_is_a_new_configuration(origin: Origin, angle: float, asked: bool) -> None:
+@given(origin=origins, angle=angles, requested=st.booleans())
+def test_moved_is_a_new_configuration(origin: Origin, angle: float, requested: bool) -> None:
     """Poses computed before are not reused."""
     turning = robot(joint("ab", "continuous", origin=origin, axis=Z), joint("bc", origin=origin))
     still = Configuration(turning)
-    if asked:
+    if requested:
         still.pose("c", relative_to="b")
     assert still.moved("ab", angle).pose("c") == Configuration(turning, {"ab": angle}).pose("c")
 
@@ -316,11 +316,11 @@ def test_paths_between_links(tree: Robot, draw: st.DataObject) -> None:
     way = configuration.between(one, other)
     assert len(set(way)) == len(way)
     assert configuration.between(other, one) == way[::-1]
-    here = one
+    current = one
     for step in way:
-        assert here in (step.parent, step.child)
-        here = step.child if here == step.parent else step.parent
-    assert here == other
+        assert current in (step.parent, step.child)
+        current = step.child if current == step.parent else step.parent
+    assert current == other
 
 
 @given(tree=trees(), draw=st.data())

@@ -56,8 +56,8 @@ def test_nothing_is_raised(raw: bytes) -> None:
         assert 1 <= at.column <= len(rows[at.line - 1]) + 1
         assert problem.message
         assert problem.message.encode()
-    places = [(problem.location.line, problem.location.column) for problem in read.problems]
-    assert places == sorted(places)
+    locations = [(problem.location.line, problem.location.column) for problem in read.problems]
+    assert locations == sorted(locations)
 
 
 @settings(max_examples=400, deadline=None)
@@ -82,10 +82,12 @@ def test_every_link_has_a_pose_or_a_reason(raw: bytes) -> None:
 def test_a_problem_has_its_location(sample: ProblemSample) -> None:
     """Its line and column are those of its attribute or tag, and there are no other problems."""
     read = read_urdf(sample.data, "sample.urdf")
-    places = [
+    locations = [
         (problem.location.line, problem.location.column) for problem in read.problems if problem.code == sample.code
     ]
-    assert sample.place in places, [(problem.code, problem.message, problem.location) for problem in read.problems]
+    assert sample.location in locations, [
+        (problem.code, problem.message, problem.location) for problem in read.problems
+    ]
     assert set(codes(read)) == {sample.code, *sample.also.split()}
 
 
@@ -96,10 +98,10 @@ def test_a_problem_has_its_location(sample: ProblemSample) -> None:
 )
 def test_a_problem_moves_with_its_line(sample: ProblemSample) -> None:
     """Three lines of comment before it, with CR LF, move it by three lines and change nothing else."""
-    here = read_urdf(sample.data).problems
-    there = read_urdf(b"<!--\r\n\r\n-->\r\n" + sample.data.replace(b"\n", b"\r\n")).problems
-    assert [(problem.code, problem.location.line - 3, problem.location.column) for problem in there] == [
-        (problem.code, problem.location.line, problem.location.column) for problem in here
+    first = read_urdf(sample.data).problems
+    second = read_urdf(b"<!--\r\n\r\n-->\r\n" + sample.data.replace(b"\n", b"\r\n")).problems
+    assert [(problem.code, problem.location.line - 3, problem.location.column) for problem in second] == [
+        (problem.code, problem.location.line, problem.location.column) for problem in first
     ]
 
 

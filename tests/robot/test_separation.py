@@ -15,10 +15,10 @@ from grader.robot.separation import penetration, separation
 from grader.robot.shapes import Shape, UnknownShape, extent
 from grader.robot.transforms import IDENTITY, Transform, Vector, rotation_from_rpy, unit
 
-slow = settings(deadline=None)  # the first depth of two leaning cylinders waits for numpy
+slow = settings(deadline=None)  # the first depth of two tilted cylinders imports numpy
 
-NEAR = 1e-4  # metres; what is promised
-FINE = 1e-6  # metres; what is reached where nothing round leans
+NEAR = 1e-4  # metres; the documented accuracy
+FINE = 1e-6  # metres; the accuracy without tilted round shapes
 
 CHASSIS = Box((0.6, 0.4, 0.2))
 WHEEL = Cylinder(0.1, 0.05)
@@ -36,7 +36,7 @@ def moved(pose: Transform, way: float, direction: Vector) -> Transform:
 
 
 SIDEWAYS = (pi / 2, 0.0, 0.0)
-HAND_MADE = (1.5708, 0.0, 0.0)  # a quarter turn as people write it
+HANDMADE = (1.5708, 0.0, 0.0)  # a quarter turn with the usual rounding
 
 _sizes = st.floats(-3, 1).map(lambda power: 10.0**power) | st.sampled_from((0.0, -0.2, 0.001, 0.5, 1.0))
 boxes = st.builds(Box, st.tuples(_sizes, _sizes, _sizes))
@@ -91,7 +91,7 @@ def distance_along(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, direc
         (Box((2, 2, 2)), at(0, 0, 0), Sphere(0.1), at(1.01, 1.02, 1.02), -0.07),
         (Box((2, 2, 2)), at(0, 0, 0), Sphere(0.1), at(0.7, 0.2, -0.1), -0.4),
         (Box((2, 2, 2)), at(0, 0, 0), Sphere(0.1), at(0, 0, 0), -1.1),
-        # a sphere by a cylinder: beside, above, by the rim; inside, off and on the axis
+        # a sphere by a cylinder: beside, above, at the edge; inside, off and on the axis
         (Cylinder(1, 2), at(0, 0, 0), Sphere(0.1), at(3, 4, 0.5), 3.9),
         (Cylinder(1, 2), at(0, 0, 0), Sphere(0.1), at(0.3, 0.4, -2), 0.9),
         (Cylinder(1, 2), at(0, 0, 0), Sphere(0.1), at(0, 1.3, 1.4), 0.4),
@@ -102,7 +102,7 @@ def distance_along(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, direc
         (CHASSIS, at(0, 0, 0), WHEEL, at(0.2, 0.325, 0, SIDEWAYS), 0.1),
         (CHASSIS, at(0, 0, 0), WHEEL, at(0.2, 0.225, -0.05, SIDEWAYS), 0.0),
         (CHASSIS, at(0, 0, 0), WHEEL, at(0.2, 0.2025, -0.05, SIDEWAYS), -0.0225),
-        (CHASSIS, at(0, 0, 0), WHEEL, at(0.2, 0.2025, -0.05, HAND_MADE), -0.0225),
+        (CHASSIS, at(0, 0, 0), WHEEL, at(0.2, 0.2025, -0.05, HANDMADE), -0.0225),
         (CHASSIS, at(0, 0, 0), WHEEL, at(0.2, 0, 0, SIDEWAYS), -0.2),
         (CHASSIS, at(0, 0, 0), WHEEL, at(0, 0, 0, SIDEWAYS), -0.2),
         # a pillar by the upright edge of a box, outside and with its axis beyond the edge
@@ -112,7 +112,7 @@ def distance_along(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, direc
         (WHEEL, at(0, 0, 0, SIDEWAYS), WHEEL, at(0.3, 0, 0, SIDEWAYS), 0.1),
         (WHEEL, at(0, 0, 0, SIDEWAYS), WHEEL, at(0.18, 0, 0, SIDEWAYS), -0.02),
         (WHEEL, at(0, 0, 0, SIDEWAYS), WHEEL, at(0, 0.35, 0, SIDEWAYS), 0.3),
-        (WHEEL, at(0, 0, 0, SIDEWAYS), Cylinder(0.01, 0.4), at(0, 0.1, 0, HAND_MADE), -0.11),
+        (WHEEL, at(0, 0, 0, SIDEWAYS), Cylinder(0.01, 0.4), at(0, 0.1, 0, HANDMADE), -0.11),
         (WHEEL, at(0, 0, 0, SIDEWAYS), Cylinder(0.01, 0.02), at(0, 0, 0, SIDEWAYS), -0.035),
         (Cylinder(0.1, 2), at(0, 0, 0), Cylinder(0.2, 2), at(0, 0.5, 0, (0, pi / 2, 0)), 0.2),
         (Cylinder(0.1, 2), at(0, 0, 0), Cylinder(0.2, 2), at(0, 0.25, 0, (0, pi / 3, 0)), -0.05),
@@ -172,8 +172,8 @@ def test_no_other_direction_has_a_larger_distance(a: Shape, T_w_a: Transform, b:
 @given(a=shapes, T_w_a=poses, b=shapes, T_w_b=poses)
 def test_both_orders_agree(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> None:
     """The distance from b to a is the distance from a to b."""
-    there, back = separation(a, T_w_a, b, T_w_b), separation(b, T_w_b, a, T_w_a)
-    assert there.distance == pytest.approx(back.distance, abs=NEAR)
+    other, back = separation(a, T_w_a, b, T_w_b), separation(b, T_w_b, a, T_w_a)
+    assert other.distance == pytest.approx(back.distance, abs=NEAR)
 
 
 @slow
@@ -182,8 +182,8 @@ def test_a_common_motion_changes_nothing(
     a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, T_v_w: Transform
 ) -> None:
     """In another frame the distance is the same."""
-    here, there = separation(a, T_w_a, b, T_w_b), separation(a, T_v_w @ T_w_a, b, T_v_w @ T_w_b)
-    assert there.distance == pytest.approx(here.distance, abs=NEAR)
+    current, other = separation(a, T_w_a, b, T_w_b), separation(a, T_v_w @ T_w_a, b, T_v_w @ T_w_b)
+    assert other.distance == pytest.approx(current.distance, abs=NEAR)
 
 
 @slow
@@ -216,7 +216,7 @@ def test_penetration_is_the_depth_beyond_the_allowed_one(
     ("pose", "allowed", "expected"),
     [
         (at(0.2, 0.225, -0.05, SIDEWAYS), 0.0, 0.0),
-        (at(0.2, 0.225, -0.05, HAND_MADE), 1e-6, 0.0),
+        (at(0.2, 0.225, -0.05, HANDMADE), 1e-6, 0.0),
         (at(0.2, 0.2025, -0.05, SIDEWAYS), 0.0, 0.0225),
         (at(0.2, 0.2025, -0.05, SIDEWAYS), 0.0225, 0.0),
         (at(0.2, 0.2025, -0.05, SIDEWAYS), 0.0224, 0.0225),
@@ -334,8 +334,8 @@ def test_coal_agrees(oracle: Oracle, first: type[Shape], second: type[Shape]) ->
         a, b = random_shape(rng, first), random_shape(rng, second)
         size = hypot(*(high - low for shape in (a, b) for low, high in [extent(shape, IDENTITY, DIRECTIONS[0])]))
         pair = (a, random_pose(rng, 0.1), b, random_pose(rng, size))
-        ours, theirs = separation(*pair), oracle.distance(*pair)
-        if ours.distance != pytest.approx(theirs, abs=NEAR):
-            assert theirs < ours.distance < 0.0, pair
-            parted = moved(pair[3], NEAR - ours.distance, ours.direction)
+        own, theirs = separation(*pair), oracle.distance(*pair)
+        if own.distance != pytest.approx(theirs, abs=NEAR):
+            assert theirs < own.distance < 0.0, pair
+            parted = moved(pair[3], NEAR - own.distance, own.direction)
             assert oracle.distance(a, pair[1], b, parted) >= 0.0, pair

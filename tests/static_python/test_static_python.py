@@ -168,7 +168,7 @@ _DICT = f"x = {{str(i): i for i in range(9999)}}\ndef f(**k): pass\n{_LOOP}"
 _PATH = "from pathlib import Path\nimport os\nx = Path('ab')\n"
 _SETUP = "from setuptools import setup\n"
 
-# Files that Python itself refuses, or that it would not come to an end with.
+# Files that Python itself refuses, or would never finish.
 REFUSED: dict[str, str | bytes] = {
     "brackets": "[" * 120_000,
     "brackets that close": "x = " + "[" * 60_000 + "]" * 60_000,
@@ -196,7 +196,7 @@ def test_a_syntax_error_is_the_only_fault(name: str) -> None:
     assert not setup.copies
 
 
-# Files that would take Python long, or too much of its memory; each ends in `setup`, which is not reached or not told.
+# Files that would take Python too long, or too much memory; each ends in `setup`, which is not reached or unknown.
 EXPENSIVE = {
     "an endless loop that grows": "x = [1]\nwhile True: x += x\nsetup(data_files=x)",
     "a list that doubles": f"x = [1]\n{_LOOP}x += x\nsetup(data_files=x)",
@@ -243,7 +243,7 @@ def test_expensive_programs_are_stopped(name: str) -> None:
     assert setup.unknown or setup.faults or setup.stops
 
 
-# Each of these takes its time, again and again, of what is large.
+# Each of these repeats an expensive step on a large value.
 SLOW = {
     **{f"a list: {code}": _LIST + code for code in (
         "y = x + x[:3000]", "y = [*x]", "sorted(x)", "x[:]", "list(x)", "x.copy()", "-1 in x", "len(x)", "x.index(5)", "x[0]",

@@ -15,12 +15,12 @@ from grader.submission.urdf import OtherCandidate
 from grader.submission.urdf_search import UrdfChoice, find_urdf
 from tests.patience import processor_time
 
-WANTED = "urdf/my_robot.urdf"
+EXPECTED = "urdf/my_robot.urdf"
 ROBOT = b'<?xml version="1.0"?>\n<robot name="my_robot"/>\n'
 OUTSIDE = "it is outside the package that is graded"
 DEEPER = "it matches equally well, but is deeper in the folders"
 LATER = "it matches equally well, but comes later in alphabetical order"
-NOT_THERE = "it has the expected name, but is not at urdf/my_robot.urdf"
+MISSING = "it has the expected name, but is not at urdf/my_robot.urdf"
 BEGINS = "its name only starts like that of urdf/my_robot.urdf"
 OTHER_NAME = "its name differs from that of urdf/my_robot.urdf"
 NOT_NAMED = "it is not named like a URDF"
@@ -66,10 +66,10 @@ def test_every_tier() -> None:
         "lab6.xml",
         "e/empty.urdf",
     ]
-    found = find_urdf(tree_of(*paths, empty=b""), WANTED)
+    found = find_urdf(tree_of(*paths, empty=b""), EXPECTED)
     assert found.path == "urdf/my_robot.urdf"
     assert rejected(found) == {
-        "a/my_robot.urdf": NOT_THERE,
+        "a/my_robot.urdf": MISSING,
         "my_robot.urdf.xacro.txt": BEGINS,
         "robot.urdf": OTHER_NAME,
         "lab6.xml": NOT_NAMED,
@@ -84,13 +84,13 @@ def test_every_tier() -> None:
         "e/empty.urdf",
     ]
     for index, best in enumerate(ranked):
-        assert find_urdf(tree_of(*ranked[index:], empty=b""), WANTED).path == best
+        assert find_urdf(tree_of(*ranked[index:], empty=b""), EXPECTED).path == best
 
 
 @pytest.mark.parametrize(
     ("better", "worse", "reason"),
     [
-        ("x/y/urdf/my_robot.urdf", "my_robot.urdf", NOT_THERE),
+        ("x/y/urdf/my_robot.urdf", "my_robot.urdf", MISSING),
         ("urdf/my_robot.urdf", "x/urdf/my_robot.urdf", DEEPER),
         ("a/urdf/my_robot.urdf", "b/urdf/my_robot.urdf", LATER),
         ("urdf/my_robot.urdf", "urdf/My_Robot.urdf", BEGINS),
@@ -105,7 +105,7 @@ def test_every_tier() -> None:
 def test_pairs(better: str, worse: str, reason: str) -> None:
     """Of two files the better one is graded, whatever their order, and the other is listed with the reason."""
     for paths in ((better, worse), (worse, better)):
-        found = find_urdf(tree_of(*paths), WANTED)
+        found = find_urdf(tree_of(*paths), EXPECTED)
         assert found == UrdfChoice(better, (OtherCandidate(worse, reason),))
 
 
@@ -115,15 +115,15 @@ def test_files_that_are_no_robot() -> None:
         "package.xml", "CMakeLists.txt", "notes.md", "robot.png", "late.xml", "other.xml", "empty.xml",
         late=b" " * 5000 + ROBOT, other=b"<robots/>", empty=b"",
     )  # fmt: skip
-    assert find_urdf(tree, WANTED) == UrdfChoice(None, ())
-    assert find_urdf(tree_of("a.xml", a=b"< robot>"), WANTED).path == "a.xml"
+    assert find_urdf(tree, EXPECTED) == UrdfChoice(None, ())
+    assert find_urdf(tree_of("a.xml", a=b"< robot>"), EXPECTED).path == "a.xml"
 
 
 def test_a_file_of_the_right_name_needs_no_content() -> None:
     """A file at the expected path is graded whatever its content, unless it is empty."""
     tree = tree_of("urdf/my_robot.urdf", "other.urdf", my_robot=b"nonsense")
-    assert find_urdf(tree, WANTED).path == "urdf/my_robot.urdf"
-    assert find_urdf(tree_of("urdf/my_robot.urdf", "other.urdf", my_robot=b""), WANTED).path == "other.urdf"
+    assert find_urdf(tree, EXPECTED).path == "urdf/my_robot.urdf"
+    assert find_urdf(tree_of("urdf/my_robot.urdf", "other.urdf", my_robot=b""), EXPECTED).path == "other.urdf"
 
 
 def test_a_file_that_cannot_be_read() -> None:
@@ -132,7 +132,7 @@ def test_a_file_that_cannot_be_read() -> None:
     def refuse(limit: int, *, first: bool = False) -> bytes:
         raise InputError("cannot read it")
 
-    assert find_urdf(make_tree("", [File("a.xml", 10, refuse)], ()), WANTED).path is None
+    assert find_urdf(make_tree("", [File("a.xml", 10, refuse)], ()), EXPECTED).path is None
 
 
 def test_other_endings() -> None:
@@ -146,13 +146,13 @@ def test_other_endings() -> None:
 def test_the_package_is_preferred() -> None:
     """Among equals the one in the package is graded, however deep; a better one outside is graded all the same."""
     tree = tree_of("urdf/my_robot.urdf", "ws/src/my_robot/urdf/my_robot.urdf")
-    assert find_urdf(tree, WANTED, "ws/src/my_robot") == UrdfChoice(
+    assert find_urdf(tree, EXPECTED, "ws/src/my_robot") == UrdfChoice(
         "ws/src/my_robot/urdf/my_robot.urdf", (OtherCandidate("urdf/my_robot.urdf", OUTSIDE),)
     )
-    assert find_urdf(tree, WANTED, "").path == "urdf/my_robot.urdf"
-    assert find_urdf(tree, WANTED, "ws/src/my_rob").path == "urdf/my_robot.urdf"
+    assert find_urdf(tree, EXPECTED, "").path == "urdf/my_robot.urdf"
+    assert find_urdf(tree, EXPECTED, "ws/src/my_rob").path == "urdf/my_robot.urdf"
     assert (
-        find_urdf(tree_of("other/urdf/my_robot.urdf", "my_robot/a.urdf"), WANTED, "my_robot").path
+        find_urdf(tree_of("other/urdf/my_robot.urdf", "my_robot/a.urdf"), EXPECTED, "my_robot").path
         == "other/urdf/my_robot.urdf"
     )
 
@@ -160,18 +160,18 @@ def test_the_package_is_preferred() -> None:
 def test_build_products() -> None:
     """At most twenty build products are listed, and none is graded."""
     generated = [f"install/{n}.urdf" for n in range(30)]
-    found = find_urdf(make_tree("", [_file("a.urdf", ROBOT)], (), generated=generated), WANTED)
+    found = find_urdf(make_tree("", [_file("a.urdf", ROBOT)], (), generated=generated), EXPECTED)
     assert found.path == "a.urdf"
     assert set(rejected(found).values()) == {"a build generated it: only source files are graded"}
     assert len(found.others) == 20
-    assert find_urdf(make_tree("", (), (), generated=generated[:1]), WANTED).path is None
+    assert find_urdf(make_tree("", (), (), generated=generated[:1]), EXPECTED).path is None
 
 
 def test_many_texts() -> None:
     """Only so many texts are examined; a file with the expected name is found all the same."""
     tree = tree_of(*(f"{n:04}.txt" for n in range(3000)), "z/robot.urdf")
     with processor_time(1):
-        found = find_urdf(tree, WANTED)
+        found = find_urdf(tree, EXPECTED)
     assert found.path == "z/robot.urdf"
     assert len(found.others) == 400
 
@@ -183,7 +183,7 @@ def test_many_texts() -> None:
 def test_the_order_of_files_does_not_matter(folder: str, names: list[str]) -> None:
     """The same files are ranked the same."""
     paths = [f"{folder}/{name}" if folder else name for name in names]
-    assert find_urdf(tree_of(*paths), WANTED) == find_urdf(tree_of(*sorted(paths)), WANTED)
+    assert find_urdf(tree_of(*paths), EXPECTED) == find_urdf(tree_of(*sorted(paths)), EXPECTED)
 
 
 @pytest.mark.parametrize(
@@ -210,7 +210,7 @@ def test_many_packages() -> None:
     assert len(find_packages(tree_of(*(f"p{n}/package.xml" for n in range(100))), "my_robot")) == 40
 
 
-def packages(wanted: str, names: dict[str, str | None]) -> tuple[Package, ...]:
+def packages(expected: str, names: dict[str, str | None]) -> tuple[Package, ...]:
     """Return the packages of a file tree: folders and the names in their package.xml, None for only a setup.py."""
     files = [
         _file(
@@ -219,7 +219,7 @@ def packages(wanted: str, names: dict[str, str | None]) -> tuple[Package, ...]:
         )
         for folder, name in names.items()
     ]
-    return read_packages(make_tree("upload", files, ()), wanted)
+    return read_packages(make_tree("upload", files, ()), expected)
 
 
 @pytest.mark.parametrize(
@@ -271,7 +271,7 @@ def team(first: list[str], second: list[str]) -> Tree:
 def test_a_team_of_two() -> None:
     """The first member's package and URDF are graded; the other's are listed."""
     tree = team(["package.xml", "urdf/my_robot.urdf"], ["package.xml", "urdf/my_robot.urdf"])
-    found = submission_of(tree, "team", wanted=WANTED, package="my_robot")
+    found = submission_of(tree, "team", wanted=EXPECTED, package="my_robot")
     assert found.path == "Lab6/Adams/my_robot/urdf/my_robot.urdf"
     assert found.package is not None
     assert found.package.folder == "Lab6/Adams/my_robot"
@@ -286,7 +286,7 @@ def test_a_team_is_not_mixed_up() -> None:
     found = submission_of(
         team(["package.xml", "robot.urdf"], ["package.xml", "urdf/my_robot.urdf"]),
         "team",
-        wanted=WANTED,
+        wanted=EXPECTED,
         package="my_robot",
     )
     assert found.path == "Lab6/Brown/my_robot/urdf/my_robot.urdf"
@@ -301,12 +301,12 @@ def test_a_package_with_the_labs_files_takes_precedence() -> None:
         *("Lab6/my_robot/package.xml", "Lab6/my_robot/setup.py", "Lab6/my_robot/urdf/my_robot.urdf"),
         package=manifest("my_robot"),
     )
-    found = submission_of(tree, "a", wanted=WANTED, package="my_robot")
+    found = submission_of(tree, "a", wanted=EXPECTED, package="my_robot")
     assert found.path == "Lab6/my_robot/urdf/my_robot.urdf"
     assert found.package is not None
     assert found.package.folder == "Lab6/my_robot"
     stub = team(["package.xml"], ["package.xml", "setup.py", "rviz/a.rviz"])
-    package = submission_of(stub, "a", wanted=WANTED, package="my_robot").package
+    package = submission_of(stub, "a", wanted=EXPECTED, package="my_robot").package
     assert package is not None
     assert package.folder == "Lab6/Brown/my_robot"
 
@@ -315,4 +315,6 @@ def test_a_description_package() -> None:
     """A URDF in another package beside the graded one is found by its path."""
     tree = tree_of("my_robot/package.xml", "my_robot/test.urdf", "my_robot_description/package.xml", "my_robot_description/urdf/my_robot.urdf",
                    package=manifest("my_robot"))  # fmt: skip
-    assert submission_of(tree, "a", wanted=WANTED, package="my_robot").path == "my_robot_description/urdf/my_robot.urdf"
+    assert (
+        submission_of(tree, "a", wanted=EXPECTED, package="my_robot").path == "my_robot_description/urdf/my_robot.urdf"
+    )

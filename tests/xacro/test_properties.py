@@ -51,9 +51,9 @@ def compare(text: str) -> None:
         assert tag == other_tag
         for (name, value), (other_name, expected) in zip(own, theirs, strict=True):
             assert name == other_name
-            numbers, wanted = value.split(), expected.split()
-            assert len(numbers) == len(wanted)
-            for one, other in zip(numbers, wanted, strict=True):
+            numbers, required = value.split(), expected.split()
+            assert len(numbers) == len(required)
+            for one, other in zip(numbers, required, strict=True):
                 assert one == other or float(one) == pytest.approx(float(other), rel=1e-12, abs=1e-12)
 
 

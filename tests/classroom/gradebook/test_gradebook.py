@@ -119,12 +119,12 @@ class Model:
         rubric, signs, _ = self.results[key]
         score = out_of = pending = faults = 0
         for criterion, sign in zip(rubric.criteria, signs, strict=True):
-            by_hand = self.marks.get((key, criterion.id))
+            manual = self.marks.get((key, criterion.id))
             worth = units(criterion.points)
-            score += by_hand if by_hand is not None else worth * (sign == "p")
-            out_of += worth * (sign != "-" or by_hand is not None)
-            pending += worth * (sign == "?" and by_hand is None)
-            faults += sign == "!" and by_hand is None
+            score += manual if manual is not None else worth * (sign == "p")
+            out_of += worth * (sign != "-" or manual is not None)
+            pending += worth * (sign == "?" and manual is None)
+            faults += sign == "!" and manual is None
         return score, out_of, pending, faults
 
 
@@ -139,7 +139,7 @@ def test_the_view_is_the_sum_over_the_report(steps: list[tuple[Any, ...]]) -> No
             play(book, model, step)
             now = [all_of(book, "mark"), all_of(book, "result")]
             for before, after in zip(kept, now, strict=True):
-                assert after[: len(before)] == before  # nothing that was there is another or gone
+                assert after[: len(before)] == before  # no earlier row is changed or removed
             kept = now
         check(book, model)
 
@@ -171,18 +171,18 @@ def check(book: Gradebook, model: Model) -> None:
     standings = Grades(book)
     assert {standing.student.key for standing in standings.all()} == model.results.keys()
     for key in model.results:
-        wanted = model.grade(key)
+        expected = model.grade(key)
         ((score, out_of, pending, faults),) = book.rows(
             "SELECT score, out_of, pending, faults FROM grade WHERE key = ?", key
         )
-        assert (score, out_of, pending, faults) == wanted
+        assert (score, out_of, pending, faults) == expected
         standing = standings.find(key)
-        assert (*map(units, (standing.score, standing.out_of, standing.pending)), standing.faults) == wanted
+        assert (*map(units, (standing.score, standing.out_of, standing.pending)), standing.faults) == expected
         report = standings.report(standing)
         open_faults = sum(
             result.outcome.status == "errored" and result.manual_mark is None for result in report.results
         )
-        assert (*map(units, (report.score, report.max_score, report.pending)), open_faults) == wanted
+        assert (*map(units, (report.score, report.max_score, report.pending)), open_faults) == expected
         decided = {result.criterion.id: result.points for result in report.results if is_decided(result)}
         assert standings.points(standing) == decided
 
@@ -219,7 +219,7 @@ def test_an_older_file_is_migrated(book: Gradebook, monkeypatch: pytest.MonkeyPa
     before = all_of(book, "mark"), all_of(book, "result")
     book.close()
     monkeypatch.setattr(module, "STEPS", (*STEPS, NEXT, "CREATE VIEW pets AS SELECT count(*) AS many FROM pet;\n"))
-    for _ in range(2):  # a second time there is nothing to do
+    for _ in range(2):  # opening it again changes nothing
         with Gradebook(book.path) as newer:
             assert next(newer.rows("PRAGMA user_version")) == (len(STEPS) + 2,)
             assert list(newer.rows("SELECT key, nickname, many FROM student, pets")) == [("anna", "none", 1)]

@@ -37,10 +37,10 @@ def days(submitted: str, rubric: Rubric = LAB, due: datetime | None = None, own:
         ("11", 1, "-1.1"),
         ("11", 1.01, "-2.2"),
         ("11", 5, "-5.5"),
-        ("11", 50, "-5.5"),  # never below half of what can be earned
+        ("11", 50, "-5.5"),  # never below half of the maximum
         ("6", 1, "-0.5"),
         ("5.5", 3, "0"),
-        ("2", 3, "0"),  # what is below already stays
+        ("2", 3, "0"),  # a score below the floor is unchanged
         ("0", 3, "0"),
     ],
 )
@@ -67,11 +67,11 @@ def test_without_a_floor_the_penalty_is_at_most_the_score() -> None:
         ("2026-09-10T12:30:01+02:00", 1, 1),
         ("2026-09-11T12:00:00+02:00", 1, 1),
         ("2026-09-11T12:00:01+02:00", 2, 1),
-        ("2026-09-11T12:30:00+02:00", 2, 1),  # days are counted from the end of the grace
+        ("2026-09-11T12:30:00+02:00", 2, 1),  # days are counted from the end of the grace period
         ("2026-09-11T12:30:01+02:00", 2, 2),
         ("2026-09-10T10:00:00Z", 0, 0),
         ("2026-09-10T10:00:01Z", 1, 0),
-        ("2026-09-10T12:00:00", 0, 0),  # no offset: the due time's
+        ("2026-09-10T12:00:00", 0, 0),  # no offset: that of the deadline
         ("2026-09-10T12:00:01", 1, 0),
         ("2026-09-10", 0, 0),
     ],
@@ -112,7 +112,7 @@ def test_a_flag_without_a_time_is_one_day() -> None:
     assert days("", is_late=True) == 1
     assert "unknown" in lateness(LAB, SubmissionTimes(is_late=True), Decimal(11)).reason
     assert days("2026-09-10T11:00:00+02:00", is_late=True) == 0
-    assert days("2026-09-15T12:00:00Z", lab(POLICY), is_late=True) == 1  # no due time to compare with
+    assert days("2026-09-15T12:00:00Z", lab(POLICY), is_late=True) == 1  # no deadline to compare with
 
 
 def test_without_a_policy_there_is_no_penalty() -> None:
@@ -134,9 +134,9 @@ def test_daylight_saving_time_is_in_the_offset() -> None:
     """The hour between two offsets is no lateness."""
     berlin = ZoneInfo("Europe/Berlin")
     due = datetime(2026, 10, 25, 2, 30, tzinfo=berlin, fold=0)  # the first of the two
-    handed_in = datetime(2026, 10, 25, 2, 15, tzinfo=berlin, fold=1).isoformat()  # 45 minutes later
-    assert handed_in.endswith("+01:00")
-    assert days(handed_in, lab(POLICY), due=datetime.fromisoformat(due.isoformat())) == 1
+    with_submission = datetime(2026, 10, 25, 2, 15, tzinfo=berlin, fold=1).isoformat()  # 45 minutes later
+    assert with_submission.endswith("+01:00")
+    assert days(with_submission, lab(POLICY), due=datetime.fromisoformat(due.isoformat())) == 1
     assert days("2026-10-26T01:30:00+01:00", lab(POLICY), due=read_time("2026-10-25T02:30+02:00")) == 1
     assert days("2026-10-26T01:30:01+01:00", lab(POLICY), due=read_time("2026-10-25T02:30+02:00")) == 2
 

@@ -116,9 +116,9 @@ def test_a_misspelt_criterion() -> None:
 
 def test_questions_are_grouped_by_criterion(standings: Grades) -> None:
     """Criteria come in the rubric's order; unreadable submissions and missing parts are omitted."""
-    wanted = [("anna", "essay"), ("ben", "essay"), ("anna", "picture"), ("ben", "picture")]
-    assert manual_grading_queue(standings) == wanted
-    assert manual_grading_queue(standings, "picture") == wanted[2:]
+    expected = [("anna", "essay"), ("ben", "essay"), ("anna", "picture"), ("ben", "picture")]
+    assert manual_grading_queue(standings) == expected
+    assert manual_grading_queue(standings, "picture") == expected[2:]
     assert manual_grading_queue(standings, "box") == []
 
 
@@ -128,7 +128,7 @@ def test_a_marked_criterion_is_no_longer_queued(standings: Grades) -> None:
     assert pending_criterion(standings, first) is not None
     put(standings, "anna", "essay", "1")
     assert manual_grading_queue(standings) == rest
-    assert pending_criterion(standings, first) is None  # somebody else has looked this up before the mark
+    assert pending_criterion(standings, first) is None  # another reviewer has read this before the mark
     put(standings, "anna", "essay", "-")
     assert manual_grading_queue(standings) == [first, *rest]
 

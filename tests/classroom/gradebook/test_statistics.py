@@ -53,9 +53,9 @@ def mark_some(path: Path) -> None:
                     mark(book, standing, criterion, min(points, criterion.points), "me", "")
 
 
-def close(value: float, wanted: float) -> bool:
+def close(value: float, expected: float) -> bool:
     """Return whether a value equals another up to the rounding of JSON."""
-    return abs(value - wanted) < 2e-6
+    return abs(value - expected) < 2e-6
 
 
 def test_marks(graded: tuple[list[dict[str, str]], dict[str, Any]]) -> None:
@@ -86,10 +86,10 @@ def test_criteria(graded: tuple[list[dict[str, str]], dict[str, Any]]) -> None:
         rest = earned[who].sum(axis=1) - earned[who, index]
         assert close(criterion["share"], float(share.mean()))
         assert close(criterion["discrimination"], float(np.corrcoef(share, rest)[0, 1]))
-        told = ("passed", "marked_by_hand", "failed", "skipped")
-        assert sum(criterion[name] for name in told) == who.sum()
-    by_hand = sum(criterion["marked_by_hand"] for criterion in found["criteria"])
-    assert by_hand > 60
+        reported = ("passed", "marked_by_hand", "failed", "skipped")
+        assert sum(criterion[name] for name in reported) == who.sum()
+    manual = sum(criterion["marked_by_hand"] for criterion in found["criteria"])
+    assert manual > 60
 
 
 def test_failures(graded: tuple[list[dict[str, str]], dict[str, Any]]) -> None:
@@ -115,7 +115,7 @@ def of(path: Path, *signs: str, rubric: Any = LAB) -> ClassStatistics:
 
 
 @pytest.mark.parametrize("signs", [(), ("?!p!?",)])
-def test_nobody_is_graded(signs: tuple[str, ...], tmp_path: Path) -> None:
+def test_without_grades(signs: tuple[str, ...], tmp_path: Path) -> None:
     """Without grades there are zeros and no shares."""
     found = of(tmp_path, *signs)
     assert [found.graded, found.mean, found.deviation, found.median, sum(found.bins)] == [0] * 5

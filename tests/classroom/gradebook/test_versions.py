@@ -18,7 +18,7 @@ from grader.errors import InputError
 from grader.usecases.export import grades_csv
 
 DATA = Path(__file__).parent / "data"
-# A class of five in two runs, with five marks: written by grader 0.1.0 with version 3 of the tables, dumped as SQL.
+# A class of five in two runs, with five marks: written by grader 0.1.0 with schema version 3, dumped as SQL.
 VERSION_3 = (DATA / "version3.sql").read_text(encoding="utf-8")
 TABLES = {
     "rubric": "rubric", "criterion": "criterion", "template": "template", "student": "student", "run": "run",

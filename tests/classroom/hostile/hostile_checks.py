@@ -43,7 +43,7 @@ def behaves(robot: Configuration) -> Outcome:
         case "hangs_in_c":
             ctypes.PyDLL(None).sleep(3600)  # with the interpreter's lock held: no thread and no handler gets a turn
         case "stops":
-            while True:  # a shell that ends may have the processes go on that it has started
+            while True:  # a shell that ends may leave its processes running
                 os.kill(os.getpid(), signal.SIGSTOP)
         case "dies":
             os.kill(os.getpid(), signal.SIGKILL)

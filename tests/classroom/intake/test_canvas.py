@@ -37,8 +37,8 @@ def test_a_download_is_detected(tmp_path: Path) -> None:
         "o_neilsam_126": (FILES[4],),
         "לויעדה_125": (FILES[3],),
     }
-    for place in (lay_out(tmp_path / "class", *FILES), pack(tmp_path / "submissions.zip", FILES)):
-        intake = read_class(place)
+    for path in (lay_out(tmp_path / "class", *FILES), pack(tmp_path / "submissions.zip", FILES)):
+        intake = read_class(path)
         assert (intake.layout, assigned(intake)) == ("canvas", expected)
         jane = next(intake.submissions())
         assert (jane.is_late, jane.names) == (True, ("Task1_Step8.png", "lab6.zip"))

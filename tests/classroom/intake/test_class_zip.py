@@ -32,13 +32,13 @@ def pack(members: dict[str, bytes]) -> bytes:
     return buffer.getvalue()
 
 
-def bulk(place: Path, data: bytes) -> ClassZip:
+def bulk(target: Path, data: bytes) -> ClassZip:
     """Return an open zip."""
-    (place / "class.zip").write_bytes(data)
-    return ClassZip(place / "class.zip")
+    (target / "class.zip").write_bytes(data)
+    return ClassZip(target / "class.zip")
 
 
-def told(tree: Tree) -> tuple[object, ...]:
+def contents_of(tree: Tree) -> tuple[object, ...]:
     """Return everything known of a file tree, with the contents of its files."""
     files = {path: (file.size, file.read(10**6)) for path, file in tree.files.items()}
     return files, tree.folders, tree.ignored, tree.generated, tree.unseen
@@ -50,10 +50,10 @@ def test_a_folder_in_a_class_zip_equals_its_own_zip(names: list[str]) -> None:
     members = {name: f"{number}".encode() for number, name in enumerate(names)}
     inside = {f"ann/{name}": data for name, data in members.items() if not name.startswith(("/", "\\"))}
     alone = read_archive(io.BytesIO(pack({name.removeprefix("ann/"): inside[name] for name in inside})), "zip", "ann")
-    with tempfile.TemporaryDirectory() as place:
-        found = bulk(Path(place), pack({"ann/": b"", **inside, "bea/x.urdf": b"bea"})).folder("ann")
-        files, *rest = told(found)
-        assert (files, rest[0]) == told(alone)[:2]
+    with tempfile.TemporaryDirectory() as target:
+        found = bulk(Path(target), pack({"ann/": b"", **inside, "bea/x.urdf": b"bea"})).folder("ann")
+        files, *rest = contents_of(found)
+        assert (files, rest[0]) == contents_of(alone)[:2]
         assert not any("bea" in path for path in found.files)
 
 
@@ -66,7 +66,7 @@ def test_an_archive_in_a_class_zip_equals_one_alone(tmp_path: Path) -> None:
         digest = sha256()
         found = opened.archive(name, digest)
         assert found is not None
-        assert told(found) == told(read_archive(io.BytesIO(data), kind, name))
+        assert contents_of(found) == contents_of(read_archive(io.BytesIO(data), kind, name))
         assert digest.digest() == sha256(data).digest()
     assert opened.archive("cal.urdf", sha256()) is None
     assert opened.read("cal.urdf", 100) == b"<robot/>"
@@ -82,7 +82,7 @@ def test_several_files_keep_their_names(tmp_path: Path) -> None:
     """Several files are read like a folder that contains only them."""
     opened = bulk(tmp_path, pack({"ann_1_a.urdf": b"a", "ann_2_b.txt": b"b", "bea_1_a.urdf": b"c"}))
     tree = opened.files({"ann_1_a.urdf": "a.urdf", "ann_2_b.txt": "b.txt"}, "ann")
-    assert told(tree)[0] == {"a.urdf": (1, b"a"), "b.txt": (1, b"b")}
+    assert contents_of(tree)[0] == {"a.urdf": (1, b"a"), "b.txt": (1, b"b")}
     assert tree.name == "ann"
 
 

@@ -22,8 +22,8 @@ TEAM = (
 def test_students_in_teams(tmp_path: Path) -> None:
     """Each student's folder is a submission whose key starts with the team's name; other teams stay whole."""
     files = (*TEAM, "blue/lab_06/Ash/lab/a.urdf", "blue/lab_06/Cedar/lab/a.urdf", "gold/my_robot/package.xml")
-    for place in (lay_out(tmp_path / "class", *files), pack(tmp_path / "class.zip", files)):
-        intake = read_class(place)
+    for path in (lay_out(tmp_path / "class", *files), pack(tmp_path / "class.zip", files)):
+        intake = read_class(path)
         assert (intake.layout, assigned(intake)) == (
             "teams",
             {

@@ -28,8 +28,8 @@ def roster(red: str = "Team Red", blue: str = "Team Blue") -> Roster:
 def test_each_member_gets_the_groups_submission(tmp_path: Path, name: str) -> None:
     """Case and separators are ignored; the paths are the same, names and numbers are the member's own."""
     files = [f"{name}/my_robot.urdf", f"{name[:-1]}x.zip"]
-    for place in (lay_out(tmp_path / "class", *files), pack(tmp_path / "class.zip", files)):
-        intake = read_class(place, roster())
+    for path in (lay_out(tmp_path / "class", *files), pack(tmp_path / "class.zip", files)):
+        intake = read_class(path, roster())
         assert len(intake) == 3
         assert [(submission.student, submission.paths) for submission in intake.submissions()][:2] == [
             (ANN, (name,)),
@@ -89,8 +89,8 @@ def test_a_student_takes_precedence_over_a_group(tmp_path: Path) -> None:
 def test_a_section_is_no_group(tmp_path: Path) -> None:
     """A folder named like a section that holds submissions of its students is unmatched, with a note."""
     files = ["Section 1/aash/my_robot.urdf", "Section 1/ccedar.zip", "Section 2/bbirch.zip", "Section 2/readme.txt"]
-    place = lay_out(tmp_path, *files)
-    intake = read_class(place, roster("Section 1", "Section 2"))
+    path = lay_out(tmp_path, *files)
+    intake = read_class(path, roster("Section 1", "Section 2"))
     assert assigned(intake) == {"200": ("Section 2",), "Section 1": ("Section 1",)}
     assert "Section 1 is named like a group, but holds submissions of several students" in intake.notes
 
@@ -112,11 +112,11 @@ def test_submissions_are_ordered_by_key(tmp_path: Path) -> None:
     names = [f"team {number:02}" for number in range(20)]
     entries = [RosterEntry(Student(f"s{number:03}"), names[number % 20]) for number in range(100)]
     lay_out(tmp_path, *(f"{name}/" for name in names), "zoe/")
-    wanted = {**{f"s{number:03}": (names[number % 20],) for number in range(100)}, "zoe": ("zoe",)}
+    expected = {**{f"s{number:03}": (names[number % 20],) for number in range(100)}, "zoe": ("zoe",)}
     for seed in range(3):
         random.Random(seed).shuffle(entries)
         intake = read_class(tmp_path, Roster(entries))
-        assert list(assigned(intake).items()) == list(wanted.items())
+        assert list(assigned(intake).items()) == list(expected.items())
         assert list(intake.submissions()) == list(intake.submissions())
         assert (len(intake), intake.unmatched, intake.absent) == (101, ("zoe",), ())
 

@@ -204,11 +204,11 @@ def test_names_that_are_not_utf_8_can_be_opened(tmp_path: Path) -> None:
 def test_any_names_are_accepted(names: list[str]) -> None:
     """Whatever the members of a zip are called, keys are printable and unique, and every path is in the zip."""
     with tempfile.TemporaryDirectory() as folder:
-        place = Path(folder, "class.zip")
-        with zipfile.ZipFile(place, "w") as archive:
+        target = Path(folder, "class.zip")
+        with zipfile.ZipFile(target, "w") as archive:
             for name in dict.fromkeys(["ann.zip", "bea.zip", *names]).keys() - {"package.xml"}:
                 archive.writestr(zipfile.ZipInfo(name or "x"), b"")
-        submissions = list(read_class(place).submissions())
+        submissions = list(read_class(target).submissions())
     keys = [submission.student.key for submission in submissions]
     assert keys == sorted(set(keys))
     assert all(key.isprintable() for key in keys)
@@ -217,7 +217,7 @@ def test_any_names_are_accepted(names: list[str]) -> None:
 def test_a_very_large_class_is_fast(tmp_path: Path) -> None:
     """Each submission takes little more time and memory than its name."""
     folder = large_class(tmp_path / "class", LARGE)
-    with processor_time(30e-6 * LARGE):  # three times of what it takes
+    with processor_time(30e-6 * LARGE):  # three times the usual value
         intake = read_class(folder)
         assert sum(1 for _ in intake.submissions()) == LARGE
     folder = large_class(tmp_path / "smaller", LARGE // 10)
@@ -235,7 +235,7 @@ def large_class(folder: Path, count: int) -> Path:
     folder.mkdir()
     for index in range(count):
         name = f"{folder}/student{index:06}.urdf"
-        if index % 50_000:  # a file system may not have more links to one file
+        if index % 50_000:  # file systems limit the number of links to one file
             os.link(f"{folder}/student{index // 50_000 * 50_000:06}.urdf", name)
         else:
             Path(name).touch()

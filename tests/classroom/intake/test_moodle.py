@@ -20,8 +20,8 @@ def test_a_download_is_detected(tmp_path: Path, ending: str) -> None:
     """Each participant's folder is a submission, unpacked or in a zip, from new and old versions."""
     names = [f"{name}_{FOLDER}{ending}" for name in ("Jane Doe_12", "O'Neil, Sam_13", "Jörg Müller_14", "עדה לוי_15")]
     files = [f"{name}/lab6.zip" for name in names]
-    for place in (lay_out(tmp_path / "class", *files), pack(tmp_path / "class.zip", files)):
-        intake = read_class(place)
+    for target in (lay_out(tmp_path / "class", *files), pack(tmp_path / "class.zip", files)):
+        intake = read_class(target)
         assert intake.layout == "moodle"
         assert sorted(submission.paths[0] for submission in intake.submissions()) == sorted(files)
         assert [submission.student.name for submission in intake.submissions()] == [
@@ -56,11 +56,11 @@ def test_one_participant_in_a_zip(tmp_path: Path) -> None:
 def test_a_single_file_is_the_submission(tmp_path: Path, files: tuple[str, ...], path: str) -> None:
     """A single archive or URDF is used without its folder, as in Canvas; anything else is a folder."""
     top = f"Jane Doe_12_{FOLDER}"
-    wanted = f"{top}/{path}" if path else top
+    expected = f"{top}/{path}" if path else top
     names = [f"{top}/", *(f"{top}/{name}" for name in files)]
-    for place in (lay_out(tmp_path / "class", *names), pack(tmp_path / "class.zip", names)):
-        (submission,) = read_class(place).submissions()
-        assert (submission.paths, submission.names, submission.student.key) == ((wanted,), (), "Jane Doe_12")
+    for target in (lay_out(tmp_path / "class", *names), pack(tmp_path / "class.zip", names)):
+        (submission,) = read_class(target).submissions()
+        assert (submission.paths, submission.names, submission.student.key) == ((expected,), (), "Jane Doe_12")
 
 
 def test_a_single_symlink_is_not_the_submission(tmp_path: Path) -> None:
@@ -88,8 +88,8 @@ def test_a_text_beside_the_files(tmp_path: Path) -> None:
     """Files and a text of one participant are read as one folder, including the folders of the files."""
     top, text = f"Jane Doe_12_{FOLDER}", "Jane Doe_12_assignsubmission_onlinetext"
     files = (f"{top}/my_robot/urdf/my_robot.urdf", f"{top}/step.png", f"{text}/onlinetext.html")
-    for place in (lay_out(tmp_path / "class", *files), pack(tmp_path / "class.zip", files)):
-        (submission,) = read_class(place).submissions()
+    for target in (lay_out(tmp_path / "class", *files), pack(tmp_path / "class.zip", files)):
+        (submission,) = read_class(target).submissions()
         assert submission.paths == files
         assert submission.names == ("my_robot/urdf/my_robot.urdf", "step.png", "onlinetext/onlinetext.html")
     (alone,) = read_class(lay_out(tmp_path / "other", f"{text}/onlinetext.html")).submissions()
@@ -173,7 +173,7 @@ def test_any_download_is_grouped_again(people: dict[int, str]) -> None:
     """Whatever participants are called, each is identified by number and name."""
     names = {str(number): " ".join(name.split()).strip(".") or "x" for number, name in people.items()}
     with tempfile.TemporaryDirectory() as folder:
-        place = pack(Path(folder, "class.zip"), [f"{name}_{number}_{FOLDER}/a.zip" for number, name in names.items()])
-        found = {submission.student.moodle: submission.student.name for submission in read_class(place).submissions()}
+        target = pack(Path(folder, "class.zip"), [f"{name}_{number}_{FOLDER}/a.zip" for number, name in names.items()])
+        found = {submission.student.moodle: submission.student.name for submission in read_class(target).submissions()}
     are_hidden = len(set(names.values())) == 1
     assert found == {number: "" if are_hidden else name for number, name in names.items()}

@@ -386,9 +386,9 @@ def test_several_files_in_a_zip_equal_those_in_a_folder(tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", ["ann.pdf", "ann.xml", "ann.zip", "ann.7z"])
 def test_what_is_refused_in_a_folder_is_refused_in_a_zip(name: str, tmp_path: Path) -> None:
     """The message is the same, with paths relative to the class."""
-    said = set()
+    output = set()
     for top in _both(tmp_path, {f"lab/{name}": b"7z\xbc\xaf\x27\x1c" if name.endswith("7z") else b"text"}):
         with pytest.raises(InputError) as caught:
             open_submission(str(top), (f"lab/{name}",), (), "ann")
-        said.add(str(caught.value).replace(f"{top}/", ""))
-    assert len(said) == 1
+        output.add(str(caught.value).replace(f"{top}/", ""))
+    assert len(output) == 1

@@ -14,9 +14,9 @@ from grader.errors import InputError
 
 
 def read(tmp_path: Path, text: str | bytes) -> Roster:
-    place = tmp_path / "roster.csv"
-    place.write_bytes(text if isinstance(text, bytes) else text.encode())
-    return read_roster(place)
+    path = tmp_path / "roster.csv"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return read_roster(path)
 
 
 def only(tmp_path: Path, text: str) -> RosterEntry:

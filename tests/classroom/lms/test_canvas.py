@@ -29,9 +29,9 @@ def gradebook(*rows: str, header: str = HEADER, points: str = POINTS, end: str =
 
 
 def fill(data: bytes, *grades: LmsGrade, column: str = "", out_of: str = "100", any_maximum: bool = False) -> Filled:
-    wanted = ("lab6", "A wheeled base")
+    required = ("lab6", "A wheeled base")
     return fill_gradebook(
-        data, grades, out_of=Decimal(out_of), rubric_names=wanted, column=column, any_maximum=any_maximum
+        data, grades, out_of=Decimal(out_of), rubric_names=required, column=column, any_maximum=any_maximum
     )
 
 
@@ -252,14 +252,14 @@ def test_warnings() -> None:
     assert "another format" in fill(gradebook().decode().encode("utf-16")).preflight.warnings[0]
 
 
-@pytest.mark.parametrize(("possible", "said"), [("10.00", "10"), ("0", "0"), ('"1.000,00"', "1000")])
-def test_another_maximum_is_refused(possible: str, said: str) -> None:
+@pytest.mark.parametrize(("possible", "output"), [("10.00", "10"), ("0", "0"), ('"1.000,00"', "1000")])
+def test_another_maximum_is_refused(possible: str, output: str) -> None:
     """9.33 of 100 would be 9.33 of 10, so it needs an option."""
     data = gradebook('"Doe, Jane",11,S11,jdoe,A,', points=f"Points Possible,,,,,{possible}")
     with pytest.raises(InputError) as raised:
         fill(data, graded("x", "9.33", canvas="11"))
     assert str(raised.value) == (
-        f"Canvas' Points Possible of 'Lab 6 (98765)' is {said}, but the rubric's maximum is 100: change the maximum in the"
+        f"Canvas' Points Possible of 'Lab 6 (98765)' is {output}, but the rubric's maximum is 100: change the maximum in the"
         " LMS and export again, or write the points as they are with --any-maximum"
     )
     assert fill(data, graded("x", "9.33", canvas="11"), any_maximum=True).preflight.filled == 1

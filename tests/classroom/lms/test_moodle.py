@@ -314,8 +314,8 @@ def test_feedback_is_grouped_by_cause() -> None:
         "About loads: 0 of 3. The file has no root",
         "3 criteria were skipped because loads failed: 0 of 7.",
     ]
-    waits = Outcome("pending", "nobody can tell; needs manual grading")
-    assert list(feedback_items([result(name, waits) for name in ("box", "tall")])) == [
+    pending = Outcome("pending", "nobody can tell; needs manual grading")
+    assert list(feedback_items([result(name, pending) for name in ("box", "tall")])) == [
         FeedbackItem("2 criteria need manual grading", Decimal(0), Decimal(3), "Nobody can tell; needs manual grading")
     ]
 
@@ -416,13 +416,13 @@ def test_only_grades_and_comments_change(
     for number, (name, comment, old, _) in enumerate(students):
         writer.writerow([f"Participant {number}", name, f"{number}@x", "-", old, "100.00", "Yes", "-", "-", comment])
     data = text.getvalue().encode("utf-8-sig")
-    wanted = [n for n, (*_, is_graded) in enumerate(students) if is_graded]
-    filled = fill(data, *(graded(f"k{n}", moodle=str(n), feedback=COMMENT) for n in wanted))
+    expected = [n for n, (*_, is_graded) in enumerate(students) if is_graded]
+    filled = fill(data, *(graded(f"k{n}", moodle=str(n), feedback=COMMENT) for n in expected))
     before, after = read_table(data, "x"), read_table(filled.data, "x")
     assert after.bom == before.bom
-    assert [row.value(0) for row in after.rows[1:]] == [f"Participant {n}" for n in wanted]
+    assert [row.value(0) for row in after.rows[1:]] == [f"Participant {n}" for n in expected]
     assert after.rows[0] == before.rows[0]
-    for number, changed in zip(wanted, after.rows[1:], strict=True):
+    for number, changed in zip(expected, after.rows[1:], strict=True):
         old_row = before.rows[number + 1]
         assert changed.end == old_row.end
         assert changed.value(4) == "58.50"

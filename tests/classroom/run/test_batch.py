@@ -16,7 +16,7 @@ from tests.classroom.class_runs import (
     counted,
     grader,
     mixed_class,
-    report_here,
+    report_in_process,
     rows,
     urdf_class,
     verdicts,
@@ -79,8 +79,8 @@ def test_a_class_is_graded_like_each_submission_alone(
     with Gradebook(tmp_path / "one.db") as book:
         for standing in Grades(book).all():
             (path,) = standing.files.paths
-            code, alone = report_here(folder / path, tmp_path / "alone.json")
-            if code != 2:  # in a folder that can be read there may still be nothing else that can
+            code, alone = report_in_process(folder / path, tmp_path / "alone.json")
+            if code != 2:  # a readable folder may contain only unreadable files
                 assert standing.verdict in ("graded", "unreadable")
                 assert alone == one[standing.student.key], path
                 is_red = bool({"f", "s"} & set(standing.statuses)) or is_undecided(alone)
@@ -98,18 +98,18 @@ def is_undecided(report: bytes | str) -> bool:
     return bool(waiting - {"answer-floating-link", "answer-launch-nodes", "evidence-webcam"})
 
 
-def test_the_command_grade_says_the_same_in_a_process_of_its_own(samples: Path, tmp_path: Path) -> None:
+def test_the_command_grade_gives_the_same_in_its_own_process(samples: Path, tmp_path: Path) -> None:
     """A few of the samples give the same through the whole command line."""
     reports = batch(samples, tmp_path / "out", "--layout", "folders")
     for name in list(SAMPLES)[::20]:
         assert grader("grade", samples / name, "--format", "json").stdout.encode() == reports[name], name
 
 
-def _pack(folder: Path, place: Path) -> Path:
-    with zipfile.ZipFile(place, "w") as archive:
+def _pack(folder: Path, target: Path) -> Path:
+    with zipfile.ZipFile(target, "w") as archive:
         for path in sorted(folder.rglob("*")):
             archive.write(path, path.relative_to(folder))
-    return place
+    return target
 
 
 @pytest.mark.parametrize("layout", ["canvas", "moodle", "folders"])
@@ -145,7 +145,7 @@ def test_several_files_are_graded_like_a_folder(tmp_path: Path) -> None:
                 together.mkdir(parents=True)
                 for path, name in zip(paths, names, strict=True):
                     shutil.copy(folder / path, together / name)
-                _, alone = report_here(together, tmp_path / "alone.json")
+                _, alone = report_in_process(together, tmp_path / "alone.json")
                 assert alone == reports[standing.student.key]
                 several += 1
     assert several > 3
@@ -355,8 +355,8 @@ def test_nothing_of_a_class_is_imported(tmp_path: Path) -> None:
 
 def test_awkward_names_are_found_in_the_roster(tmp_path: Path) -> None:
     """A folder whose name contains a bidirectional mark, a line break or a tab belongs to the student of exactly that name."""
-    strangers, absent = class_with_roster(tmp_path / "class", tmp_path / "roster.csv", 300)
+    unmatched, absent = class_with_roster(tmp_path / "class", tmp_path / "roster.csv", 300)
     done = grader("batch", tmp_path / "class", "--gradebook", tmp_path / "lab6.db", "--roster", tmp_path / "roster.csv")
     assert done.returncode == 0
-    assert [key for (key,) in rows(tmp_path / "lab6.db", "SELECT key FROM grade WHERE is_on_roster = 0")] == strangers
+    assert [key for (key,) in rows(tmp_path / "lab6.db", "SELECT key FROM grade WHERE is_on_roster = 0")] == unmatched
     assert rows(tmp_path / "lab6.db", "SELECT count(*) FROM grade WHERE verdict = 'missing'") == [(absent,)]

@@ -62,7 +62,7 @@ def test_each_misbehaviour_affects_one_submission(tmp_path: Path) -> None:
     marks = rows(book, "SELECT DISTINCT score FROM grade WHERE verdict = 'graded'")
     assert marks == [(30_000,)]
 
-    for name in REASONS:  # as their students hand in something else
+    for name in REASONS:  # as their students submit something else
         (folder / f"{name}.urdf").write_text('<robot name="fine"><link name="a"/></robot>')
     (folder / "dies.urdf").write_text('<robot name="dies"><link name="a"/></robot>')
     assert counted(grader(*command, **WITH_HOSTILE)) == (f"{len(REASONS)} graded (1 errored), {len(GOOD)} unchanged")
@@ -99,7 +99,9 @@ def test_no_process_outlives_a_killed_command(number: signal.Signals, code: int,
     command = ("batch", folder, "--gradebook", book, *RUBRIC, "--timeout", "3600", "--jobs", "4")
     with started(*command, **WITH_HOSTILE) as process:
         assert eventually(lambda: "fine" in verdicts(book))
-        assert eventually(lambda: len(session_of(process)) >= 1 + 2 + 4)  # beside the workers two that serve them
+        assert eventually(
+            lambda: len(session_of(process)) >= 1 + 2 + 4
+        )  # two service processes in addition to the workers
         if number is signal.SIGINT:
             os.killpg(process.pid, number)  # as a terminal does
         else:

@@ -65,7 +65,7 @@ def _pictures(top: Path) -> Path:
 
 
 @pytest.mark.parametrize(
-    ("make", "said"),
+    ("make", "output"),
     [
         (_missing, "does not exist"),
         (_empty, "is empty"),
@@ -76,40 +76,40 @@ def _pictures(top: Path) -> Path:
         (_pictures, "there is no submission in"),
     ],
 )
-def test_no_class(make: Callable[[Path], Path], said: str, tmp_path: Path) -> None:
+def test_no_class(make: Callable[[Path], Path], output: str, tmp_path: Path) -> None:
     """No gradebook is made for a path that is no class."""
-    assert said in refused("batch", make(tmp_path), "--gradebook", tmp_path / "lab6.db")
+    assert output in refused("batch", make(tmp_path), "--gradebook", tmp_path / "lab6.db")
     assert not (tmp_path / "lab6.db").exists()
 
 
-def _folder(place: Path) -> None:
-    place.mkdir()
+def _folder(path: Path) -> None:
+    path.mkdir()
 
 
-def _text(place: Path) -> None:
-    place.write_text("id,score\nann,70\n" * 1_000)
+def _text(path: Path) -> None:
+    path.write_text("id,score\nann,70\n" * 1_000)
 
 
-def _short_text(place: Path) -> None:
-    place.write_text("notes")
+def _short_text(path: Path) -> None:
+    path.write_text("notes")
 
 
-def _other_program(place: Path) -> None:
-    with sqlite3.connect(place) as other:
+def _other_program(path: Path) -> None:
+    with sqlite3.connect(path) as other:
         other.execute("CREATE TABLE notes (text)")
         other.execute("INSERT INTO notes VALUES ('precious')")
     other.close()
 
 
-def _newer(place: Path) -> None:
-    assert grader("batch", ROOT / "submissions", "--layout", "folders", "--gradebook", place).returncode == 0
-    with sqlite3.connect(place) as book:
+def _newer(path: Path) -> None:
+    assert grader("batch", ROOT / "submissions", "--layout", "folders", "--gradebook", path).returncode == 0
+    with sqlite3.connect(path) as book:
         book.execute(f"PRAGMA user_version = {len(STEPS) + 1}")
     book.close()
 
 
 @pytest.mark.parametrize(
-    ("make", "said"),
+    ("make", "output"),
     [
         (_folder, "unable to open database file"),
         (_text, "file is not a database"),
@@ -118,30 +118,30 @@ def _newer(place: Path) -> None:
         (_newer, "was made by a newer grader: install that version, or name another file"),
     ],
 )
-def test_no_gradebook(make: Callable[[Path], None], said: str, folder: Path, tmp_path: Path) -> None:
+def test_no_gradebook(make: Callable[[Path], None], output: str, folder: Path, tmp_path: Path) -> None:
     """A file that is no gradebook is unchanged, to the last byte."""
-    place = tmp_path / "lab6.db"
-    make(place)
-    before = place.read_bytes() if place.is_file() else b""
-    line = refused("batch", folder, "--gradebook", place)
-    assert said in line
-    assert str(place) in line
-    assert (place.read_bytes() if place.is_file() else b"") == before
+    path = tmp_path / "lab6.db"
+    make(path)
+    before = path.read_bytes() if path.is_file() else b""
+    line = refused("batch", folder, "--gradebook", path)
+    assert output in line
+    assert str(path) in line
+    assert (path.read_bytes() if path.is_file() else b"") == before
 
 
 def test_a_gradebook_in_a_missing_folder(folder: Path, tmp_path: Path) -> None:
     """The message names the gradebook."""
-    place = tmp_path / "missing" / "lab6.db"
-    assert refused("batch", folder, "--gradebook", place).startswith(f"cannot create the gradebook {place}: ")
+    path = tmp_path / "missing" / "lab6.db"
+    assert refused("batch", folder, "--gradebook", path).startswith(f"cannot create the gradebook {path}: ")
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="nothing is closed to root")
 def test_a_read_only_gradebook(folder: Path, tmp_path: Path) -> None:
     """A file or a folder without write permission is reported."""
-    place = tmp_path / "lab6.db"
-    assert grader("batch", folder, "--gradebook", place).returncode == 0
-    place.chmod(0o400)
-    assert "readonly" in refused("batch", folder, "--gradebook", place, "--force")
+    path = tmp_path / "lab6.db"
+    assert grader("batch", folder, "--gradebook", path).returncode == 0
+    path.chmod(0o400)
+    assert "readonly" in refused("batch", folder, "--gradebook", path, "--force")
 
 
 def test_a_gradebook_on_a_device(folder: Path) -> None:

@@ -99,9 +99,9 @@ def test_interrupted(folder: Path, undisturbed: tuple[dict[str, bytes], float], 
     with started(*_command(folder, out)) as process:
         assert eventually(lambda: len(verdicts(book)) > 20)
         os.killpg(process.pid, signal.SIGINT)
-        _, said = process.communicate(timeout=PATIENCE)
+        _, output = process.communicate(timeout=PATIENCE)
         assert process.returncode == 130
-    first, stopped, last = said.splitlines()
+    first, stopped, last = output.splitlines()
     assert first == f"grader: {SIZE} submissions, layout folders"
     assert last == "grader: interrupted"
     count = int(stopped.removeprefix("grader: stopped: ").partition(" ")[0])
@@ -122,12 +122,12 @@ def test_interrupted_at_the_start(folder: Path, moment: float, tmp_path: Path) -
     out = tmp_path / "out"
     with started(*_command(folder, out)) as process:
         assert process.stderr is not None
-        process.stderr.readline()  # the class is taken in
+        process.stderr.readline()  # the class has been read
         time.sleep(moment)
         os.killpg(process.pid, signal.SIGINT)
-        _, said = process.communicate(timeout=PATIENCE)
-        assert (shell_code(process.returncode), said.splitlines()[-1]) == (130, "grader: interrupted")
-        assert all(line.startswith("grader: ") for line in said.splitlines())
+        _, output = process.communicate(timeout=PATIENCE)
+        assert (shell_code(process.returncode), output.splitlines()[-1]) == (130, "grader: interrupted")
+        assert all(line.startswith("grader: ") for line in output.splitlines())
         assert eventually(lambda: not session_of(process))
 
 

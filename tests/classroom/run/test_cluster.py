@@ -61,14 +61,14 @@ def service(log: Path, *arguments: str) -> Iterator[subprocess.Popen[bytes]]:
 class DaskCluster:
     """A scheduler and its workers."""
 
-    def __init__(self, place: Path) -> None:
-        self._place = place
+    def __init__(self, target: Path) -> None:
+        self._folder = target
         self.process = 0
 
     @property
     def file(self) -> Path:
         """Return the scheduler file."""
-        return self._place / "scheduler.json"
+        return self._folder / "scheduler.json"
 
     @property
     def address(self) -> str:
@@ -78,7 +78,7 @@ class DaskCluster:
     @property
     def log(self) -> str:
         """Return the output of the workers."""
-        return (self._place / "worker.log").read_text()
+        return (self._folder / "worker.log").read_text()
 
     def workers(self) -> list[int]:
         """Return the process ids of the workers that run tasks."""
@@ -91,18 +91,18 @@ class DaskCluster:
     def with_workers(self, count: int, threads: int = 1) -> Iterator["DaskCluster"]:
         """Start workers, each with a nanny that restarts it."""
         shape = ("--nworkers", str(count), "--nthreads", str(threads), "--host", "127.0.0.1")
-        place = ("--scheduler-file", str(self.file), "--local-directory", str(self._place))
-        with service(self._place / "worker.log", "worker", *place, *shape, "--no-dashboard"):
+        target = ("--scheduler-file", str(self.file), "--local-directory", str(self._folder))
+        with service(self._folder / "worker.log", "worker", *target, *shape, "--no-dashboard"):
             assert eventually(lambda: self.log.count("Registered to:") >= count), self.log
             yield self
 
 
 @contextmanager
-def scheduler(place: Path) -> Iterator[DaskCluster]:
+def scheduler(target: Path) -> Iterator[DaskCluster]:
     """Yield a scheduler without workers."""
-    cluster = DaskCluster(place)
+    cluster = DaskCluster(target)
     arguments = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(cluster.file))
-    with service(place / "scheduler.log", "scheduler", *arguments) as process:
+    with service(target / "scheduler.log", "scheduler", *arguments) as process:
         cluster.process = process.pid
         assert eventually(lambda: cluster.file.exists() and cluster.file.read_text().endswith("}"))
         yield cluster
@@ -189,8 +189,8 @@ def test_a_killed_worker(cluster: DaskCluster, tmp_path: Path) -> None:
         for count, victim in zip((50, 250), victims, strict=True):
             assert eventually(lambda at=count: len(verdicts(book)) > at)  # type: ignore[misc]
             os.kill(victim, signal.SIGKILL)
-        _, said = process.communicate(timeout=PATIENCE)
-        assert process.returncode == 0, said
+        _, output = process.communicate(timeout=PATIENCE)
+        assert process.returncode == 0, output
     assert verdicts(book) == dict.fromkeys((path.stem for path in folder.iterdir()), "graded")
     assert (duplicates(book), is_sound(book)) == ([], True)
     assert eventually(lambda: len(cluster.workers()) == 2)
@@ -203,9 +203,9 @@ def test_ctrl_c_leaves_the_cluster_alone(cluster: DaskCluster, tmp_path: Path) -
     with started(*command) as process:
         assert eventually(lambda: len(verdicts(book)) > 20)
         os.killpg(process.pid, signal.SIGINT)
-        _, said = process.communicate(timeout=PATIENCE)
+        _, output = process.communicate(timeout=PATIENCE)
         assert process.returncode == 130
-    first, stopped, last = said.splitlines()
+    first, stopped, last = output.splitlines()
     assert (first, last) == ("grader: 600 submissions, layout folders", "grader: interrupted")
     assert stopped.startswith("grader: stopped: ")
     kept = len(verdicts(book))
@@ -221,9 +221,9 @@ def test_a_lost_scheduler(tmp_path: Path) -> None:
         with started("batch", folder, "--gradebook", book, "--cluster", address) as process:
             assert eventually(lambda: len(verdicts(book)) > 20)
             os.kill(found.process, signal.SIGKILL)
-            _, said = process.communicate(timeout=PATIENCE)
-            assert process.returncode == 2, said
-    *_, stopped, last = said.splitlines()
+            _, output = process.communicate(timeout=PATIENCE)
+            assert process.returncode == 2, output
+    *_, stopped, last = output.splitlines()
     assert stopped.startswith("grader: stopped: ")
     assert last == f"grader: lost the connection to the Dask scheduler at {address}"
     assert set(verdicts(book).values()) == {"graded"}
@@ -267,7 +267,7 @@ _WITHOUT = "import sys\nsys.modules['grader'] = None\n"
 
 
 @pytest.mark.parametrize(
-    ("start", "said"),
+    ("start", "output"),
     [
         (_BLIND, r"does not see {folder}: share that folder with it"),
         (_OTHER, "has grader 0.0.1, and this is "),
@@ -275,7 +275,7 @@ _WITHOUT = "import sys\nsys.modules['grader'] = None\n"
     ],
 )
 def test_a_worker_that_cannot_grade_this_class(
-    start: str, said: str, idle_scheduler: DaskCluster, tmp_path: Path
+    start: str, output: str, idle_scheduler: DaskCluster, tmp_path: Path
 ) -> None:
     """A worker that does not see the folder, or has another grader or none, is detected before anything is graded."""
     folder = urdf_class(tmp_path / "class", 2)
@@ -286,7 +286,7 @@ def test_a_worker_that_cannot_grade_this_class(
         assert eventually(lambda: "Registered to:" in log.read_text())
         line = refused("batch", folder, "--gradebook", tmp_path / "lab6.db", "--cluster", idle_scheduler.address)
     assert eventually(lambda: not idle_scheduler.workers())
-    assert said.format(folder=folder) in line
+    assert output.format(folder=folder) in line
     assert rows(tmp_path / "lab6.db", "SELECT * FROM run") == []
 
 

@@ -1,4 +1,4 @@
-"""The same students under other keys: rosters that come later, are corrected or left out; and students who are gone."""
+"""The same students under other keys: rosters that come later, are corrected or omitted; and removed students."""
 
 import json
 import shutil

@@ -65,7 +65,7 @@ def test_errors_are_raised(pool: Processes) -> None:
 
 
 def _stop() -> None:
-    while True:  # a shell that ends may have the processes go on that it has started
+    while True:  # a shell that ends may leave its processes running
         signal.raise_signal(signal.SIGSTOP)
 
 

@@ -11,7 +11,7 @@ import pytest
 
 from grader.classroom.gradebook.result import GradingResult
 from grader.classroom.run.worker import ClassContext, Task, grade_all
-from tests.classroom.class_runs import report_here
+from tests.classroom.class_runs import report_in_process
 from tests.samples import LAB6, ROOT
 
 URDF = (ROOT / "submissions/lidar-buried/my_robot.urdf").read_bytes()
@@ -58,9 +58,9 @@ def graded(top: Path, *paths: str) -> GradingResult:
 def test_the_folder_around_it_does_not_matter(kind: str, wrapped: str, tmp_path: Path) -> None:
     """A file that cannot be read alone cannot be read in a folder; the reason names it."""
     name, data, reason = UNREADABLE[kind]
-    place = tmp_path / "class" / wrapped / name
-    place.parent.mkdir(parents=True)
-    place.write_bytes(data)
+    folder = tmp_path / "class" / wrapped / name
+    folder.parent.mkdir(parents=True)
+    folder.write_bytes(data)
     top = tmp_path / "class"
     result = graded(top, wrapped.partition("/")[0] or name)
     assert (result.verdict, reason in result.reason) == ("unreadable", True), result.reason
@@ -74,14 +74,14 @@ def test_a_folder_has_the_same_report(tmp_path: Path) -> None:
     (urdf,) = (tmp_path / "ann").rglob("*.urdf")
     urdf.write_bytes(LARGE)
     result = graded(tmp_path, "ann")
-    _, alone = report_here(tmp_path / "ann", tmp_path / "alone.json")
-    told = json.loads(alone)
+    _, alone = report_in_process(tmp_path / "ann", tmp_path / "alone.json")
+    reported = json.loads(alone)
     assert (result.verdict, result.reason.partition(" is ")[0]) == (
         "unreadable",
         str(urdf.relative_to(tmp_path / "ann")),
     )
     assert result.score > 0
-    assert result.score == told["score"] * 10_000
+    assert result.score == reported["score"] * 10_000
     assert b"(--max-size raises it)" in zlib.decompress(result.record)
     assert (
         grade_all(
@@ -105,9 +105,9 @@ def test_a_folder_has_the_same_report(tmp_path: Path) -> None:
 def test_readable_files_are_graded(files: dict[str, bytes], tmp_path: Path) -> None:
     """Files beside a damaged archive are graded, and so is an empty folder."""
     for name, data in files.items():
-        place = tmp_path / "ann" / name
-        place.parent.mkdir(parents=True, exist_ok=True)
-        place.write_bytes(data)
+        folder = tmp_path / "ann" / name
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        folder.write_bytes(data)
     assert (graded(tmp_path, "ann").verdict, graded(tmp_path, "ann").reason) == ("graded", "")
 
 
