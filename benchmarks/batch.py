@@ -33,7 +33,7 @@ _TIMEOUT = 60.0  # seconds for one submission
 _WARMING = 50  # submissions that each worker grades before the clock starts
 _REPEATED = 10_000  # submissions of the largest class that is graded more than once
 _SAMPLED = 0.05  # seconds between two measurements of the memory
-_PATIENCE = 60.0  # seconds in which all workers must start
+_MAX_START = 60.0  # seconds in which all workers must start
 
 
 class Bench(NamedTuple):
@@ -185,7 +185,7 @@ def workers(bench: Bench, jobs: int) -> Iterator[Executor]:
     common = ClassContext(str(folder), rubric.data, str(rubric.path))
     tasks = [Task(name, (name,)) for name in names_in(folder)]
     warm: set[int] = set()
-    end = time.monotonic() + _PATIENCE
+    end = time.monotonic() + _MAX_START
     try:
         while len(warm) < jobs and time.monotonic() < end:
             warm |= {future.result() for future in [executor.submit(warmed, common, tasks) for _ in range(2 * jobs)]}

@@ -15,7 +15,7 @@ from unittest.mock import patch
 from grader.__main__ import main
 
 ROOT = Path(__file__).parent.parent
-PATIENCE = 300.0  # seconds after which a command counts as hanging, even on a busy machine
+HANG_TIMEOUT = 300.0  # seconds after which a command counts as hanging, even on a busy machine
 
 GRADER = (sys.executable, "-W", "error", "-m", "grader")
 Done = subprocess.CompletedProcess[bytes]
@@ -63,7 +63,7 @@ def run_process(
         input=stdin,
         capture_output=True,
         check=False,
-        timeout=PATIENCE,
+        timeout=HANG_TIMEOUT,
     )
 
 

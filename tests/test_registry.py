@@ -19,10 +19,10 @@ from grader.errors import RubricError
 from grader.grading.rubric import load_rubric
 from grader.report.rubrics import checks_text, explanation
 from grader.robot.kinematics import Configuration
-from tests.checks.asking import AnyCheck, ask
 from tests.checks.cases import CASE, CASES
+from tests.checks.outcomes import AnyCheck, ask
 from tests.checks.package_cases import PACKAGE_CASE, PACKAGE_CASES, PENDING_CASE, PENDING_CASES
-from tests.checks.submitted import REFERENCE
+from tests.checks.submissions import REFERENCE
 
 NAMES = [function.__name__ for function in CHECKS]
 SHARED = {"__init__", "outcome", "registry", "toml_types", "visuals"}

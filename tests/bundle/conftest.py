@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.bundle.platform import Autograder, environment_for, unpacked
+from tests.bundle.gradescope import Autograder, environment_for, unpacked
 from tests.classroom.gradebooks import grader
 
 

@@ -25,7 +25,7 @@ from grader.grading.grade import grade
 from grader.grading.rubric import load_rubric, shipped_rubrics
 from grader.robot.kinematics import Configuration
 from grader.usecases import bundle as command
-from tests.bundle.platform import Autograder, environment_for, unpacked
+from tests.bundle.gradescope import Autograder, environment_for, unpacked
 from tests.classroom.gradebooks import grader, lab_text, refusal, write_submission
 from tests.samples import LAB6, ROOT, opened
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.bundle.platform import FALLBACK, Autograder
+from tests.bundle.gradescope import FALLBACK, Autograder
 from tests.classroom.class_runs import eventually
 
 Making = Callable[..., Autograder]

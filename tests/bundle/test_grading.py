@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.bundle.platform import Autograder
+from tests.bundle.gradescope import Autograder
 from tests.classroom.gradebooks import PNG, grader
 from tests.samples import ROOT
 

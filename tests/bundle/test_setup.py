@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.bundle.platform import Autograder, unpacked
-from tests.command_line import PATIENCE
+from tests.bundle.gradescope import Autograder, unpacked
+from tests.command_line import HANG_TIMEOUT
 from tests.wheels import offline
 
 WORD = """
@@ -31,7 +31,7 @@ def set_up(source: Path, start: Path, **variables: str) -> subprocess.CompletedP
         stderr=subprocess.STDOUT,
         text=True,
         check=False,
-        timeout=PATIENCE,
+        timeout=HANG_TIMEOUT,
     )
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from grader.checks import appearance, contact, motion, placement, tree
 from grader.checks.outcome import Status
-from tests.checks.asking import AnyCheck
+from tests.checks.outcomes import AnyCheck
 from tests.checks.robots import Numbers, Scene, box, cylinder, joint, link, paint, scene, sphere, turned, visual
 
 BASE = link("base", visual(box(0.6, 0.4, 0.2), xyz=(0.0, 0.0, 0.1), material=paint("0 0.6 0 1", "green")))

@@ -8,8 +8,8 @@ from grader.checks.launch import launch_finds_files, launch_found, launch_starts
 from grader.checks.manual import answered, evidence_shown
 from grader.checks.package import build_installs, installs_files, package_found, package_type, setup_imports
 from grader.checks.rviz import rviz_display_on, rviz_fixed_frame, rviz_found, rviz_shows_robot
-from tests.checks.asking import AnyCheck
-from tests.checks.submitted import ANSWERS, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, Submitted
+from tests.checks.outcomes import AnyCheck
+from tests.checks.submissions import ANSWERS, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, Submitted
 
 _NAME = "my_robot_rviz.launch.py"
 _RVIZ = {"name": "my_robot.rviz", "launch": _NAME}

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from grader.checks.appearance import shows_box, shows_colour, shows_cylinder, shows_grey, shows_nothing, shows_sphere
 from grader.robot.transforms import Vector
-from tests.checks.asking import AnyCheck, Arguments, ask, fails, graded, missing, passes
 from tests.checks.cases import BASE, CASE, LIDAR, Case, cases_of
+from tests.checks.outcomes import AnyCheck, Arguments, ask, fails, graded, missing, passes
 from tests.checks.robots import Numbers, Scene, box, cylinder, link, mesh, paint, scene, sphere, turned, visual
 
 SIZE = (0.6, 0.4, 0.2)

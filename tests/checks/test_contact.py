@@ -5,8 +5,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grader.checks.contact import clear_of, stands_on
-from tests.checks.asking import Arguments, ask, fails, graded, passes
 from tests.checks.cases import BASE, FORWARD, LIDAR, Case, cases_of, mounted, rolling
+from tests.checks.outcomes import Arguments, ask, fails, graded, passes
 from tests.checks.robots import box, cylinder, joint, link, scene, sphere, turned, visual
 
 ON: Arguments = {"link": "lidar", "on": "base", "tolerance": 0.002}

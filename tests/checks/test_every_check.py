@@ -3,8 +3,8 @@
 import pytest
 
 from grader.checks.registry import describe
-from tests.checks.asking import ask, graded, missing
 from tests.checks.cases import CASES, Case
+from tests.checks.outcomes import ask, graded, missing
 from tests.checks.robots import Scene, box, joint, mesh
 
 # The arguments that name links, and the checks of the relation of two links.

@@ -3,9 +3,9 @@
 import pytest
 
 from grader.checks.registry import describe
-from tests.checks.asking import ask, graded, missing
+from tests.checks.outcomes import ask, graded, missing
 from tests.checks.package_cases import PACKAGE_CASES, PENDING_CASES, PackageCase, PendingCase
-from tests.checks.submitted import FOLDER, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, URDF, Submitted, png
+from tests.checks.submissions import FOLDER, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, URDF, Submitted, png
 
 every_case = pytest.mark.parametrize("case", PACKAGE_CASES, ids=[case.name for case in PACKAGE_CASES])
 every_pending_case = pytest.mark.parametrize("case", PENDING_CASES, ids=[case.name for case in PENDING_CASES])

@@ -3,8 +3,8 @@
 import pytest
 
 from grader.checks.launch import launch_finds_files, launch_found, launch_starts
-from tests.checks.asking import finds, lacks
-from tests.checks.submitted import FOLDER, LAUNCH, REFERENCE, RVIZ, SETUP, URDF, Submitted, start_of
+from tests.checks.outcomes import finds, lacks
+from tests.checks.submissions import FOLDER, LAUNCH, REFERENCE, RVIZ, SETUP, URDF, Submitted, start_of
 
 NAME = "my_robot_rviz.launch.py"
 STATES = "joint_state_publisher or joint_state_publisher_gui"

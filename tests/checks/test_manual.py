@@ -13,8 +13,8 @@ from grader.checks.manual import answered, evidence_shown
 from grader.checks.outcome import Outcome
 from grader.documents.collection import MAX_LINES
 from grader.source import Location
-from tests.checks.asking import ask
-from tests.checks.submitted import ANSWERS, REFERENCE, URDF, Submitted, gif, jpeg, png
+from tests.checks.outcomes import ask
+from tests.checks.submissions import ANSWERS, REFERENCE, URDF, Submitted, gif, jpeg, png
 from tests.samples import ROOT
 
 PLACES = ["task 1 step 15", "step 15"]

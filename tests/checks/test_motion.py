@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grader.checks.motion import axis_along, rolls_forward, turns_about_itself
-from tests.checks.asking import Arguments, ask, fails, graded, missing, passes
 from tests.checks.cases import BASE, FORWARD, WHEEL, Case, cases_of, rolling
+from tests.checks.outcomes import Arguments, ask, fails, graded, missing, passes
 from tests.checks.robots import Scene, box, cylinder, joint, link, mesh, scene, sphere, turned, visual
 
 FORWARDS: Arguments = {"link": "wheel", "base": "base", "tolerance": 1.0}

@@ -4,8 +4,8 @@ import pytest
 
 from grader.checks.package import build_installs, installs_files, package_found, package_type, setup_imports
 from grader.source import Location
-from tests.checks.asking import finds, lacks
-from tests.checks.submitted import (
+from tests.checks.outcomes import finds, lacks
+from tests.checks.submissions import (
     FOLDER,
     LAUNCH,
     MANIFEST,

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from grader.checks.contact import clear_of, stands_on
 from grader.checks.placement import bottom_at_height, bottoms_at_height, centre_at, frame_at, under_the_base
 from grader.robot.kinematics import Configuration
-from tests.checks.asking import Arguments, ask, fails, graded, missing, passes
 from tests.checks.cases import BASE, CASTER, FOOT, FORWARD, LIDAR, WHEEL, Case, cases_of, mounted, rolling, standing
+from tests.checks.outcomes import Arguments, ask, fails, graded, missing, passes
 from tests.checks.robots import Scene, box, cylinder, joint, link, mesh, numbers, scene, sphere, turned, visual
 
 FRAME: Arguments = {"link": "lidar", "relative_to": "base", "xyz": (0.15, 0.0, 0.225), "tolerance": 0.002}

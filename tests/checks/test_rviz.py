@@ -4,8 +4,8 @@ import pytest
 
 from grader.checks.rviz import rviz_display_on, rviz_fixed_frame, rviz_found, rviz_shows_robot
 from grader.source import Location
-from tests.checks.asking import Finding, finds, lacks
-from tests.checks.submitted import LAUNCH, REFERENCE, RVIZ, SETUP, URDF, Submitted, png, start_of
+from tests.checks.outcomes import Finding, finds, lacks
+from tests.checks.submissions import LAUNCH, REFERENCE, RVIZ, SETUP, URDF, Submitted, png, start_of
 
 NAME = "my_robot.rviz"
 BY_LAUNCH = "my_robot_rviz.launch.py"

@@ -9,7 +9,7 @@ from unittest.mock import patch
 
 import pytest
 
-from tests.command_line import PATIENCE, ROOT
+from tests.command_line import HANG_TIMEOUT, ROOT
 from tests.wheels import offline
 
 PUBLISHED = ("pyproject.toml", "README.md", "LICENSE", "action.yml", ".pre-commit-hooks.yaml", "grader", "rubrics")
@@ -20,7 +20,7 @@ def git(folder: Path, *arguments: str) -> None:
     named = {f"GIT_{who}_{what}": "test@example.org" for who in ("AUTHOR", "COMMITTER") for what in ("NAME", "EMAIL")}
     done = subprocess.run(
         ["git", *arguments], cwd=folder, env={**os.environ, **named}, capture_output=True, text=True, check=False,
-        timeout=PATIENCE,
+        timeout=HANG_TIMEOUT,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
 

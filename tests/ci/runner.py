@@ -10,7 +10,7 @@ from typing import Any
 
 import yaml
 
-from tests.command_line import PATIENCE
+from tests.command_line import HANG_TIMEOUT
 
 Step = dict[str, Any]
 _EXPRESSION = re.compile(r"\$\{\{\s*(.+?)\s*\}\}")
@@ -79,7 +79,7 @@ class Runner:
             capture_output=True,
             text=True,
             check=False,
-            timeout=PATIENCE,
+            timeout=HANG_TIMEOUT,
         )
         self._take(step.get("id", ""), files)
         return Done(ran.returncode, ran.stdout, ran.stderr)

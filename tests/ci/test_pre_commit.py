@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from tests.ci.conftest import git, repository
-from tests.command_line import PATIENCE, ROOT
+from tests.command_line import HANG_TIMEOUT, ROOT
 
 
 def test_a_commit_with_a_mistake_is_rejected(tmp_path: Path, published: Path) -> None:
@@ -39,5 +39,5 @@ def _commit(work: Path, home: Path) -> subprocess.CompletedProcess[str]:
         capture_output=True,
         text=True,
         check=False,
-        timeout=PATIENCE,
+        timeout=HANG_TIMEOUT,
     )

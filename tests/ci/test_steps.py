@@ -13,7 +13,7 @@ import pytest
 
 from tests.ci.conftest import git, repository
 from tests.ci.runner import Done, Runner, composite, load
-from tests.command_line import PATIENCE, ROOT
+from tests.command_line import HANG_TIMEOUT, ROOT
 
 CHECKOUT = "actions/checkout@de0fac2e4500dabe0009e67214ff5f5447ce83dd"
 PYTHON = "actions/setup-python@a309ff8b426b58ec0e2a45f0f869d46889d02405"
@@ -274,7 +274,7 @@ def test_the_classroom50_autograder(tmp_path: Path, published: Path) -> None:
         env={**os.environ, **variables},
         capture_output=True,
         check=False,
-        timeout=PATIENCE,
+        timeout=HANG_TIMEOUT,
     )
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "victim").read_text() == "precious"

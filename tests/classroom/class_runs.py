@@ -15,7 +15,7 @@ from typing import Any
 
 from grader.cli.app import run as run_here
 from grader.usecases.class_reports import INDEX
-from tests.command_line import GRADER, PATIENCE, clean_environment, run, run_process
+from tests.command_line import GRADER, HANG_TIMEOUT, clean_environment, run, run_process
 from tests.samples import ROOT
 
 sys.path.insert(0, str(ROOT / "benchmarks"))  # a folder of scripts
@@ -86,7 +86,7 @@ def session_of(process: "subprocess.Popen[str]") -> list[int]:
 
 def eventually(condition: Callable[[], Any]) -> bool:
     """Return whether a condition comes true before the timeout."""
-    end = time.monotonic() + PATIENCE
+    end = time.monotonic() + HANG_TIMEOUT
     while not condition():
         if time.monotonic() > end:
             return False

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.command_line import PATIENCE, run_with_input
+from tests.command_line import HANG_TIMEOUT, run_with_input
 from tests.golden.cases import ROOT, run
 
 REFERENCE = ROOT / "submissions/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
@@ -194,7 +194,9 @@ def test_closed_standard_output(form: str) -> None:
     """One line on standard error and exit code 2, whether it was closed before or during the output."""
     command = f'"{sys.executable}" -m grader grade submissions/reference --format {form}'
     for redirected in (f"{command} >&-", f"({command}; echo $? >&2) | true", f"{command} > /dev/full"):
-        done = subprocess.run(["bash", "-c", redirected], cwd=ROOT, capture_output=True, check=False, timeout=PATIENCE)
+        done = subprocess.run(
+            ["bash", "-c", redirected], cwd=ROOT, capture_output=True, check=False, timeout=HANG_TIMEOUT
+        )
         assert b"standard output" in done.stderr or b"| true" in redirected.encode(), done.stderr
         assert b"Traceback" not in done.stderr
         if "|" not in redirected:

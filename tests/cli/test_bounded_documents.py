@@ -15,7 +15,7 @@ import pytest
 from grader.cli.app import run
 from grader.documents.converter import __file__ as converter
 from tests.classroom.class_runs import eventually, grader, rows, session_of, started
-from tests.command_line import PATIENCE
+from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
 
 REFERENCE = ROOT / "rubrics" / "lab6" / "my_robot"
@@ -61,7 +61,7 @@ def test_no_converter_outlives_the_grader(number: signal.Signals, code: int, tmp
     with started("grade", write_submission(tmp_path / "alice")) as process:
         _stop_converter(process)
         process.send_signal(number)  # to the grader alone
-        assert process.wait(PATIENCE) == code
+        assert process.wait(HANG_TIMEOUT) == code
         assert eventually(lambda: not session_of(process))
 
 
@@ -116,7 +116,9 @@ def test_a_converter_without_a_death_signal_watches_its_parent(tmp_path: Path) -
 def test_a_converter_without_a_parent_ends_at_once() -> None:
     """A parent that ends before the kernel is told about it leaves no converter."""
     other = os.getppid()  # not the parent of what is started here
-    done = subprocess.run([sys.executable, "-P", converter, "docx", "600", str(other)], timeout=PATIENCE, check=False)
+    done = subprocess.run(
+        [sys.executable, "-P", converter, "docx", "600", str(other)], timeout=HANG_TIMEOUT, check=False
+    )
     assert done.returncode == 1
 
 

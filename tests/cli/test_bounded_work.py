@@ -16,8 +16,8 @@ from typing import NamedTuple
 import pytest
 
 from tests.classroom.class_runs import counted, environment, grader, reasons, verdicts
-from tests.command_line import GRADER, PATIENCE
-from tests.patience import BUSY
+from tests.command_line import GRADER, HANG_TIMEOUT
+from tests.processor_time import BUSY
 from tests.samples import ROOT
 
 MIB = 1024 * 1024
@@ -60,7 +60,7 @@ def measured(*command: str | Path) -> Cost:
             env=environment(),
             capture_output=True,
             text=True,
-            timeout=PATIENCE,
+            timeout=HANG_TIMEOUT,
             check=True,
         )
         seconds, size, code = json.loads(figures.read_text())

@@ -12,7 +12,7 @@ from grader.cli.app import COMMANDS
 from grader.grading.rubric import shipped_rubrics
 from grader.report.formats import Format
 from grader.report.rubrics import EVERY_KIND
-from tests.command_line import PATIENCE
+from tests.command_line import HANG_TIMEOUT
 from tests.golden.cases import ROOT, run
 
 PARTS = ["task1", "task2", "task3", "questions"]
@@ -116,7 +116,7 @@ def test_closed_standard_output_is_no_error() -> None:
     requested = {**os.environ, "_GRADER_COMPLETE": "complete_bash", "COMP_WORDS": "grader g", "COMP_CWORD": "1"}
     for redirected in (">&-", "> /dev/full"):
         command = ["bash", "-c", f'"{sys.executable}" -m grader {redirected}']
-        done = subprocess.run(command, cwd=ROOT, env=requested, capture_output=True, check=False, timeout=PATIENCE)
+        done = subprocess.run(command, cwd=ROOT, env=requested, capture_output=True, check=False, timeout=HANG_TIMEOUT)
         assert (done.returncode, done.stderr) == (0, b"")
 
 
@@ -168,7 +168,7 @@ def sourced(tmp_path: Path, *lines: str) -> list[str]:
         env={**os.environ, "PATH": path, "HOME": str(tmp_path)},
         capture_output=True,
         check=False,
-        timeout=PATIENCE,
+        timeout=HANG_TIMEOUT,
     )
     assert done.stderr == b""
     return done.stdout.decode().splitlines()
@@ -210,7 +210,7 @@ def test_the_script_is_valid_for_its_shell(shell: str) -> None:
     assert b"grader" in script
     if shutil.which(shell) is None:
         pytest.skip(f"there is no {shell} here")
-    done = subprocess.run([shell, "-n"], input=script, capture_output=True, check=False, timeout=PATIENCE)
+    done = subprocess.run([shell, "-n"], input=script, capture_output=True, check=False, timeout=HANG_TIMEOUT)
     assert (done.returncode, done.stderr) == (0, b"")
 
 
@@ -260,5 +260,7 @@ def test_the_shell_is_detected(tmp_path: Path) -> None:
     for shell, words in (("bash", "_grader_completion() {"), ("sh", "grader --show-completion bash (or zsh or fish)")):
         program = tmp_path / shell
         program.symlink_to(shutil.which("bash") or "bash")
-        done = subprocess.run([program, "-c", command], cwd=ROOT, capture_output=True, check=False, timeout=PATIENCE)
+        done = subprocess.run(
+            [program, "-c", command], cwd=ROOT, capture_output=True, check=False, timeout=HANG_TIMEOUT
+        )
         assert words in (done.stdout + done.stderr).decode()

@@ -17,7 +17,7 @@ from grader.report.formats import Format, OutputFormat
 from grader.report.schemas import REPORT_SCHEMA
 from grader.usecases.class_summary import class_summary
 from tests.classroom.gradebooks import ENVIRONMENT, HOSTILE, batch, grader, lab_text, refusal, urdf, write_submission
-from tests.command_line import PATIENCE
+from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
 
 GRADE = ("score", "max_score", "pending")
@@ -224,7 +224,7 @@ def test_concurrent_marks(top: Path) -> None:
     ]
     done = batch(top, "--force")
     assert done.returncode == 0, done.stderr
-    assert [process.wait(PATIENCE) for process in started] == [0] * len(expected)
+    assert [process.wait(HANG_TIMEOUT) for process in started] == [0] * len(expected)
     assert len(marks(top)) == len(expected)
     assert student(top, "anna")["score"] == 2.5
     assert student(top, "emil")["score"] == 2

@@ -14,7 +14,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import NewerMarkError, QueuedCriterion, mark, pending_criterion
 from tests.classroom.gradebooks import ENVIRONMENT, grader
-from tests.command_line import PATIENCE
+from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
 
 HELP = "points and a comment, s to skip, q to stop (all marks are kept), ? for this help"
@@ -121,7 +121,7 @@ def test_without_standard_input(graded_class: Path) -> None:
     """It stops at the first question."""
     command = [sys.executable, "-m", "grader", "review", "--gradebook", str(graded_class / "book.db")]
     closed = ["sh", "-c", 'exec "$@" <&-', "sh", *command]
-    done = subprocess.run(closed, cwd=ROOT, env=ENVIRONMENT, capture_output=True, check=False, timeout=PATIENCE)
+    done = subprocess.run(closed, cwd=ROOT, env=ENVIRONMENT, capture_output=True, check=False, timeout=HANG_TIMEOUT)
     assert (done.returncode, done.stderr) == (0, b"")
     assert done.stdout.endswith(b"0 marked, 4 left\n")
 
@@ -137,7 +137,7 @@ def test_two_reviews_at_once(top: Path) -> None:
         while "in " not in (line := slow.stdout.readline()):  # the last line before the first question
             assert line
         review(top, "s\n4\n1\nq\n")
-        out, _ = slow.communicate("2\ns\n", timeout=PATIENCE)
+        out, _ = slow.communicate("2\ns\n", timeout=HANG_TIMEOUT)
     assert "Anna Ek (anna): About picture" not in out
     assert "Ben Oh (emil): About picture" in out
     assert out.endswith("1 marked, 1 left\n")
@@ -210,7 +210,7 @@ def test_ctrl_c_keeps_earlier_marks(top: Path) -> None:
         while text.count(b"points, 0 to 4") < 2:
             text += os.read(process.stdout.fileno(), 4096)
         process.send_signal(2)
-        assert process.wait(PATIENCE) == 130
+        assert process.wait(HANG_TIMEOUT) == 130
     os.close(own)
     os.close(theirs)
     assert marks(top) == [("anna", "essay", 3.0, "good")]

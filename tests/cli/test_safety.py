@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.command_line import PATIENCE
+from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
 
 REFERENCE = ROOT / "submissions" / "reference"
@@ -56,7 +56,7 @@ def test_nothing_of_a_submission_is_imported_or_run(trapped: Path, start: str, c
         env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
         capture_output=True,
         check=False,
-        timeout=PATIENCE,
+        timeout=HANG_TIMEOUT,
     )
     assert done.returncode == 1  # what setup.py does in the end cannot be determined statically
     assert done.stderr.startswith(b"grader: exit code 1: could not be decided, and needs manual grading: ")
@@ -77,7 +77,7 @@ def test_nothing_is_written(trapped: Path) -> None:
             env={**os.environ, "TMPDIR": str(temporary)},
             capture_output=True,
             check=False,
-            timeout=PATIENCE,
+            timeout=HANG_TIMEOUT,
         )
     assert sorted(trapped.rglob("*")) == before
     assert list(temporary.iterdir()) == []

@@ -17,7 +17,7 @@ import pytest
 from grader.errors import InputError
 from grader.files.folder import is_looked_at, read_folder
 from grader.usecases.file_events import Watched, _filter, _target, changes
-from tests.command_line import PATIENCE
+from tests.command_line import HANG_TIMEOUT
 from tests.golden.cases import ROOT, run
 
 watchfiles = pytest.importorskip("watchfiles")
@@ -53,7 +53,7 @@ class PipeReader:
     def until(self, words: str) -> str:
         """Return everything up to these words, which must come."""
         with self._news:
-            self._news.wait_for(lambda: self._is_over or words in self._text[self._read :], PATIENCE)
+            self._news.wait_for(lambda: self._is_over or words in self._text[self._read :], HANG_TIMEOUT)
             found = self._text.find(words, self._read)
             assert found >= 0, f"{words!r} is not in {self._text[self._read :]!r}"
             start, self._read = self._read, found + len(words)
@@ -62,7 +62,7 @@ class PipeReader:
     def rest(self) -> str:
         """Return everything up to the end."""
         with self._news:
-            assert self._news.wait_for(lambda: self._is_over, PATIENCE)
+            assert self._news.wait_for(lambda: self._is_over, HANG_TIMEOUT)
             return self._text[self._read :]
 
 
@@ -91,14 +91,14 @@ class Watch:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.process.kill()
-        self.process.wait(PATIENCE)
+        self.process.wait(HANG_TIMEOUT)
         for reader in filter(None, (self._out, self.err)):
-            reader.thread.join(PATIENCE)
+            reader.thread.join(HANG_TIMEOUT)
 
     def interrupt(self) -> int:
         """Press Ctrl-C and return the exit code."""
         self.process.send_signal(signal.SIGINT)
-        return self.process.wait(PATIENCE)
+        return self.process.wait(HANG_TIMEOUT)
 
 
 @pytest.fixture
@@ -248,7 +248,7 @@ def test_closed_standard_output(robot: Path) -> None:
             text += os.read(rendered, 65536)
         os.close(rendered)
         put(URDF, robot)
-        assert watch.process.wait(PATIENCE) == 2
+        assert watch.process.wait(HANG_TIMEOUT) == 2
         assert watch.err.rest() == "grader: cannot write the report: standard output: Broken pipe\n"
 
 
@@ -283,7 +283,7 @@ def test_without_the_extra(robot: Path) -> None:
     """The message says which command to type."""
     code = "import sys; sys.modules['watchfiles'] = None; from grader.__main__ import main; main()"
     command = [sys.executable, "-P", "-c", code, "grade", "--watch", str(robot)]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, check=False, timeout=PATIENCE)
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, check=False, timeout=HANG_TIMEOUT)
     assert (done.returncode, done.stdout) == (2, b"")
     assert done.stderr == b"grader: --watch needs watchfiles: pip install 'urdf-grader[watch]'\n"
 

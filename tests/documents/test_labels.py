@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.documents.labels import matches, read_label
-from tests.patience import processor_time
+from tests.processor_time import processor_time
 
 
 @pytest.mark.parametrize(

@@ -37,7 +37,7 @@ from tests.files.archives import (
     set_flags,
     twice,
 )
-from tests.patience import processor_time
+from tests.processor_time import processor_time
 
 URDF = "my_robot/urdf/my_robot.urdf"
 EVERY = list(MAKERS)

@@ -10,7 +10,7 @@ from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.grading.rubric import load_rubric
 from grader.submission.submission import read_submission
-from tests.checks.submitted import ANSWERS, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, URDF, WEBCAM, Submitted, png
+from tests.checks.submissions import ANSWERS, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, URDF, WEBCAM, Submitted, png
 
 LAB = load_rubric("lab6")
 PENDING = ("evidence-webcam", "answer-floating-link", "answer-launch-nodes")

@@ -20,7 +20,7 @@ from grader.static_python.functions import standard_functions
 from grader.static_python.interpreter import Interpreter
 from grader.static_python.parse import Code, parse
 from grader.static_python.values import Unknown, Value
-from tests.patience import processor_time
+from tests.processor_time import processor_time
 
 _NAMES = st.sampled_from(["a", "b", "c", "ab", ".h", ".a", "[a]", "a*", "a.urdf", "b.urdf", "A", "a b"])
 _PATHS = st.lists(_NAMES, min_size=1, max_size=4).map("/".join)

@@ -5,8 +5,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grader.package.launch.model import Launch
-from tests.package.launching import FOLDER, INNER, SAMPLES, LaunchSummary, read, summarize, summarize_sample
-from tests.patience import processor_time
+from tests.package.launch_samples import FOLDER, INNER, SAMPLES, LaunchSummary, read, summarize, summarize_sample
+from tests.processor_time import processor_time
 
 NO_FILE = (
     "wrong: rviz2 is started without -d and a file, so it opens its own default instead of the lab's configuration"

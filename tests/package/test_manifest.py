@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grader.package.manifest import Manifest, read_manifest
-from tests.patience import processor_time
+from tests.processor_time import processor_time
 
 # As ros2 pkg create writes it, filled in.
 COMPLETE = """\

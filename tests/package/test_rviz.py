@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from grader.package.rviz import RvizFile, read_rviz, switched_on
 from grader.package.yaml_nodes import Node, read_yaml
-from tests.patience import processor_time
+from tests.processor_time import processor_time
 
 # As RViz of ROS 2 Jazzy saves it, without irrelevant parts.
 SAVED = """\

@@ -12,7 +12,7 @@ from grader.files.folder import read_folder
 from grader.files.ignore_rules import ignored_part
 from grader.package.setup_py import Setup, read_setup
 from grader.static_python.parse import parse
-from tests.command_line import PATIENCE
+from tests.command_line import HANG_TIMEOUT
 from tests.package.my_robot import SAMPLES, make_package
 
 # The samples with unknown values, and the reason; no other sample may have any.
@@ -64,7 +64,7 @@ def run(sample: str, folder: Path) -> BuildRun:
         capture_output=True,
         text=True,
         check=False,
-        timeout=PATIENCE,
+        timeout=HANG_TIMEOUT,
     )
     installed = {
         os.path.relpath(path, root / "prefix")

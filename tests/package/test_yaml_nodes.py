@@ -10,7 +10,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from grader.package.yaml_nodes import Node, YamlFault, read_yaml
-from tests.patience import processor_time
+from tests.processor_time import processor_time
 
 TEXTS = st.text(st.characters(blacklist_categories=["Cs"]), max_size=12) | st.sampled_from(
     [

@@ -23,7 +23,7 @@ from grader.report.locations import Base
 from grader.submission.submission import read_submission
 from tests.report.hostile import BREAKING, PIECES, SLOTS, TEXT, UNASKED, name_of, write_submission
 from tests.report.readers import reader
-from tests.report.recast import recast
+from tests.report.rewording import recast
 from tests.report.workflow_commands import commands
 from tests.robot.edge_cases import EDGE_CASES
 from tests.samples import LAB6, SAMPLES, opened

@@ -19,7 +19,7 @@ from grader.robot.catalogue import UNDEFINED_MATERIAL
 from grader.source import Location
 from grader.submission.submission import read_submission
 from tests.report.readers import read_sarif
-from tests.report.recast import recast
+from tests.report.rewording import recast
 from tests.samples import LAB6, ROOT, SAMPLES
 
 MISTAKEN = ROOT / "submissions/several-mistakes/my_robot.urdf"

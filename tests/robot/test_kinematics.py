@@ -18,7 +18,7 @@ from grader.robot.model import Joint, Link, Mimic, Origin, Robot
 from grader.robot.motion import DEGREES_OF_FREEDOM, Position
 from grader.robot.reader import read_urdf
 from grader.robot.transforms import IDENTITY, Transform, Vector, dot, minus, rotation_about, rotation_from_rpy, unit
-from tests.patience import processor_time
+from tests.processor_time import processor_time
 
 Z: Vector = (0.0, 0.0, 1.0)
 

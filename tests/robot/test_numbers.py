@@ -8,7 +8,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from grader.robot.numbers import NumberError, is_version_one, number, numbers, rgba, vector
-from tests.patience import processor_time
+from tests.processor_time import processor_time
 
 _SPACE = " \t\n\v\f\r"
 _DIGITS = "0123456789"

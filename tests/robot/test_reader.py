@@ -11,10 +11,10 @@ from grader.errors import MissingElement
 from grader.robot.catalogue import CATALOGUE
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading, read_urdf
-from tests.patience import processor_time
+from tests.processor_time import processor_time
 from tests.robot.edge_cases.case import joint, links, robot
 from tests.robot.problem_samples import SAMPLES, ProblemSample
-from tests.robot.soup import data
+from tests.robot.random_text import data
 
 _AT_THE_TOP = ("URDF003", "URDF005", "URDF008")  # kinds that are about the beginning of the file
 _EFFECTS = {"rejects": "rejected", "drops": "degraded", "loads": "clean"}
@@ -43,7 +43,7 @@ def message(read: Reading, code: str) -> str:
 @example(raw=b"<robot name='r'><link name='a'/><\xff \xfe='1' \xfe='2'/></robot>")
 def test_nothing_is_raised(raw: bytes) -> None:
     """Any bytes give a verdict that fits the problems; each problem has a printable message and a location."""
-    read = read_urdf(raw, "soup.urdf")
+    read = read_urdf(raw, "random.urdf")
     effects = {problem.kind.effect for problem in read.problems}
     expected = next((verdict for effect, verdict in _EFFECTS.items() if effect in effects), "clean")
     assert read.verdict == expected
@@ -51,7 +51,7 @@ def test_nothing_is_raised(raw: bytes) -> None:
     rows = raw.decode("utf-8", "surrogateescape").split("\n")
     for problem in read.problems:
         at = problem.location
-        assert at.path == "soup.urdf"
+        assert at.path == "random.urdf"
         assert 1 <= at.line <= len(rows)
         assert 1 <= at.column <= len(rows[at.line - 1]) + 1
         assert problem.message

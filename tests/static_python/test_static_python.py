@@ -12,7 +12,7 @@ from grader.files.tree import File, make_tree
 from grader.package.setup_py import Setup, read_setup
 from grader.static_python.parse import Code, parse
 from tests.package.my_robot import FILES, SAMPLES
-from tests.patience import processor_time
+from tests.processor_time import processor_time
 
 
 def read_nothing(limit: int, *, first: bool = False) -> bytes:

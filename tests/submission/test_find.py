@@ -13,7 +13,7 @@ from grader.submission.package_search import find_packages, read_packages
 from grader.submission.submission import submission_of
 from grader.submission.urdf import OtherCandidate
 from grader.submission.urdf_search import UrdfChoice, find_urdf
-from tests.patience import processor_time
+from tests.processor_time import processor_time
 
 EXPECTED = "urdf/my_robot.urdf"
 ROBOT = b'<?xml version="1.0"?>\n<robot name="my_robot"/>\n'

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from grader.submission.submission import Submission, read_submission
 from grader.submission.urdf import NeedsExpansion, Read
 from grader.xacro.properties import expand
-from tests.patience import processor_time
+from tests.processor_time import processor_time
 from tests.samples import LAB6, opened
 
 START = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'

@@ -8,8 +8,8 @@ from lxml import etree
 from grader.robot.reader import read_urdf
 from grader.xml.tinyxml2 import is_plain, translate
 from grader.xml.tinyxml2.scanner import Scan
-from tests.patience import processor_time
-from tests.robot.soup import data
+from tests.processor_time import processor_time
+from tests.robot.random_text import data
 
 _PARSER = etree.XMLParser(
     resolve_entities=False, no_network=True, load_dtd=False, remove_comments=True, remove_pis=True

@@ -18,7 +18,7 @@ from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.students import Student
 from grader.errors import InputError
 from tests.classroom.class_folders import assigned, lay_out, pack
-from tests.patience import processor_time
+from tests.processor_time import processor_time
 
 LARGE = 30_000
 ANN = Student("100", "Ann Ash", "ann@example.org", "aash")

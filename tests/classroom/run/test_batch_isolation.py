@@ -22,7 +22,7 @@ from tests.classroom.class_runs import (
     urdf_class,
     verdicts,
 )
-from tests.command_line import PATIENCE
+from tests.command_line import HANG_TIMEOUT
 
 GOOD = tuple(f"fine-{number}" for number in range(150))
 SLOW = r"grading it took longer than 4 s \(--timeout raises the limit\)"
@@ -85,7 +85,7 @@ def test_no_process_remains(tmp_path: Path) -> None:
     """When the command has finished, all its processes have ended or are ending."""
     folder = urdf_class(tmp_path / "class", 20)
     with started("batch", folder, "--gradebook", tmp_path / "lab.db", "--jobs", "3") as process:
-        assert process.wait(PATIENCE) == 0
+        assert process.wait(HANG_TIMEOUT) == 0
         assert eventually(lambda: not session_of(process))
 
 
@@ -106,7 +106,7 @@ def test_no_process_outlives_a_killed_command(number: signal.Signals, code: int,
             os.killpg(process.pid, number)  # as a terminal does
         else:
             process.send_signal(number)
-        assert process.wait(PATIENCE) == code
+        assert process.wait(HANG_TIMEOUT) == code
         assert eventually(lambda: not session_of(process))
     assert verdicts(book) == {"fine": "graded"}
 
@@ -120,7 +120,7 @@ def test_killed_workers_are_replaced(tmp_path: Path) -> None:
             workers = [pid for pid in session_of(process) if pid > process.pid][2:]
             if workers:
                 os.kill(workers[-1], signal.SIGKILL)
-        assert process.wait(PATIENCE) == 0
+        assert process.wait(HANG_TIMEOUT) == 0
     found = list(verdicts(book).values())
     assert len(found) == 1_000
     assert found.count("errored") <= 5

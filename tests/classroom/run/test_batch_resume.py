@@ -30,7 +30,7 @@ from tests.classroom.class_runs import (
     urdf_class,
     verdicts,
 )
-from tests.command_line import GRADER, PATIENCE
+from tests.command_line import GRADER, HANG_TIMEOUT
 
 KILLS, SIZE = 20, 700
 JSON = ("--report-format", "json")
@@ -99,7 +99,7 @@ def test_interrupted(folder: Path, undisturbed: tuple[dict[str, bytes], float], 
     with started(*_command(folder, out)) as process:
         assert eventually(lambda: len(verdicts(book)) > 20)
         os.killpg(process.pid, signal.SIGINT)
-        _, output = process.communicate(timeout=PATIENCE)
+        _, output = process.communicate(timeout=HANG_TIMEOUT)
         assert process.returncode == 130
     first, stopped, last = output.splitlines()
     assert first == f"grader: {SIZE} submissions, layout folders"
@@ -125,7 +125,7 @@ def test_interrupted_at_the_start(folder: Path, moment: float, tmp_path: Path) -
         process.stderr.readline()  # the class has been read
         time.sleep(moment)
         os.killpg(process.pid, signal.SIGINT)
-        _, output = process.communicate(timeout=PATIENCE)
+        _, output = process.communicate(timeout=HANG_TIMEOUT)
         assert (shell_code(process.returncode), output.splitlines()[-1]) == (130, "grader: interrupted")
         assert all(line.startswith("grader: ") for line in output.splitlines())
         assert eventually(lambda: not session_of(process))
@@ -143,7 +143,7 @@ def _limited(limit: int, *arguments: str | Path) -> Done:
         capture_output=True,
         text=True,
         check=False,
-        timeout=PATIENCE,
+        timeout=HANG_TIMEOUT,
         preexec_fn=lambda: _with_small_files(limit),
     )
 
@@ -245,5 +245,5 @@ def test_a_locked_gradebook_is_waited_for(folder: Path, tmp_path: Path) -> None:
             process.wait(2)
         other.execute("ROLLBACK")
         other.close()
-        assert process.wait(PATIENCE) == 0
+        assert process.wait(HANG_TIMEOUT) == 0
     assert rows(book, "SELECT count(*) FROM result") == [(SIZE,)]

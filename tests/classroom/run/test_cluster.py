@@ -31,7 +31,7 @@ from tests.classroom.class_runs import (
     urdf_class,
     verdicts,
 )
-from tests.command_line import PATIENCE
+from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
 
 pytest.importorskip("distributed")
@@ -84,7 +84,7 @@ class DaskCluster:
         """Return the process ids of the workers that run tasks."""
         from distributed import Client
 
-        with Client(self.address, timeout=PATIENCE, set_as_default=False) as client:  # type: ignore[no-untyped-call]
+        with Client(self.address, timeout=HANG_TIMEOUT, set_as_default=False) as client:  # type: ignore[no-untyped-call]
             return list(client.run(os.getpid).values())
 
     @contextmanager
@@ -189,7 +189,7 @@ def test_a_killed_worker(cluster: DaskCluster, tmp_path: Path) -> None:
         for count, victim in zip((50, 250), victims, strict=True):
             assert eventually(lambda at=count: len(verdicts(book)) > at)  # type: ignore[misc]
             os.kill(victim, signal.SIGKILL)
-        _, output = process.communicate(timeout=PATIENCE)
+        _, output = process.communicate(timeout=HANG_TIMEOUT)
         assert process.returncode == 0, output
     assert verdicts(book) == dict.fromkeys((path.stem for path in folder.iterdir()), "graded")
     assert (duplicates(book), is_sound(book)) == ([], True)
@@ -203,7 +203,7 @@ def test_ctrl_c_leaves_the_cluster_alone(cluster: DaskCluster, tmp_path: Path) -
     with started(*command) as process:
         assert eventually(lambda: len(verdicts(book)) > 20)
         os.killpg(process.pid, signal.SIGINT)
-        _, output = process.communicate(timeout=PATIENCE)
+        _, output = process.communicate(timeout=HANG_TIMEOUT)
         assert process.returncode == 130
     first, stopped, last = output.splitlines()
     assert (first, last) == ("grader: 600 submissions, layout folders", "grader: interrupted")
@@ -221,7 +221,7 @@ def test_a_lost_scheduler(tmp_path: Path) -> None:
         with started("batch", folder, "--gradebook", book, "--cluster", address) as process:
             assert eventually(lambda: len(verdicts(book)) > 20)
             os.kill(found.process, signal.SIGKILL)
-            _, output = process.communicate(timeout=PATIENCE)
+            _, output = process.communicate(timeout=HANG_TIMEOUT)
             assert process.returncode == 2, output
     *_, stopped, last = output.splitlines()
     assert stopped.startswith("grader: stopped: ")

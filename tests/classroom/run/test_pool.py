@@ -13,7 +13,7 @@ import pytest
 
 from grader.classroom.run.pool import Processes, WorkerError, processors
 from grader.classroom.run.worker import prepare
-from tests.command_line import PATIENCE
+from tests.command_line import HANG_TIMEOUT
 
 MEMORY = 512 * 1024**2
 
@@ -21,13 +21,13 @@ MEMORY = 512 * 1024**2
 @pytest.fixture(scope="module")
 def pool() -> Iterator[Processes]:
     """Yield a pool of two workers with half a gigabyte each."""
-    with Processes(2, PATIENCE, prepare, MEMORY) as processes:
+    with Processes(2, HANG_TIMEOUT, prepare, MEMORY) as processes:
         yield processes
 
 
 def lost(future: "Future[Any]") -> str:
     """Return why there is no result."""
-    error = future.exception(PATIENCE)
+    error = future.exception(HANG_TIMEOUT)
     assert isinstance(error, WorkerError), error
     return str(error)
 
@@ -50,18 +50,18 @@ def _unspeakable() -> object:
 
 def test_results_come_back(pool: Processes) -> None:
     """Anything that can be sent is returned, with positional and keyword arguments."""
-    assert pool.submit(sorted, [3, 1, 2], reverse=True).result(PATIENCE) == [3, 2, 1]
-    assert len(pool.submit(bytes, 10**7).result(PATIENCE)) == 10**7
+    assert pool.submit(sorted, [3, 1, 2], reverse=True).result(HANG_TIMEOUT) == [3, 2, 1]
+    assert len(pool.submit(bytes, 10**7).result(HANG_TIMEOUT)) == 10**7
 
 
 def test_errors_are_raised(pool: Processes) -> None:
     """An error of the function is raised; a result that cannot be sent is reported, too."""
     with pytest.raises(ZeroDivisionError):
-        pool.submit(divmod, 1, 0).result(PATIENCE)
+        pool.submit(divmod, 1, 0).result(HANG_TIMEOUT)
     with pytest.raises(ValueError, match="as asked"):
-        pool.submit(_raise, ValueError).result(PATIENCE)
-    assert pool.submit(_unspeakable).exception(PATIENCE) is not None
-    assert pool.submit(len, "abc").result(PATIENCE) == 3
+        pool.submit(_raise, ValueError).result(HANG_TIMEOUT)
+    assert pool.submit(_unspeakable).exception(HANG_TIMEOUT) is not None
+    assert pool.submit(len, "abc").result(HANG_TIMEOUT) == 3
 
 
 def _stop() -> None:
@@ -72,7 +72,7 @@ def _stop() -> None:
 def test_no_more_memory_than_allowed(pool: Processes) -> None:
     """A task that needs more memory is lost, and its worker continues."""
     assert lost(pool.submit(_eat)) == "grading it needs more memory than a worker may use (2 GiB)"
-    assert pool.submit(len, "abc").result(PATIENCE) == 3
+    assert pool.submit(len, "abc").result(HANG_TIMEOUT) == 3
 
 
 @pytest.mark.parametrize(
@@ -97,25 +97,25 @@ def test_a_task_that_ends_or_blocks_its_worker_is_lost(
     ended = pool.submit_within(1.5, function, arguments, {})
     others = [pool.submit(pow, number, 2) for number in range(20)]
     assert lost(ended) in (reason, "grading it took longer than 1.5 s (--timeout raises the limit)")
-    assert [other.result(PATIENCE) for other in others] == [number**2 for number in range(20)]
+    assert [other.result(HANG_TIMEOUT) for other in others] == [number**2 for number in range(20)]
 
 
 def test_workers_ignore_the_current_folder_and_ctrl_c(pool: Processes) -> None:
     """Modules in the current folder, which may be the class's, are not imported."""
-    assert pool.submit(eval, "__import__('sys').flags.safe_path").result(PATIENCE)
-    assert pool.submit(signal.getsignal, signal.SIGINT).result(PATIENCE) is signal.SIG_IGN
-    assert "" not in pool.submit(eval, "__import__('sys').path").result(PATIENCE)
+    assert pool.submit(eval, "__import__('sys').flags.safe_path").result(HANG_TIMEOUT)
+    assert pool.submit(signal.getsignal, signal.SIGINT).result(HANG_TIMEOUT) is signal.SIG_IGN
+    assert "" not in pool.submit(eval, "__import__('sys').path").result(HANG_TIMEOUT)
 
 
 def test_all_workers_killed_at_once(pool: Processes) -> None:
     """As when memory is short: later tasks are done."""
-    pids = {pool.submit(_pid_after, 0.2).result(PATIENCE) for _ in range(4)}
+    pids = {pool.submit(_pid_after, 0.2).result(HANG_TIMEOUT) for _ in range(4)}
     for pid in pids:
         os.kill(pid, signal.SIGKILL)
     results = []
     for _ in range(10):
         future = pool.submit(len, "abc")
-        results.append(future.exception(PATIENCE) or future.result())
+        results.append(future.exception(HANG_TIMEOUT) or future.result())
     assert results[-1] == 3
     assert all(result == 3 or isinstance(result, WorkerError) for result in results)
 
@@ -127,12 +127,12 @@ def _pid_after(seconds: float) -> int:
 
 def test_shutdown_during_work() -> None:
     """Shutting down does not wait for tasks that hang."""
-    processes = Processes(1, 10 * PATIENCE, prepare)
-    pid = processes.submit(os.getpid).result(PATIENCE)
-    processes.submit(time.sleep, 10 * PATIENCE)
+    processes = Processes(1, 10 * HANG_TIMEOUT, prepare)
+    pid = processes.submit(os.getpid).result(HANG_TIMEOUT)
+    processes.submit(time.sleep, 10 * HANG_TIMEOUT)
     began = time.monotonic()
     processes.shutdown()
-    assert time.monotonic() - began < PATIENCE
+    assert time.monotonic() - began < HANG_TIMEOUT
     with pytest.raises(ProcessLookupError):
         os.kill(pid, 0)
 
@@ -140,7 +140,7 @@ def test_shutdown_during_work() -> None:
 def test_shutdown_before_any_work() -> None:
     """Without a task no process is started."""
     before = multiprocessing.active_children()
-    with Processes(2, PATIENCE, prepare) as processes:
+    with Processes(2, HANG_TIMEOUT, prepare) as processes:
         assert not processes._has_begun
         assert multiprocessing.active_children() == before
 

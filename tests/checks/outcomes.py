@@ -16,7 +16,7 @@ from grader.grading.rubric import Criterion, Part, Rubric
 from grader.source import Location
 from grader.submission.submission import read_submission
 from tests.checks.robots import PATH, Scene
-from tests.checks.submitted import Submitted
+from tests.checks.submissions import Submitted
 
 AnyCheck = Callable[..., Outcome]
 Arguments = dict[str, Any]

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.cli.jobs import MISTAKEN, GithubJob
-from tests.command_line import PATIENCE, run_with_input
+from tests.command_line import HANG_TIMEOUT, run_with_input
 from tests.samples import ROOT
 
 REFERENCE = ROOT / "submissions/reference"
@@ -118,6 +118,6 @@ def test_a_deleted_current_folder(tmp_path: Path) -> None:
         cwd=gone,
         capture_output=True,
         check=False,
-        timeout=PATIENCE,
+        timeout=HANG_TIMEOUT,
     )
     assert (done.returncode, done.stderr) == (1, b"")

@@ -12,7 +12,7 @@ from typing import Any
 
 import jsonschema
 
-from tests.command_line import PATIENCE
+from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
 
 SCHEMA = json.loads((ROOT / "tests/report/schemas/gradescope.json").read_text())
@@ -68,7 +68,7 @@ class Autograder:
             stderr=subprocess.STDOUT,
             text=True,
             check=False,
-            timeout=PATIENCE,
+            timeout=HANG_TIMEOUT,
         )
 
 
