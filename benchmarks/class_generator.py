@@ -278,7 +278,7 @@ def criteria() -> tuple[str, ...]:
 
 
 def make_urdf(dice: Dice, author: str) -> GeneratedUrdf:
-    """Return a URDF as a student might write it: 37 in 100 are correct, half of these with other numbers than the handout, 6 are broken."""
+    """Return a URDF like a student's: of 100, 37 are correct (half of them with other numbers than the handout), 6 broken."""
     throw = dice.random()
     if throw < 0.185:
         return built(dice, author, "as told", ())
@@ -490,7 +490,7 @@ def stored(data: bytes) -> bytes:
 
 @cache
 def bomb() -> bytes:
-    """Return a zip of 64 KiB that unpacks to 64 MiB of zeros: one deflate block with codes of one bit, a thousand to one."""
+    """Return a zip of 64 KiB that unpacks to 64 MiB of zeros: one deflate block with codes of one bit."""
     head, tail = bytes.fromhex("edc101010000008220ffaf6e484001"), bytes.fromhex("f706")
     data = head + bytes(65_000) + tail
     zeros = zlib.decompressobj(-15).decompress(data)
@@ -802,7 +802,7 @@ def write(root: str, item: Item) -> None:
 
 
 class WrittenSubmission(NamedTuple):
-    """A written submission: student, kind, paths (the last attempt's top names), and its lost criteria, if they are certain."""
+    """A written submission: student, kind, paths (top names of the last attempt), and its lost criteria if certain."""
 
     person: Person
     kind: str

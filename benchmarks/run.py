@@ -70,7 +70,7 @@ def whole_process(runs: int = 15) -> None:
 
 
 def whole_packages(runs: int = 15) -> None:
-    """Compare a package, a workspace with answers and pictures, and a zip of it with the URDF in them alone, as processes."""
+    """Compare processes that grade a package, a workspace with answers and pictures, and its zip with the URDF alone."""
     module = [sys.executable, "-m", "grader"]
     submitted = {"the URDF alone": URDF, "package": PACKAGE, "workspace": WORKSPACE, "zip": ZIPPED}
     times = in_turn({name: process([*module, "grade", str(path)]) for name, path in submitted.items()}, runs)

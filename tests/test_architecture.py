@@ -1,4 +1,4 @@
-"""The layers: a module imports from lower layers only, packages of one layer do not import each other, and there is no cycle."""
+"""A module imports from lower layers only, packages of one layer do not import each other, and there is no cycle."""
 
 import ast
 from collections.abc import Iterator
@@ -56,7 +56,7 @@ MODULES = {name_of(path): path for path in sorted(ROOT.rglob("*.py"))}
 
 
 def imports(module: str) -> Iterator[str]:
-    """Yield the imports of a module, at the top, in functions or for type checkers; names in `grader` are those of modules."""
+    """Yield the imports of a module, at the top, in functions or for type checkers; those of `grader` as modules."""
     for node in ast.walk(ast.parse(MODULES[module].read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)

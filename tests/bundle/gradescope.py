@@ -48,7 +48,7 @@ class Autograder:
         shutil.copytree(ROOT / "submissions" / sample, self.submission, dirs_exist_ok=True)
 
     def run(self, **variables: str) -> dict[str, Any]:
-        """Run the autograder as Gradescope does and return what students see: always there, valid, without paths of this machine."""
+        """Run the autograder as Gradescope does and return the results, which are valid and without paths of this machine."""
         done = self.ended(**variables)
         assert done.returncode == 0, done
         text = (self.root / "results" / "results.json").read_text(encoding="utf-8")

@@ -288,7 +288,7 @@ def test_the_centre_of_a_mesh_is_unknown() -> None:
 
 @pytest.mark.parametrize("offset", OFFSETS)
 def test_a_bottom_has_a_tolerance(offset: tuple[float, bool]) -> None:
-    """The lowest point may be off by the tolerance, inclusive; beyond it the message says how far and in which direction."""
+    """The lowest point may be off by the tolerance, inclusive; beyond it the message gives distance and direction."""
     off, fine = offset
     found = scene(link("base", visual(box(0.6, 0.4, 0.2), xyz=(0.0, 0.0, 0.1 + off))))
     outcome = ask(bottom_at_height, found, **BOTTOM)

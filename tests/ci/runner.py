@@ -85,7 +85,7 @@ class Runner:
         return Done(ran.returncode, ran.stdout, ran.stderr)
 
     def value(self, text: str) -> str:
-        """Return a text with its expressions replaced by values of the contexts; an unknown name is an error of the file."""
+        """Return a text with its expressions replaced by values of the contexts; unknown names are errors."""
         return _EXPRESSION.sub(lambda found: self._context(found[1]), text)
 
     def _context(self, name: str) -> str:

@@ -78,7 +78,7 @@ def test_zizmor_finds_problems(tmp_path: Path, before: str, after: str, audit: s
 
 
 def test_no_token_stays_in_a_checkout() -> None:
-    """Every checkout drops its token, every action is pinned to a commit followed by its version, permissions are read-only."""
+    """Checkouts drop their tokens, actions are pinned to a commit followed by its version, permissions are read-only."""
     for name in WORKFLOWS[1:]:
         text, workflow = (ROOT / name).read_text(encoding="utf-8"), load(ROOT / name)
         assert workflow["permissions"] == {"contents": "read"}

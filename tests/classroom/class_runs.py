@@ -147,7 +147,7 @@ def contents(folder: Path) -> dict[str, bytes]:
 
 
 def report_in_process(path: Path, to: Path) -> tuple[int, bytes | str]:
-    """Return the exit code and report of `grader grade PATH --format json`, run in this process; its error if there is no report."""
+    """Run `grader grade PATH --format json` in this process and return the exit code and the report or error."""
     output = io.StringIO()
     to.unlink(missing_ok=True)
     with redirect_stdout(io.StringIO()), redirect_stderr(output):

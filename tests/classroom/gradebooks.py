@@ -135,7 +135,7 @@ emil,Ben Oh,emil@example.org,eo5,105
 
 
 def make_class(top: Path, late: str = "") -> Path:
-    """Make a class: anna is correct, ben a single URDF, cleo no zip, dora missing, emil's box wrong; return the lab's path."""
+    """Make a class (anna correct, ben a single URDF, cleo no zip, dora missing, emil a wrong box); return the lab's path."""
     folder = top / "class"
     write_submission(folder / "anna")
     (folder / "ben.urdf").write_text(urdf())

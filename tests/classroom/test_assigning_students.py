@@ -82,7 +82,7 @@ def test_a_similar_name_takes_over_nothing(tmp_path: Path, name: str, roster: st
 
 
 def test_marks_never_leave_the_roster(tmp_path: Path) -> None:
-    """A roster entry keeps its marks even if its folder is contested: no folder name moves them to `alice~2` or elsewhere."""
+    """A roster entry keeps its marks even if its folder is contested: no folder name moves them, to `alice~2` for example."""
     submit(tmp_path / "class/alice", BAD)
     roster = "id,login\n7,alice\n"
     batch(tmp_path, roster=roster)
@@ -242,7 +242,7 @@ def test_another_assignment_of_moodle_is_refused(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("layout", ["moodle", "canvas"])
 def test_a_display_name_takes_over_nothing_later(tmp_path: Path, layout: str) -> None:
-    """The gradebook knows a student's number even if the roster has only the name: the same name with another number differs."""
+    """The gradebook knows a student's number if the roster has only the name: another number is another student."""
     paths = {
         "moodle": ("Bob Birch_12_assignsubmission_file", "Bob Birch_99_assignsubmission_file"),
         "canvas": ("birchbob_12_1001_robot", "birchbob_99_1002_robot"),

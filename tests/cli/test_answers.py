@@ -67,7 +67,7 @@ def test_no_report_of_grade_or_batch_contains_one(graded_class: Path, tmp_path: 
 
 
 def test_those_who_grade_see_them(top: Path) -> None:
-    """`rubric show --answers`, `grade --answers` in three formats, and `review` show them, even if the rubric is not available."""
+    """`rubric show --answers`, `grade --answers` in three formats, and `review` show them, also without the rubric."""
     rubric = with_separate_answers(top)
     assert f"    Model answer: {SECRET}\n" in grader("rubric", "show", rubric, "--answers").stdout
     anna = ("grade", top / "class" / "anna", "--rubric", rubric, "--answers", "--format")

@@ -90,7 +90,7 @@ def test_two_gradebooks(top: Path, tmp_path: Path) -> None:
 
 
 def test_one_damaged_zip_is_a_few_lines(tmp_path: Path) -> None:
-    """Many criteria with the same change are one line, there are at most twelve, and a change of the verdict alone is reported."""
+    """Criteria with the same change share a line, there are at most twelve, and a change of the verdict alone counts."""
     numbers = range(1, 31)
     for name, rubric in (
         ("few", lab(**{f"c{number}": "1" for number in numbers})),

@@ -134,7 +134,7 @@ def test_an_inverse_undoes(pose: Transform) -> None:
 
 @given(one=transforms, two=transforms, three=transforms)
 def test_composition_is_that_of_matrices(one: Transform, two: Transform, three: Transform) -> None:
-    """The product equals that of the 4 x 4 matrices, is associative, and its inverse is the reversed product of inverses."""
+    """The product equals that of 4 x 4 matrices, is associative, and its inverse is the reversed product of inverses."""
     assert np.allclose(np.array(one @ two), np.array(one) @ np.array(two), rtol=0, atol=1e-12)
     assert near((one @ two) @ three, one @ (two @ three))
     assert near((one @ two).inverse(), two.inverse() @ one.inverse())

@@ -28,7 +28,7 @@ EMPTY = "it is empty"
 
 
 def tree_of(*paths: str, **contents: bytes) -> Tree:
-    """Return a file tree of files that contain a robot; `contents` gives the content of files by a prefix of their names."""
+    """Return a file tree of robots; `contents` gives the content of files by a prefix of their names."""
     files = [
         _file(path, next((data for name, data in contents.items() if path.split("/")[-1].startswith(name)), ROBOT))
         for path in paths

@@ -197,7 +197,7 @@ def state(submission: Submission) -> str:
 
 
 def test_xacro_that_the_launch_file_expands(tmp_path: Path) -> None:
-    """Numbers are evaluated if the launch file runs xacro; macros need manual grading; otherwise ROS 2 gets the file as it is."""
+    """Numbers are evaluated if the launch file runs xacro; macros need manual grading; else ROS 2 gets the file as it is."""
     plain = package_with(tmp_path / "plain", PLAIN)
     assert (state(plain), plain.verdict) == ("expanded", "clean")
     assert state(package_with(tmp_path / "macro", MACRO)) == "needs expansion"

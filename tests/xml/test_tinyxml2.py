@@ -22,7 +22,7 @@ def decoded(raw: bytes) -> str:
 
 
 def assert_sound(scan: Scan, text: str) -> None:
-    """Assert that the XML parses and has an offset for each element, at its <; without XML there is a reason, or no robot."""
+    """Assert that the XML parses and has the offset of the < of each element, or that there is a reason or no robot."""
     for found in scan.differences:
         assert 0 <= found.offset <= len(text)
         assert found.message

@@ -131,7 +131,7 @@ class Model:
 @settings(max_examples=120)
 @given(st.lists(st.one_of(RUN, MARK, MARK), min_size=2, max_size=14))
 def test_the_view_is_the_sum_over_the_report(steps: list[tuple[Any, ...]]) -> None:
-    """After any runs, changed submissions, changed rubrics, and added and removed marks, view, standing, report and model agree."""
+    """View, standing, report and model agree after any runs, changes of submissions and rubrics, and marks."""
     model = Model()
     with TemporaryDirectory() as folder, Gradebook(Path(folder, "book.db"), create=True) as book:
         kept: list[list[tuple[Any, ...]]] = [[], []]

@@ -354,7 +354,7 @@ def test_nothing_of_a_class_is_imported(tmp_path: Path) -> None:
 
 
 def test_awkward_names_are_found_in_the_roster(tmp_path: Path) -> None:
-    """A folder whose name contains a bidirectional mark, a line break or a tab belongs to the student of exactly that name."""
+    """A folder with a bidirectional mark, a line break or a tab in its name belongs to the student of that name."""
     unmatched, absent = class_with_roster(tmp_path / "class", tmp_path / "roster.csv", 300)
     done = grader("batch", tmp_path / "class", "--gradebook", tmp_path / "lab6.db", "--roster", tmp_path / "roster.csv")
     assert done.returncode == 0

@@ -63,7 +63,7 @@ def _visible(folder: Path) -> dict[str, bytes]:
 
 @pytest.mark.slow
 def test_killed_twenty_times(folder: Path, undisturbed: tuple[dict[str, bytes], float], tmp_path: Path) -> None:
-    """With kill -9 while it starts, grades and writes: every result is there once, and the reports equal those of one run."""
+    """After kill -9 during start, grading and writing every result is there once, and the reports equal those of one run."""
     reports, seconds = undisturbed
     out, dice = tmp_path / "out", Random(7)
     book = out.with_suffix(".db")
