@@ -1,6 +1,7 @@
-"""Measure how whole classes are graded: `python benchmarks/batch.py`. Quote the ratios; absolute figures depend on the machine.
+"""Measure the grading of whole classes: `python benchmarks/batch.py`.
 
-Classes are generated (class_generator.py), and all their files differ. Alternatives are timed in turn, A B A B. Name figures to run
+Quote the ratios; absolute figures depend on the machine. Classes are generated
+(class_generator.py), and all their files differ. Alternatives are timed alternately, A B A B. Name figures to run
 only these: `python benchmarks/batch.py speed memory`.
 """
 
@@ -31,12 +32,12 @@ from grader.grading.rubric import load_rubric
 _TIMEOUT = 60.0  # seconds for one submission
 _WARMING = 50  # submissions that each worker grades before the clock starts
 _REPEATED = 10_000  # submissions of the largest class that is graded more than once
-_SAMPLED = 0.05  # seconds between two looks at the memory
-_PATIENCE = 60.0  # seconds in which all workers have to show up
+_SAMPLED = 0.05  # seconds between two measurements of the memory
+_MAX_START = 60.0  # seconds in which all workers must start
 
 
 class Bench(NamedTuple):
-    """The folder of the classes, their sizes, and how often each figure is measured."""
+    """The folder of the classes, their sizes, and the number of repetitions."""
 
     top: Path
     sizes: Sequence[int]
@@ -45,7 +46,7 @@ class Bench(NamedTuple):
 
     @property
     def usual(self) -> int:
-        """The size of a class for figures that take one: about a thousand."""
+        """Return the size of the class for figures that need one: about a thousand."""
         return max(size for size in self.sizes if size <= 1_000 or size == min(self.sizes))
 
     def folder(self, count: int) -> Path:
@@ -58,7 +59,7 @@ class Bench(NamedTuple):
 
 
 def main() -> None:
-    """Print the figures that are asked for, or all."""
+    """Print the requested figures, or all."""
     parser = argparse.ArgumentParser(description="Measure how whole classes are graded.")
     parser.add_argument("figures", nargs="*", metavar="figure", help=f"any of: {', '.join(FIGURES)}; default: all")
     parser.add_argument(
@@ -82,7 +83,7 @@ def main() -> None:
 
 
 def speed(bench: Bench) -> None:
-    """Submissions a second with warm workers, gradebook included, for every size of a class."""
+    """Measure submissions per second with warm workers, including the gradebook, for every size of a class."""
     with workers(bench, bench.jobs) as executor:
         runs = {size: _fresh(bench, size, bench.jobs, executor) for size in bench.sizes}
         times = in_turn({str(size): run for size, run in runs.items() if size <= _REPEATED}, bench.runs)
@@ -108,7 +109,7 @@ def parallel(bench: Bench) -> None:
 
 
 def against_check_urdf(bench: Bench) -> None:
-    """Grading a class against a shell loop over urdfdom's own check_urdf, which only parses."""
+    """Compare grading a class with a shell loop over urdfdom's own check_urdf, which only parses."""
     program = check_urdf()
     if program is None or shutil.which("sh") is None:
         print("\ncheck_urdf is not installed: pip install --editable '.[test]'")
@@ -124,7 +125,7 @@ def against_check_urdf(bench: Bench) -> None:
     installed = Path(sys.executable).with_name("check_urdf")
     with workers(bench, bench.jobs) as executor:
         runs = {"bare program": loop(program)}
-        if installed.exists():  # what pip puts on the path: a few lines of Python that start the program
+        if installed.exists():  # the console script that pip installs
             runs["pip's command"] = loop(installed)
         runs["grader"] = lambda: fresh_run(bench, size, bench.jobs, executor) / size
         times = in_turn(runs, bench.runs)
@@ -133,7 +134,7 @@ def against_check_urdf(bench: Bench) -> None:
 
 
 def again(bench: Bench) -> None:
-    """The first run over a class against the second one, when nothing has changed."""
+    """Compare the first run over a class with the second one, when nothing has changed."""
     size = bench.usual
     with workers(bench, bench.jobs) as executor:
         _compare_runs(
@@ -150,7 +151,7 @@ def again(bench: Bench) -> None:
 
 
 def memory(bench: Bench) -> None:
-    """The peak of memory of the whole process tree, for the smallest class of a thousand or so and for the largest."""
+    """Measure the peak memory of the whole process tree, for the smallest class of a thousand or so and for the largest."""
     if not Path("/proc/self/smaps_rollup").exists() or not _has_command():
         print("\nThe memory of a batch is measured where there is /proc/PID/smaps_rollup, and a command `grader batch`")
         return
@@ -176,13 +177,13 @@ FIGURES: dict[str, Callable[[Bench], None]] = {
 
 @contextmanager
 def workers(bench: Bench, jobs: int) -> Iterator[Executor]:
-    """Workers, each of which has graded a few dozen submissions that are in no class."""
+    """Yield workers, each of which has graded a few dozen submissions that are in no class."""
     executor = Processes(jobs, _TIMEOUT)
     folder, rubric = bench.folder(_WARMING), load_rubric("lab6")
     common = ClassContext(str(folder), rubric.data, str(rubric.path))
     tasks = [Task(name, (name,)) for name in names_in(folder)]
     warm: set[int] = set()
-    end = time.monotonic() + _PATIENCE
+    end = time.monotonic() + _MAX_START
     try:
         while len(warm) < jobs and time.monotonic() < end:
             warm |= {future.result() for future in [executor.submit(warmed, common, tasks) for _ in range(2 * jobs)]}
@@ -192,13 +193,13 @@ def workers(bench: Bench, jobs: int) -> Iterator[Executor]:
 
 
 def warmed(common: ClassContext, tasks: Sequence[Task]) -> int:
-    """Grade these in a worker; which process that is."""
+    """Grade submissions in a worker and return its process id."""
     grade_all(common, tasks)
     return os.getpid()
 
 
 def fresh_run(bench: Bench, count: int, jobs: int, executor: Executor) -> float:
-    """Seconds that a class takes into a new gradebook."""
+    """Return the seconds that a class takes into a new gradebook."""
     folder = bench.folder(count)
     with tempfile.TemporaryDirectory(dir=bench.top) as top:
         return once(lambda: grade_class(folder, count, jobs, executor, Path(top, "gradebook.db")))
@@ -209,7 +210,7 @@ def _fresh(bench: Bench, count: int, jobs: int, executor: Executor) -> Callable[
 
 
 def grade_class(folder: Path, count: int, jobs: int, executor: Executor, book: Path) -> Progress:
-    """Grade a class into a gradebook; every submission gets a mark or has been marked before."""
+    """Grade a class into a gradebook; every submission gets a mark or was graded before."""
     root, rubric = str(folder), load_rubric("lab6")
     with Gradebook(book, create=True) as opened:
         progress = Batch(opened, rubric, RunSettings(root, "folders", count, jobs), executor).grade(read_class(folder))
@@ -248,7 +249,7 @@ def _compare_runs(title: str, run: Callable[[Path], float], bench: Bench) -> Non
 
 
 def _ratios(times: dict[str, list[float]], base: str, what: str = "a submission") -> None:
-    """Print medians, and how many times as fast as the base each is."""
+    """Print medians, and the speed of each relative to the base."""
     middle = statistics.median(times[base])
     for name, values in times.items():
         median = statistics.median(values)
@@ -259,7 +260,7 @@ def _ratios(times: dict[str, list[float]], base: str, what: str = "a submission"
 
 
 def peak_memory(command: list[str]) -> int:
-    """The most bytes that a process and all below it have at once; a page that several share is counted once in all."""
+    """Return the peak memory of a process and all below it; a shared page is counted once."""
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     peak = 0
     while process.poll() is None:
@@ -271,14 +272,14 @@ def peak_memory(command: list[str]) -> int:
 
 
 def _tree(top: int) -> list[int]:
-    """A process and all below it."""
+    """Return a process and all below it."""
     below: dict[int, list[int]] = {}
-    for place in Path("/proc").glob("[0-9]*/stat"):
+    for target in Path("/proc").glob("[0-9]*/stat"):
         try:
-            fields = place.read_text(errors="replace").rpartition(")")[2].split()
+            fields = target.read_text(errors="replace").rpartition(")")[2].split()
         except OSError:  # it has ended meanwhile
             continue
-        below.setdefault(int(fields[1]), []).append(int(place.parent.name))
+        below.setdefault(int(fields[1]), []).append(int(target.parent.name))
     found = [top]
     for process in found:
         found += below.get(process, [])

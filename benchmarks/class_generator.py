@@ -1,4 +1,4 @@
-"""Generate classes of invented students for tests and benchmarks: `python benchmarks/class_generator.py FOLDER --count 1000 --seed 1`.
+"""Generate classes of submissions to test a grader: `python benchmarks/class_generator.py FOLDER --count 1000 --seed 1`.
 
 The same seed gives the same names and bytes everywhere: nothing depends on the order of a set, on the clock, on a compressor's
 version, or on more of `random` than `Random.random`. No URDF has the bytes of another one. The mistakes and their proportions are
@@ -34,25 +34,25 @@ T = TypeVar("T")
 
 
 class Dice:
-    """Chance that falls the same way everywhere: only `Random.random` keeps its sequence from one Python to the next."""
+    """A random source that is the same everywhere: only `Random.random` keeps its sequence between Python versions."""
 
     def __init__(self, seed: str) -> None:
         self.random = Random(seed).random
 
     def below(self, count: int) -> int:
-        """A whole number from 0 on, below `count`."""
+        """Return an integer from 0 to `count` - 1."""
         return int(self.random() * count)
 
     def pick(self, values: Sequence[T]) -> T:
-        """One of some values."""
+        """Return one of some values."""
         return values[int(self.random() * len(values))]
 
     def chance(self, share: float) -> bool:
-        """True for this share of all throws."""
+        """Return True with this probability."""
         return self.random() < share
 
     def shuffled(self, values: Iterable[T]) -> list[T]:
-        """The values in another order."""
+        """Return the values in another order."""
         mixed = list(values)
         for last in range(len(mixed) - 1, 0, -1):
             other = self.below(last + 1)
@@ -64,15 +64,15 @@ class Dice:
 
 
 class Edit(NamedTuple):
-    """One change of the reference: in the element of this name the text `old` becomes `new`; an empty `old` is all of it."""
+    """A change of the reference: in the element of this name the text `old` becomes `new`; an empty `old` is all of it."""
 
     element: str
     old: str
     new: str = ""
 
 
-class Way(NamedTuple):
-    """A variant or mistake of the robot: how often it occurs, which elements it `touches`, and the criteria that it loses."""
+class Variant(NamedTuple):
+    """A way to build or break the robot, its frequency, the elements that it `touches`, and the criteria that it loses."""
 
     name: str
     weight: int
@@ -100,131 +100,131 @@ _COLLISION = '</visual>\n    <collision><geometry><box size="1 1 1"/></geometry>
 
 
 def _left(*criteria: str) -> str:
-    return "".join(f" left-wheel-{each}" for each in criteria)
+    return "".join(f" left-wheel-{criterion}" for criterion in criteria)
 
 
 def _right(*criteria: str) -> str:
-    return "".join(f" right-wheel-{each}" for each in criteria)
+    return "".join(f" right-wheel-{criterion}" for criterion in criteria)
 
 
-def _lidar_at(name: str, weight: int, xyz: str, lost: str) -> Way:
-    return Way(name, weight, "lidar", lost, (Edit(_LIDAR, "0.15 0 0.225", xyz),))
+def _lidar_at(name: str, weight: int, xyz: str, lost: str) -> Variant:
+    return Variant(name, weight, "lidar", lost, (Edit(_LIDAR, "0.15 0 0.225", xyz),))
 
 
 def _in_visual(link: str, xyz: str) -> Edit:
-    """A visual without an origin gets one."""
+    """Return the edit that gives a visual without an origin one."""
     return Edit(link, "<visual>", f'<visual>\n      <origin xyz="{xyz}"/>')
 
 
-def _quarter_turns() -> Iterator[Way]:
-    """Other ways to write a quarter turn about x, and axes that are longer or shorter."""
+def _quarter_turns() -> Iterator[Variant]:
+    """Yield other spellings of a quarter turn about x, and axes of other lengths."""
     rolls = ("-1.5708", "-1.5705", "-1.570796326794897", "4.712389", "-7.853982")
     for side, joint in (("left", _LEFT), ("right", _RIGHT)):
         for rpy in (*(f"{roll} 0 0" for roll in rolls), "1.57159265 3.14159265 3.14159265"):
-            yield Way(f"{side}-turned-by-{rpy}", 1, f"{side}-angle", "", (Edit(joint, "-1.57 0 0", rpy),))
+            yield Variant(f"{side}-turned-by-{rpy}", 1, f"{side}-angle", "", (Edit(joint, "-1.57 0 0", rpy),))
         for length in ("2", "0.5", "10"):
-            yield Way(f"{side}-axis-{length}", 1, f"{side}-axis", "", (Edit(joint, "0 0 1", f"0 0 {length}"),))
+            yield Variant(f"{side}-axis-{length}", 1, f"{side}-axis", "", (Edit(joint, "0 0 1", f"0 0 {length}"),))
 
 
 # fmt: off
-# The counts of the first ones are those of the 51 submissions, so that the proportions are theirs; the rest is met now and then.
+# The weights of the first ones are their counts in the 51 submissions; the others are less frequent.
 MISTAKES = (
-    Way("right-mirrored", 10, _RIGHT_SIDE, "right-wheel-forward right-wheel-axis", (_RIGHT_TURNED, _RIGHT_OUTWARD)),
-    Way("right-mirrored-into-base", 3, _RIGHT_SIDE, _right("placed", "forward", "axis", "clear"), (_RIGHT_TURNED,)),
+    Variant("right-mirrored", 10, _RIGHT_SIDE, "right-wheel-forward right-wheel-axis", (_RIGHT_TURNED, _RIGHT_OUTWARD)),
+    Variant("right-mirrored-into-base", 3, _RIGHT_SIDE, _right("placed", "forward", "axis", "clear"), (_RIGHT_TURNED,)),
     _lidar_at("lidar-buried", 10, "0.15 0 0.2", "lidar-frame lidar-on-top"),
     _lidar_at("lidar-buried-a-little", 1, "0.15 0 0.22", "lidar-frame lidar-on-top"),
     _lidar_at("lidar-floating", 2, "0.15 0 0.25", "lidar-frame lidar-on-top"),
-    Way("lidar-offset-in-visual", 6, "lidar", "lidar-frame",
+    Variant("lidar-offset-in-visual", 6, "lidar", "lidar-frame",
         (Edit(_LIDAR, "0.15 0 0.225", "0 0 0"), _in_visual("lidar", "0.15 0 0.225"))),
     _lidar_at("lidar-in-the-middle", 2, "0 0 0.225", "lidar-frame"),
     _lidar_at("lidar-too-far-ahead", 1, "0.2 0 0.225", "lidar-frame"),
     _lidar_at("lidar-beyond-the-box", 1, "0.6 0 0.225", "lidar-frame lidar-on-top"),
     _lidar_at("lidar-at-the-back", 1, "-0.15 0 0.225", "lidar-frame"),
-    Way("left-into-base", 1, "left-place", _left("placed", "clear"), (Edit("left_wheel", "0 0 0.025", "0 0 -0.025"),)),
-    Way("left-typo-0.0025", 1, "left-place", _left("placed", "clear"), (Edit("left_wheel", "0 0 0.025", "0 0 0.0025"),)),
-    Way("right-into-base", 1, _RIGHT_SIDE, _right("placed", "clear"), (_RIGHT_OUTWARD,)),
-    Way("wheels-half-inside", 1, "left-place right-place", _left("placed", "clear") + _right("placed", "clear"),
+    Variant("left-into-base", 1, "left-place", _left("placed", "clear"), (Edit("left_wheel", "0 0 0.025", "0 0 -0.025"),)),
+    Variant("left-typo-0.0025", 1, "left-place", _left("placed", "clear"), (Edit("left_wheel", "0 0 0.025", "0 0 0.0025"),)),
+    Variant("right-into-base", 1, _RIGHT_SIDE, _right("placed", "clear"), (_RIGHT_OUTWARD,)),
+    Variant("wheels-half-inside", 1, "left-place right-place", _left("placed", "clear") + _right("placed", "clear"),
         (Edit("left_wheel", "0 0 0.025", "0 0 0"), Edit("right_wheel", "0 0 -0.025", "0 0 0"))),
-    Way("axes-along-x", 2, "left-axis right-axis right-angle", _left("forward", "spins") + _right("forward", "spins"),
+    Variant("axes-along-x", 2, "left-axis right-axis right-angle", _left("forward", "spins") + _right("forward", "spins"),
         (Edit(_LEFT, "0 0 1", "1 0 0"), Edit(_RIGHT, "0 0 1", "1 0 0"))),
-    Way("footprint-missing", 2, "footprint", f"footprint-virtual footprint-root {_GROUND}",
+    Variant("footprint-missing", 2, "footprint", f"footprint-virtual footprint-root {_GROUND}",
         (Edit("base_footprint", ""), Edit(_FOOTPRINT, ""))),
-    Way("footprint-too-high", 2, "footprint", _GROUND, (Edit(_FOOTPRINT, "0 0 0.1", "0 0 0.05"),)),
-    Way("footprint-at-the-base", 1, "footprint", _GROUND, (Edit(_FOOTPRINT, "0 0 0.1", "0 0 0"),)),
-    Way("green-full", 2, "green", "base-green", (Edit("green", "0 0.6 0 1", "0 1 0 1"),)),
-    Way("green-see-through", 1, "green", "base-green", (Edit("green", "0 0.6 0 1", "0 0.6 0 0.8"),)),
-    Way("no-joints", 1, f"lidar {_ALL_WHEELS} caster footprint names rpy",
+    Variant("footprint-too-high", 2, "footprint", _GROUND, (Edit(_FOOTPRINT, "0 0 0.1", "0 0 0.05"),)),
+    Variant("footprint-at-the-base", 1, "footprint", _GROUND, (Edit(_FOOTPRINT, "0 0 0.1", "0 0 0"),)),
+    Variant("green-full", 2, "green", "base-green", (Edit("green", "0 0.6 0 1", "0 1 0 1"),)),
+    Variant("green-see-through", 1, "green", "base-green", (Edit("green", "0 0.6 0 1", "0 0.6 0 0.8"),)),
+    Variant("no-joints", 1, f"lidar {_ALL_WHEELS} caster footprint names rpy",
         f"urdf-loads lidar-fixed lidar-frame lidar-on-top joint-names caster-placed footprint-root {_GROUND} "
         + _left("continuous", "placed", "forward", "axis", "spins", "clear")
         + _right("continuous", "placed", "forward", "axis", "spins", "clear"),
         tuple(Edit(joint, "") for joint in (_LIDAR, _LEFT, _RIGHT, _CASTER, _FOOTPRINT))),
-    Way("right-frame-turned-over", 1, f"{_RIGHT_SIDE} right-axis", "right-wheel-axis",
+    Variant("right-frame-turned-over", 1, f"{_RIGHT_SIDE} right-axis", "right-wheel-axis",
         (_RIGHT_TURNED, _RIGHT_OUTWARD, Edit(_RIGHT, "0 0 1", "0 0 -1"))),
-    Way("wheels-turned-in-visual", 1, _ALL_WHEELS, "left-wheel-axis right-wheel-axis",
+    Variant("wheels-turned-in-visual", 1, _ALL_WHEELS, "left-wheel-axis right-wheel-axis",
         (Edit(_LEFT, 'xyz="-0.15 0.2 0" rpy="-1.57 0 0"', 'xyz="-0.15 0.225 0"'), Edit(_LEFT, "0 0 1", "0 1 0"),
          Edit(_RIGHT, 'xyz="-0.15 -0.2 0" rpy="-1.57 0 0"', 'xyz="-0.15 -0.225 0"'), Edit(_RIGHT, "0 0 1", "0 1 0"),
          Edit("left_wheel", 'xyz="0 0 0.025" rpy="0 0 0"', 'rpy="1.57 0 0"'),
          Edit("right_wheel", 'xyz="0 0 -0.025" rpy="0 0 0"', 'rpy="1.57 0 0"'))),
-    Way("lidar-turning", 1, "lidar", "lidar-fixed", (Edit(_LIDAR, '"fixed"', '"continuous"'),)),
-    Way("lidar-dark", 1, "white", "lidar-white", (Edit("white", "0.9 0.9 0.9 1", "0.5 0.5 0.5 1"),)),
-    Way("wheels-black", 1, "gray", _left("gray") + _right("gray"), (Edit("gray", "0.7 0.7 0.7 1", "0 0 0 1"),)),
-    Way("base-half-sunk", 1, "base", "base-on-ground lidar-on-top", (Edit("base_link", "0 0 0.1", "0 0 0"),)),
-    Way("caster-behind", 1, "caster", "caster-placed", (Edit(_CASTER, "0.2 0 -0.05", "-0.2 0 -0.05"),)),
-    Way("wheel-misnamed", 1, "names", "joint-names", (Edit(_LEFT, f'"{_LEFT}"', '"left_wheel_joint"'),)),
+    Variant("lidar-turning", 1, "lidar", "lidar-fixed", (Edit(_LIDAR, '"fixed"', '"continuous"'),)),
+    Variant("lidar-dark", 1, "white", "lidar-white", (Edit("white", "0.9 0.9 0.9 1", "0.5 0.5 0.5 1"),)),
+    Variant("wheels-black", 1, "gray", _left("gray") + _right("gray"), (Edit("gray", "0.7 0.7 0.7 1", "0 0 0 1"),)),
+    Variant("base-half-sunk", 1, "base", "base-on-ground lidar-on-top", (Edit("base_link", "0 0 0.1", "0 0 0"),)),
+    Variant("caster-behind", 1, "caster", "caster-placed", (Edit(_CASTER, "0.2 0 -0.05", "-0.2 0 -0.05"),)),
+    Variant("wheel-misnamed", 1, "names", "joint-names", (Edit(_LEFT, f'"{_LEFT}"', '"left_wheel_joint"'),)),
 )
 
 # Nothing is lost by any of these.
 EQUIVALENTS = (
     *_quarter_turns(),
-    Way("right-joint-at-the-outer-face", 4, _RIGHT_SIDE, "", (Edit(_RIGHT, "-0.15 -0.2 0", "-0.15 -0.25 0"), _RIGHT_OUTWARD)),
-    Way("joints-at-centres", 6, "left-place right-place", "",
+    Variant("right-joint-at-the-outer-face", 4, _RIGHT_SIDE, "", (Edit(_RIGHT, "-0.15 -0.2 0", "-0.15 -0.25 0"), _RIGHT_OUTWARD)),
+    Variant("joints-at-centres", 6, "left-place right-place", "",
         (Edit(_LEFT, "-0.15 0.2 0", "-0.15 0.225 0"), Edit("left_wheel", '<origin xyz="0 0 0.025" rpy="0 0 0"/>'),
          Edit(_RIGHT, "-0.15 -0.2 0", "-0.15 -0.225 0"), Edit("right_wheel", '<origin xyz="0 0 -0.025" rpy="0 0 0"/>'))),
-    Way("left-a-little-off", 2, "left-place", "", (Edit(_LEFT, "-0.15 0.2 0", "-0.1505 0.2005 0"),)),
-    Way("box-turned", 3, "base", "",
+    Variant("left-a-little-off", 2, "left-place", "", (Edit(_LEFT, "-0.15 0.2 0", "-0.1505 0.2005 0"),)),
+    Variant("box-turned", 3, "base", "",
         (Edit("base_link", "0.6 0.4 0.2", "0.4 0.6 0.2"), Edit("base_link", '0.1" rpy="0 0 0"', '0.1" rpy="0 0 1.5708"'))),
     _lidar_at("lidar-a-little-off", 2, "0.1501 0 0.2255", ""),
-    Way("caster-offset-in-visual", 2, "caster", "",
+    Variant("caster-offset-in-visual", 2, "caster", "",
         (Edit(_CASTER, "0.2 0 -0.05", "0.2 0 0"), _in_visual("caster_wheel", "0 0 -0.05"))),
-    Way("white-1", 2, "white", "", (Edit("white", "0.9 0.9 0.9 1", "1 1 1 1"),)),
-    Way("white-0.8", 2, "white", "", (Edit("white", "0.9 0.9 0.9 1", "0.8 0.8 0.8 1"),)),
-    Way("white-0.95", 1, "white", "", (Edit("white", "0.9 0.9 0.9 1", "0.95 0.95 0.95 1"),)),
-    Way("wheels-see-through", 1, "gray", "", (Edit("gray", "0.7 0.7 0.7 1", "0.7 0.7 0.7 0.5"),)),
-    Way("green-in-the-link", 2, "green", "",
+    Variant("white-1", 2, "white", "", (Edit("white", "0.9 0.9 0.9 1", "1 1 1 1"),)),
+    Variant("white-0.8", 2, "white", "", (Edit("white", "0.9 0.9 0.9 1", "0.8 0.8 0.8 1"),)),
+    Variant("white-0.95", 1, "white", "", (Edit("white", "0.9 0.9 0.9 1", "0.95 0.95 0.95 1"),)),
+    Variant("wheels-see-through", 1, "gray", "", (Edit("gray", "0.7 0.7 0.7 1", "0.7 0.7 0.7 0.5"),)),
+    Variant("green-in-the-link", 2, "green", "",
         (Edit("green", ""), Edit("base_link", '"green"/>', '"green"><color rgba="0 0.6 0 1"/></material>'))),
-    Way("footprint-of-no-size", 2, "footprint", "",
+    Variant("footprint-of-no-size", 2, "footprint", "",
         (Edit("base_footprint", "/>", '>\n    <visual><geometry><box size="0 0 0"/></geometry></visual>\n  </link>'),)),
-    Way("name-in-closing-tag", 1, "footprint", "", (Edit("base_footprint", "/>", '></link name="base_footprint">'),)),
-    Way("footprint-joint-otherwise-named", 2, "footprint", "", (Edit(_FOOTPRINT, '"base_joint"', '"footprint_joint"'),)),
-    Way("camera", 2, "extra", "", (Edit("base_link", "</link>", _CAMERA),)),
-    Way("collision", 2, "physics", "", (Edit("base_link", "</visual>", _COLLISION),)),
-    Way("without-rpy", 3, "rpy", "", (Edit(_LIDAR, ' rpy="0 0 0"'), Edit(_CASTER, ' rpy="0 0 0"'))),
+    Variant("name-in-closing-tag", 1, "footprint", "", (Edit("base_footprint", "/>", '></link name="base_footprint">'),)),
+    Variant("footprint-joint-otherwise-named", 2, "footprint", "", (Edit(_FOOTPRINT, '"base_joint"', '"footprint_joint"'),)),
+    Variant("camera", 2, "extra", "", (Edit("base_link", "</link>", _CAMERA),)),
+    Variant("collision", 2, "physics", "", (Edit("base_link", "</visual>", _COLLISION),)),
+    Variant("without-rpy", 3, "rpy", "", (Edit(_LIDAR, ' rpy="0 0 0"'), Edit(_CASTER, ' rpy="0 0 0"'))),
 )
 
-# What has no edits is done to the whole text.
+# Variants without edits change the whole text.
 BROKEN = (
-    Way("tag-parent", 2, "", _EVERYTHING, (Edit(_LIDAR, "<parent link=", "<parent="),)),
-    Way("tag-origin", 2, "", _EVERYTHING, (Edit(_FOOTPRINT, "<origin xyz=", "<origin="),)),
-    Way("comma-between-attributes", 2, "", _EVERYTHING, (Edit("lidar", '"0.1" length', '"0.1", length'),)),
-    Way("comment-before-declaration", 2, "", _EVERYTHING, ()),
-    Way("declaration-without-quotes", 1, "", _EVERYTHING, ()),
-    Way("truncated", 2, "", _EVERYTHING, ()),
-    Way("text-after-robot", 2, "", _EVERYTHING, ()),
-    Way("closed-twice", 1, "", "", ()),  # the parser of ROS 2 reads past it
-    Way("joint-without-child", 1, "", "urdf-loads joint-names caster-placed stands-on-ground",
+    Variant("tag-parent", 2, "", _EVERYTHING, (Edit(_LIDAR, "<parent link=", "<parent="),)),
+    Variant("tag-origin", 2, "", _EVERYTHING, (Edit(_FOOTPRINT, "<origin xyz=", "<origin="),)),
+    Variant("comma-between-attributes", 2, "", _EVERYTHING, (Edit("lidar", '"0.1" length', '"0.1", length'),)),
+    Variant("comment-before-declaration", 2, "", _EVERYTHING, ()),
+    Variant("declaration-without-quotes", 1, "", _EVERYTHING, ()),
+    Variant("truncated", 2, "", _EVERYTHING, ()),
+    Variant("text-after-robot", 2, "", _EVERYTHING, ()),
+    Variant("closed-twice", 1, "", "", ()),  # the parser of ROS 2 reads past it
+    Variant("joint-without-child", 1, "", "urdf-loads joint-names caster-placed stands-on-ground",
         (Edit(_CASTER, '<child link="caster_wheel"/>'),)),
-    Way("joint-without-parent", 1, "", "urdf-loads caster-placed stands-on-ground",
+    Variant("joint-without-parent", 1, "", "urdf-loads caster-placed stands-on-ground",
         (Edit(_CASTER, '<parent link="base_link"/>'),)),
-    Way("unknown-link", 2, "", "urdf-loads lidar-fixed lidar-frame lidar-on-top joint-names",
+    Variant("unknown-link", 2, "", "urdf-loads lidar-fixed lidar-frame lidar-on-top joint-names",
         (Edit(_LIDAR, '<child link="lidar"/>', '<child link="lidr"/>'),)),
-    Way("duplicate-link", 2, "", "urdf-loads", (Edit("caster_wheel", "</link>", '</link>\n  <link name="caster_wheel"/>'),)),
+    Variant("duplicate-link", 2, "", "urdf-loads", (Edit("caster_wheel", "</link>", '</link>\n  <link name="caster_wheel"/>'),)),
 )
 # fmt: on
 
 
-def _bag(ways: Sequence[Way]) -> tuple[Way, ...]:
-    """Each as often as it weighs."""
-    return tuple(way for way in ways for _ in range(way.weight))
+def _bag(variants: Sequence[Variant]) -> tuple[Variant, ...]:
+    """Return each value as often as its weight."""
+    return tuple(variant for variant in variants for _ in range(variant.weight))
 
 
 _MISTAKES, _EQUIVALENTS, _BROKEN = _bag(MISTAKES), _bag(EQUIVALENTS), _bag(BROKEN)
@@ -233,12 +233,12 @@ _MISTAKES, _EQUIVALENTS, _BROKEN = _bag(MISTAKES), _bag(EQUIVALENTS), _bag(BROKE
 # --- One URDF ---------------------------------------------------------------------------------------------------------
 
 
-class Made(NamedTuple):
-    """A generated URDF: its text, its kind, how it was built, and exactly the criteria that it loses."""
+class GeneratedUrdf(NamedTuple):
+    """A generated URDF: its text, its kind, its variants, and exactly the criteria that it loses."""
 
     text: str
     sort: str
-    ways: tuple[str, ...]
+    variants: tuple[str, ...]
     lost: tuple[str, ...]
 
 
@@ -264,7 +264,7 @@ _ORIGIN = re.compile(r'(xyz="[^"]*") (rpy="[^"]*")')
 
 @cache
 def elements() -> dict[str, str]:
-    """The elements of the reference below <robot>, by name, without comments."""
+    """Return the elements of the reference below <robot>, by name, without comments."""
     text = re.sub(r"<!--.*?-->", "", (PACKAGE / URDF).read_text(encoding="utf-8"), flags=re.DOTALL)
     found = re.finditer(r'<(material|link|joint) name="([^"]+)"[^>]*?(?:/>|>.*?</\1>)', text, re.DOTALL)
     return {match[2]: re.sub(r" +\n", "\n", match[0]) for match in found}
@@ -272,13 +272,13 @@ def elements() -> dict[str, str]:
 
 @cache
 def criteria() -> tuple[str, ...]:
-    """The criteria of a URDF, in the order of the rubric."""
+    """Return the criteria of a URDF, in the order of the rubric."""
     rubric = tomllib.loads(RUBRIC.read_text(encoding="utf-8"))
-    return tuple(each["id"] for each in rubric["criterion"] if each["part"] == "task1")
+    return tuple(criterion["id"] for criterion in rubric["criterion"] if criterion["part"] == "task1")
 
 
-def make_urdf(dice: Dice, author: str) -> Made:
-    """A URDF as a student might write it: 37 in 100 are right, half of these with other numbers than the handout, 6 are broken."""
+def make_urdf(dice: Dice, author: str) -> GeneratedUrdf:
+    """Return a URDF like a student's: of 100, 37 are correct (half of them with other numbers than the handout), 6 broken."""
     throw = dice.random()
     if throw < 0.185:
         return built(dice, author, "as told", ())
@@ -291,32 +291,32 @@ def make_urdf(dice: Dice, author: str) -> Made:
     return built(dice, author, "broken", (dice.pick(_BROKEN),))
 
 
-def chosen(dice: Dice, bag: Sequence[Way], count: int, beside: Iterable[Way] = ()) -> tuple[Way, ...]:
-    """Return up to `count` ways that do not touch the elements of each other or of the ways in `beside`."""
-    taken = {part for way in beside for part in way.touches.split()}
-    found: list[Way] = []
+def chosen(dice: Dice, bag: Sequence[Variant], count: int, beside: Iterable[Variant] = ()) -> tuple[Variant, ...]:
+    """Return so many variants, or fewer, of which no two touch the same elements, nor those of `beside`."""
+    taken = {part for variant in beside for part in variant.touches.split()}
+    found: list[Variant] = []
     for _ in range(count):
-        way = dice.pick(bag)
-        if taken.isdisjoint(way.touches.split()):
-            taken.update(way.touches.split())
-            found.append(way)
+        variant = dice.pick(bag)
+        if taken.isdisjoint(variant.touches.split()):
+            taken.update(variant.touches.split())
+            found.append(variant)
     return tuple(found)
 
 
-def built(dice: Dice, author: str, sort: str, ways: Sequence[Way]) -> Made:
-    """The reference built these ways, in some style; the author's name makes it like no other."""
+def built(dice: Dice, author: str, sort: str, variants: Sequence[Variant]) -> GeneratedUrdf:
+    """Return the reference with these variants, in some style; the author's name makes it unique."""
     parts = dict(elements())
-    for way in ways:
-        for edit in way.edits:
+    for variant in variants:
+        for edit in variant.edits:
             parts[edit.element] = parts[edit.element].replace(edit.old, edit.new, 1) if edit.old else ""
-    lost = {criterion for way in ways for criterion in way.lost.split()}
-    named = tuple(each for each in criteria() if each in lost or _EVERYTHING in lost)
-    text = _spoilt(dice, _written(dice, author, parts), ways)
-    return Made(text, sort, tuple(way.name for way in ways), named)
+    lost = {criterion for variant in variants for criterion in variant.lost.split()}
+    named = tuple(criterion for criterion in criteria() if criterion in lost or _EVERYTHING in lost)
+    text = _spoilt(dice, _written(dice, author, parts), variants)
+    return GeneratedUrdf(text, sort, tuple(variant.name for variant in variants), named)
 
 
 def _written(dice: Dice, author: str, parts: dict[str, str]) -> str:
-    """Return the text of a robot; a style does not change its meaning."""
+    """Return the text of a robot; no two styles change its meaning."""
     texts = _in_order(dice, [part for part in parts.values() if part])
     share = dice.pick((0.0, 0.1, 0.4))
     blocks = (f"  {dice.pick(_COMMENTS)}\n  {part}" if dice.chance(share) else f"  {part}" for part in texts)
@@ -335,7 +335,7 @@ def _written(dice: Dice, author: str, parts: dict[str, str]) -> str:
 
 
 def _in_order(dice: Dice, texts: list[str]) -> list[str]:
-    """As in the handout, links before joints, or anyhow."""
+    """Return the elements as in the handout, links before joints, or in any order."""
     throw = dice.random()
     if throw < 0.6:
         return texts
@@ -343,7 +343,7 @@ def _in_order(dice: Dice, texts: list[str]) -> list[str]:
 
 
 def _other_digits(dice: Dice, numbers: str, share: float) -> str:
-    """The same numbers, some of them written with other digits."""
+    """Return the same numbers, some of them in other digits."""
     pieces = [_other_form(dice, piece) if dice.chance(share) else piece for piece in numbers.split()]
     return ("  " if dice.chance(0.1) else " ").join(pieces)
 
@@ -355,10 +355,10 @@ def _other_form(dice: Dice, number: str) -> str:
     return dice.pick(forms)
 
 
-def _spoilt(dice: Dice, text: str, ways: Sequence[Way]) -> str:
-    """Return the text after the changes of a way to the whole file, with the line endings of some system."""
+def _spoilt(dice: Dice, text: str, variants: Sequence[Variant]) -> str:
+    """Return the text after a variant's change of the whole of it, and with the line endings of some system."""
     below = text[text.index("<!--") :]
-    match ways[0].name if ways else "":
+    match variants[0].name if variants else "":
         case "comment-before-declaration":
             text = f'<!-- Lab 6 -->\n<?xml version="1.0"?>\n{below}'
         case "declaration-without-quotes":
@@ -377,7 +377,7 @@ def _spoilt(dice: Dice, text: str, ways: Sequence[Way]) -> str:
 
 
 class Person(NamedTuple):
-    """An invented student. `number` is the id in Canvas and Moodle, each with another digit in front."""
+    """A generated student. `number` is their number in Canvas and Moodle, each with another leading digit."""
 
     first: str
     last: str
@@ -387,7 +387,7 @@ class Person(NamedTuple):
 
     @property
     def name(self) -> str:
-        """The full name."""
+        """Return the full name."""
         return f"{self.first} {self.last}"
 
     @property
@@ -428,7 +428,7 @@ AWKWARD = (
 
 
 def person(seed: int, index: int, *, with_awkward: bool) -> Person:
-    """The student of this number; one in ten has an awkward name, if there may be any, and one in twelve is late."""
+    """Return the student of this number; one in ten has an awkward name, if allowed, and one in twelve is late."""
     dice = Dice(f"{seed}/person/{index}")
     first, last = dice.pick(_FIRST), "".join(dice.pick(_SYLLABLES) for _ in range(3))
     login = f"{last}{index:06d}"
@@ -444,7 +444,10 @@ def person(seed: int, index: int, *, with_awkward: bool) -> Person:
 
 
 class Item(NamedTuple):
-    """A file, a folder (`data` is None), or a symlink to `link`. `path` may contain bytes that are not UTF-8, as os.fsdecode writes them."""
+    """A file, a folder (`data` is None), or a link to `link`.
+
+    `path` may contain undecodable bytes, as os.fsdecode writes them.
+    """
 
     path: str
     data: bytes | None = None
@@ -452,7 +455,7 @@ class Item(NamedTuple):
 
 
 def zipped(items: Iterable[Item]) -> bytes:
-    """A zip of these."""
+    """Return a zip of these items."""
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w") as archive:
         for item in items:
@@ -464,7 +467,7 @@ def zipped(items: Iterable[Item]) -> bytes:
 
 
 def tarred(items: Iterable[Item]) -> bytes:
-    """A tar.gz of these."""
+    """Return a tar.gz of these items."""
     buffer = io.BytesIO()
     with tarfile.open(fileobj=buffer, mode="w", format=tarfile.PAX_FORMAT) as archive:
         for item in items:
@@ -478,7 +481,7 @@ def tarred(items: Iterable[Item]) -> bytes:
 
 
 def stored(data: bytes) -> bytes:
-    """Return a deflate stream without compression, because compressed data differs between versions of zlib."""
+    """Return an uncompressed deflate stream: zlib's output differs between versions."""
     pieces = [data[start : start + 65535] for start in range(0, len(data), 65535)] or [b""]
     last = len(pieces) - 1
     heads = (struct.pack("<B2H", index == last, len(piece), 65535 - len(piece)) for index, piece in enumerate(pieces))
@@ -487,7 +490,7 @@ def stored(data: bytes) -> bytes:
 
 @cache
 def bomb() -> bytes:
-    """A zip of 64 KiB that unpacks to 64 MiB of zeros: one deflate block with codes of one bit, a thousand to one."""
+    """Return a zip of 64 KiB that unpacks to 64 MiB of zeros: one deflate block with codes of one bit."""
     head, tail = bytes.fromhex("edc101010000008220ffaf6e484001"), bytes.fromhex("f706")
     data = head + bytes(65_000) + tail
     zeros = zlib.decompressobj(-15).decompress(data)
@@ -498,7 +501,7 @@ def bomb() -> bytes:
 
 
 def picture(dice: Dice) -> bytes:
-    """A PNG of one pixel."""
+    """Return a PNG of one pixel."""
 
     def chunk(name: bytes, data: bytes) -> bytes:
         return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
@@ -512,25 +515,25 @@ def picture(dice: Dice) -> bytes:
 # --- What is submitted ------------------------------------------------------------------------------------------------
 
 
-class Desk:
-    """A source of random choices and URDFs for one student. `made` is the URDF that counts; None if it is uncertain."""
+class ItemFactory:
+    """Random choices and URDFs for one student. `made` is the URDF that counts; None if it is uncertain."""
 
     def __init__(self, dice: Dice, author: str) -> None:
         self.dice, self._author = dice, author
-        self.made: Made | None = None
+        self.made: GeneratedUrdf | None = None
 
     def urdf(self) -> bytes:
-        """A new URDF, which counts from now on."""
+        """Return a new URDF, which counts from now on."""
         self.made = make_urdf(self.dice, self._author)
         return self.made.text.encode()
 
     def uncertain(self, data: bytes) -> bytes:
-        """Return the same bytes without an expected result."""
+        """Return the same bytes, with an unknown result."""
         self.made = None
         return data
 
     def garbage(self, count: int) -> bytes:
-        """Bytes that say nothing."""
+        """Return meaningless bytes."""
         return hashlib.shake_128(f"{self._author}".encode()).digest(count)
 
 
@@ -540,14 +543,14 @@ def _package() -> tuple[Item, ...]:
     return tuple(Item(path.relative_to(PACKAGE).as_posix(), path.read_bytes()) for path in files)
 
 
-def package(desk: Desk, top: str = "my_robot") -> list[Item]:
-    """The package with the student's URDF."""
+def package(desk: ItemFactory, top: str = "my_robot") -> list[Item]:
+    """Return the package with the student's URDF."""
     urdf = desk.urdf()
     return [Item(f"{top}/{item.path}", urdf if item.path == URDF else item.data) for item in _package()]
 
 
-def workspace(desk: Desk) -> list[Item]:
-    """Return a workspace with the files of an old build, pictures and answers."""
+def workspace(desk: ItemFactory) -> list[Item]:
+    """Return a workspace with the products of an old build, pictures and answers."""
     built_before = desk.urdf()
     stale = "roscourse_sim_ws/install/my_robot/share/my_robot"
     return [
@@ -559,15 +562,15 @@ def workspace(desk: Desk) -> list[Item]:
     ]
 
 
-def loose_files(desk: Desk) -> list[Item]:
-    """Pictures and answers."""
+def loose_files(desk: ItemFactory) -> list[Item]:
+    """Return pictures and answers."""
     answers = b"Task 1 Step 15: the model vanishes.\nTask 2 Step 2: rviz2 shows the robot.\n"
     names = ("Task1_Step8.png", "task1 step18.PNG", "Task1_Step36.png", "T3S3.png")
     return [*(Item(name, picture(desk.dice)) for name in names), Item("answers.txt", answers)]
 
 
-def single(desk: Desk) -> list[Item]:
-    """One URDF."""
+def single(desk: ItemFactory) -> list[Item]:
+    """Return one URDF."""
     return [Item("my_robot.urdf", desk.urdf())]
 
 
@@ -582,18 +585,18 @@ def _nested(count: int, data: bytes) -> bytes:
     return data
 
 
-def _wrapped(desk: Desk) -> list[Item]:
-    """A zip as macOS makes it."""
+def _wrapped(desk: ItemFactory) -> list[Item]:
+    """Return a zip as macOS makes it."""
     inside = [Item(f"Lab 6/{item.path}", item.data) for item in package(desk)]
     return [Item("lab6.zip", zipped([*inside, Item("__MACOSX/Lab 6/._my_robot", desk.garbage(100))]))]
 
 
-def _escaping(desk: Desk) -> list[Item]:
-    ways = ("../../escaped.urdf", "/escaped.urdf", "C:\\escaped.urdf", "a/../../../escaped.urdf")
-    return [*(Item(path, desk.uncertain(desk.urdf())) for path in ways), Item("notes.txt", b"nothing")]
+def _escaping(desk: ItemFactory) -> list[Item]:
+    variants = ("../../escaped.urdf", "/escaped.urdf", "C:\\escaped.urdf", "a/../../../escaped.urdf")
+    return [*(Item(path, desk.uncertain(desk.urdf())) for path in variants), Item("notes.txt", b"nothing")]
 
 
-def _links_out(_: Desk) -> list[Item]:
+def _links_out(_: ItemFactory) -> list[Item]:
     return [Item("my_robot", link="../../.."), Item("my_robot.urdf", link="/etc/hostname"), Item("again", link=".")]
 
 
@@ -602,22 +605,22 @@ def _cut(data: bytes) -> bytes:
 
 
 Attempts = list[list[Item]]
-Kind = Callable[[Desk], Attempts]
+Kind = Callable[[ItemFactory], Attempts]
 
 
-def _once(build: Callable[[Desk], list[Item]]) -> Kind:
+def _once(build: Callable[[ItemFactory], list[Item]]) -> Kind:
     return lambda desk: [build(desk)]
 
 
-def _raw(name: str, data: Callable[[Desk], bytes]) -> Kind:
-    """Return one file without an expected result."""
+def _raw(name: str, data: Callable[[ItemFactory], bytes]) -> Kind:
+    """Return one file with an unknown result."""
     return lambda desk: [[Item(name, desk.uncertain(data(desk)))]]
 
 
-def _folder(data: Callable[[Desk], list[Item]]) -> Kind:
-    """Return a folder without an expected result."""
+def _folder(data: Callable[[ItemFactory], list[Item]]) -> Kind:
+    """Return a folder with an unknown result."""
 
-    def build(desk: Desk) -> Attempts:
+    def build(desk: ItemFactory) -> Attempts:
         items = data(desk)
         desk.made = None
         return [items]
@@ -625,7 +628,7 @@ def _folder(data: Callable[[Desk], list[Item]]) -> Kind:
     return build
 
 
-# How many of each there are in a hundred or so students, in a class of all kinds. An empty list is no submission at all.
+# The number of each kind in a class of about a hundred. An empty list is a missing submission.
 KINDS: dict[str, tuple[int, Kind]] = {
     "nothing": (4, lambda _: []),
     "urdf": (22, _once(single)),
@@ -640,7 +643,7 @@ KINDS: dict[str, tuple[int, Kind]] = {
     "pictures-only": (4, _folder(loose_files)),
     "two-attempts": (3, lambda desk: [single(desk), single(desk)]),
     "three-zips": (2, lambda desk: [[Item("lab6.zip", zipped(package(desk)))] for _ in range(3)]),
-    "xacro": (1, _raw("my_robot.urdf.xacro", Desk.urdf)),
+    "xacro": (1, _raw("my_robot.urdf.xacro", ItemFactory.urdf)),
     "empty-folder": (1, _folder(lambda _: [Item("my_robot")])),
     "empty-file": (1, _raw("my_robot.urdf", lambda _: b"")),
     "empty-zip": (1, _raw("lab6.zip", lambda _: zipped([]))),
@@ -667,28 +670,28 @@ KINDS: dict[str, tuple[int, Kind]] = {
 }
 
 
-class ClassSubmission(NamedTuple):
+class GeneratedSubmission(NamedTuple):
     """The attempts of one student, and their kind. The last of the `attempts` counts; there may be none."""
 
     person: Person
     kind: str
     attempts: Attempts
-    made: Made | None
+    made: GeneratedUrdf | None
 
 
-def hand_ins(count: int, seed: int, kind: str) -> Iterator[ClassSubmission]:
-    """Return a class of this many students. A mixed class ends with one more submission, of nobody on the roster."""
+def submissions(count: int, seed: int, kind: str) -> Iterator[GeneratedSubmission]:
+    """Yield a class of so many students. A mixed one has one more, who is on no list and comes last."""
     is_mixed = kind == "mixed"
     for index in range(count + is_mixed):
         name = card(seed, index) if is_mixed and index < count else "urdf"
         who = person(seed, index, with_awkward=is_mixed)
-        desk = Desk(Dice(f"{seed}/hand-in/{index}"), who.login)
+        desk = ItemFactory(Dice(f"{seed}/hand-in/{index}"), who.login)
         attempts = KINDS[name][1](desk)
-        yield ClassSubmission(who, name, attempts, desk.made)
+        yield GeneratedSubmission(who, name, attempts, desk.made)
 
 
 def card(seed: int, index: int) -> str:
-    """The kind of a student's submission, dealt from decks in which there are as many cards of each kind as it should have."""
+    """Return the kind of a student's submission, drawn from shuffled decks with each kind in its proportion."""
     size = sum(weight for weight, _ in KINDS.values())
     return _deck(seed, index // size)[index % size]
 
@@ -704,10 +707,10 @@ def _deck(seed: int, number: int) -> list[str]:
 ENDINGS = (".urdf.xacro", ".tar.gz", ".urdf", ".zip")
 
 
-def in_folders(hand_in: ClassSubmission) -> Iterator[Item]:
-    """A file that is named after the student, or a folder; later attempts are numbered as browsers do."""
-    for number, items in enumerate(hand_in.attempts):
-        key = f"{hand_in.person.key} ({number})" if number else hand_in.person.key
+def in_folders(submission: GeneratedSubmission) -> Iterator[Item]:
+    """Yield a file named after the student, or a folder; later attempts are numbered as browsers do."""
+    for number, items in enumerate(submission.attempts):
+        key = f"{submission.person.key} ({number})" if number else submission.person.key
         ending = _only_ending(items)
         if ending:
             yield items[0]._replace(path=key + ending)
@@ -716,10 +719,10 @@ def in_folders(hand_in: ClassSubmission) -> Iterator[Item]:
             yield from _below(key, items)
 
 
-def in_canvas(hand_in: ClassSubmission) -> Iterator[Item]:
-    """Return all files in one folder; folders are zipped. The same name in a later attempt is numbered."""
-    who = hand_in.person
-    for number, items in enumerate(hand_in.attempts):
+def in_canvas(submission: GeneratedSubmission) -> Iterator[Item]:
+    """Yield files as in a Canvas download; folders are zipped. The same name in a later attempt is numbered."""
+    who = submission.person
+    for number, items in enumerate(submission.attempts):
         is_flat = all(item.data is not None and "/" not in item.path for item in items)
         files = items if is_flat else [Item("lab6.zip", zipped(_plainly(items)))]
         for position, item in enumerate(files):
@@ -730,40 +733,40 @@ def in_canvas(hand_in: ClassSubmission) -> Iterator[Item]:
             yield item._replace(path=f"{canvas_name(who)}{late}_{canvas_id(who)}_{attachment}_{name}")
 
 
-def in_moodle(hand_in: ClassSubmission) -> Iterator[Item]:
-    """A folder for each participant, with the last attempt in it."""
-    who = hand_in.person
-    if hand_in.attempts:
+def in_moodle(submission: GeneratedSubmission) -> Iterator[Item]:
+    """Yield a folder for each participant, with the last attempt in it."""
+    who = submission.person
+    if submission.attempts:
         top = f"{moodle_name(who)}_{moodle_id(who)}_assignsubmission_file"
         yield Item(top)
-        yield from _below(top, hand_in.attempts[-1])
+        yield from _below(top, submission.attempts[-1])
 
 
 _PLACING = {"folders": in_folders, "canvas": in_canvas, "moodle": in_moodle}
 
 
 def canvas_id(who: Person) -> int:
-    """The user's number in Canvas."""
+    """Return the user's number in Canvas."""
     return 100_000 + who.number
 
 
 def moodle_id(who: Person) -> int:
-    """The participant's number in Moodle."""
+    """Return the participant's number in Moodle."""
     return 5_000_000 + who.number
 
 
 def canvas_name(who: Person) -> str:
-    """The sortable name as Canvas writes it into the names of files: in lower case, letters and digits only."""
+    """Return the sortable name as Canvas writes it into file names: lower-case letters and digits only."""
     return re.sub(r"\W", "", re.sub(r"_(\d+)_", r"\1", f"{who.last}, {who.first}")).lower()
 
 
 def moodle_name(who: Person) -> str:
-    """Return the full name as Moodle writes it in folder names: without characters that file names cannot have."""
+    """Return the full name as Moodle writes it into folder names, without characters that file names may not have."""
     return re.sub(r'[\x00-\x1f\\/:*?"<>|&]', "", who.name.replace("_", " ")).strip()
 
 
 def _only_ending(items: Sequence[Item]) -> str:
-    """The ending of the one file that was submitted; empty where it is something else."""
+    """Return the ending of the single submitted file; empty if there is no single file."""
     if len(items) != 1 or items[0].data is None or "/" in items[0].path:
         return ""
     return next((ending for ending in ENDINGS if items[0].path.endswith(ending)), "")
@@ -774,12 +777,12 @@ def _below(top: str, items: Iterable[Item]) -> Iterator[Item]:
 
 
 def _plainly(items: Iterable[Item]) -> Iterator[Item]:
-    """Return the files with names that a zip can contain."""
+    """Return the items with names that a zip can hold."""
     return (item._replace(path=os.fsencode(item.path).decode("latin-1")) for item in items)
 
 
 def write(root: str, item: Item) -> None:
-    """Write a file, folder or symlink below a folder; skip what the file system does not support."""
+    """Write a file, folder or link below a folder; omit what the file system cannot hold."""
     path = f"{root}/{item.path}"
     if item.data is not None and "/" not in item.path:
         with open(path, "wb") as file:  # noqa: PTH123  a hundred thousand of them
@@ -798,31 +801,31 @@ def write(root: str, item: Item) -> None:
 # --- The class --------------------------------------------------------------------------------------------------------
 
 
-class Written(NamedTuple):
-    """A written submission: student, kind, top names of the last attempt, and the criteria that it loses, if known."""
+class WrittenSubmission(NamedTuple):
+    """A written submission: student, kind, paths (top names of the last attempt), and its lost criteria if certain."""
 
     person: Person
     kind: str
     paths: tuple[str, ...]
-    made: Made | None
+    made: GeneratedUrdf | None
 
 
 def make_class(
     folder: Path, count: int, seed: int = 1, kind: str = "urdf", layout: str = "folders"
-) -> Iterator[Written]:
+) -> Iterator[WrittenSubmission]:
     """Write a class into a folder, one submission after the other."""
     folder.mkdir(parents=True, exist_ok=True)
-    root, place = str(folder), _PLACING[layout]
-    for hand_in in hand_ins(count, seed, kind):
+    root, target = str(folder), _PLACING[layout]
+    for submission in submissions(count, seed, kind):
         tops: dict[str, None] = {}
-        for item in place(hand_in):
+        for item in target(submission):
             write(root, item)
             tops[item.path.partition("/")[0]] = None
-        yield Written(hand_in.person, hand_in.kind, tuple(tops), hand_in.made)
+        yield WrittenSubmission(submission.person, submission.kind, tuple(tops), submission.made)
 
 
 def roster(people: Iterable[Person]) -> str:
-    """A roster of an instructor's own."""
+    """Return an instructor's roster."""
     header = ["id", "name", "email", "login", "canvas id", "moodle id", "late"]
     rows = (
         [_sis(who), who.name, _email(who), who.login, canvas_id(who), moodle_id(who), "yes" if who.is_late else ""]
@@ -832,15 +835,15 @@ def roster(people: Iterable[Person]) -> str:
 
 
 def canvas_gradebook(people: Iterable[Person]) -> str:
-    """A gradebook as Canvas exports it, with one assignment and no grades."""
+    """Return a gradebook as Canvas exports it, with one assignment and no grades."""
     header = ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", "Lab 6 (98765)"]
     points = ["    Points Possible", "", "", "", "", "100.00"]
     rows = ([f"{who.last}, {who.first}", canvas_id(who), _sis(who), who.login, "Lab group 1", ""] for who in people)
     return _csv(header, [points, *rows], "\n")
 
 
-def moodle_worksheet(people: Iterable[Person], handed_in: set[Person]) -> str:
-    """A grading worksheet of Moodle, without grades."""
+def moodle_worksheet(people: Iterable[Person], submitted: set[Person]) -> str:
+    """Return a Moodle grading worksheet without grades."""
     header = [
         "Identifier", "Full name", "Email address", "Status", "Grade", "Maximum grade", "Grade can be changed",
         "Last modified (submission)", "Last modified (grade)", "Feedback comments",
@@ -848,8 +851,8 @@ def moodle_worksheet(people: Iterable[Person], handed_in: set[Person]) -> str:
     rows = (
         [
             f"Participant {moodle_id(who)}", who.name, _email(who),
-            "Submitted for grading" if who in handed_in else "No submission", "", "100.00", "Yes",
-            "Tuesday, 1 September 2026, 10:00 AM" if who in handed_in else "-", "-", "",
+            "Submitted for grading" if who in submitted else "No submission", "", "100.00", "Yes",
+            "Tuesday, 1 September 2026, 10:00 AM" if who in submitted else "-", "-", "",
         ]
         for who in people
     )  # fmt: skip
@@ -872,14 +875,14 @@ def _csv(header: list[str], rows: Iterable[Sequence[Any]], end: str) -> str:
     return buffer.getvalue()
 
 
-def expectation(written: Written) -> dict[str, Any]:
+def expectation(written: WrittenSubmission) -> dict[str, Any]:
     """Return the known data of a submission; `lost` are all criteria of the URDF that it loses, null if uncertain."""
     made = written.made
     return {
         "kind": written.kind,
         "paths": [os.fsencode(path).decode("utf-8", "replace") for path in written.paths],
         "sort": made.sort if made else None,
-        "ways": made.ways if made else None,
+        "variants": made.variants if made else None,
         "lost": made.lost if made else None,
     }
 
@@ -912,18 +915,23 @@ def main() -> None:
 
 
 def write_beside(
-    written: Sequence[Written], count: int, layout: str, expected: Path | None, people: Path | None, lms: Path | None
+    written: Sequence[WrittenSubmission],
+    count: int,
+    layout: str,
+    expected: Path | None,
+    people: Path | None,
+    lms: Path | None,
 ) -> None:
-    """Write the lists of a class. Students after the first `count` are in no list."""
-    students = [each.person for each in written[:count]]
+    """Write the files that belong to a class but are not in it. Students after the first `count` are on no list."""
+    students = [submission.person for submission in written[:count]]
     if expected:
-        known = {each.person.key: expectation(each) for each in written}
+        known = {submission.person.key: expectation(submission) for submission in written}
         expected.write_text(json.dumps(known, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     if people:
         people.write_bytes(roster(students).encode())
     if lms:
-        handed_in = {each.person for each in written if each.paths}
-        text = moodle_worksheet(students, handed_in) if layout == "moodle" else canvas_gradebook(students)
+        submitted = {submission.person for submission in written if submission.paths}
+        text = moodle_worksheet(students, submitted) if layout == "moodle" else canvas_gradebook(students)
         lms.write_bytes(text.encode())
 
 

@@ -1,6 +1,7 @@
 """Measurements behind the speed claims: `python benchmarks/run.py`. Quote the ratios; absolute times are the machine's.
 
-Every pair is timed in turn, A B A B, so that a machine whose speed drifts does not favour either.
+Quote the ratios; absolute times depend on the machine. Every pair is timed alternately, A
+B A B, so that a machine whose speed drifts favours neither.
 """
 
 import contextlib
@@ -53,7 +54,7 @@ def main() -> None:
 
 
 def whole_process(runs: int = 15) -> None:
-    """The whole process against importing the packages that it is built on in a bare interpreter."""
+    """Compare the whole process with importing its dependencies in a bare interpreter."""
     python, module = sys.executable, [sys.executable, "-m", "grader"]
     commands = {
         "bare imports": [python, "-c", BARE],
@@ -69,15 +70,15 @@ def whole_process(runs: int = 15) -> None:
 
 
 def whole_packages(runs: int = 15) -> None:
-    """A package, a workspace with answers and pictures, and the same zipped, against the URDF in them alone, as processes."""
+    """Compare processes that grade a package, a workspace with answers and pictures, and its zip with the URDF alone."""
     module = [sys.executable, "-m", "grader"]
-    handed_in = {"the URDF alone": URDF, "package": PACKAGE, "workspace": WORKSPACE, "zip": ZIPPED}
-    times = in_turn({name: process([*module, "grade", str(path)]) for name, path in handed_in.items()}, runs)
+    submitted = {"the URDF alone": URDF, "package": PACKAGE, "workspace": WORKSPACE, "zip": ZIPPED}
+    times = in_turn({name: process([*module, "grade", str(path)]) for name, path in submitted.items()}, runs)
     table("Whole hand-ins as a whole process", times, "the URDF alone", "grade my_robot.urdf")
 
 
 def all_formats(runs: int = 25) -> None:
-    """One run that saves every format against the run that saves one, for a hand-in with mistakes and one without."""
+    """Compare a run that saves every format with one that saves one, for a submission with mistakes and one without."""
     for name in ("several-mistakes", "reference"):
         command = [sys.executable, "-m", "grader", "grade", str(ROOT / "submissions" / name)]
         with tempfile.TemporaryDirectory() as folder:
@@ -92,19 +93,19 @@ def all_formats(runs: int = 25) -> None:
 
 
 def warm_packages(runs: int = 15) -> None:
-    """Opening and grading a whole hand-in in a running process against the URDF in it alone."""
+    """Compare opening and grading a whole submission in a running process with the URDF in it alone."""
     rubric = load_rubric("lab6")
 
     def grading(path: Path) -> Callable[[], object]:
         return lambda: grade(rubric, open_submission(str(path), wanted=rubric.urdf, package=rubric.package))
 
-    handed_in = {"the URDF alone": URDF, "package": PACKAGE, "workspace": WORKSPACE, "zip": ZIPPED}
-    times = in_turn({name: repeated(grading(path), 10) for name, path in handed_in.items()}, runs)
+    submitted = {"the URDF alone": URDF, "package": PACKAGE, "workspace": WORKSPACE, "zip": ZIPPED}
+    times = in_turn({name: repeated(grading(path), 10) for name, path in submitted.items()}, runs)
     table("Whole hand-ins, warm, from a path to the report", times, "the URDF alone", "grade my_robot.urdf")
 
 
 def warm_grading(runs: int = 25) -> None:
-    """Grading in a running process against lxml's own parse of the same bytes."""
+    """Compare grading in a running process with lxml's own parse of the same bytes."""
     rubric, data = load_rubric("lab6"), URDF.read_bytes()
 
     def grade_once() -> None:
@@ -127,7 +128,7 @@ def warm_grading(runs: int = 25) -> None:
 
 
 def inspecting(runs: int = 10) -> None:
-    """inspect as a whole process against other readers of URDF, where they are installed."""
+    """Compare inspect as a whole process with other readers of URDF, if they are installed."""
     commands = {"grader inspect": process([sys.executable, "-m", "grader", "inspect", str(URDF), "--format", "json"])}
     program = check_urdf()
     if program is not None:
@@ -145,7 +146,7 @@ def inspecting(runs: int = 10) -> None:
 
 
 def forward_kinematics() -> None:
-    """Every pose of a chain of revolute joints, read once and solved anew."""
+    """Measure every pose of a chain of revolute joints, read once and solved anew."""
     print("\nForward kinematics, every link's pose in the root")
     for count in CHAIN:
         reading = read_urdf(chain(count), "chain.urdf")
@@ -174,7 +175,7 @@ def chain(count: int) -> bytes:
 
 
 def other_parsers(data: bytes) -> list[tuple[str, Callable[[], object]]]:
-    """urdf_parser_py in the same process, where it is installed."""
+    """Measure urdf_parser_py in the same process, if it is installed."""
     if find_spec("urdf_parser_py") is None:
         return []
     parser = import_module("urdf_parser_py.urdf").URDF
@@ -187,7 +188,7 @@ def other_parsers(data: bytes) -> list[tuple[str, Callable[[], object]]]:
 
 
 def check_urdf() -> Path | None:
-    """urdfdom's own program, where the test extra is installed."""
+    """Measure urdfdom's own program, if the test extra is installed."""
     try:
         return Path(str(distribution("cmeel-urdfdom").locate_file("cmeel.prefix/bin/check_urdf")))
     except PackageNotFoundError:
@@ -205,14 +206,14 @@ def process(command: list[str], environment: dict[str, str] | None = None) -> Ca
 
 
 def process_environment() -> dict[str, str]:
-    """The environment of a process that finds its bytecode ready, as an installed package does."""
+    """Return the environment of a process that finds its bytecode ready, as an installed package does."""
     environment = {**os.environ, "PYTHONPYCACHEPREFIX": str(Path(tempfile.gettempdir()) / "grader-benchmark")}
     environment.pop("PYTHONDONTWRITEBYTECODE", None)
     return environment
 
 
 def repeated(run: Callable[[], object], count: int) -> Callable[[], float]:
-    """Several runs in one; seconds for each."""
+    """Return a function that runs several times and returns the seconds for each."""
 
     def batch() -> float:
         start = time.perf_counter()
@@ -224,7 +225,7 @@ def repeated(run: Callable[[], object], count: int) -> Callable[[], float]:
 
 
 def once(run: Callable[[], object]) -> float:
-    """Seconds that a call takes."""
+    """Return the seconds that a call takes."""
     start = time.perf_counter()
     run()
     return time.perf_counter() - start

@@ -15,7 +15,7 @@ from grader.report.terminal import render_terminal
 from grader.submission.submission import open_submission
 
 DOCS = Path(__file__).resolve().parent
-SHOWN = DOCS.parent / "submissions" / "lidar-offset-in-visual" / "my_robot.urdf"
+SAMPLE = DOCS.parent / "submissions" / "lidar-offset-in-visual" / "my_robot.urdf"
 
 
 def pages() -> dict[str, str]:
@@ -85,7 +85,7 @@ def checks() -> str:
 def picture() -> str:
     """Return the report on a sample submission as a drawing of a terminal, in SVG."""
     rubric = load_rubric("lab6")
-    report = grade(rubric, open_submission(str(SHOWN), wanted=rubric.urdf, package=rubric.package))
+    report = grade(rubric, open_submission(str(SAMPLE), wanted=rubric.urdf, package=rubric.package))
     console = Console(
         record=True, width=80, file=StringIO(), force_terminal=True, color_system="truecolor", highlight=False
     )

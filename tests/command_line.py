@@ -15,7 +15,7 @@ from unittest.mock import patch
 from grader.__main__ import main
 
 ROOT = Path(__file__).parent.parent
-PATIENCE = 300.0  # seconds after which a command counts as hanging, also on a busy machine
+HANG_TIMEOUT = 300.0  # seconds after which a command counts as hanging, even on a busy machine
 
 GRADER = (sys.executable, "-W", "error", "-m", "grader")
 Done = subprocess.CompletedProcess[bytes]
@@ -26,27 +26,29 @@ _READ_AT_START = ("PYTHON", "LANG", "LC_", "TZ")
 
 
 def run(arguments: Sequence[object], **variables: str) -> Done:
-    """Run the command line from the project's root, in this process where that shows the same."""
+    """Run the command line from the project's root, in this process if the result is the same."""
     return run_with_input(arguments, b"", variables)
 
 
 def run_with_input(
     arguments: Sequence[object], stdin: bytes, variables: Mapping[str, str] = {}, folder: Path = ROOT
 ) -> Done:
-    """As `run`, with something on standard input, or from another folder."""
-    words = [os.fsdecode(each) if isinstance(each, bytes) else str(each) for each in arguments]
-    own = any(each in words for each in _OWN_PROCESS) or any(each.startswith(_READ_AT_START) for each in variables)
-    if own or current_thread() is not main_thread():  # the streams, the variables and the folder are the process's
+    """Run the command line like `run`, with standard input or from another folder."""
+    words = [os.fsdecode(argument) if isinstance(argument, bytes) else str(argument) for argument in arguments]
+    own = any(option in words for option in _OWN_PROCESS) or any(
+        variable.startswith(_READ_AT_START) for variable in variables
+    )
+    if own or current_thread() is not main_thread():  # streams, variables and the current folder belong to the process
         return run_process(words, stdin, variables, folder)
     with TemporaryFile() as given, TemporaryFile() as out, TemporaryFile() as err:
         given.write(stdin)
         given.seek(0)
-        with chdir(folder), _process_state(words, {**surroundings(), **variables}, (given, out, err)):
+        with chdir(folder), _process_state(words, {**clean_environment(), **variables}, (given, out, err)):
             code = _exit_code()
         texts = []
-        for each in (out, err):
-            each.seek(0)
-            texts.append(each.read())
+        for stream in (out, err):
+            stream.seek(0)
+            texts.append(stream.read())
     return subprocess.CompletedProcess(words, code, *texts)
 
 
@@ -57,16 +59,16 @@ def run_process(
     return subprocess.run(
         [*GRADER, *arguments],
         cwd=folder,
-        env={**surroundings(), **variables},
+        env={**clean_environment(), **variables},
         input=stdin,
         capture_output=True,
         check=False,
-        timeout=PATIENCE,
+        timeout=HANG_TIMEOUT,
     )
 
 
-def surroundings() -> dict[str, str]:
-    """The variables of a command: 80 columns, UTF-8, and nothing else that changes what is printed."""
+def clean_environment() -> dict[str, str]:
+    """Return the variables of a command: 80 columns, UTF-8, and nothing else that changes the output."""
     return {**os.environ, "COLUMNS": "80", "PYTHONIOENCODING": "utf-8"}
 
 
@@ -81,7 +83,7 @@ def _exit_code() -> int:
 
 @contextmanager
 def _process_state(words: list[str], variables: Mapping[str, str], files: tuple[IO[bytes], ...]) -> Iterator[None]:
-    """Set what a process is started with: arguments, variables and standard streams; put everything back."""
+    """Set arguments, variables and standard streams as at the start of a process, and restore them."""
     with (
         patch.dict(os.environ, variables, clear=True),
         patch.object(sys, "argv", ["grader", *words]),

@@ -1,4 +1,4 @@
-"""What holds for all tests: they depend on no variable of the machine, and files with slow tests are started first."""
+"""Settings for all tests: they depend on no variable of the machine, and files with slow tests start first."""
 
 import gc
 import os
@@ -10,35 +10,35 @@ from hypothesis import settings
 settings.register_profile("patient", settings(), deadline=None)  # examples have no time limit of their own
 settings.load_profile("patient")
 
-# A shell that runs a command behind `&` has it ignore Ctrl-C, and so would the commands that the tests start and interrupt.
+# A command that a shell starts with `&` ignores Ctrl-C, and so would the commands that the tests start and interrupt.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-# On a CI system the grader annotates, and takes the checkout for the repository; in a git hook git is told of another
-# repository; colours and widths change what is printed; pip may be told to install elsewhere. Tests that want it so say so.
+# On a CI system the grader annotates, and takes the checkout for the repository; a git hook sets variables for another
+# repository; colours and widths change the output; pip may have another target. Tests that need a variable set it.
 _NAMES = (
     "CI", "CI_PROJECT_DIR", "CLICOLOR_FORCE", "COLUMNS", "FORCE_COLOR", "NO_COLOR", "PYTHONDONTWRITEBYTECODE",
     "PYTHONHASHSEED", "PYTHONOPTIMIZE", "PYTHONWARNINGS", "TTY_COMPATIBLE", "TTY_INTERACTIVE",
 )  # fmt: skip
 _BEGINNINGS = ("GITHUB_", "GIT_", "GRADER_", "PIP_", "_TYPER_")
-for name in [each for each in os.environ if each in _NAMES or each.startswith(_BEGINNINGS)]:
+for name in [name for name in os.environ if name in _NAMES or name.startswith(_BEGINNINGS)]:
     del os.environ[name]
-# Nor do the settings of a user's git count.
+# The user's git settings are ignored as well.
 os.environ |= {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_NOSYSTEM": "1"}
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Start with the files that hold slow tests: each file is run by one worker, and none shall wait for it in the end."""
-    slow = {each.path for each in items if each.get_closest_marker("slow")}
-    items.sort(key=lambda each: each.path not in slow)
+    """Start with the files that contain slow tests, because one worker runs a file and no other should wait for it."""
+    slow = {item.path for item in items if item.get_closest_marker("slow")}
+    items.sort(key=lambda item: item.path not in slow)
 
 
 def pytest_xdist_auto_num_workers() -> int:
-    """One worker more than there are processors: some tests wait for a process, a limit of time or a connection."""
+    """Return one worker more than there are processors, because some tests wait for a process, a timer or a connection."""
     return (os.cpu_count() or 1) + 1
 
 
 def pytest_collection_finish() -> None:
-    """Take the objects of ten thousand tests out of the garbage collector, which would look through them again and again."""
+    """Exclude the objects of ten thousand tests from the garbage collector, which would scan them again and again."""
     gc.collect()
     gc.freeze()

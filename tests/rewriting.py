@@ -1,7 +1,7 @@
 """Random ways to write the same robot: other frames, other order, other numbers, other text, same behaviour.
 
-Every step changes what the file says and nothing that the lab's criteria speak of. A step asks the tree for what it
-needs and leaves alone what it cannot use, so that a robot with a mistake in it can be rewritten, too.
+Every step changes the file but nothing that the lab's criteria measure. A step changes only the elements that it can use,
+so that a robot with a mistake in it can be rewritten, too.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -52,12 +52,12 @@ _FLIP = np.diag([1.0, -1.0, -1.0, 1.0])
 
 
 def parse(data: bytes) -> Element:
-    """The tree of a URDF, without its comments and blank space."""
+    """Return the element tree of a URDF, without comments and blank space."""
     return etree.fromstring(data, etree.XMLParser(remove_comments=True, remove_blank_text=True))
 
 
 def matrix(xyz: Iterable[float], rpy: Iterable[float]) -> Matrix:
-    """The 4 x 4 matrix of an origin: Rz(yaw) Ry(pitch) Rx(roll), written out as a product."""
+    """Return the 4 x 4 matrix of an origin: Rz(yaw) Ry(pitch) Rx(roll), written out as a product."""
     roll, pitch, yaw = rpy
     about_x = np.array([[1, 0, 0], [0, cos(roll), -sin(roll)], [0, sin(roll), cos(roll)]])
     about_y = np.array([[cos(pitch), 0, sin(pitch)], [0, 1, 0], [-sin(pitch), 0, cos(pitch)]])
@@ -69,7 +69,7 @@ def matrix(xyz: Iterable[float], rpy: Iterable[float]) -> Matrix:
 
 
 def angles(rotation: Matrix) -> tuple[float, float, float]:
-    """Roll, pitch and yaw of a rotation; a roll of 0 where the pitch is a quarter turn."""
+    """Return roll, pitch and yaw of a rotation; the roll is 0 if the pitch is a quarter turn."""
     level = hypot(rotation[0, 0], rotation[1, 0])
     pitch = atan2(-rotation[2, 0], level)
     if level < 1e-7:
@@ -78,76 +78,76 @@ def angles(rotation: Matrix) -> tuple[float, float, float]:
 
 
 def written(values: Iterable[float]) -> str:
-    """Numbers as an attribute holds them."""
+    """Return numbers as an attribute contains them."""
     return " ".join(f"{value:.13g}" for value in values)
 
 
 def numbers_of(element: Element | None, attribute: str, default: str = "0 0 0") -> list[float]:
-    """The numbers of an attribute."""
+    """Return the numbers of an attribute."""
     text = default if element is None else element.get(attribute, default)
     return [float(piece) for piece in text.split()]
 
 
 def pose(owner: Element) -> Matrix:
-    """What the `<origin>` of a joint or a visual says."""
+    """Return the pose in the `<origin>` of a joint or a visual."""
     origin = owner.find("origin")
     return matrix(numbers_of(origin, "xyz"), numbers_of(origin, "rpy"))
 
 
-def put(owner: Element, place: Matrix) -> None:
-    """Write this pose into the `<origin>` of a joint or a visual."""
+def put(owner: Element, transform: Matrix) -> None:
+    """Write a pose into the `<origin>` of a joint or a visual."""
     origin = owner.find("origin")
     if origin is None:
         origin = etree.SubElement(owner, "origin")
-    origin.set("xyz", written(place[:3, 3]))
-    origin.set("rpy", written(angles(place)))
+    origin.set("xyz", written(transform[:3, 3]))
+    origin.set("rpy", written(angles(transform)))
 
 
 def link_named(tree: Element, name: str) -> Element | None:
-    """The link of this name."""
+    """Return the link of this name."""
     return next((link for link in tree.iterchildren("link") if link.get("name") == name), None)
 
 
 def end(joint: Element, role: str) -> Element:
-    """The `<parent>` or `<child>` of a joint."""
+    """Return the `<parent>` or `<child>` of a joint."""
     found = joint.find(role)
     assert found is not None
     return found
 
 
-def holding(tree: Element, link: str) -> Element | None:
-    """The joint whose child is this link."""
+def parent_joint(tree: Element, link: str) -> Element | None:
+    """Return the joint whose child is this link."""
     return next((joint for joint in tree.iterchildren("joint") if end(joint, "child").get("link") == link), None)
 
 
-def place_frame(tree: Element, link: Element, change: Matrix) -> None:
-    """Move a link's frame by `change`, seen from the frame, and everything in the link back: nothing else moves."""
+def move_frame(tree: Element, link: Element, change: Matrix) -> None:
+    """Move a link's frame by `change`, given in the frame, and everything in the link back: nothing else moves."""
     name = link.get("name", "")
-    held = holding(tree, name)
+    held = parent_joint(tree, name)
     assert held is not None
     back = np.linalg.inv(change)
     put(held, pose(held) @ change)
     axis = held.find("axis")
     if axis is not None:
         axis.set("xyz", written(back[:3, :3] @ numbers_of(axis, "xyz")))
-    for each in link:
-        put(each, back @ pose(each))
+    for element in link:
+        put(element, back @ pose(element))
     for joint in tree.iterchildren("joint"):
         if end(joint, "parent").get("link") == name:
             put(joint, back @ pose(joint))
 
 
 def fresh(tree: Element, kind: str) -> str:
-    """A name that nothing in the robot has."""
+    """Return a name that nothing in the robot has."""
     return f"extra_{kind}_{len(tree)}"
 
 
-def add_joint(tree: Element, name: str, parent: str, child: str, place: Matrix) -> Element:
+def add_joint(tree: Element, name: str, parent: str, child: str, transform: Matrix) -> Element:
     """Add a fixed joint."""
     joint = etree.SubElement(tree, "joint", {"name": name, "type": "fixed"})
     etree.SubElement(joint, "parent", {"link": parent})
     etree.SubElement(joint, "child", {"link": child})
-    put(joint, place)
+    put(joint, transform)
     return joint
 
 
@@ -178,7 +178,7 @@ def _one_of(draw: st.DrawFn, elements: Iterable[Element]) -> Element | None:
 
 
 def split_joint(draw: st.DrawFn, tree: Element) -> None:
-    """Put an empty link into the middle of a joint; before a moving joint, if it moves. The name stays on the way."""
+    """Put an empty link into the middle of a joint, before it if it moves. The name stays in the chain."""
     joint = _one_of(draw, tree.iterchildren("joint"))
     assert joint is not None
     middle = fresh(tree, "link")
@@ -197,8 +197,8 @@ def split_joint(draw: st.DrawFn, tree: Element) -> None:
 
 
 def add_hub(draw: st.DrawFn, tree: Element) -> None:
-    """Let a wheel's joint turn a hub on which the wheel is fixed, somewhere along the joint's axis."""
-    joint = _one_of(draw, (each for each in tree.iterchildren("joint") if each.get("type") == "continuous"))
+    """Let a wheel's joint turn a hub to which the wheel is fixed, somewhere along the joint's axis."""
+    joint = _one_of(draw, (joint for joint in tree.iterchildren("joint") if joint.get("type") == "continuous"))
     if joint is None or not _turns_about_z(joint):
         return
     hub, child, shift = fresh(tree, "link"), end(joint, "child"), draw(_along_z)
@@ -209,28 +209,28 @@ def add_hub(draw: st.DrawFn, tree: Element) -> None:
 
 
 def move_wheel_frame(draw: st.DrawFn, tree: Element) -> None:
-    """Slide a wheel's frame along its z axis and turn it about it; the picture stays."""
+    """Slide a wheel's frame along its z axis and turn it about it; the visual stays."""
     link = link_named(tree, draw(st.sampled_from(("left_wheel", "right_wheel"))))
-    joint = holding(tree, link.get("name", "")) if link is not None else None
+    joint = parent_joint(tree, link.get("name", "")) if link is not None else None
     if link is not None and joint is not None:
-        place_frame(tree, link, draw(_along_z if _turns_about_z(joint) else _about_z))
+        move_frame(tree, link, draw(_along_z if _turns_about_z(joint) else _about_z))
 
 
 def move_caster_frame(draw: st.DrawFn, tree: Element) -> None:
-    """Put the caster's frame anywhere; the picture stays."""
+    """Put the caster's frame anywhere; the visual stays."""
     link = link_named(tree, "caster_wheel")
-    if link is not None and holding(tree, "caster_wheel") is not None:
-        place_frame(tree, link, draw(_poses))
+    if link is not None and parent_joint(tree, "caster_wheel") is not None:
+        move_frame(tree, link, draw(_poses))
 
 
 def turn_lidar_frame(draw: st.DrawFn, tree: Element) -> None:
-    """Turn the lidar's frame on the spot; the picture stays."""
+    """Turn the lidar's frame in place; the visual stays."""
     link = link_named(tree, "lidar")
-    if link is not None and holding(tree, "lidar") is not None:
-        place_frame(tree, link, draw(_rotations))
+    if link is not None and parent_joint(tree, "lidar") is not None:
+        move_frame(tree, link, draw(_rotations))
 
 
-def turn_picture(draw: st.DrawFn, tree: Element) -> None:
+def turn_visual(draw: st.DrawFn, tree: Element) -> None:
     """Turn a shape within its own symmetry, a box onto any of its sides: it looks the same."""
     visual = _one_of(draw, tree.iterfind("link/visual"))
     assert visual is not None
@@ -256,7 +256,7 @@ def _turns_about_z(joint: Element) -> bool:
 
 
 def other_angles(draw: st.DrawFn, tree: Element) -> None:
-    """Write a rotation with full turns more or less, or by its other three angles."""
+    """Write a rotation with additional full turns, or by its other three angles."""
     origin = _one_of(draw, tree.iter("origin"))
     assert origin is not None
     roll, pitch, yaw = numbers_of(origin, "rpy")
@@ -267,19 +267,19 @@ def other_angles(draw: st.DrawFn, tree: Element) -> None:
 
 
 def scale_axis(draw: st.DrawFn, tree: Element) -> None:
-    """Make an axis longer or shorter."""
+    """Scale an axis."""
     axis = _one_of(draw, tree.iter("axis"))
     assert axis is not None
     factor = 10 ** draw(st.floats(-3, 3))
-    axis.set("xyz", written(factor * each for each in numbers_of(axis, "xyz")))
+    axis.set("xyz", written(factor * number for number in numbers_of(axis, "xyz")))
 
 
 def nudge(draw: st.DrawFn, tree: Element) -> None:
-    """Move and resize a few things, by no more than 1 mm in all."""
+    """Move and resize a few things by at most 1 mm in all."""
     if tree.get("nudged"):
         return
     tree.set("nudged", "true")
-    places = [(each, "xyz") for each in tree.iter("origin")]
+    locations = [(origin, "xyz") for origin in tree.iter("origin")]
     sizes = [
         (shape, str(name))
         for shape in tree.iter("box", "cylinder", "sphere")
@@ -289,12 +289,12 @@ def nudge(draw: st.DrawFn, tree: Element) -> None:
     count = draw(st.integers(1, 3))
     off = st.floats(-0.001 / count, 0.001 / count)
     for _ in range(count):
-        element, name = draw(st.sampled_from(places + sizes))
+        element, name = draw(st.sampled_from(locations + sizes))
         element.set(name, written(value + draw(off) for value in numbers_of(element, name)))
 
 
 def shade(draw: st.DrawFn, tree: Element) -> None:
-    """Change colours by no more than 0.005 a channel; white may be any light grey, and grey may be see-through."""
+    """Change colours by at most 0.005 per channel; white may be any light grey, and grey may be transparent."""
     if tree.get("shaded"):
         return
     tree.set("shaded", "true")
@@ -316,7 +316,7 @@ def shade(draw: st.DrawFn, tree: Element) -> None:
 
 
 def add_link(draw: st.DrawFn, tree: Element) -> None:
-    """Hang another link on the robot."""
+    """Attach another link to the robot."""
     parent = _one_of(draw, tree.iterchildren("link"))
     assert parent is not None
     name = fresh(tree, "link")
@@ -327,7 +327,7 @@ def add_link(draw: st.DrawFn, tree: Element) -> None:
 
 
 def add_invisible(draw: st.DrawFn, tree: Element) -> None:
-    """Give the footprint, or any other link, a visual of no size; or the footprint a transparent one."""
+    """Give the footprint, or any other link, a visual without size; or the footprint a transparent one."""
     shapes = (("box", {"size": "0 0 0"}), ("sphere", {"radius": "0"}), ("cylinder", {"radius": "0", "length": "1"}))
     tag, sizes = draw(st.sampled_from(shapes))
     footprint = link_named(tree, "base_footprint")
@@ -343,7 +343,7 @@ def add_invisible(draw: st.DrawFn, tree: Element) -> None:
 
 
 def add_physics(draw: st.DrawFn, tree: Element) -> None:
-    """Give a link a collision shape or an inertia, or a joint damping and limits of effort."""
+    """Give a link a collision shape or an inertia, or a joint damping and effort limits."""
     link, joint = _one_of(draw, tree.iterchildren("link")), _one_of(draw, tree.iterchildren("joint"))
     assert link is not None
     assert joint is not None
@@ -361,8 +361,8 @@ def add_physics(draw: st.DrawFn, tree: Element) -> None:
             etree.SubElement(joint, "limit", {"effort": "10", "velocity": "1"})
 
 
-def add_strangers(draw: st.DrawFn, tree: Element) -> None:
-    """Add tags and attributes that ROS 2 does not look at."""
+def add_unknown_elements(draw: st.DrawFn, tree: Element) -> None:
+    """Add tags and attributes that ROS 2 ignores."""
     owner = _one_of(draw, tree.iter("robot", "link", "joint", "visual", "origin"))
     assert owner is not None
     if draw(st.booleans()):
@@ -381,7 +381,7 @@ def _add_shape(link: Element, role: str, tag: str, sizes: dict[str, str]) -> Ele
 
 
 def shuffle(draw: st.DrawFn, tree: Element) -> None:
-    """Put the elements inside each element into another order."""
+    """Shuffle the elements inside each element."""
     for owner in [tree, *tree.iter("link", "joint", "visual", "inertial")]:
         children = list(owner)
         order = (
@@ -400,7 +400,7 @@ def materials_into_links(draw: st.DrawFn, tree: Element) -> None:
     if material is None:
         return
     user = next(
-        (each for each in tree.iterfind("link/visual/material") if each.get("name") == material.get("name")), None
+        (other for other in tree.iterfind("link/visual/material") if other.get("name") == material.get("name")), None
     )
     if user is not None and not len(user):
         user.extend(list(material))
@@ -408,13 +408,13 @@ def materials_into_links(draw: st.DrawFn, tree: Element) -> None:
 
 
 def rename_materials(draw: st.DrawFn, tree: Element) -> None:
-    """Call the materials otherwise."""
+    """Rename the materials."""
     suffix = draw(st.sampled_from(("", "_2", " plastic", "é")))
     for material in tree.iter("material"):
         material.set("name", f"{material.get('name', '')}{suffix}")
 
 
-def echo(draw: st.DrawFn, tree: Element) -> None:
+def repeat_origin(draw: st.DrawFn, tree: Element) -> None:
     """Repeat an origin with other numbers: the first counts."""
     origin = _one_of(draw, tree.iter("origin"))
     if origin is not None:
@@ -427,7 +427,7 @@ BEHAVING: tuple[Step, ...] = (
     move_wheel_frame,
     move_caster_frame,
     turn_lidar_frame,
-    turn_picture,
+    turn_visual,
     other_angles,
     scale_axis,
     nudge,
@@ -435,9 +435,9 @@ BEHAVING: tuple[Step, ...] = (
     add_link,
     add_invisible,
     add_physics,
-    add_strangers,
+    add_unknown_elements,
 )
-LAST: tuple[Step, ...] = (shuffle, materials_into_links, materials_into_links, rename_materials, echo)
+LAST: tuple[Step, ...] = (shuffle, materials_into_links, materials_into_links, rename_materials, repeat_origin)
 
 
 # --- Text -------------------------------------------------------------------------------------------------------------
@@ -445,7 +445,7 @@ LAST: tuple[Step, ...] = (shuffle, materials_into_links, materials_into_links, r
 
 @dataclass(frozen=True, slots=True)
 class Style:
-    """How a tree is put into text. What is off is written as plainly as possible."""
+    """Options for writing an element tree as text; the text is as plain as possible with all of them off."""
 
     random: Random
     blanks: tuple[str, ...] = ("\n",)
@@ -456,10 +456,10 @@ class Style:
     orders: bool = False
 
     def text(self, element: Element) -> str:
-        """An element as text."""
+        """Return an element as text."""
         pick = self.random.choice
         tight = self.blanks if self.orders else ("",)
-        loose = [each for each in tight if each] or [" "]
+        loose = [space for space in tight if space] or [" "]
         attributes = [(name, value) for name, value in element.attrib.items() if name not in ("nudged", "shaded")]
         if self.orders:
             self.random.shuffle(attributes)
@@ -469,17 +469,17 @@ class Style:
         children = [self.text(child) for child in element]
         if not children and not (self.orders and pick((True, False))):
             return f"{opening}{pick(tight)}/>"
-        between = [self.gap() for _ in range(len(children) + 1)]
+        between = [self.blank_space() for _ in range(len(children) + 1)]
         body = "".join(map("".join, zip(between, [*children, ""], strict=True)))
         return f"{opening}{pick(tight)}>{body}</{element.tag}{pick(tight)}>"
 
-    def gap(self) -> str:
-        """What stands between two elements."""
+    def blank_space(self) -> str:
+        """Return the text between two elements."""
         comment = self.random.choice(_COMMENTS) if self.comments and self.random.random() < 0.2 else ""
         return f"{self.random.choice(self.blanks)}{comment}{self.random.choice(self.blanks)}"
 
     def attribute(self, name: str, value: str) -> str:
-        """An attribute as text."""
+        """Return an attribute as text."""
         quote = self.random.choice(self.quotes)
         if self.numbers and name in _VECTORS:
             pieces = [self.number(piece) for piece in value.split(" ")]
@@ -494,7 +494,7 @@ class Style:
         return f"{name}{equals}{quote}{value}{quote}"
 
     def number(self, text: str) -> str:
-        """The same number in other digits."""
+        """Return the same number in other digits."""
         try:
             value = Decimal(text)
         except InvalidOperation:
@@ -528,19 +528,19 @@ _styles = st.builds(
 
 @st.composite
 def rewritten(draw: st.DrawFn, tree: Element, steps: Sequence[Step]) -> bytes:
-    """The text of the robot in the tree after these steps, in a random style."""
+    """Return the text of the robot in the tree after these steps, in a random style."""
     robot = etree.fromstring(etree.tostring(tree))
     for step in steps:
         step(draw, robot)
     style = draw(_styles)
-    text = f"{draw(st.sampled_from(_DECLARATIONS))}{style.gap()}{style.text(robot)}{style.gap()}"
+    text = f"{draw(st.sampled_from(_DECLARATIONS))}{style.blank_space()}{style.text(robot)}{style.blank_space()}"
     if draw(st.booleans()):
         text = text.replace("\n", "\r\n")
     return text.encode()
 
 
 def rewritings(tree: Element) -> st.SearchStrategy[bytes]:
-    """Other texts for the robot in the tree, after up to twelve random steps, and some of those that come last."""
+    """Draw other texts for the robot in the tree, after up to twelve random steps, and some of those that come last."""
     first = st.lists(st.sampled_from(BEHAVING), max_size=12)
     last = st.sets(st.integers(0, len(LAST) - 1)).map(lambda chosen: [LAST[index] for index in sorted(chosen)])
     return st.builds(lambda one, other: one + other, first, last).flatmap(lambda steps: rewritten(tree, steps))

@@ -16,19 +16,19 @@ LAB6 = load_rubric("lab6")
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """One folder of submissions/: the submission is this folder, or the path in it that expected.toml names."""
+    """A folder of submissions/: the submission is this folder, or the path in it that expected.toml names."""
 
     name: str
     expected: dict[str, Any]
 
     @property
     def path(self) -> Path:
-        """The path of the submission, relative to the project's root."""
+        """Return the path of the submission, relative to the project's root."""
         return Path("submissions", self.name, str(self.expected.get("path", "")))
 
     @property
     def rubric(self) -> Rubric:
-        """The rubric for its grading."""
+        """Return the rubric for its grading."""
         named = self.expected.get("rubric", LAB6.id)
         return LAB6 if named == LAB6.id else load_rubric(named)
 

@@ -1,4 +1,4 @@
-"""The layers: a module imports from lower layers only, packages of one layer do not import each other, and nothing is a cycle."""
+"""A module imports from lower layers only, packages of one layer do not import each other, and there is no cycle."""
 
 import ast
 from collections.abc import Iterator
@@ -23,7 +23,7 @@ LAYERS = (
     ("cli",),
     ("__main__",),
 )
-# The same inside a package that is large enough to have layers of its own.
+# The layers inside a package that is large enough to have its own.
 INNER = {
     "classroom": (("students",), ("matching",), ("intake", "lms"), ("gradebook",), ("run",)),
 }
@@ -56,7 +56,7 @@ MODULES = {name_of(path): path for path in sorted(ROOT.rglob("*.py"))}
 
 
 def imports(module: str) -> Iterator[str]:
-    """Yield what a module imports, at the top, in functions or for type checkers: modules of ours by their own name."""
+    """Yield the imports of a module, at the top, in functions or for type checkers; those of `grader` as modules."""
     for node in ast.walk(ast.parse(MODULES[module].read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
@@ -66,27 +66,27 @@ def imports(module: str) -> Iterator[str]:
 
 
 def height(layers: tuple[tuple[str, ...], ...], name: str) -> int:
-    """Return the number of the layer that a package or module is in."""
+    """Return the number of the layer that contains a package or module."""
     return next(number for number, layer in enumerate(layers) if name in layer)
 
 
 @pytest.mark.parametrize("module", MODULES)
 def test_imports_point_down(module: str) -> None:
     """No module imports from a higher layer or from another package of its own, and each library has its packages."""
-    _, *here = module.split(".")
-    if not here:
+    _, *first = module.split(".")
+    if not first:
         return
     for imported in imports(module):
-        top, *there = imported.split(".")
+        top, *second = imported.split(".")
         allowed = LIBRARIES.get(top)
-        assert allowed is None or here[0] in allowed, f"{module} imports {imported}"
-        if top != "grader" or not there:
+        assert allowed is None or first[0] in allowed, f"{module} imports {imported}"
+        if top != "grader" or not second:
             continue
-        if there[0] != here[0]:
-            assert height(LAYERS, there[0]) < height(LAYERS, here[0]), f"{module} imports {imported}"
-        elif here[0] in INNER and len(here) > 1 and there[1] != here[1]:
-            inner = INNER[here[0]]
-            assert height(inner, there[1]) < height(inner, here[1]), f"{module} imports {imported}"
+        if second[0] != first[0]:
+            assert height(LAYERS, second[0]) < height(LAYERS, first[0]), f"{module} imports {imported}"
+        elif first[0] in INNER and len(first) > 1 and second[1] != first[1]:
+            inner = INNER[first[0]]
+            assert height(inner, second[1]) < height(inner, first[1]), f"{module} imports {imported}"
 
 
 def test_no_import_cycle() -> None:
@@ -99,7 +99,7 @@ def test_no_import_cycle() -> None:
 
 
 def test_check_families_do_not_import_each_other() -> None:
-    """Each family of checks stands on its own: only the registry imports them all."""
+    """Only the registry imports families of checks."""
     shared = {"outcome", "registry", "toml_types", "visuals"}
     families = {path.stem for path in (ROOT / "checks").glob("*.py")} - shared - {"__init__"}
     others = {f"grader.checks.{family}" for family in families}
@@ -107,7 +107,7 @@ def test_check_families_do_not_import_each_other() -> None:
         assert not set(imports(f"grader.checks.{family}")) & (others - {f"grader.checks.{family}"}), family
 
 
-def test_only_packages_have_layers() -> None:
+def test_every_package_has_a_layer() -> None:
     """Every package and top-level module is in exactly one layer."""
     named = list(chain.from_iterable(LAYERS))
     assert sorted(named) == sorted(

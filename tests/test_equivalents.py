@@ -1,4 +1,4 @@
-"""Full marks for every way to build the reference, and the same marks for a mistake in whichever form it comes."""
+"""Full marks for every equivalent of the reference, and the same marks for a mistake in every form."""
 
 from dataclasses import dataclass
 from decimal import Decimal
@@ -32,7 +32,7 @@ FOOTPRINT = "link[@name='base_footprint']"
 
 @dataclass(frozen=True, slots=True)
 class Break:
-    """One mistake: an attribute of the reference set to another value (None: left out), and what it costs."""
+    """A mistake: an attribute of the reference set to another value (None: removed), and the lost criteria."""
 
     name: str
     path: str
@@ -41,7 +41,7 @@ class Break:
     lost: str
 
     def applied(self) -> Element:
-        """The reference with this mistake in it."""
+        """Return the reference with this mistake in it."""
         robot = etree.fromstring(etree.tostring(REFERENCE))
         elements = robot.findall(self.path) if self.path else [robot]
         assert elements, self.path
@@ -54,7 +54,7 @@ class Break:
 
 
 def both(*criteria: str) -> str:
-    """Criteria of both wheels."""
+    """Return the criteria of both wheels."""
     return " ".join(f"{side}-wheel-{name}" for side in ("left", "right") for name in criteria)
 
 
@@ -180,19 +180,19 @@ each_break = pytest.mark.parametrize("mistake", BREAKS, ids=lambda mistake: mist
 
 
 def graded(data: bytes) -> Report:
-    """The report on a URDF."""
+    """Return the report on a URDF."""
     return grade(RUBRIC, read_submission(data, identity="student", path="my_robot.urdf"))
 
 
 def lost(report: Report) -> set[str]:
-    """The criteria that did not pass; none may be a fault of ours."""
+    """Return the criteria that did not pass; none may be errored."""
     assert report.counts("errored") == 0, [result.traceback for result in report.results if result.traceback]
     return {result.criterion.id for result in report.results if result.outcome.status != "passed"}
 
 
 @settings(max_examples=600, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(data=rewritings(REFERENCE))
-def test_every_way_to_write_the_reference_gets_full_marks(data: bytes) -> None:
+def test_every_equivalent_of_the_reference_gets_full_marks(data: bytes) -> None:
     """Nothing is lost by any composition of equivalent rewritings."""
     note(data.decode())
     report = graded(data)
@@ -203,12 +203,12 @@ def test_every_way_to_write_the_reference_gets_full_marks(data: bytes) -> None:
 
 @pytest.mark.parametrize("step", BEHAVING, ids=lambda step: step.__name__)
 def test_each_rewriting_alone_gets_full_marks(step: Step) -> None:
-    """Nothing is lost by a rewriting that stands alone, three times over."""
+    """No single rewriting loses points, in three tries."""
 
     @settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.too_slow], database=None)
     @given(data=rewritten(REFERENCE, (step, step, step)))
     def check(data: bytes) -> None:
-        """Full marks for this text."""
+        """Assert full marks for this text."""
         note(data.decode())
         assert lost(graded(data)) == set()
 
@@ -216,7 +216,7 @@ def test_each_rewriting_alone_gets_full_marks(step: Step) -> None:
 
 
 @each_break
-def test_a_mistake_costs_what_it_should(mistake: Break) -> None:
+def test_a_mistake_loses_the_expected_criteria(mistake: Break) -> None:
     """One changed attribute of the reference loses exactly its criteria."""
     assert lost(graded(etree.tostring(mistake.applied()))) == set(mistake.lost.split())
 
@@ -250,8 +250,8 @@ _ADDED = st.sampled_from(
 
 @settings(max_examples=700, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 @given(draw=st.data())
-def test_no_value_is_a_fault_of_ours(draw: st.DataObject) -> None:
-    """Whatever a few attributes of the reference are set to, no criterion ends in an error of the grader."""
+def test_no_value_is_an_error_of_the_grader(draw: st.DataObject) -> None:
+    """Whatever a few attributes of the reference are set to, no criterion is errored."""
     robot = etree.fromstring(etree.tostring(REFERENCE))
     elements = [element for element in robot.iter() if element.attrib]
     for _ in range(draw.draw(st.integers(0, 4))):
@@ -268,7 +268,7 @@ def test_no_value_is_a_fault_of_ours(draw: st.DataObject) -> None:
 
 
 def mimicking(*rules: tuple[str, str]) -> bytes:
-    """The reference with mimics in its joints: path of the joint, attributes of the mimic."""
+    """Return the reference with mimics in its joints: path of the joint, attributes of the mimic."""
     robot = etree.fromstring(etree.tostring(REFERENCE))
     for path, attributes in rules:
         for joint in robot.findall(path):
@@ -278,19 +278,19 @@ def mimicking(*rules: tuple[str, str]) -> bytes:
 
 @pytest.mark.parametrize("offset", ["0", "0.5", "-3"])
 def test_a_wheel_that_follows_the_other_rolls_like_it(offset: str) -> None:
-    """A small positive turn starts from where the joint is, which a mimic's offset may have moved."""
+    """A small positive turn starts from the joint's position, which a mimic's offset may have moved."""
     assert lost(graded(mimicking((RIGHT, f"joint='base_left_wheel_joint' offset='{offset}'")))) == set()
 
 
-def test_mimics_that_overflow_are_no_fault_of_ours() -> None:
-    """A position beyond all numbers leaves the pose undefined, which is the file's fault."""
+def test_mimics_that_overflow_are_no_error_of_the_grader() -> None:
+    """A position that overflows leaves the pose undefined, which is the file's fault."""
     left = (LEFT, "joint='base_right_wheel_joint' multiplier='1e308'")
     right = (RIGHT, "joint='base_caster_wheel_joint' offset='1e308'")
     assert "left-wheel-placed" in lost(graded(mimicking(left, right)))
 
 
 @pytest.mark.parametrize("kind", ["planar", "floating"])
-def test_a_wheel_that_moves_otherwise_does_not_roll(kind: str) -> None:
+def test_a_planar_or_floating_wheel_does_not_roll(kind: str) -> None:
     """A planar or floating joint is no wheel's joint, and has no small positive angle to turn by."""
     mistake = Break(kind, LEFT, "type", kind, "left-wheel-continuous left-wheel-forward")
     missing = lost(graded(etree.tostring(mistake.applied())))
@@ -298,7 +298,7 @@ def test_a_wheel_that_moves_otherwise_does_not_roll(kind: str) -> None:
 
 
 def test_every_criterion_is_lost_by_some_mistake() -> None:
-    """The mistakes cover the rubric, the footprint's visibility apart, which is no attribute."""
+    """The mistakes cover the rubric, except the footprint's visibility, which is no attribute."""
     covered = {criterion for mistake in BREAKS for criterion in mistake.lost.split()}
     urdf = {criterion.id for criterion in RUBRIC.criteria if criterion.part == "task1"}
     assert urdf - covered == {"footprint-virtual"}

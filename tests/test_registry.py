@@ -1,4 +1,4 @@
-"""Every check is documented, has a signature that a rubric can be held against, and is tested both ways."""
+"""Every check is documented, has a signature against which a rubric can be checked, and is tested both ways."""
 
 import ast
 import inspect
@@ -19,10 +19,10 @@ from grader.errors import RubricError
 from grader.grading.rubric import load_rubric
 from grader.report.rubrics import checks_text, explanation
 from grader.robot.kinematics import Configuration
-from tests.checks.asking import AnyCheck, ask
 from tests.checks.cases import CASE, CASES
+from tests.checks.outcomes import AnyCheck, ask
 from tests.checks.package_cases import PACKAGE_CASE, PACKAGE_CASES, PENDING_CASE, PENDING_CASES
-from tests.checks.submitted import REFERENCE
+from tests.checks.submissions import REFERENCE
 
 NAMES = [function.__name__ for function in CHECKS]
 SHARED = {"__init__", "outcome", "registry", "toml_types", "visuals"}
@@ -34,7 +34,7 @@ every_check = pytest.mark.parametrize("check", [describe(function) for function 
 
 @every_check
 def test_the_first_paragraph_is_one_sentence(check: Check) -> None:
-    """A check's docstring begins with one sentence, the fact that it decides, which ends in a period."""
+    """A check's docstring starts with one sentence, the fact that it tests, which ends in a period."""
     first, *_ = (inspect.getdoc(check.function) or "").split("\n\n")
     sentence = " ".join(first.split())
     assert sentence == check.fact
@@ -43,7 +43,7 @@ def test_the_first_paragraph_is_one_sentence(check: Check) -> None:
 
 @every_check
 def test_the_signature_is_a_schema(check: Check) -> None:
-    """A check takes its subject, and then by name only what a rubric can give, in types that TOML has."""
+    """A check takes its subject, and then keyword arguments that a rubric can give, in types that TOML has."""
     subject, *rest = inspect.signature(check.function).parameters.values()
     assert subject.name == check.subject
     assert subject.kind is subject.POSITIONAL_OR_KEYWORD
@@ -58,11 +58,8 @@ def test_the_signature_is_a_schema(check: Check) -> None:
 
 
 @every_check
-def test_a_check_passes_and_fails_somewhere(check: Check) -> None:
-    """A table of cases has what passes and what fails for every check, with arguments that a rubric can give.
-
-    Of a robot or a hand-in, whatever the check is asked of; the checks that a person decides are in a table of their own.
-    """
+def test_a_check_has_samples(check: Check) -> None:
+    """Every check has a sample that passes and one that fails, with arguments that a rubric can give."""
     if check.name in PENDING_CASE:
         pending = PENDING_CASE[check.name]
         of: tuple[AnyCheck, Mapping[str, Any]] = (pending.check, pending.arguments)
@@ -83,7 +80,7 @@ def test_a_check_passes_and_fails_somewhere(check: Check) -> None:
 
 @every_check
 def test_a_check_can_be_explained(check: Check) -> None:
-    """`explain` has the check's sentence and each argument in words, and the list of checks has them too."""
+    """`explain` and the list of checks print the check's sentence; `explain` describes each argument."""
     for text in (explanation(check.name, load_rubric("lab6")), checks_text()):
         assert check.name in text
         assert check.fact in " ".join(text.split())
@@ -93,31 +90,31 @@ def test_a_check_can_be_explained(check: Check) -> None:
 
 @every_check
 def test_a_check_is_found_by_its_name(check: Check) -> None:
-    """The name that a rubric writes is the function's name."""
+    """The name in a rubric is the function's name."""
     assert find_check(check.name) == check
     assert check.name in check_names()
     assert re.fullmatch(r"[a-z][a-z0-9]*(_[a-z0-9]+)*", check.name)
 
 
 def test_names_are_unique() -> None:
-    """No two checks have one name, and no case is for a check that is not there."""
+    """No two checks have one name, and no case is for a missing check."""
     assert len(set(NAMES)) == len(NAMES)
     assert sorted(case.name for case in (*CASES, *PACKAGE_CASES, *PENDING_CASES)) == sorted(NAMES)
 
 
-def test_only_what_a_person_marks_is_always_pending() -> None:
+def test_only_manual_checks_are_always_pending() -> None:
     """The checks of a written answer and of a picture are the only ones without a case that passes."""
     assert set(PENDING_CASE) == {"answered", "evidence_shown"}
 
 
-def test_no_check_is_forgotten() -> None:
-    """Whatever in a family's module takes a subject and gives an outcome is in the list."""
+def test_every_check_is_registered() -> None:
+    """Every function of a family's module that takes a subject and returns an outcome is in the list."""
     written = {name for path in families() for name in checks_in(path)}
     assert written == set(NAMES)
 
 
 def test_every_check_is_tested_in_its_family() -> None:
-    """Each family has a file of tests, which names each of its checks that its sample does not test at every tolerance."""
+    """Each family has a file of tests, which names each of its checks whose sample lacks an edge for a tolerance."""
     for path in families():
         tests = Path(__file__).parent / "checks" / f"test_{path.stem}.py"
         text = tests.read_text(encoding="utf-8")
@@ -127,7 +124,7 @@ def test_every_check_is_tested_in_its_family() -> None:
 
 
 def test_an_unknown_check_is_not_found() -> None:
-    """A name that nobody registered is no check."""
+    """An unregistered name is no check."""
     assert find_check("shows_bax") is None
     assert find_check("") is None
     assert find_check("describe") is None
@@ -140,26 +137,26 @@ def has_links(robot: Configuration, *, at_least: float) -> Outcome:
 
 
 def shows_box(robot: Configuration) -> Outcome:
-    """Another package's check of a name that is taken."""
+    """A plug-in check with a name that is taken."""
     raise NotImplementedError
 
 
 @pytest.fixture
 def installed(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """As if another distribution registered its checks; the groups that were asked for are noted."""
-    asked: list[str] = []
+    """Return a function that registers checks as if another distribution did; the requested groups are recorded."""
+    requested: list[str] = []
     points = [EntryPoint(name, f"{__name__}:{name}", ENTRY_POINTS) for name in ("has_links", "shows_box")]
 
     def entry_points(*, group: str) -> EntryPoints:
-        asked.append(group)
+        requested.append(group)
         return EntryPoints(points if group == ENTRY_POINTS else [])
 
     monkeypatch.setattr("importlib.metadata.entry_points", entry_points)
-    return asked
+    return requested
 
 
 def test_another_distribution_adds_a_check(installed: list[str]) -> None:
-    """A check that is registered under the entry-point group is found, listed and described as our own are."""
+    """A check registered under the entry-point group is found, listed and described like the grader's own."""
     check = find_check("has_links")
     assert check is not None
     assert (check.name, check.function, check.subject) == ("has_links", has_links, "robot")
@@ -170,16 +167,16 @@ def test_another_distribution_adds_a_check(installed: list[str]) -> None:
     assert set(installed) == {"grader.checks"}
 
 
-def test_our_own_check_wins(installed: list[str]) -> None:
-    """A foreign check cannot take the name of one of ours; others are not even asked for it."""
+def test_the_graders_own_check_takes_precedence(installed: list[str]) -> None:
+    """A plug-in check cannot replace the grader's; the entry points are not even read for it."""
     check = find_check("shows_box")
     assert check is not None
     assert check.function is CASE["shows_box"].check
     assert installed == []
 
 
-def test_a_rubric_can_name_a_foreign_check(installed: list[str], tmp_path: Path) -> None:
-    """A rubric holds a foreign check's arguments against its signature, and offers its name for a misspelt one."""
+def test_a_rubric_can_name_a_plugin_check(installed: list[str], tmp_path: Path) -> None:
+    """A rubric's arguments are checked against its signature, and its name is suggested for a misspelt one."""
     text = (
         'id = "r"\ntitle = "R"\n[[part]]\nid = "a"\ntitle = "A"\n'
         '[[criterion]]\nid = "c"\npart = "a"\ntitle = "C"\npoints = 1\ncheck = "{}"\nwith = {{ {} }}\n'
@@ -198,13 +195,13 @@ def test_a_rubric_can_name_a_foreign_check(installed: list[str], tmp_path: Path)
 
 
 def families() -> list[Path]:
-    """The modules that hold checks."""
+    """Return the modules that contain checks."""
     folder = Path(inspect.getfile(grader.checks)).parent
     return sorted(path for path in folder.glob("*.py") if path.stem not in SHARED)
 
 
 def checks_in(path: Path) -> list[str]:
-    """The public functions of a module that give an outcome."""
+    """Return the public functions of a module that return an outcome."""
     body = ast.parse(path.read_text(encoding="utf-8")).body
     functions = [node for node in body if isinstance(node, ast.FunctionDef) and not node.name.startswith("_")]
     return [
@@ -215,7 +212,7 @@ def checks_in(path: Path) -> list[str]:
 
 
 def is_supported(annotation: Any) -> bool:
-    """Whether a rubric's table can hold a value of this annotation."""
+    """Return whether a rubric's table can hold a value of this annotation."""
     origin, inner = get_origin(annotation), get_args(annotation)
     if origin is Annotated:
         return is_supported(inner[0])
@@ -233,7 +230,7 @@ def is_supported(annotation: Any) -> bool:
 
 
 def sample(annotation: Any) -> Any:
-    """A value for a parameter, as TOML gives it."""
+    """Return a value for a parameter, as TOML gives it."""
     origin, inner = get_origin(annotation), get_args(annotation)
     if origin in (Annotated, UnionType):
         return sample(inner[0])
@@ -247,14 +244,14 @@ def sample(annotation: Any) -> Any:
 
 
 def as_toml(value: object) -> object:
-    """A Python value as tomllib would have given it: lists for tuples, exact numbers for floats."""
+    """Return a Python value as tomllib would give it: lists for tuples, exact numbers for floats."""
     if isinstance(value, tuple):
         return [as_toml(item) for item in value]
     return Decimal(repr(value)) if isinstance(value, float) else value
 
 
-def test_the_samples_of_types_are_complete() -> None:
-    """Types that a rubric cannot give are refused by this file's own yardstick."""
+def test_unsupported_types_are_refused() -> None:
+    """Types that a rubric cannot give are refused by `is_supported` of this file."""
     for annotation in (
         bytes,
         complex,

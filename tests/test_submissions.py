@@ -1,4 +1,4 @@
-"""The sample submissions: the reference and its equivalents get full marks, each mistake loses just what it should."""
+"""The sample submissions: the reference and its equivalents get full marks, each mistake loses its criteria."""
 
 import filecmp
 
@@ -15,8 +15,8 @@ REFERENCE = "submissions/reference/roscourse_sim_ws/src/my_robot"
 
 
 @every_sample
-def test_a_sample_loses_exactly_what_it_should(name: str) -> None:
-    """The verdict and the criteria that do not pass are those that stand beside the sample."""
+def test_a_sample_loses_the_expected_criteria(name: str) -> None:
+    """The verdict and the criteria that do not pass are those in expected.toml."""
     sample = SAMPLES[name]
     report = sample.grade()
     urdf = sample.open().urdf
@@ -29,8 +29,8 @@ def test_a_sample_loses_exactly_what_it_should(name: str) -> None:
     assert "errored" not in statuses.values()
 
 
-def test_there_are_samples_enough() -> None:
-    """Five equivalents and fifteen mistakes at the least; only the reference and the equivalents lose nothing."""
+def test_there_are_enough_samples() -> None:
+    """At least five equivalents and fifteen mistakes; only the reference and the equivalents lose nothing."""
     full = {
         name
         for name, sample in SAMPLES.items()
@@ -43,7 +43,7 @@ def test_there_are_samples_enough() -> None:
 
 @pytest.mark.parametrize("name", shipped_rubrics())
 def test_a_reference_gets_full_marks(name: str) -> None:
-    """Every rubric that comes with the grader has a reference solution, which passes all that is not left to a person."""
+    """The reference solution of every shipped rubric passes all criteria that need no manual grading."""
     rubric = load_rubric(name)
     path = str(rubric.path.parent / rubric.reference)
     report = grade(rubric, open_submission(path, wanted=rubric.urdf, package=rubric.package))
@@ -52,8 +52,8 @@ def test_a_reference_gets_full_marks(name: str) -> None:
     assert report.problems == ()
 
 
-def test_the_rubric_carries_the_reference() -> None:
-    """The rubric's reference solution is the package of the sample of that name, byte for byte."""
+def test_the_rubric_contains_the_reference() -> None:
+    """The rubric's reference solution equals the package of the sample of that name, byte for byte."""
     compared = filecmp.dircmp(LAB6.path.parent / LAB6.reference, ROOT / REFERENCE, ignore=["__pycache__"])
     waiting = [compared]
     while waiting:
@@ -64,7 +64,7 @@ def test_the_rubric_carries_the_reference() -> None:
 
 @every_sample
 def test_a_skip_names_a_criterion_that_failed(name: str) -> None:
-    """What is skipped is due to a criterion above it that failed itself."""
+    """A skip is caused by an earlier criterion that failed itself."""
     failed: set[str] = set()
     for result in SAMPLES[name].grade().results:
         if result.outcome.status == "skipped":

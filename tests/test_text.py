@@ -13,7 +13,7 @@ def test_enumerated_names_all_items_or_counts_the_rest() -> None:
 
 
 def test_first_lines_counts_the_rest_in_a_line() -> None:
-    """A line says how many are missing; where all are there, it is absent."""
+    """A line says how many are missing; if none is, it is absent."""
     assert first_lines(["a", "b"], 2) == ["a", "b"]
     assert first_lines(["a", "b", "c"], 1) == ["a", "... and 2 more"]
 

@@ -1,4 +1,4 @@
-"""Wheels that stand for packages which are installed here, so that tests of an installation need neither network nor time."""
+"""Wheels that point to the packages installed here, so that tests of an installation need neither network nor time."""
 
 import re
 import sysconfig
@@ -15,21 +15,21 @@ from tests.command_line import ROOT
 
 
 def offline(folder: Path) -> dict[str, str]:
-    """Make such wheels for all that the grader needs; return the variables that have pip install these and nothing else."""
+    """Make such wheels for all dependencies of the grader; return the variables that make pip install only these."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     declared = project["project"]
-    wanted = [
+    expected = [
         *project["build-system"]["requires"],
         *declared["dependencies"],
         *declared["optional-dependencies"]["documents"],
     ]
-    for requirement in wanted:
+    for requirement in expected:
         _write_wheel(Requirement(requirement).name, folder)
     return {"PIP_NO_INDEX": "1", "PIP_FIND_LINKS": str(folder), "PIP_CONFIG_FILE": "/dev/null"}
 
 
 def _write_wheel(package: str, folder: Path) -> None:
-    """Write a wheel of a package's name and version that has its modules found where they are installed here."""
+    """Write a wheel of a package's name and version whose modules are those installed here."""
     name, number = re.sub(r"[-_.]+", "_", package), version(package)
     about = f"{name}-{number}.dist-info"
     files = {

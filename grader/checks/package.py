@@ -93,7 +93,7 @@ def files_of(package: Package, kind: FileKind, name: str) -> Sequence[str]:
 def _readable_setup(package: Package) -> "Setup | Outcome":
     """Return the package's setup.py, or the outcome that says why it needs manual grading.
 
-    Raises MissingElement where there is none, or where Python cannot read it.
+    Raises MissingElement if there is none, or if Python cannot read it.
     """
     setup = package.setup
     if package.is_cmake:

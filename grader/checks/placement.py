@@ -71,7 +71,7 @@ def bottom_at_height(
 ) -> Outcome:
     """The lowest point of a link's visuals is at a height (z) in another link's frame, in metres.
 
-    Where a shape is named and the link shows it, only the largest of these counts.
+    If `shape` is given and the link shows it, only the largest visual of that shape counts.
     """
     visual = main_visual(robot, link, shape)
     if shape == "any" or shape_name(visual.geometry) != f"a {shape}":

@@ -14,7 +14,7 @@ from grader.source import LazyLocation
 
 
 def visuals(robot: Configuration, link: str) -> tuple[Visual, ...]:
-    """Return the visuals of a link that have a size; raise MissingElement where there is none."""
+    """Return the visuals of a link that have a size; raise MissingElement if there is none."""
     shown = robot.shown.get(link)
     if shown is None:
         shown = tuple(visual for visual in robot.link(link).visuals if not is_empty(visual.geometry))

@@ -1,17 +1,17 @@
-"""One bundle for all tests, unpacked once and with an environment; each test gets folders of its own around it."""
+"""Fixtures: one bundle for all tests, unpacked once with an environment; each test gets its own folders around it."""
 
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from tests.bundle.platform import Autograder, environment_for, unpacked
+from tests.bundle.gradescope import Autograder, environment_for, unpacked
 from tests.classroom.gradebooks import grader
 
 
 @pytest.fixture(scope="session")
 def bundle(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The zip that the command line writes."""
+    """Return the zip that the command line writes."""
     path = tmp_path_factory.mktemp("bundle") / "autograder.zip"
     done = grader("bundle", "gradescope", path)
     assert (done.returncode, done.stderr) == (0, "")
@@ -20,25 +20,25 @@ def bundle(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def source(bundle: Path) -> Path:
-    """The bundle's files, not to be changed."""
+    """Return the folder of the unpacked bundle. Tests must not change it."""
     return unpacked(bundle, bundle.parent / "source")
 
 
 @pytest.fixture(scope="session")
 def environment(source: Path) -> Path:
-    """A virtual environment that has what the bundle needs, not to be changed."""
+    """Return a virtual environment with the bundle's dependencies. Tests must not change it."""
     return environment_for(source, source.parent / "venv")
 
 
 @pytest.fixture
 def autograder(tmp_path: Path, source: Path, environment: Path) -> Autograder:
-    """Gradescope's folders with the bundle in them."""
+    """Return Gradescope's folders with the bundle in them."""
     return Autograder(tmp_path / "autograder", source, environment)
 
 
 @pytest.fixture
 def with_grader(tmp_path: Path, source: Path) -> Callable[..., Autograder]:
-    """Gradescope's folders with another program in the grader's place."""
+    """Return a function that makes Gradescope's folders with another program in place of the grader."""
 
     def make(program: str, seconds: float = 60) -> Autograder:
         other = tmp_path / "source"

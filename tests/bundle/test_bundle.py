@@ -1,4 +1,4 @@
-"""What is in an autograder's zip, and when none is written."""
+"""The content of an autograder's zip, and the cases in which none is written."""
 
 import importlib.metadata
 import json
@@ -24,8 +24,8 @@ from grader.grading.grade import grade
 from grader.grading.rubric import load_rubric, shipped_rubrics
 from grader.robot.kinematics import Configuration
 from grader.usecases import bundle as command
-from tests.bundle.platform import Autograder, environment_for, unpacked
-from tests.classroom.gradebooks import grader, hand_in, lab_text, refusal
+from tests.bundle.gradescope import Autograder, environment_for, unpacked
+from tests.classroom.gradebooks import grader, lab_text, refusal, write_submission
 from tests.samples import LAB6, ROOT, opened
 
 RUBRICS = [f"grader/rubrics/{name}.toml" for name in shipped_rubrics()]
@@ -33,28 +33,28 @@ PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
 
 
 def members(path: Path) -> dict[str, zipfile.ZipInfo]:
-    """The entries of a zip by their names."""
+    """Return the entries of a zip by their names."""
     with zipfile.ZipFile(path) as archive:
         return {entry.filename: entry for entry in archive.infolist()}
 
 
 def test_the_files(bundle: Path) -> None:
-    """What Gradescope wants is in the root, the grader is complete, and there is nothing else."""
+    """The files that Gradescope needs are in the root, the grader is complete, and nothing else is in the zip."""
     names = members(bundle)
     files = (path.relative_to(ROOT) for path in (ROOT / "grader").rglob("*.*"))
-    there = {path.as_posix() for path in files if "__pycache__" not in path.parts}
+    second = {path.as_posix() for path in files if "__pycache__" not in path.parts}
     assert {name for name in names if "/" not in name} == {
         "setup.sh", "run_autograder", "autograder.py", "autograder.json", "requirements.txt",
     }  # fmt: skip
-    ours = {name for name in names if name.startswith("grader/")}
-    assert ours == {*there, "grader/bundle/on_gradescope/run_autograder", *RUBRICS}
+    rendered = {name for name in names if name.startswith("grader/")}
+    assert rendered == {*second, "grader/bundle/on_gradescope/run_autograder", *RUBRICS}
     assert [name for name in names if "rubrics/" in name] == RUBRICS
     assert not [name for name in names if "__pycache__" in name or name.endswith(".pyc") or "tests" in name]
     assert list(names) == sorted(names)
 
 
-def test_model_answers_stay_out(bundle: Path, tmp_path: Path) -> None:
-    """Neither those of lab6 nor those that another rubric keeps in a file of its own: nothing there needs them."""
+def test_model_answers_are_excluded(bundle: Path, tmp_path: Path) -> None:
+    """The zip contains no model answers: neither those of lab6 nor those that a rubric keeps in a separate file."""
     secret = "Because of the roots."
     rubric = tmp_path / "small.toml"
     text = lab_text().replace(f', answer = "{secret}"', "")
@@ -68,7 +68,7 @@ def test_model_answers_stay_out(bundle: Path, tmp_path: Path) -> None:
 
 
 def test_permissions_and_times(bundle: Path) -> None:
-    """The two scripts can be run, nothing else can, and no clock has left a trace."""
+    """Only the two scripts are executable, and no timestamp depends on the clock."""
     programs = {name for name, entry in members(bundle).items() if entry.external_attr >> 16 == 0o100755}
     assert programs == {"setup.sh", "run_autograder"}
     others = {entry.external_attr >> 16 for name, entry in members(bundle).items() if name not in programs}
@@ -79,7 +79,7 @@ def test_permissions_and_times(bundle: Path) -> None:
 
 
 def test_scripts_have_unix_lines(source: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Also where git has written them with the line ends of Windows; bash finds no fault with them."""
+    """Scripts have Unix line endings even if git checked them out with CRLF; bash accepts them."""
     from grader.bundle import gradescope
 
     for name in ("setup.sh", "run_autograder", "autograder.py"):
@@ -94,8 +94,8 @@ def test_scripts_have_unix_lines(source: Path, tmp_path: Path, monkeypatch: pyte
         subprocess.run(["bash", "-n", other / name], check=True)
 
 
-def test_the_same_bytes_again(bundle: Path, tmp_path: Path) -> None:
-    """Another day, another folder, another name."""
+def test_bundles_are_reproducible(bundle: Path, tmp_path: Path) -> None:
+    """A bundle made on another day, in another folder and under another name has the same bytes."""
     (tmp_path / "Other.ZIP").write_bytes(b"of yesterday")
     done = grader("bundle", "gradescope", tmp_path / "Other.ZIP", TZ="Asia/Tokyo")
     assert done.returncode == 0
@@ -104,21 +104,21 @@ def test_the_same_bytes_again(bundle: Path, tmp_path: Path) -> None:
 
 
 def in_order(requirement: str) -> str:
-    """A requirement as hatchling writes it."""
+    """Return a requirement as hatchling writes it."""
     name = re.split("[<>=]", requirement)[0]
     return name + ",".join(sorted(requirement.removeprefix(name).split(",")))
 
 
 def as_wheel(into: Path) -> Path:
-    """The package as a wheel installs it: rubrics and their reference solutions inside, its metadata beside it."""
+    """Lay out the package as a wheel installs it: rubrics and reference solutions inside, metadata beside it."""
     skipped = shutil.ignore_patterns("__pycache__")
     shutil.copytree(ROOT / "grader", into / "grader", ignore=skipped)
     shutil.copytree(ROOT / "rubrics", into / "grader" / "rubrics", ignore=skipped)
-    lines = [f"Requires-Dist: {in_order(each)}" for each in PROJECT["dependencies"]]
-    for extra, wanted in PROJECT["optional-dependencies"].items():
+    lines = [f"Requires-Dist: {in_order(dependency)}" for dependency in PROJECT["dependencies"]]
+    for extra, expected in PROJECT["optional-dependencies"].items():
         lines += [
             f"Provides-Extra: {extra}",
-            *(f"Requires-Dist: {in_order(each)}; extra == '{extra}'" for each in wanted),
+            *(f"Requires-Dist: {in_order(requirement)}; extra == '{extra}'" for requirement in expected),
         ]
     (into / "urdf_grader-9.9.dist-info").mkdir()
     head = "Metadata-Version: 2.4\nName: urdf-grader\nVersion: 9.9\n"
@@ -127,23 +127,23 @@ def as_wheel(into: Path) -> Path:
 
 
 def test_from_a_wheel(bundle: Path, tmp_path: Path) -> None:
-    """An installation gives the same bytes as a checkout."""
-    place = as_wheel(tmp_path / "packages")
+    """A bundle from an installed wheel has the same bytes as one from a checkout."""
+    target = as_wheel(tmp_path / "packages")
     out = tmp_path / "out.zip"
-    start = f"import sys; sys.path.insert(0, {str(place)!r}); from grader.__main__ import main; main()"
+    start = f"import sys; sys.path.insert(0, {str(target)!r}); from grader.__main__ import main; main()"
     subprocess.run([sys.executable, "-I", "-c", start, "bundle", "gradescope", str(out)], cwd=tmp_path, check=True)
     assert out.read_bytes() == bundle.read_bytes()
 
 
-def test_what_has_to_be_installed(bundle: Path) -> None:
-    """The grader's own requirements and those of the extra for documents, no others."""
+def test_requirements(bundle: Path) -> None:
+    """The requirements are those of the grader and of the extra for documents, no others."""
     with zipfile.ZipFile(bundle) as archive:
         lines = archive.read("requirements.txt").decode().splitlines()
     assert lines == sorted(map(in_order, PROJECT["dependencies"] + PROJECT["optional-dependencies"]["documents"]))
 
 
 def test_requirements_with_conditions(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """Conditions on the machine stay, that on the extra goes."""
+    """Environment markers are kept; the marker of the extra is removed."""
     monkeypatch.setattr(installed, "_PACKAGE", tmp_path / "grader")
     declared = [
         "plain >=1, <2,!=1.5",
@@ -164,8 +164,8 @@ def test_requirements_with_conditions(monkeypatch: pytest.MonkeyPatch, tmp_path:
     assert "word[all]>= 3" in requirements("documents")
 
 
-def test_a_package_that_is_nowhere_installed(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """What the grader needs cannot be told then, and the command says so."""
+def test_a_missing_distribution(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """If no distribution is installed, the requirements are unknown and the command says so."""
 
     def not_found(name: str) -> list[str]:
         raise importlib.metadata.PackageNotFoundError(name)
@@ -176,8 +176,8 @@ def test_a_package_that_is_nowhere_installed(monkeypatch: pytest.MonkeyPatch, tm
         requirements("documents")
 
 
-def test_files_that_are_not_ours(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """What editors, Python and operating systems leave beside the code stays here."""
+def test_unrelated_files_are_excluded(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Files of editors, Python and operating systems beside the code are not bundled."""
     monkeypatch.setattr(installed, "_PACKAGE", tmp_path / "grader")
     for name in (
         "a.py",
@@ -197,8 +197,8 @@ def test_files_that_are_not_ours(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 # --- The rubric -------------------------------------------------------------------------------------------------------
 
 
-def test_a_rubric_of_ones_own(tmp_path: Path) -> None:
-    """Its file is in the bundle, byte for byte, and submissions are graded by it."""
+def test_a_custom_rubric(tmp_path: Path) -> None:
+    """The file of a custom rubric is in the bundle byte for byte, and submissions are graded by it."""
     own = tmp_path / "my lab.toml"
     own.write_bytes(("\ufeff" + lab_text().replace("\n", "\r\n")).encode())
     done = grader("bundle", "gradescope", tmp_path / "out.zip", "--rubric", own)
@@ -213,15 +213,15 @@ def test_a_rubric_of_ones_own(tmp_path: Path) -> None:
     assert (settings["rubric"], settings["sha256"]) == ("source/rubric.toml", sha256_of(own.read_bytes()))
     autograder = Autograder(tmp_path / "autograder", source, environment_for(source, tmp_path / "venv"))
     autograder.submission.rmdir()
-    hand_in(autograder.submission)
+    write_submission(autograder.submission)
     results = autograder.run()
     assert (results["score"], len(results["tests"])) == (6, 5)
     (source / "rubric.toml").write_text(lab_text(loads="30"))
     assert autograder.run()["score"] == 0
 
 
-def test_a_file_that_has_the_id_of_a_shipped_rubric(tmp_path: Path) -> None:
-    """The file is meant, not the rubric that comes with the grader."""
+def test_a_file_named_like_a_shipped_rubric(tmp_path: Path) -> None:
+    """A path to a file selects that file, not the shipped rubric of the same id."""
     own = tmp_path / "lab6.toml"
     own.write_bytes((ROOT / "rubrics/lab6.toml").read_bytes() + b"# changed\n")
     assert grader("bundle", "gradescope", tmp_path / "out.zip", "--rubric", own).returncode == 0
@@ -230,29 +230,31 @@ def test_a_file_that_has_the_id_of_a_shipped_rubric(tmp_path: Path) -> None:
         assert json.loads(archive.read("autograder.json"))["rubric"] == "source/rubric.toml"
 
 
-def test_a_rubric_that_needs_no_person(tmp_path: Path) -> None:
-    """Then there is nothing to give by hand."""
+def test_a_rubric_without_manual_grading(tmp_path: Path) -> None:
+    """The command mentions no manual grading if the rubric needs none."""
     own = tmp_path / "lab.toml"
     own.write_text(
-        "".join(f"{each}\n\n" for each in lab_text().split("\n\n") if '"essay"' not in each and '"picture"' not in each)
+        "".join(
+            f"{table}\n\n" for table in lab_text().split("\n\n") if '"essay"' not in table and '"picture"' not in table
+        )
     )
     done = grader("bundle", "gradescope", tmp_path / "out.zip", "--rubric", own)
     assert done.stdout.splitlines()[1] == "next: upload it under Configure Autograder; autograder points: 6"
 
 
-def test_what_the_command_says_a_person_gives_is_what_the_reference_lacks() -> None:
-    """The checks that are said to be a person's are those that are always pending."""
+def test_manual_points_are_those_that_the_reference_lacks() -> None:
+    """The criteria listed for manual grading are those that stay pending for the reference."""
     report = grade(LAB6, opened("submissions/reference"))
-    pending = [each.criterion for each in report.results if each.outcome.status == "pending"]
-    said = command._next_step(LAB6)
+    pending = [result.criterion for result in report.results if result.outcome.status == "pending"]
+    output = command._next_step(LAB6)
     assert (
-        f"{sum(each.points for each in pending)} points for {', '.join(f'{each.id} ({each.points})' for each in pending)}"
-        in said
+        f"{sum(criterion.points for criterion in pending)} points for {', '.join(f'{criterion.id} ({criterion.points})' for criterion in pending)}"
+        in output
     )
 
 
 def broken(folder: Path) -> tuple[object, ...]:
-    """A rubric with two mistakes."""
+    """Return the path of a rubric with two mistakes."""
     (folder / "lab.toml").write_text(
         lab_text().replace('"urdf_loads"', '"urdf_lods"').replace("size = [1, 1, 1]", "size = [1]")
     )
@@ -270,14 +272,14 @@ REFUSALS: dict[str, tuple[Callable[[Path], tuple[object, ...]], str]] = {
 
 @pytest.mark.parametrize("name", REFUSALS)
 def test_refusals(tmp_path: Path, name: str) -> None:
-    """One clear line, and nothing is written."""
+    """The command prints one clear line and writes nothing."""
     arguments, words = REFUSALS[name]
     assert words in refusal(grader("bundle", "gradescope", *arguments(tmp_path)))
     assert not list(tmp_path.iterdir())
 
 
 def test_a_broken_rubric(tmp_path: Path) -> None:
-    """Every mistake is named, as everywhere, and nothing is written."""
+    """Every mistake of the rubric is reported, and nothing is written."""
     done = grader("bundle", "gradescope", *broken(tmp_path))
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.count("lab.toml:") >= 2
@@ -285,11 +287,11 @@ def test_a_broken_rubric(tmp_path: Path) -> None:
     assert "another" in refusal(grader("bundle", "another", tmp_path / "out.zip"))
 
 
-def test_a_check_of_another_package() -> None:
-    """It would not be there on Gradescope, and everybody would get nothing."""
+def test_a_plugin_check() -> None:
+    """A rubric with a plug-in check is refused, because the check would be missing on Gradescope."""
 
     def strange(robot: Configuration) -> Outcome:
-        """Always so."""
+        """The robot always passes."""
         raise NotImplementedError
 
     strange.__module__ = "elsewhere.checks"

@@ -1,4 +1,4 @@
-"""Where the grader crashes, hangs or says nonsense, results.json is there all the same, and says that nothing was graded."""
+"""If the grader crashes, hangs or prints no report, results.json still exists and says that nothing was graded."""
 
 import json
 import os
@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.bundle.platform import FALLBACK, Autograder
+from tests.bundle.gradescope import FALLBACK, Autograder
 from tests.classroom.class_runs import eventually
 
 Making = Callable[..., Autograder]
@@ -22,13 +22,13 @@ time.sleep(600)
 
 
 @pytest.mark.parametrize("code", [0, 1, 3])
-def test_a_report_is_taken(with_grader: Making, code: int) -> None:
-    """Graded is graded, also where a check has failed through a fault of the grader's."""
+def test_a_report_is_accepted(with_grader: Making, code: int) -> None:
+    """A report counts as graded even if a check has an error of the grader."""
     assert with_grader(f"print({FINE!r}); raise SystemExit({code})").run() == json.loads(FINE)
 
 
-def test_half_a_character_is_none(with_grader: Making) -> None:
-    """What only Python takes for text does not reach Gradescope."""
+def test_lone_surrogates_are_removed(with_grader: Making) -> None:
+    """Lone surrogates, which only Python accepts, do not reach Gradescope."""
     output = with_grader('print(r\'{"score": 0, "output": "a\\udc80b \\u00e4"}\')').run()["output"]
     assert output == "a?b \u00e4"
 
@@ -52,7 +52,7 @@ def test_half_a_character_is_none(with_grader: Making) -> None:
     ids=lambda program: program[:40],
 )
 def test_no_report(with_grader: Making, program: str) -> None:
-    """A crash, or what is no report: nothing was graded, and the instructor reads why."""
+    """After a crash or output that is no report, nothing is graded and the instructor sees the reason."""
     autograder = with_grader(program)
     results = autograder.run()
     assert (results["score"], results["tests"], results["output_format"]) == (0, [], "text")
@@ -60,8 +60,8 @@ def test_no_report(with_grader: Making, program: str) -> None:
     assert "the grader ended with exit code" in autograder.ended().stdout
 
 
-def test_the_graders_words_are_harmless(with_grader: Making) -> None:
-    """Why nothing was graded reaches the student as plain text, however it looks."""
+def test_error_text_is_escaped(with_grader: Making) -> None:
+    """The reason why nothing was graded reaches the student as plain text, whatever it contains."""
     words = b"grader: <b>\x1b[31m\x00\xff\xe2\x80\xae `a` " + b"long " * 1000 + b"\ngrader: second\n"
     results = with_grader(f"import sys; sys.stderr.buffer.write({words!r}); raise SystemExit(2)").run()
     assert (results["score"], results["output_format"]) == (0, "text")
@@ -70,7 +70,7 @@ def test_the_graders_words_are_harmless(with_grader: Making) -> None:
 
 
 def test_a_grader_that_hangs(with_grader: Making, tmp_path: Path) -> None:
-    """It is ended with all that it has started, and the student reads that it took too long."""
+    """A grader that hangs is terminated with all its processes, and the student reads that it took too long."""
     autograder = with_grader(HANGS.format(path=str(tmp_path / "child")), seconds=3)
     assert "longer than 3 seconds" in autograder.run()["output"]
     child = int((tmp_path / "child").read_text())
@@ -91,7 +91,7 @@ def _runs(process: int) -> bool:
     ids=["missing", "nonsense", "fails", "hangs"],
 )
 def test_a_python_that_does_not_run(autograder: Autograder, tmp_path: Path, program: str) -> None:
-    """Before setup.sh has run, or after it has failed."""
+    """A Python that does not start (setup.sh did not run or failed) is explained."""
     (autograder.root / "venv").unlink()
     (autograder.root / "venv").symlink_to(tmp_path)
     if program:
@@ -104,7 +104,7 @@ def test_a_python_that_does_not_run(autograder: Autograder, tmp_path: Path, prog
 
 
 def test_an_environment_without_packages(autograder: Autograder, tmp_path: Path) -> None:
-    """Where setup.sh has stopped before it was done."""
+    """An environment that setup.sh did not finish is explained."""
     (autograder.root / "venv").unlink()
     venv.create(autograder.root / "venv", symlinks=True)
     _is_explained(autograder)

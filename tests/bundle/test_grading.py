@@ -1,4 +1,4 @@
-"""What an autograder on Gradescope makes of submissions: results.json is always there, and is what Gradescope takes."""
+"""An autograder on Gradescope grades submissions: results.json always exists and is what Gradescope accepts."""
 
 import io
 import json
@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.bundle.platform import Autograder
+from tests.bundle.gradescope import Autograder
 from tests.classroom.gradebooks import PNG, grader
 from tests.samples import ROOT
 
@@ -33,26 +33,26 @@ MODULES = (
 
 
 def test_a_submission_that_passes(autograder: Autograder) -> None:
-    """The reference gets all points that a program can give, and each criterion is a test."""
-    autograder.hand_in("reference")
+    """The reference gets all automatic points, and each criterion is a test."""
+    autograder.submit("reference")
     results = autograder.run()
-    assert results["score"] == sum(each.get("score", 0) for each in results["tests"]) == 90
-    assert all(each["status"] == "passed" for each in results["tests"] if "score" in each)
+    assert results["score"] == sum(test.get("score", 0) for test in results["tests"]) == 90
+    assert all(test["status"] == "passed" for test in results["tests"] if "score" in test)
 
 
 def test_a_submission_with_mistakes(autograder: Autograder) -> None:
-    """What students see is what the report says on any other machine."""
-    autograder.hand_in("several-mistakes")
+    """Students see the same report as on any other machine."""
+    autograder.submit("several-mistakes")
     report = grader("grade", ROOT / "submissions" / "several-mistakes", "--format", "gradescope")
     assert report.returncode == 1
     results = autograder.run()
     assert results == json.loads(report.stdout)
-    assert {each.get("status") for each in results["tests"]} == {"passed", "failed", None}
+    assert {test.get("status") for test in results["tests"]} == {"passed", "failed", None}
 
 
 def test_the_same_submission_gives_the_same_bytes(autograder: Autograder) -> None:
-    """There is no clock in the results, and nothing of an earlier run stays."""
-    autograder.hand_in("several-mistakes")
+    """Results contain no time, and nothing of an earlier run remains."""
+    autograder.submit("several-mistakes")
     autograder.run()
     before = (autograder.root / "results" / "results.json").read_bytes()
     (autograder.root / "results" / "results.json").write_text("of yesterday")
@@ -61,14 +61,14 @@ def test_the_same_submission_gives_the_same_bytes(autograder: Autograder) -> Non
 
 
 def test_an_archive_that_is_not_unpacked(autograder: Autograder) -> None:
-    """Gradescope unpacks a zip and no tar; it is read where it is."""
+    """Gradescope unpacks zips but not tars; a tar is read in place."""
     with tarfile.open(autograder.submission / "lab6.tar.gz", "w:gz") as archive:
         archive.add(ROOT / "submissions" / "reference", "lab6")
     assert autograder.run()["score"] == 90
 
 
 def test_an_empty_submission(autograder: Autograder) -> None:
-    """Nothing is graded, and the student reads why."""
+    """Nothing is graded, and the student sees the reason."""
     results = autograder.run()
     assert (results["score"], results["tests"], results["output_format"]) == (0, [], "text")
     assert "submission is empty" in results["output"]
@@ -78,34 +78,34 @@ def test_an_empty_submission(autograder: Autograder) -> None:
     assert "submission does not exist" in autograder.run()["output"]
 
 
-def test_another_rubric_than_the_bundle_was_made_for(tmp_path: Path, autograder: Autograder, source: Path) -> None:
-    """Nobody gets points by a rubric that somebody has changed since."""
+def test_a_changed_rubric_is_refused(tmp_path: Path, autograder: Autograder, source: Path) -> None:
+    """No points are given if the rubric differs from the one that the bundle was made for."""
     settings = json.loads((source / "autograder.json").read_text())
     (autograder.root / "source").unlink()
     (autograder.root / "source").mkdir()
     (autograder.root / "source" / "autograder.py").write_bytes((source / "autograder.py").read_bytes())
     (autograder.root / "source" / "autograder.json").write_text(json.dumps({**settings, "sha256": "0" * 64}))
-    autograder.hand_in("reference")
+    autograder.submit("reference")
     results = autograder.run()
     assert (results["score"], results["tests"]) == (0, [])
     assert "rubric" in results["output"]
 
 
 def deep(folder: Path) -> None:
-    """XML with entities that multiply, and with a hundred thousand tags in each other."""
+    """Write XML with multiplying entities, and XML with a hundred thousand nested tags."""
     (folder / "laughs.urdf").write_text(f"{LAUGHS}]><robot name='r'>&j;</robot>")
     (folder / "deep.urdf").write_text("<robot name='r'>" + "<link>" * 100_000)
 
 
 def huge(folder: Path) -> None:
-    """Files of gigabytes, of which nothing is on the disk."""
+    """Write sparse files of several gigabytes."""
     for name in ("my_robot.urdf", "package.xml", "answers.md", "lab6.zip"):
         with (folder / name).open("wb") as file:
             file.truncate(4 << 30)
 
 
 def named(folder: Path) -> None:
-    """Files whose names are escapes, markup, newlines, marks that turn text around and bytes that are no text."""
+    """Write files whose names contain escapes, markup, newlines, bidirectional marks and undecodable bytes."""
     text = (ROOT / "submissions/several-mistakes/my_robot.urdf").read_bytes()
     for name in (
         b"a\nb.urdf",
@@ -122,7 +122,7 @@ def named(folder: Path) -> None:
 
 
 def linked(folder: Path) -> None:
-    """Links to the machine's files, to the autograder's own and to themselves."""
+    """Write symlinks to the machine's files, to the autograder's files and to themselves."""
     (folder / "my_robot.urdf").symlink_to("/etc/passwd")
     (folder / "etc").symlink_to("/etc")
     (folder / "source").symlink_to("../source")
@@ -132,7 +132,7 @@ def linked(folder: Path) -> None:
 
 
 def damaged(folder: Path) -> None:
-    """Archives, documents and pictures that are none."""
+    """Write damaged archives, documents and pictures."""
     for name in ("a.zip", "b.tar.gz", "c.docx", "d.pdf", "e.png"):
         (folder / name).write_bytes(b"PK\x03\x04" + bytes(100))
     bomb = io.BytesIO()
@@ -145,7 +145,7 @@ def damaged(folder: Path) -> None:
 
 @pytest.mark.parametrize("hostile", [deep, huge, named, linked, damaged], ids=lambda make: make.__name__)
 def test_a_hostile_submission(autograder: Autograder, hostile: object) -> None:
-    """Whatever is handed in, there are results, and nothing of the machine's own files is in them."""
+    """A hostile submission still has results, and they contain nothing of the machine's own files."""
     assert callable(hostile)
     hostile(autograder.submission)
     results = autograder.run()
@@ -157,16 +157,16 @@ def test_a_hostile_submission(autograder: Autograder, hostile: object) -> None:
 
 
 def test_nothing_of_a_submission_is_imported(autograder: Autograder) -> None:
-    """Modules that are called like the grader's do not run, not even where the environment names their folder."""
-    autograder.hand_in("reference")
+    """Modules of a submission named like the grader's are not imported, even if PYTHONPATH names their folder."""
+    autograder.submit("reference")
     mark = autograder.root.parent / "ran"
     program = f"open({str(mark)!r}, 'w').close()\n"
-    for place in (autograder.submission, autograder.root):
+    for target in (autograder.submission, autograder.root):
         for name in MODULES:
-            (place / f"{name}.py").write_text(program)
-        (place / "grader").mkdir()
+            (target / f"{name}.py").write_text(program)
+        (target / "grader").mkdir()
         for name in ("__init__", "__main__", "errors"):
-            (place / "grader" / f"{name}.py").write_text(program)
+            (target / "grader" / f"{name}.py").write_text(program)
     folder = str(autograder.submission)
     results = autograder.run(
         PYTHONPATH=folder, PYTHONHOME=folder, PYTHONUSERBASE=folder, PYTHONSTARTUP=f"{folder}/os.py"

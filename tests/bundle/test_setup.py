@@ -1,4 +1,4 @@
-"""setup.sh, as Gradescope runs it once for each autograder."""
+"""setup.sh, run as Gradescope runs it once for each autograder."""
 
 import os
 import shutil
@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.bundle.platform import Autograder, unpacked
-from tests.command_line import PATIENCE
+from tests.bundle.gradescope import Autograder, unpacked
+from tests.command_line import HANG_TIMEOUT
 from tests.wheels import offline
 
 WORD = """
@@ -17,7 +17,7 @@ import docx, pypdf
 from importlib.metadata import distribution
 print(*(distribution(each).locate_file("") for each in ("pypdf", "python-docx", "numpy", "lxml")))
 """
-# In a PATH of its own: what a base image has, with other Pythons than here.
+# The tools of a base image, for a PATH with other Pythons than this one.
 TOOLS = ("bash", "env", "dirname", "cat", "rm", "touch")
 
 
@@ -31,13 +31,13 @@ def set_up(source: Path, start: Path, **variables: str) -> subprocess.CompletedP
         stderr=subprocess.STDOUT,
         text=True,
         check=False,
-        timeout=PATIENCE,
+        timeout=HANG_TIMEOUT,
     )
 
 
 @pytest.mark.slow
 def test_from_the_zip_to_a_grade(bundle: Path, tmp_path: Path) -> None:
-    """pip installs what is needed, for which wheels stand that need no network, and the reference gets its points."""
+    """pip installs the requirements (here from local wheels), and the reference gets its points."""
     root = tmp_path / "auto grader"
     source = unpacked(bundle, root / "source")
     (tmp_path / "wheels").mkdir()
@@ -49,21 +49,21 @@ def test_from_the_zip_to_a_grade(bundle: Path, tmp_path: Path) -> None:
     assert installed.stdout.count(str(root / "venv")) == 4
     (tmp_path / "again").mkdir()
     autograder = Autograder(tmp_path / "again", source, root / "venv")
-    autograder.hand_in("reference")
+    autograder.submit("reference")
     assert autograder.run()["score"] == 90
 
 
 def image(folder: Path, **programs: str) -> str:
-    """The PATH of a machine that has these programs, scripts of a shell."""
-    place = folder / "bin"
-    place.mkdir()
+    """Return the PATH of a machine that has these programs, which are shell scripts."""
+    target = folder / "bin"
+    target.mkdir()
     for name in TOOLS:
-        (place / name).symlink_to(shutil.which(name) or name)
+        (target / name).symlink_to(shutil.which(name) or name)
     for name, script in programs.items():
-        path = place / name.replace("_", ".").replace("apt.get", "apt-get")
+        path = target / name.replace("_", ".").replace("apt.get", "apt-get")
         path.write_text(f"#!{shutil.which('bash')}\n{script}\n")
         path.chmod(0o755)
-    return str(place)
+    return str(target)
 
 
 APT = 'echo "$*" >>"$LOG"; [ "$1" = update ] || touch "$LOG.done"'
@@ -74,8 +74,8 @@ OLD = "exit 1"
 @pytest.mark.parametrize(
     ("python3", "packages"), [(OLD, "python3.11 python3.11-venv"), (NEW, "python3-venv")], ids=["22.04", "24.04"]
 )
-def test_python_is_installed_where_it_lacks(source: Path, tmp_path: Path, python3: str, packages: str) -> None:
-    """Beside an old Python a newer one, for a new one what makes virtual environments; the system's own is not replaced."""
+def test_python_is_installed_if_needed(source: Path, tmp_path: Path, python3: str, packages: str) -> None:
+    """setup.sh installs a newer Python beside an old one, or the venv package for a new one; the system's Python stays."""
     newer = {"python3_11": '[ -e "$LOG.done" ] && echo it runs >>"$LOG"'} if python3 == OLD else {}
     path = image(tmp_path, python3=python3, apt_get=APT, **newer)
     (tmp_path / "root").mkdir()
@@ -96,8 +96,8 @@ def test_without_a_python(source: Path, tmp_path: Path, programs: dict[str, str]
     )
 
 
-def test_a_rubric_that_is_broken_after_all(bundle: Path, tmp_path: Path) -> None:
-    """What somebody has broken in the unpacked files is found when the image is built."""
+def test_a_rubric_broken_after_bundling(bundle: Path, tmp_path: Path) -> None:
+    """A rubric that was broken in the unpacked files is detected when the image is built."""
     source = unpacked(bundle, tmp_path / "source")
     (source / "autograder.json").write_text('{"rubric": "source/rubric.toml", "sha256": "", "seconds": 1}')
     (source / "rubric.toml").write_text("id = 1\n")

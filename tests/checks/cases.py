@@ -1,4 +1,4 @@
-"""For every check a robot that passes and one that fails, and what the check says of each."""
+"""For every check a robot that passes, one that fails, and the message for each."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -8,7 +8,7 @@ import pytest
 
 from grader.checks import appearance, contact, motion, placement, tree
 from grader.checks.outcome import Status
-from tests.checks.asking import AnyCheck
+from tests.checks.outcomes import AnyCheck
 from tests.checks.robots import Numbers, Scene, box, cylinder, joint, link, paint, scene, sphere, turned, visual
 
 BASE = link("base", visual(box(0.6, 0.4, 0.2), xyz=(0.0, 0.0, 0.1), material=paint("0 0.6 0 1", "green")))
@@ -22,38 +22,39 @@ FORWARD = turned(roll=-90)
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """The sample of a check: arguments, a scene that passes and one that fails, and the place of the failure, if it has one.
+    """The sample of a check: arguments, a scene that passes, one that fails, and the messages.
 
-    `edges` has, for each tolerance of the check, the scene that is off by so much: in its unit, and in both directions unless
-    the name is in `one_sided`. `of_a_mesh` is the status where each shape is a mesh; `needs_size` is False for a check that does
-    not mind a visual without a size.
+    `at` is the text at the location of the failure, if it has one. `edges` has, for each tolerance of the check, a function
+    that returns a scene which is off by a given amount in the tolerance's unit, positive or negative unless the name is in
+    `one_sided`. `mesh_status` is the status if every shape is a mesh. `needs_size` is False for a check that ignores the
+    sizes of visuals.
     """
 
     check: AnyCheck
     arguments: Mapping[str, Any]
     passing: Scene
-    says: str
+    pass_message: str
     failing: Scene
-    complains: str
+    fail_message: str
     at: str | None
     edges: Mapping[str, Callable[[float], Scene]] = field(default_factory=dict)
     one_sided: tuple[str, ...] = ()
-    of_a_mesh: Status = "passed"
+    mesh_status: Status = "passed"
     needs_size: bool = True
 
     @property
     def name(self) -> str:
-        """The name of the check."""
+        """Return the name of the check."""
         return self.check.__name__
 
     @property
     def family(self) -> str:
-        """The module that the check is in."""
+        """Return the module of the check."""
         return self.check.__module__.rpartition(".")[2]
 
 
 def painted(name: str, rgba: str) -> Scene:
-    """One link with a visual in a colour."""
+    """Return a link with a visual in a colour."""
     return scene(link(name, visual(box(0.6, 0.4, 0.2), material=paint(rgba))))
 
 
@@ -65,17 +66,17 @@ def rolling(
     axis: Numbers = "0 0 1",
     wheel: str = WHEEL,
 ) -> Scene:
-    """A base with one wheel at its left side, which drives it forward by default."""
+    """Return a base with one wheel on its left side, which drives it forward by default."""
     return scene(BASE, wheel, joint("wheel_joint", kind, "base", "wheel", xyz=xyz, rpy=rpy, axis=axis))
 
 
 def mounted(xyz: Numbers = (0.15, 0.0, 0.225), rpy: Numbers = "", *, lidar: str = LIDAR) -> Scene:
-    """A base with a lidar on a fixed joint; unless told, it stands on the base."""
+    """Return a base with a lidar on a fixed joint; default: the lidar stands on the base."""
     return scene(BASE, lidar, joint("base_lidar_joint", "fixed", "base", "lidar", xyz=xyz, rpy=rpy))
 
 
 def standing(*, height: float = 0.1, rpy: Numbers = "", xy: str = "0 0", wheel: float = 0.0) -> Scene:
-    """A footprint with a base `height` above it, one wheel at `wheel` above the base's frame, and a caster."""
+    """Return a footprint with a base `height` above it, one wheel at `wheel` above the base's frame, and a caster."""
     return scene(
         FOOT,
         BASE,
@@ -92,9 +93,9 @@ CASES = (
         tree.urdf_loads,
         {},
         passing=mounted(),
-        says="ROS 2 loads the file, and all links form one tree",
+        pass_message="ROS 2 loads the file, and all links form one tree",
         failing=scene(BASE, LIDAR),
-        complains="'lidar' is not connected to the robot: no joint has it as its child (the roots are 'base', 'lidar');"
+        fail_message="'lidar' is not connected to the robot: no joint has it as its child (the roots are 'base', 'lidar');"
         " ROS 2 rejects the file",
         at='name="lidar"',
         needs_size=False,
@@ -103,42 +104,42 @@ CASES = (
         appearance.shows_box,
         {"link": "base", "size": (0.6, 0.4, 0.2), "tolerance": 0.002},
         passing=scene(BASE),
-        says="'base' shows a box 0.6 0.4 0.2 m",
+        pass_message="'base' shows a box 0.6 0.4 0.2 m",
         failing=scene(link("base", visual(box(0.6, 0.2, 0.4)))),
-        complains="'base' shows a box 0.6 0.2 0.4 m; it should be 0.6 0.4 0.2 m (x, y, z)",
+        fail_message="'base' shows a box 0.6 0.2 0.4 m; it should be 0.6 0.4 0.2 m (x, y, z)",
         at="size=",
         edges={"tolerance": lambda off: scene(link("base", visual(box(0.6, 0.4 + off, 0.2))))},
-        of_a_mesh="failed",
+        mesh_status="failed",
     ),
     Case(
         appearance.shows_cylinder,
         {"link": "lidar", "radius": 0.1, "length": 0.05, "tolerance": 0.002},
         passing=scene(LIDAR),
-        says="'lidar' shows a cylinder of radius 0.1 m and length 0.05 m",
+        pass_message="'lidar' shows a cylinder of radius 0.1 m and length 0.05 m",
         failing=scene(link("lidar", visual(cylinder(0.2, 0.05)))),
-        complains="'lidar' shows a cylinder of radius 0.2 m and length 0.05 m; it should have radius 0.1 m and length 0.05 m",
+        fail_message="'lidar' shows a cylinder of radius 0.2 m and length 0.05 m; it should have radius 0.1 m and length 0.05 m",
         at="radius=",
         edges={"tolerance": lambda off: scene(link("lidar", visual(cylinder(0.1 + off, 0.05))))},
-        of_a_mesh="failed",
+        mesh_status="failed",
     ),
     Case(
         appearance.shows_sphere,
         {"link": "caster", "radius": 0.05, "tolerance": 0.002},
         passing=scene(CASTER),
-        says="the radius of the sphere that 'caster' shows is 0.05 m",
+        pass_message="the radius of the sphere that 'caster' shows is 0.05 m",
         failing=scene(link("caster", visual(sphere(0.1)))),
-        complains="the radius of the sphere that 'caster' shows is 0.1 m; it should be 0.05 m (50 mm too large)",
+        fail_message="the radius of the sphere that 'caster' shows is 0.1 m; it should be 0.05 m (50 mm too large)",
         at="radius=",
         edges={"tolerance": lambda off: scene(link("caster", visual(sphere(0.05 + off))))},
-        of_a_mesh="failed",
+        mesh_status="failed",
     ),
     Case(
         appearance.shows_colour,
         {"link": "base", "colour": (0.0, 0.6, 0.0, 1.0), "tolerance": 0.01},
         passing=scene(BASE),
-        says="'base' is shown in rgba 0 0.6 0 1",
+        pass_message="'base' is shown in rgba 0 0.6 0 1",
         failing=scene(link("base", visual(box(0.6, 0.4, 0.2), material=paint("0 1 0 1")))),
-        complains="'base' is shown in rgba 0 1 0 1; it should be 0 0.6 0 1",
+        fail_message="'base' is shown in rgba 0 1 0 1; it should be 0 0.6 0 1",
         at="rgba=",
         edges={"tolerance": lambda off: painted("base", f"0 {0.6 + off} 0 1")},
     ),
@@ -146,9 +147,9 @@ CASES = (
         appearance.shows_grey,
         {"link": "lidar", "at_least": 0.75, "tolerance": 0.01},
         passing=scene(link("lidar", visual(cylinder(), material=paint("0.8 0.8 0.8 1")))),
-        says="'lidar' is shown in rgb 0.8 0.8 0.8",
+        pass_message="'lidar' is shown in rgb 0.8 0.8 0.8",
         failing=scene(link("lidar", visual(cylinder(), material=paint("0.7 0.7 0.7 1")))),
-        complains="'lidar' is shown in rgb 0.7 0.7 0.7; each should be at least 0.75",
+        fail_message="'lidar' is shown in rgb 0.7 0.7 0.7; each should be at least 0.75",
         at="rgba=",
         edges={"tolerance": lambda off: painted("lidar", f"0.8 {0.8 + off} 0.8 1")},
     ),
@@ -156,9 +157,9 @@ CASES = (
         appearance.shows_nothing,
         {"link": "foot"},
         passing=scene(FOOT),
-        says="'foot' shows nothing",
+        pass_message="'foot' shows nothing",
         failing=scene(link("foot", visual(box(0.1, 0.1, 0.1)))),
-        complains="'foot' shows a box; it should have no visual",
+        fail_message="'foot' shows a box; it should have no visual",
         at="<visual>",
         needs_size=False,
     ),
@@ -166,9 +167,9 @@ CASES = (
         tree.held_by,
         {"link": "lidar", "parent": "base", "joint_type": "fixed"},
         passing=mounted(),
-        says="the fixed joint 'base_lidar_joint' connects 'lidar' to 'base'",
+        pass_message="the fixed joint 'base_lidar_joint' connects 'lidar' to 'base'",
         failing=scene(BASE, LIDAR, joint("base_lidar_joint", "continuous", "base", "lidar")),
-        complains="the joint that moves 'lidar' is continuous; it should be fixed (joint 'base_lidar_joint')",
+        fail_message="the joint that moves 'lidar' is continuous; it should be fixed (joint 'base_lidar_joint')",
         at='type="continuous"',
         needs_size=False,
     ),
@@ -176,9 +177,9 @@ CASES = (
         tree.joints_named,
         {"parent": "base", "joints": {"base_lidar_joint": "lidar", "wheel_joint": "wheel"}},
         passing=scene(BASE, LIDAR, WHEEL, MOUNT, joint("wheel_joint", "continuous", "base", "wheel")),
-        says="the joints are named 'base_lidar_joint' and 'wheel_joint'",
+        pass_message="the joints are named 'base_lidar_joint' and 'wheel_joint'",
         failing=scene(BASE, LIDAR, WHEEL, MOUNT, joint("weel_joint", "continuous", "base", "wheel")),
-        complains="the joint of 'wheel' should be named 'wheel_joint', not 'weel_joint'",
+        fail_message="the joint of 'wheel' should be named 'wheel_joint', not 'weel_joint'",
         at='name="weel_joint"',
         needs_size=False,
     ),
@@ -186,9 +187,9 @@ CASES = (
         tree.root_of_tree,
         {"link": "foot", "holds": "base"},
         passing=scene(FOOT, BASE, joint("base_joint", "fixed", "foot", "base")),
-        says="'foot' is the root, and 'base' is fixed to it",
+        pass_message="'foot' is the root, and 'base' is fixed to it",
         failing=scene(FOOT, BASE, joint("base_joint", "fixed", "base", "foot")),
-        complains="'foot' is not the root: it is a child of 'base' (joint 'base_joint')",
+        fail_message="'foot' is not the root: it is a child of 'base' (joint 'base_joint')",
         at="<joint",
         needs_size=False,
     ),
@@ -196,9 +197,9 @@ CASES = (
         placement.frame_at,
         {"link": "lidar", "relative_to": "base", "xyz": (0.15, 0.0, 0.225), "tolerance": 0.002},
         passing=mounted(),
-        says="the frame 'lidar' is at 0.15 0 0.225 m in 'base'",
+        pass_message="the frame 'lidar' is at 0.15 0 0.225 m in 'base'",
         failing=mounted((0.15, 0.01, 0.2)),
-        complains="the frame 'lidar' is at 0.15 0.01 0.2 m in 'base'; it should be at 0.15 0 0.225 m"
+        fail_message="the frame 'lidar' is at 0.15 0.01 0.2 m in 'base'; it should be at 0.15 0 0.225 m"
         " (y 10 mm too large, z 25 mm too small)",
         at='xyz="0.15 0.01 0.2"',
         edges={"tolerance": lambda off: mounted((0.15, off, 0.225))},
@@ -208,85 +209,85 @@ CASES = (
         placement.centre_at,
         {"link": "wheel", "relative_to": "base", "xyz": (-0.15, 0.225, 0.0), "tolerance": 0.002},
         passing=rolling(),
-        says="the centre of the visual of 'wheel' is at -0.15 0.225 0 m in 'base'",
+        pass_message="the centre of the visual of 'wheel' is at -0.15 0.225 0 m in 'base'",
         failing=rolling(xyz=(-0.15, 0.2, 0.0)),
-        complains="the centre of the visual of 'wheel' is at -0.15 0.2 0 m in 'base'; it should be at -0.15 0.225 0 m"
+        fail_message="the centre of the visual of 'wheel' is at -0.15 0.2 0 m in 'base'; it should be at -0.15 0.225 0 m"
         " (y 25 mm too small)",
         at='xyz="-0.15 0.2 0.0"',
         edges={"tolerance": lambda off: rolling(xyz=(-0.15, 0.225 + off, 0.0))},
-        of_a_mesh="pending",
+        mesh_status="pending",
     ),
     Case(
         placement.bottom_at_height,
         {"link": "base", "relative_to": "base", "height": 0.0, "tolerance": 0.002},
         passing=scene(BASE),
-        says="the bottom of 'base' in the frame 'base' is at z = 0 m",
+        pass_message="the bottom of 'base' in the frame 'base' is at z = 0 m",
         failing=scene(link("base", visual(box(0.6, 0.4, 0.2)))),
-        complains="the bottom of 'base' in the frame 'base' is at z = -0.1 m; it should be 0 m (100 mm too low)",
+        fail_message="the bottom of 'base' in the frame 'base' is at z = -0.1 m; it should be 0 m (100 mm too low)",
         at="<visual>",
         edges={"tolerance": lambda off: scene(link("base", visual(box(0.6, 0.4, 0.2), xyz=(0.0, 0.0, 0.1 + off))))},
-        of_a_mesh="pending",
+        mesh_status="pending",
     ),
     Case(
         placement.bottoms_at_height,
         {"links": ["wheel", "caster"], "relative_to": "foot", "height": 0.0, "tolerance": 0.002},
         passing=standing(),
-        says="the bottoms of 'wheel' and 'caster' are at z = 0 0 m in 'foot'",
+        pass_message="the bottoms of 'wheel' and 'caster' are at z = 0 0 m in 'foot'",
         failing=standing(wheel=0.05),
-        complains="the bottoms of 'wheel' and 'caster' are at z = 0.05 0 m in 'foot'; they should be at 0 m ('wheel' 50 mm too high)",
+        fail_message="the bottoms of 'wheel' and 'caster' are at z = 0.05 0 m in 'foot'; they should be at 0 m ('wheel' 50 mm too high)",
         at='xyz="-0.15 0.225 0.05"',  # of the wheel's joint
         edges={"tolerance": lambda off: standing(wheel=off)},
-        of_a_mesh="pending",
+        mesh_status="pending",
     ),
     Case(
         contact.stands_on,
         {"link": "lidar", "on": "base", "tolerance": 0.002},
         passing=mounted(),
-        says="'lidar' stands on the top of 'base', at z = 0.2 m in 'base'",
+        pass_message="'lidar' stands on the top of 'base', at z = 0.2 m in 'base'",
         failing=mounted((0.15, 0.0, 0.2)),
-        complains="the bottom of 'lidar' is at z = 0.175 m in 'base'; it should be at the top of 'base',"
+        fail_message="the bottom of 'lidar' is at z = 0.175 m in 'base'; it should be at the top of 'base',"
         " 0.2 m (25 mm too low)",
         at=None,  # lidar or base: either may be in the wrong place
         edges={"tolerance": lambda off: mounted((0.15, 0.0, 0.225 + off))},
-        of_a_mesh="pending",
+        mesh_status="pending",
     ),
     Case(
         contact.clear_of,
         {"link": "wheel", "of": "base", "tolerance": 0.002},
         passing=rolling(),
-        says="'wheel' does not cut into 'base'",
+        pass_message="'wheel' does not cut into 'base'",
         failing=rolling(xyz=(-0.15, 0.2, 0.0)),
-        complains="'wheel' cuts 25 mm deep into 'base'",
+        fail_message="'wheel' cuts 25 mm deep into 'base'",
         at="<visual>\n<geometry>\n<cylinder",
         edges={"tolerance": lambda off: rolling(xyz=(-0.15, 0.225 - off, 0.0))},
         one_sided=("tolerance",),
-        of_a_mesh="pending",
+        mesh_status="pending",
     ),
     Case(
         placement.under_the_base,
         {"link": "foot", "base": "base", "wheels": ["wheel"], "tolerance": 0.002, "angle": 1.0},
         passing=standing(),
-        says="the frame 'foot' is under 'base', level with the bottoms of the wheels",
+        pass_message="the frame 'foot' is under 'base', level with the bottoms of the wheels",
         failing=standing(height=0.05),
-        complains="the frame 'foot' should be under 'base', level with the bottoms of the wheels:"
+        fail_message="the frame 'foot' should be under 'base', level with the bottoms of the wheels:"
         " the lowest point of 'wheel' is 50 mm below it",
         at='xyz="0 0 0.05"',
         edges={
             "tolerance": lambda off: standing(height=0.1 + off),
             "angle": lambda off: standing(rpy=turned(yaw=off)),
         },
-        of_a_mesh="pending",
+        mesh_status="pending",
     ),
     Case(
         motion.rolls_forward,
         {"link": "wheel", "base": "base", "tolerance": 1.0},
         passing=rolling(),
-        says="a small positive turn of 'wheel' drives 'base' forward (joint 'wheel_joint')",
+        pass_message="a small positive turn of 'wheel' drives 'base' forward (joint 'wheel_joint')",
         failing=rolling(rpy=turned(roll=90)),
-        complains="a small positive turn of 'wheel' drives 'base' backward; it should drive it forward (joint 'wheel_joint')",
+        fail_message="a small positive turn of 'wheel' drives 'base' backward; it should drive it forward (joint 'wheel_joint')",
         at="rpy=",
         edges={"tolerance": lambda off: rolling(rpy=turned(roll=-90, yaw=off))},
-        of_a_mesh="pending",
+        mesh_status="pending",
     ),
     Case(
         motion.axis_along,
@@ -298,9 +299,9 @@ CASES = (
             "tolerance": 1.0,
         },
         passing=rolling(),
-        says="the z axis of the frame 'wheel' points along 0 1 0 in 'base'",
+        pass_message="the z axis of the frame 'wheel' points along 0 1 0 in 'base'",
         failing=rolling(rpy=turned(roll=90)),
-        complains="the z axis of the frame 'wheel' points along 0 -1 0 in 'base'; it should point along 0 1 0 (180 degrees off)",
+        fail_message="the z axis of the frame 'wheel' points along 0 -1 0 in 'base'; it should point along 0 1 0 (180 degrees off)",
         at="rpy=",
         edges={"tolerance": lambda off: rolling(rpy=turned(roll=-90 + off))},
         needs_size=False,
@@ -309,15 +310,15 @@ CASES = (
         motion.turns_about_itself,
         {"link": "wheel", "base": "base", "tolerance": 0.002, "angle": 1.0},
         passing=rolling(),
-        says="'wheel' turns about its own axis",
+        pass_message="'wheel' turns about its own axis",
         failing=rolling(axis="0 1 0"),
-        complains="'wheel' wobbles: its joint axis is 90 degrees off the cylinder's axis; it should be along it (joint 'wheel_joint')",
+        fail_message="'wheel' wobbles: its joint axis is 90 degrees off the cylinder's axis; it should be along it (joint 'wheel_joint')",
         at='xyz="0 1 0"',
         edges={
             "tolerance": lambda off: rolling(wheel=link("wheel", visual(cylinder(), xyz=(off, 0.0, 0.0)))),
             "angle": lambda off: rolling(wheel=link("wheel", visual(cylinder(), rpy=turned(roll=off)))),
         },
-        of_a_mesh="failed",
+        mesh_status="failed",
     ),
 )
 
@@ -325,6 +326,6 @@ CASE = {case.name: case for case in CASES}
 
 
 def cases_of(family: str) -> pytest.MarkDecorator:
-    """Run a test once for each check of a family."""
+    """Parametrise a test over the checks of a family."""
     chosen = [case for case in CASES if case.family == family]
     return pytest.mark.parametrize("case", chosen, ids=[case.name for case in chosen])

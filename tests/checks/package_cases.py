@@ -1,4 +1,4 @@
-"""For every check of a package, a submission that passes and one that fails, and what the check says of each."""
+"""For every check of a package, a submission that passes, one that fails, and the message for each."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -8,8 +8,8 @@ from grader.checks.launch import launch_finds_files, launch_found, launch_starts
 from grader.checks.manual import answered, evidence_shown
 from grader.checks.package import build_installs, installs_files, package_found, package_type, setup_imports
 from grader.checks.rviz import rviz_display_on, rviz_fixed_frame, rviz_found, rviz_shows_robot
-from tests.checks.asking import AnyCheck
-from tests.checks.submitted import ANSWERS, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, Submitted
+from tests.checks.outcomes import AnyCheck
+from tests.checks.submissions import ANSWERS, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, Submitted
 
 _NAME = "my_robot_rviz.launch.py"
 _RVIZ = {"name": "my_robot.rviz", "launch": _NAME}
@@ -17,25 +17,25 @@ _RVIZ = {"name": "my_robot.rviz", "launch": _NAME}
 
 @dataclass(frozen=True)
 class PackageCase:
-    """A check with arguments, a submission that it fails, what it says of both, and where the failure stands, if anywhere."""
+    """A check with arguments, a submission that fails it, both messages, and the location of the failure, if it has one."""
 
     check: AnyCheck
     arguments: Mapping[str, Any]
-    says: str
+    pass_message: str
     failing: Submitted
-    complains: str
+    fail_message: str
     at: tuple[str, str] | None = None
     passing: Submitted = field(default=REFERENCE, repr=False)
 
     @property
     def name(self) -> str:
-        """The name of the check."""
+        """Return the name of the check."""
         return self.check.__name__
 
 
 @dataclass(frozen=True)
 class PendingCase:
-    """A check that a person decides, whatever was handed in: what it says where something is found, and where nothing is."""
+    """A check that always needs manual grading: its message if something was found, and if nothing was."""
 
     check: AnyCheck
     arguments: Mapping[str, Any]
@@ -46,7 +46,7 @@ class PendingCase:
 
     @property
     def name(self) -> str:
-        """The name of the check."""
+        """Return the name of the check."""
         return self.check.__name__
 
 
@@ -54,96 +54,96 @@ PACKAGE_CASES = (
     PackageCase(
         package_found,
         {"name": "my_robot"},
-        says="the package is named 'my_robot'",
+        pass_message="the package is named 'my_robot'",
         failing=REFERENCE.replacing(MANIFEST, ">my_robot<", ">robot<"),
-        complains="the package is named 'robot'; it should be named 'my_robot'",
+        fail_message="the package is named 'robot'; it should be named 'my_robot'",
         at=(MANIFEST, "<name>"),
     ),
     PackageCase(
         package_type,
         {"build_type": "ament_python"},
-        says="the build type is 'ament_python'",
+        pass_message="the build type is 'ament_python'",
         failing=REFERENCE.replacing(MANIFEST, "ament_python", "ament_cmake"),
-        complains="the build type is 'ament_cmake'; it should be 'ament_python'",
+        fail_message="the build type is 'ament_cmake'; it should be 'ament_python'",
         at=(MANIFEST, "<build_type>"),
     ),
     PackageCase(
         build_installs,
         {"kind": "urdf", "name": "my_robot.urdf"},
-        says="a build installs urdf/my_robot.urdf as share/my_robot/my_robot.urdf",
+        pass_message="a build installs urdf/my_robot.urdf as share/my_robot/my_robot.urdf",
         failing=REFERENCE.replacing(SETUP, "glob('urdf/*')", "['urdf/robot.urdf']"),
-        complains="the build stops here: data_files lists 'urdf/robot.urdf', but there is no such file; did you mean 'urdf/my_robot.urdf'?",
+        fail_message="the build stops here: data_files lists 'urdf/robot.urdf', but there is no such file; did you mean 'urdf/my_robot.urdf'?",
         at=(SETUP, "'urdf/robot.urdf'"),
     ),
     PackageCase(
         installs_files,
         {"files": ["launch/*.launch.py"]},
-        says="a build installs launch/my_robot_rviz.launch.py as share/my_robot/launch/my_robot_rviz.launch.py",
+        pass_message="a build installs launch/my_robot_rviz.launch.py as share/my_robot/launch/my_robot_rviz.launch.py",
         failing=REFERENCE.replacing(SETUP, "os.path.join('share', package_name, 'launch')", "'lib/launch'"),
-        complains="a build installs launch/my_robot_rviz.launch.py as lib/launch/my_robot_rviz.launch.py; "
+        fail_message="a build installs launch/my_robot_rviz.launch.py as lib/launch/my_robot_rviz.launch.py; "
         "ROS 2 looks for the package's files below share/my_robot/",
         at=(SETUP, "glob(os.path"),
     ),
     PackageCase(
         setup_imports,
         {},
-        says="every name that setup.py uses is defined",
+        pass_message="every name that setup.py uses is defined",
         failing=REFERENCE.replacing(SETUP, "from glob import glob\n", ""),
-        complains="the name 'glob' is not defined or imported",
+        fail_message="the name 'glob' is not defined or imported",
         at=(SETUP, "glob('urdf/*')"),
     ),
     PackageCase(
         launch_found,
         {"name": _NAME},
-        says="the launch file is launch/my_robot_rviz.launch.py",
+        pass_message="the launch file is launch/my_robot_rviz.launch.py",
         failing=REFERENCE.renaming(LAUNCH, "my_robot/launch/my_robot_rvix.launch.py"),
-        complains="there is no launch file 'my_robot_rviz.launch.py'; the package has launch/my_robot_rvix.launch.py",
+        fail_message="there is no launch file 'my_robot_rviz.launch.py'; the package has launch/my_robot_rvix.launch.py",
     ),
     PackageCase(
         launch_starts,
         {"name": _NAME, "nodes": ["robot_state_publisher", "rviz2 or rviz"]},
-        says="the launch file starts joint_state_publisher_gui, robot_state_publisher, rviz2",
+        pass_message="the launch file starts joint_state_publisher_gui, robot_state_publisher, rviz2",
         failing=REFERENCE.replacing(LAUNCH, "package='rviz2'", "package='rviz'"),
-        complains="the launch file does not start rviz2 or rviz; it starts joint_state_publisher_gui, robot_state_publisher, rviz/rviz2",
+        fail_message="the launch file does not start rviz2 or rviz; it starts joint_state_publisher_gui, robot_state_publisher, rviz/rviz2",
         at=(LAUNCH, "Node(\n            package='rviz'"),
     ),
     PackageCase(
         launch_finds_files,
         {"name": _NAME},
-        says="a build installs share/my_robot/my_robot.urdf and share/my_robot/my_robot.rviz, where the launch file looks for them",
+        pass_message="a build installs share/my_robot/my_robot.urdf and share/my_robot/my_robot.rviz, where the launch file looks for them",
         failing=REFERENCE.replacing(LAUNCH, "os.path.join(share, 'my_robot.urdf')", "'urdf/my_robot.urdf'"),
-        complains="the launch file looks for the URDF at urdf/my_robot.urdf, relative to the folder that ros2 launch is started from",
+        fail_message="the launch file looks for the URDF at urdf/my_robot.urdf, relative to the folder that ros2 launch is started from",
         at=(LAUNCH, "open("),
     ),
     PackageCase(
         rviz_found,
         _RVIZ,
-        says="the RViz file is rviz/my_robot.rviz",
+        pass_message="the RViz file is rviz/my_robot.rviz",
         failing=REFERENCE.renaming(RVIZ, "my_robot/rviz/view.rviz"),
-        complains="there is no RViz file 'my_robot.rviz'; the package has rviz/view.rviz",
+        fail_message="there is no RViz file 'my_robot.rviz'; the package has rviz/view.rviz",
     ),
     PackageCase(
         rviz_fixed_frame,
         {**_RVIZ, "frame": "base_footprint"},
-        says="the Fixed Frame is 'base_footprint'",
+        pass_message="the Fixed Frame is 'base_footprint'",
         failing=REFERENCE.replacing(RVIZ, "Fixed Frame: base_footprint", "Fixed Frame: map"),
-        complains="the Fixed Frame is 'map'; it should be 'base_footprint'; the robot has no link 'map'",
+        fail_message="the Fixed Frame is 'map'; it should be 'base_footprint'; the robot has no link 'map'",
         at=(RVIZ, "map\n"),
     ),
     PackageCase(
         rviz_shows_robot,
         {**_RVIZ, "topic": "/robot_description"},
-        says="the display 'RobotModel' shows the robot",
+        pass_message="the display 'RobotModel' shows the robot",
         failing=REFERENCE.replacing(RVIZ, "rviz_default_plugins/RobotModel", "rviz/RobotModel"),
-        complains="rviz/RobotModel is a class of ROS 1; in ROS 2 it is rviz_default_plugins/RobotModel",
+        fail_message="rviz/RobotModel is a class of ROS 1; in ROS 2 it is rviz_default_plugins/RobotModel",
         at=(RVIZ, "rviz/RobotModel"),
     ),
     PackageCase(
         rviz_display_on,
         {**_RVIZ, "kind": "TF"},
-        says="a TF display is on",
+        pass_message="a TF display is on",
         failing=REFERENCE.replacing(RVIZ, "plugins/TF\n      Enabled: true", "plugins/TF\n      Enabled: false"),
-        complains="the TF display is off",
+        fail_message="the TF display is off",
         at=(RVIZ, "rviz_default_plugins/TF"),
     ),
 )

@@ -1,4 +1,4 @@
-"""Small robots as text: builders for the parts of a URDF, and the robot that ROS 2 makes of them."""
+"""Small robots as text: builders for the parts of a URDF, and the robot that ROS 2 reads from them."""
 
 import re
 from collections.abc import Sequence
@@ -20,82 +20,82 @@ _LINK = re.compile(r'<link name="([^"]*)"')
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """The text of a URDF, each element in a line of its own, and what ROS 2 makes of it."""
+    """The text of a URDF, each element on a line of its own, and the robot that ROS 2 reads from it."""
 
     text: str
 
     @property
     def reading(self) -> Reading:
-        """The file as ROS 2 reads it."""
+        """Return the file as ROS 2 reads it."""
         return read_urdf(self.text.encode(), PATH)
 
     @property
     def robot(self) -> Configuration:
-        """The robot in the file, its joints at 0."""
+        """Return the robot in the file with all joints at 0."""
         found = self.reading.robot
         assert found is not None, self.text
         return Configuration(found)
 
     @property
     def links(self) -> tuple[str, ...]:
-        """The names of the links in file order."""
+        """Return the names of the links in file order."""
         return tuple(_LINK.findall(self.text))
 
-    def place(self, fragment: str) -> Location:
-        """Where a fragment begins, which must stand in the text just once."""
+    def location_of(self, fragment: str) -> Location:
+        """Return the location of a fragment, which must occur exactly once in the text."""
         assert self.text.count(fragment) == 1, f"{fragment!r} stands {self.text.count(fragment)} times in\n{self.text}"
         before = self.text[: self.text.index(fragment)]
         return Location(PATH, before.count("\n") + 1, len(before) - before.rfind("\n"))
 
     def without_joints(self) -> "Scene":
-        """The same links, none joined to another."""
+        """Return the same links without any joints."""
         return Scene(_JOINT.sub("", self.text))
 
     def with_shape(self, shape: str) -> "Scene":
-        """The same robot, but each of its shapes is this one."""
+        """Return the same robot with every shape replaced by this one."""
         return Scene(_SHAPE.sub(shape, self.text))
 
 
 def scene(*parts: str) -> Scene:
-    """The file that some links, joints and materials make."""
+    """Return a scene of links, joints and materials."""
     return Scene("\n".join(('<robot name="test">', *parts, "</robot>", "")))
 
 
 def link(name: str, *visuals: str) -> str:
-    """A link with its visuals."""
+    """Return a link with its visuals."""
     if not visuals:
         return f'<link name="{name}"/>'
     return "\n".join((f'<link name="{name}">', *visuals, "</link>"))
 
 
 def visual(shape: str, *, xyz: Numbers = "", rpy: Numbers = "", material: str = "") -> str:
-    """A visual; its origin and material are left out where they are not given."""
+    """Return a visual; origin and material are omitted by default."""
     inside = (_origin(xyz, rpy), f"<geometry>\n{shape}\n</geometry>", material)
     return "\n".join(("<visual>", *filter(None, inside), "</visual>"))
 
 
 def box(x: float, y: float, z: float) -> str:
-    """A box by its edges in metres."""
+    """Return a box with these edges in metres."""
     return f'<box size="{numbers((x, y, z))}"/>'
 
 
 def cylinder(radius: float = 0.1, length: float = 0.05) -> str:
-    """A cylinder in metres; unless told, the lab's wheel."""
+    """Return a cylinder in metres; default: the lab's wheel."""
     return f'<cylinder radius="{radius!r}" length="{length!r}"/>'
 
 
 def sphere(radius: float) -> str:
-    """A sphere in metres."""
+    """Return a sphere in metres."""
     return f'<sphere radius="{radius!r}"/>'
 
 
 def mesh(filename: str = "package://my_robot/meshes/part.stl", scale: Numbers = "") -> str:
-    """A mesh, whose size nobody knows."""
+    """Return a mesh, whose size is unknown."""
     return f'<mesh filename="{filename}"{_attribute("scale", scale)}/>'
 
 
 def paint(rgba: Numbers, name: str = "paint") -> str:
-    """A material with a colour: for all links under <robot>, or where it is used."""
+    """Return a material with a colour, for use below <robot> or in a visual."""
     return f'<material name="{name}">\n<color rgba="{numbers(rgba)}"/>\n</material>'
 
 
@@ -110,7 +110,7 @@ def joint(
     axis: Numbers = "",
     more: str = "",
 ) -> str:
-    """A joint; revolute and prismatic ones have a limit, so that ROS 2 takes them."""
+    """Return a joint; revolute and prismatic joints have a limit, so that ROS 2 accepts them."""
     limit = '<limit lower="-1" upper="1" effort="1" velocity="1"/>' if kind in ("revolute", "prismatic") else ""
     inside = (
         f'<parent link="{parent}"/>',
@@ -124,12 +124,12 @@ def joint(
 
 
 def turned(*, roll: float = 0.0, pitch: float = 0.0, yaw: float = 0.0) -> str:
-    """The rpy of an origin for angles in degrees."""
+    """Return the rpy of an origin for angles in degrees."""
     return numbers((radians(roll), radians(pitch), radians(yaw)))
 
 
 def numbers(values: Numbers) -> str:
-    """Numbers as a URDF writes them, none of their digits lost; text is left as it is."""
+    """Return numbers as a URDF writes them, with all their digits; text is returned unchanged."""
     return values if isinstance(values, str) else " ".join(map(repr, values))
 
 

@@ -1,4 +1,4 @@
-"""What a link shows: shapes, sizes and colours, just inside and just outside their tolerances."""
+"""The shapes, sizes and colours of a link, just inside and just outside their tolerances."""
 
 from itertools import permutations, product
 from math import pi
@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 
 from grader.checks.appearance import shows_box, shows_colour, shows_cylinder, shows_grey, shows_nothing, shows_sphere
 from grader.robot.transforms import Vector
-from tests.checks.asking import AnyCheck, Arguments, ask, fails, graded, missing, passes
 from tests.checks.cases import BASE, CASE, LIDAR, Case, cases_of
+from tests.checks.outcomes import AnyCheck, Arguments, ask, fails, graded, missing, passes
 from tests.checks.robots import Numbers, Scene, box, cylinder, link, mesh, paint, scene, sphere, turned, visual
 
 SIZE = (0.6, 0.4, 0.2)
@@ -25,18 +25,18 @@ COLOURS: tuple[tuple[AnyCheck, Arguments], ...] = ((shows_colour, GREEN), (shows
 
 
 def boxed(x: float, y: float, z: float, rpy: Numbers = "") -> Scene:
-    """A base that shows one box."""
+    """Return a base that shows one box."""
     return scene(link("base", visual(box(x, y, z), rpy=rpy)))
 
 
 def painted(rgba: str, name: str = "base") -> Scene:
-    """A link that shows a box in one colour."""
+    """Return a link that shows a box in one colour."""
     return scene(link(name, visual(box(1.0, 1.0, 1.0), material=paint(rgba))))
 
 
 @cases_of("appearance")
-def test_a_passing_robot_has_its_measure_in_the_outcome(case: Case) -> None:
-    """A measurement carries what was found, what was expected, the tolerance and the unit."""
+def test_a_passing_outcome_carries_its_measurement(case: Case) -> None:
+    """The outcome holds the measured and expected values, the tolerance and the unit."""
     outcome = ask(case.check, case.passing, **case.arguments)
     assert outcome.tolerance == case.arguments.get("tolerance")
     assert outcome.unit == (None if case.name in ("shows_colour", "shows_grey", "shows_nothing") else "m")
@@ -48,7 +48,7 @@ def test_a_passing_robot_has_its_measure_in_the_outcome(case: Case) -> None:
 
 @pytest.mark.parametrize(("axis", "sign"), list(product(range(3), (-1, 1))))
 def test_a_box_edge_has_a_tolerance(axis: int, sign: int) -> None:
-    """Each edge may be off by the tolerance, its end included, and by no more."""
+    """Each edge may be off by the tolerance, inclusive, and by no more."""
     for off, fine in ((0.0019, True), (0.002, True), (0.0021, False)):
         edges = list(SIZE)
         edges[axis] += sign * off
@@ -74,19 +74,19 @@ def test_a_box_edge_has_a_tolerance(axis: int, sign: int) -> None:
     ],
 )
 def test_a_box_on_its_side_is_measured_along_the_links_axes(size: Vector, rpy: str) -> None:
-    """Quarter turns of the visual put other edges along the link's axes, and these are what counts."""
+    """Quarter turns of the visual change which edges lie along the link's axes; those edges count."""
     assert passes(shows_box, boxed(*size, rpy=rpy), **BOX) == "'base' shows a box 0.6 0.4 0.2 m"
 
 
-def test_a_box_that_is_turned_the_wrong_way_is_measured_as_it_lies() -> None:
-    """The right numbers in `size` are wrong once the visual is turned: the turn is pointed to."""
+def test_a_wrongly_turned_box_is_measured_as_it_lies() -> None:
+    """Correct numbers in `size` are wrong if the visual is turned; the failure points to the turn."""
     message = fails(shows_box, boxed(*SIZE, rpy=turned(yaw=90)), at="rpy=", **BOX)
     assert message == "'base' shows a box 0.4 0.6 0.2 m; it should be 0.6 0.4 0.2 m (x, y, z)"
 
 
 @pytest.mark.parametrize("angle", ["roll", "pitch", "yaw"])
 def test_a_box_may_be_turned_by_one_degree(angle: str) -> None:
-    """A slant of less than a degree is a rounded angle; beyond it the edges are not along the axes."""
+    """A tilt of less than a degree counts as a rounded angle; beyond it the edges are not along the axes."""
     for off in (0.99, -0.99, 90.99, 89.01):
         flat = ask(shows_box, boxed(0.5, 0.5, 0.5, rpy=turned(**{angle: off})), **{**BOX, "size": (0.5, 0.5, 0.5)})
         assert flat.status == "passed"
@@ -98,7 +98,7 @@ def test_a_box_may_be_turned_by_one_degree(angle: str) -> None:
 @settings(deadline=None, max_examples=60)
 @given(order=st.permutations((0, 1, 2)), turns=st.tuples(*[st.integers(-2, 2)] * 3))
 def test_a_box_passes_in_every_orientation_that_lies_right(order: list[int], turns: tuple[int, int, int]) -> None:
-    """Whatever quarter turns a visual makes, a box passes just where one way to name its edges lies right."""
+    """Whatever quarter turns a visual has, a box passes exactly if one assignment of its edges fits."""
     size = (SIZE[order[0]], SIZE[order[1]], SIZE[order[2]])
     rpy = (turns[0] * pi / 2, turns[1] * pi / 2, turns[2] * pi / 2)
     outcome = ask(shows_box, boxed(*size, rpy=rpy), **BOX)
@@ -107,7 +107,7 @@ def test_a_box_passes_in_every_orientation_that_lies_right(order: list[int], tur
 
 
 def test_of_several_boxes_the_nearest_counts() -> None:
-    """A link may show more than is asked for: one right box is enough, and the least wrong one is told."""
+    """If a link shows several boxes, one correct box is enough; otherwise the nearest one is reported."""
     wrong, right = visual(box(1.0, 1.0, 1.0)), visual(box(*SIZE))
     passes(shows_box, scene(link("base", wrong, right, visual(sphere(1.0)))), **BOX)
     near = visual(box(0.6, 0.4, 0.1))
@@ -115,21 +115,21 @@ def test_of_several_boxes_the_nearest_counts() -> None:
     assert message == "'base' shows a box 0.6 0.4 0.1 m; it should be 0.6 0.4 0.2 m (x, y, z)"
 
 
-def test_a_slanted_box_does_not_hide_a_straight_one() -> None:
-    """A box that is not along the axes is farther off than any that is."""
+def test_a_tilted_box_does_not_hide_an_aligned_one() -> None:
+    """A box that is not along the axes ranks behind every box that is."""
     slanted = visual(box(*SIZE), rpy=turned(yaw=30))
     assert "shows a box 9 9 9 m" in fails(shows_box, scene(link("base", slanted, visual(box(9.0, 9.0, 9.0)))), **BOX)
     passes(shows_box, scene(link("base", slanted, visual(box(*SIZE)))), **BOX)
 
 
 def test_a_plate_is_a_box() -> None:
-    """A box with one zero edge can be seen, so it is measured; one with two cannot."""
+    """A box with one zero edge is visible and is measured; one with two zero edges is not."""
     assert fails(shows_box, boxed(0.6, 0.4, 0.0), **BOX).startswith("'base' shows a box 0.6 0.4 0 m; it should be")
     assert missing(shows_box, boxed(0.6, 0.0, 0.0), **BOX).kind == "visual"
 
 
 def test_a_negative_edge_is_as_long_as_a_positive_one() -> None:
-    """ROS 2 does not look at the sign of a size, and the box looks the same."""
+    """ROS 2 ignores the sign of a size, and the box looks the same."""
     passes(shows_box, boxed(-0.6, 0.4, 0.2), **BOX)
 
 
@@ -138,7 +138,7 @@ def test_a_negative_edge_is_as_long_as_a_positive_one() -> None:
 
 @pytest.mark.parametrize("sign", [-1, 1])
 def test_a_cylinder_has_a_tolerance_in_both_lengths(sign: int) -> None:
-    """Radius and length may each be off by the tolerance, its end included; the one that is not is pointed to."""
+    """Radius and length may each be off by the tolerance, inclusive; the failure points to the wrong one."""
     for off in (0.0019, 0.002):
         passes(shows_cylinder, scene(link("lidar", visual(cylinder(0.1 + sign * off, 0.05 - sign * off)))), **CYLINDER)
     off = sign * 0.0021
@@ -147,8 +147,8 @@ def test_a_cylinder_has_a_tolerance_in_both_lengths(sign: int) -> None:
     fails(shows_cylinder, scene(link("lidar", visual(cylinder(0.1 + off, 0.05 + off)))), at="radius=", **CYLINDER)
 
 
-def test_a_cylinder_is_told_with_both_lengths() -> None:
-    """The message names what was found and what was expected, so that a diameter is seen to be one."""
+def test_a_message_about_a_cylinder_has_both_lengths() -> None:
+    """The message gives measured and expected values, so that a diameter used as a radius is recognised."""
     message = fails(shows_cylinder, scene(link("lidar", visual(cylinder(0.2, 0.05)))), **CYLINDER)
     assert message == (
         "'lidar' shows a cylinder of radius 0.2 m and length 0.05 m; it should have radius 0.1 m and length 0.05 m"
@@ -163,19 +163,19 @@ def test_a_cylinder_is_told_with_both_lengths() -> None:
 
 
 def test_a_cylinder_may_lie_in_any_direction() -> None:
-    """The shape is what is asked for, not how it lies."""
+    """Only the shape counts, not its orientation."""
     passes(shows_cylinder, scene(link("lidar", visual(cylinder(), xyz="1 2 3", rpy="0.3 0.2 0.1"))), **CYLINDER)
 
 
 def test_of_several_cylinders_the_nearest_counts() -> None:
-    """One right cylinder among others is enough, and the least wrong one is told."""
+    """If a link shows several cylinders, one correct cylinder is enough; otherwise the nearest one is reported."""
     others = (visual(cylinder(1.0, 1.0)), visual(box(9.0, 9.0, 9.0)))
     passes(shows_cylinder, scene(link("lidar", *others, visual(cylinder()))), **CYLINDER)
     fails(shows_cylinder, scene(link("lidar", *others, visual(cylinder(0.1, 0.06)))), at='length="0.06"', **CYLINDER)
 
 
 def test_a_disc_is_a_cylinder() -> None:
-    """A cylinder without length can be seen, and is measured; one without radius cannot."""
+    """A cylinder without length is visible and is measured; one without radius is not."""
     assert "length 0 m; it should" in fails(
         shows_cylinder, scene(link("lidar", visual(cylinder(0.1, 0.0)))), **CYLINDER
     )
@@ -187,7 +187,7 @@ def test_a_disc_is_a_cylinder() -> None:
     [(0.0519, ""), (0.052, ""), (0.0481, ""), (0.048, ""), (0.0521, "2.1 mm too large"), (0.0479, "2.1 mm too small")],
 )
 def test_a_sphere_has_a_tolerance(radius: float, side: str) -> None:
-    """A radius may be off by the tolerance, its end included; beyond it the message says by how much and to which side."""
+    """A radius may be off by the tolerance, inclusive; beyond it the message says by how much and in which direction."""
     found = scene(link("caster", visual(sphere(radius))))
     if side:
         message = fails(shows_sphere, found, at="radius=", **SPHERE)
@@ -197,32 +197,32 @@ def test_a_sphere_has_a_tolerance(radius: float, side: str) -> None:
 
 
 def test_of_several_spheres_the_nearest_counts() -> None:
-    """One right sphere among others is enough, and the least wrong one is told."""
+    """If a link shows several spheres, one correct sphere is enough; otherwise the nearest one is reported."""
     other = visual(sphere(1.0))
     passes(shows_sphere, scene(link("caster", other, visual(sphere(0.05)))), **SPHERE)
     fails(shows_sphere, scene(link("caster", other, visual(sphere(0.06)))), at='radius="0.06"', **SPHERE)
 
 
 SHAPES = {"box": box(0.6, 0.4, 0.2), "cylinder": cylinder(), "sphere": sphere(0.05), "mesh": mesh()}
-WANTED = {"box": shows_box, "cylinder": shows_cylinder, "sphere": shows_sphere}
+EXPECTED = {"box": shows_box, "cylinder": shows_cylinder, "sphere": shows_sphere}
 
 
-@pytest.mark.parametrize(("wanted", "shown"), [pair for pair in product(WANTED, SHAPES) if pair[0] != pair[1]])
-def test_another_shape_is_named(wanted: str, shown: str) -> None:
-    """A link that shows another shape than the one that is asked for fails, and both are named."""
-    case = CASE[f"shows_{wanted}"]
+@pytest.mark.parametrize(("required", "shown"), [pair for pair in product(EXPECTED, SHAPES) if pair[0] != pair[1]])
+def test_another_shape_is_named(required: str, shown: str) -> None:
+    """If a link shows another shape than the expected one, the message names both."""
+    case = CASE[f"shows_{required}"]
     name = case.arguments["link"]
     found = scene(link(name, visual(SHAPES[shown])))
     error = missing(case.check, found, **case.arguments)
-    assert (error.kind, error.name) == (wanted, name)
+    assert (error.kind, error.name) == (required, name)
     assert (
         fails(case.check, found, at=f"<{shown}", **case.arguments)
-        == f"{name!r} shows a {shown}; it should show a {wanted}"
+        == f"{name!r} shows a {shown}; it should show a {required}"
     )
 
 
 def test_a_link_without_a_visual_shows_no_shape() -> None:
-    """An empty link misses a visual, in the same words whatever is asked of it: the second criterion is skipped."""
+    """A link without visuals misses a visual, with the same message for every check, so that later criteria are skipped."""
     checks: list[tuple[AnyCheck, Arguments]] = [
         (shows_box, BOX), (shows_cylinder, CYLINDER), (shows_sphere, SPHERE), (shows_colour, GREEN), (shows_grey, WHITE)
     ]  # fmt: skip
@@ -233,7 +233,7 @@ def test_a_link_without_a_visual_shows_no_shape() -> None:
 
 
 def test_an_empty_visual_beside_a_real_one_does_not_count() -> None:
-    """Visuals without a size are not there, wherever they stand."""
+    """Visuals without a size are ignored, whatever their position."""
     nothing = visual(box(0.0, 0.0, 0.0), material=paint("1 0 0 1", "red"))
     real = visual(box(*SIZE), material=paint("0 0.6 0 1", "green"))
     for found in (scene(link("base", nothing, real)), scene(link("base", real, nothing))):
@@ -241,8 +241,8 @@ def test_an_empty_visual_beside_a_real_one_does_not_count() -> None:
         passes(shows_colour, found, **GREEN)
 
 
-def test_a_mesh_scaled_to_nothing_is_not_there() -> None:
-    """A mesh scaled by zero shows nothing; one with its own scale is a mesh."""
+def test_a_mesh_scaled_to_zero_is_ignored() -> None:
+    """A mesh scaled by zero shows nothing; one with another scale is a mesh."""
     assert missing(shows_colour, scene(link("base", visual(mesh(scale="0 0 0")))), **GREEN).kind == "visual"
     assert missing(shows_box, scene(link("base", visual(mesh(scale="2 2 2")))), **BOX).kind == "box"
 
@@ -252,7 +252,7 @@ def test_a_mesh_scaled_to_nothing_is_not_there() -> None:
 
 @pytest.mark.parametrize("channel", range(4))
 def test_a_colour_has_a_tolerance_in_each_channel(channel: int) -> None:
-    """Each channel may be off by the tolerance, its end included, and by no more."""
+    """Each channel may be off by the tolerance, inclusive, and by no more."""
     for off, fine in ((0.009, True), (0.01, True), (0.011, False)):
         rgba = [0.0, 0.6, 0.0, 1.0]
         rgba[channel] += -off if rgba[channel] else off
@@ -262,8 +262,8 @@ def test_a_colour_has_a_tolerance_in_each_channel(channel: int) -> None:
         assert (outcome.expected, outcome.tolerance, outcome.unit) == ((0.0, 0.6, 0.0, 1.0), 0.01, None)
 
 
-def test_three_channels_leave_the_opacity_open() -> None:
-    """Opacity is graded only where the rubric gives a fourth channel."""
+def test_three_channels_ignore_the_opacity() -> None:
+    """Opacity is graded only if the rubric gives a fourth channel."""
     grey: Arguments = {"link": "base", "colour": (0.7, 0.7, 0.7), "tolerance": 0.01}
     assert passes(shows_colour, painted("0.7 0.7 0.7 0.1"), **grey) == "'base' is shown in rgb 0.7 0.7 0.7"
     message = fails(shows_colour, painted("0.7 0.7 0.6 0.1"), at="rgba=", **grey)
@@ -274,8 +274,8 @@ def test_three_channels_leave_the_opacity_open() -> None:
     )
 
 
-def test_a_colour_is_looked_at_where_it_is_defined() -> None:
-    """A material under <robot> is used by its name, and a wrong colour is shown where it is written."""
+def test_a_wrong_colour_points_to_its_definition() -> None:
+    """A material below <robot> is used by name; a failure points to its definition."""
     used = link("base", visual(box(*SIZE), material='<material name="green"/>'))
     passes(shows_colour, scene(paint("0 0.6 0 1", "green"), used), **GREEN)
     fails(shows_colour, scene(paint("0 1 0 1", "green"), used), at="rgba=", **GREEN)
@@ -283,7 +283,7 @@ def test_a_colour_is_looked_at_where_it_is_defined() -> None:
 
 
 def test_a_link_without_a_material_is_red() -> None:
-    """RViz shows what has no material in its own red, so no colour passes."""
+    """RViz shows links without a material in its own red, so no colour passes."""
     found = scene(link("base", visual(box(*SIZE))))
     for check, arguments in COLOURS:
         message = fails(check, found, at="<visual>", **arguments)
@@ -291,33 +291,33 @@ def test_a_link_without_a_material_is_red() -> None:
 
 
 def test_an_undefined_material_is_no_colour() -> None:
-    """A material that is named but defined nowhere is quoted."""
+    """A material that is used but not defined is quoted."""
     found = scene(link("base", visual(box(*SIZE), material='<material name="gren"/>')), paint("0 0.6 0 1", "green"))
     message = fails(shows_colour, found, at='name="gren"', **GREEN)
     assert message == "'base' has no colour: the material 'gren' is not defined here"
 
 
 def test_three_numbers_are_black() -> None:
-    """ROS 2 reads a colour with another count than four as black, and so does the check."""
+    """ROS 2 reads a colour without exactly four numbers as black, and so does the check."""
     assert "rgba 0 0 0 1" in fails(shows_colour, painted("0 0.6 0"), at="rgba=", **GREEN)
 
 
 def test_a_texture_with_a_colour_has_that_colour() -> None:
-    """A texture beside a colour does not change what is measured."""
+    """A texture beside a colour does not change the measured colour."""
     both = '<material name="t">\n<color rgba="0 0.6 0 1"/>\n<texture filename="grass.png"/>\n</material>'
     passes(shows_colour, scene(link("base", visual(box(*SIZE), material=both))), **GREEN)
 
 
-def test_a_texture_alone_is_never_the_asked_colour() -> None:
-    """A material of a picture only is not shown in green, nor in a grey."""
+def test_a_texture_alone_has_no_colour() -> None:
+    """A material with only a texture passes neither as green nor as a grey."""
     only = '<material name="t">\n<texture filename="grass.png"/>\n</material>'
     found = scene(link("base", visual(box(*SIZE), material=only)))
     for check, arguments in COLOURS:
         assert graded(check, found, **arguments).status in ("failed", "pending")
 
 
-def test_the_largest_visual_has_the_colour() -> None:
-    """Of several visuals the largest one is what is seen of a link, in whatever order they stand."""
+def test_the_largest_visual_determines_the_colour() -> None:
+    """Of several visuals the largest one counts, whatever their order."""
     small = visual(sphere(0.01), material=paint("1 0 0 1", "red"))
     large = visual(box(*SIZE), material=paint("0 0.6 0 1", "green"))
     for found in (scene(link("base", small, large)), scene(link("base", large, small))):
@@ -327,8 +327,8 @@ def test_the_largest_visual_has_the_colour() -> None:
     )
 
 
-def test_the_colour_of_the_named_shape_counts() -> None:
-    """A larger shape of another kind does not matter where the rubric names one; a shape that is not shown names none."""
+def test_the_colour_of_the_expected_shape_counts() -> None:
+    """If the rubric names a shape, larger shapes of other kinds are ignored; a link without that shape fails."""
     body = visual(box(*SIZE), material=paint("0 0.6 0 1", "green"))
     ball = visual(sphere(9.0), material=paint("1 0 0 1", "red"))
     for found in (scene(link("base", body, ball)), scene(link("base", ball, body))):
@@ -339,8 +339,8 @@ def test_the_colour_of_the_named_shape_counts() -> None:
     passes(shows_colour, beside_a_mesh, **GREEN, shape="box")
 
 
-def test_of_several_of_the_named_shape_the_largest_counts() -> None:
-    """A small box does not give the base its colour."""
+def test_the_largest_of_the_expected_shape_counts() -> None:
+    """A small box does not determine the colour of the base."""
     small = visual(box(0.1, 0.1, 0.1), material=paint("1 0 0 1", "red"))
     large = visual(box(*SIZE), material=paint("0 0.6 0 1", "green"))
     for order in ((small, large), (large, small)):
@@ -348,7 +348,7 @@ def test_of_several_of_the_named_shape_the_largest_counts() -> None:
 
 
 def test_a_mesh_has_a_colour() -> None:
-    """The size of a mesh is unknown, its colour is not; beside other shapes the mesh is what counts."""
+    """The size of a mesh is unknown but its colour is not; beside other shapes the mesh counts."""
     painted_mesh = visual(mesh(), material=paint("0 0.6 0 1", "green"))
     passes(shows_colour, scene(link("base", painted_mesh)), **GREEN)
     passes(shows_colour, scene(link("base", visual(box(9.0, 9.0, 9.0)), painted_mesh)), **GREEN)
@@ -371,7 +371,7 @@ def test_a_mesh_has_a_colour() -> None:
     ],
 )
 def test_white_is_a_light_grey(rgba: str, complaint: str) -> None:
-    """White has equal channels, within the tolerance, none below the level; opacity does not matter."""
+    """White has equal channels within the tolerance, none below the level; opacity is ignored."""
     found = painted(rgba, "lidar")
     if not complaint:
         passes(shows_grey, found, **WHITE)
@@ -380,7 +380,7 @@ def test_white_is_a_light_grey(rgba: str, complaint: str) -> None:
     assert fails(shows_grey, found, at="rgba=", **WHITE) == f"'lidar' is shown in rgb {shown}{complaint}"
 
 
-def test_a_grey_carries_its_measure() -> None:
+def test_a_grey_carries_its_measurement() -> None:
     """The outcome holds the three channels and the level."""
     outcome = ask(shows_grey, painted("0.8 0.8 0.8 0.5", "lidar"), **WHITE)
     assert (outcome.measured, outcome.expected, outcome.tolerance) == ((0.8, 0.8, 0.8), 0.75, 0.01)
@@ -389,7 +389,7 @@ def test_a_grey_carries_its_measure() -> None:
 @settings(deadline=None, max_examples=100)
 @given(channels=st.tuples(*[st.integers(0, 100)] * 3), level=st.integers(0, 100))
 def test_grey_is_decided_by_the_channels_alone(channels: tuple[int, int, int], level: int) -> None:
-    """For every colour in hundredths the verdict is what exact arithmetic says, the tolerance's end included."""
+    """For every colour in hundredths the result is that of exact arithmetic, the tolerance inclusive."""
     rgba = " ".join(f"{channel / 100:.2f}" for channel in channels) + " 1"
     outcome = ask(shows_grey, painted(rgba, "lidar"), link="lidar", at_least=level / 100, tolerance=0.01)
     assert (outcome.status == "passed") == (max(channels) - min(channels) <= 1 and min(channels) >= level)
@@ -410,7 +410,7 @@ def test_grey_is_decided_by_the_channels_alone(channels: tuple[int, int, int], l
     ids=["no-visual", "zero-box", "zero-sphere-and-line", "fully-transparent", "mesh-scaled-to-nothing"],
 )
 def test_a_link_shows_nothing(visuals: tuple[str, ...]) -> None:
-    """No visual, only visuals without a size, or only fully transparent ones: there is nothing to see."""
+    """A link without visuals, with visuals without a size, or with transparent ones only shows nothing."""
     assert passes(shows_nothing, scene(link("foot", *visuals)), link="foot") == "'foot' shows nothing"
 
 
@@ -426,7 +426,7 @@ def test_a_link_shows_nothing(visuals: tuple[str, ...]) -> None:
     ids=["box", "disc", "nearly-transparent", "undefined-material", "mesh"],
 )
 def test_a_link_shows_something(shape: str, material: str, name: str) -> None:
-    """Whatever can be seen is named, and pointed to."""
+    """A visible shape is named, and the failure points to it."""
     message = fails(shows_nothing, scene(link("foot", visual(shape, material=material))), at="<visual>", link="foot")
     assert message == f"'foot' shows {name}; it should have no visual"
 
@@ -439,13 +439,13 @@ def test_the_visible_one_of_several_visuals_is_named() -> None:
 
 
 def test_a_collision_is_not_shown() -> None:
-    """Only visuals are seen."""
+    """Only visuals are visible."""
     bumper = '<collision>\n<geometry>\n<sphere radius="1"/>\n</geometry>\n</collision>'
     passes(shows_nothing, scene(link("foot", bumper)), link="foot")
     assert missing(shows_sphere, scene(link("caster", bumper)), **SPHERE).kind == "visual"
 
 
 def test_other_links_do_not_matter() -> None:
-    """A check looks at its own link."""
+    """A check examines its own link only."""
     passes(shows_box, scene(LIDAR, BASE), **BOX)
     passes(shows_nothing, scene(link("foot"), BASE), link="foot")

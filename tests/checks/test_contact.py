@@ -5,20 +5,20 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grader.checks.contact import clear_of, stands_on
-from tests.checks.asking import Arguments, ask, fails, graded, passes
 from tests.checks.cases import BASE, FORWARD, LIDAR, Case, cases_of, mounted, rolling
+from tests.checks.outcomes import Arguments, ask, fails, graded, passes
 from tests.checks.robots import box, cylinder, joint, link, scene, sphere, turned, visual
 
 ON: Arguments = {"link": "lidar", "on": "base", "tolerance": 0.002}
 CLEAR: Arguments = {"link": "wheel", "of": "base", "tolerance": 0.002}
 
-# Offsets in metres from what is expected, and whether a tolerance of 2 mm takes them.
+# Offsets in metres from the expected value, and whether they are within a tolerance of 2 mm.
 OFFSETS = [(0.0, True), (0.0019, True), (0.002, True), (-0.002, True), (0.0021, False), (-0.0021, False)]
 
 
 @cases_of("contact")
 def test_contact_is_measured_in_metres(case: Case) -> None:
-    """Every outcome carries what was measured and expected, the tolerance, and metres as the unit."""
+    """Every outcome carries the measured and expected values, the tolerance, and metres as the unit."""
     for found in (case.passing, case.failing):
         outcome = ask(case.check, found, **case.arguments)
         assert outcome.measured is not None
@@ -31,7 +31,7 @@ def test_contact_is_measured_in_metres(case: Case) -> None:
 
 @pytest.mark.parametrize("offset", OFFSETS)
 def test_a_gap_and_an_overlap_have_a_tolerance(offset: tuple[float, bool]) -> None:
-    """What stands on a top may hang above it or sink into it by the tolerance, its end included."""
+    """A link may float above a top or sink into it by the tolerance, inclusive."""
     off, fine = offset
     found = mounted((0.15, 0.0, 0.225 + off))
     outcome = ask(stands_on, found, **ON)
@@ -62,8 +62,8 @@ def test_a_gap_and_an_overlap_have_a_tolerance(offset: tuple[float, bool]) -> No
         (1.0, 1.0, "900"),
     ],
 )
-def test_what_stands_on_a_top_stays_within_its_edges(x: float, y: float, beyond: str | None) -> None:
-    """What reaches beyond the outline by more than the tolerance does not stand on the top."""
+def test_a_standing_link_stays_within_the_outline(x: float, y: float, beyond: str | None) -> None:
+    """A link that reaches beyond the outline by more than the tolerance does not stand on the top."""
     if beyond is None:
         passes(stands_on, mounted((x, y, 0.225)), **ON)
     else:
@@ -71,8 +71,8 @@ def test_what_stands_on_a_top_stays_within_its_edges(x: float, y: float, beyond:
         assert message == f"'lidar' reaches {beyond} mm beyond the edge of the top of 'base'"
 
 
-def test_the_edges_turn_with_the_base() -> None:
-    """The outline of a box is that of the box as it lies, not of the frame."""
+def test_the_outline_turns_with_the_base() -> None:
+    """The outline is that of the box as it lies, not that of the frame."""
     for yaw, fine in ((0, True), (90, False)):
         base = link("base", visual(box(0.6, 0.4, 0.2), xyz="0 0 0.1", rpy=turned(yaw=yaw)))
         found = scene(base, LIDAR, joint("j", "fixed", "base", "lidar", xyz="0.2 0 0.225"))
@@ -84,7 +84,7 @@ def test_the_edges_turn_with_the_base() -> None:
         assert (ask(stands_on, found, **ON).status == "passed") == fine
 
 
-def test_things_stand_on_cylinders_and_spheres_too() -> None:
+def test_links_can_stand_on_cylinders_and_spheres() -> None:
     """Any shape has a top and an outline."""
     drum = link("base", visual(cylinder(0.3, 0.2), xyz="0 0 0.1"))
     for x, fine in ((0.19, True), (0.21, False)):
@@ -95,14 +95,14 @@ def test_things_stand_on_cylinders_and_spheres_too() -> None:
 
 
 def test_a_turned_lidar_is_measured_as_it_lies() -> None:
-    """A lidar on its rim reaches farther down than one that lies flat."""
+    """A lidar on its edge reaches farther down than one that lies flat."""
     message = fails(stands_on, mounted(rpy=turned(roll=90)), **ON)
     assert message.endswith("0.2 m (75 mm too low)")
     passes(stands_on, mounted((0.15, 0.0, 0.3), turned(roll=90)), **ON)
 
 
-def test_all_visuals_of_what_stands_count() -> None:
-    """A mast on the lidar is no matter, a plug below it is."""
+def test_all_visuals_of_the_standing_link_count() -> None:
+    """A mast on the lidar is harmless; a plug below it is not."""
     mast = visual(cylinder(0.01, 0.01), xyz="0 0 0.5")
     passes(stands_on, mounted(lidar=link("lidar", visual(cylinder()), mast)), **ON)
     plug = visual(cylinder(0.01, 0.05), xyz="0 0 -0.01")
@@ -110,7 +110,7 @@ def test_all_visuals_of_what_stands_count() -> None:
 
 
 def test_a_lidar_without_an_origin_points_to_its_joint() -> None:
-    """Where nothing is written that moves the lidar, the joint is where it is missing; of a gap nobody knows the place."""
+    """If no origin moves the lidar, the failure points to its joint; a gap alone has no location."""
     joined = joint("j", "fixed", "base", "lidar")
     pillar = link("base", visual(box(0.1, 0.1, 0.2), xyz="0 0 -0.125"))
     message = fails(stands_on, scene(pillar, LIDAR, joined), at="<joint", **ON)
@@ -118,8 +118,8 @@ def test_a_lidar_without_an_origin_points_to_its_joint() -> None:
     assert graded(stands_on, scene(BASE, LIDAR, joined), **ON).location is None
 
 
-def test_it_is_the_top_of_the_named_shape_that_counts() -> None:
-    """A larger shape of another kind on the base is no support where the rubric names one."""
+def test_the_top_of_the_expected_shape_counts() -> None:
+    """If the rubric names a shape, a larger shape of another kind on the base is no support."""
     body, dome = visual(box(0.6, 0.4, 0.2), xyz="0 0 0.1"), visual(sphere(1.0))
     for order in ((body, dome), (dome, body)):
         found = scene(link("base", *order), LIDAR, joint("j", "fixed", "base", "lidar", xyz="0.15 0 0.225"))
@@ -136,7 +136,7 @@ def test_it_is_the_top_of_the_named_shape_that_counts() -> None:
     [(0.225, None), (0.25, None), (1.0, None), (0.2231, None), (0.223, None), (0.2229, "2.1"), (0.2, "25")],
 )
 def test_an_overlap_has_a_tolerance(y: float, depth: str | None) -> None:
-    """Touching is fine, and so is an overlap of the tolerance, its end included; a deeper one is told."""
+    """Touching and an overlap up to the tolerance, inclusive, are accepted; a deeper overlap is reported."""
     found = rolling(xyz=(-0.15, y, 0.0))
     if depth is None:
         assert passes(clear_of, found, **CLEAR) == "'wheel' does not cut into 'base'"
@@ -146,21 +146,21 @@ def test_an_overlap_has_a_tolerance(y: float, depth: str | None) -> None:
         assert ask(clear_of, found, **CLEAR).measured == pytest.approx(float(depth) / 1000)
 
 
-def test_a_deep_overlap_is_the_shortest_way_out() -> None:
-    """A wheel in the middle of the base has to go out by the nearest side, here the bottom."""
+def test_the_depth_is_the_shortest_separation() -> None:
+    """A wheel in the middle of the base is separated through the nearest side, here the bottom."""
     message = fails(clear_of, rolling(xyz="0 0 0"), **CLEAR)
     assert message == "'wheel' cuts 100 mm deep into 'base'"
 
 
-def test_an_overlap_is_measured_whichever_link_is_asked() -> None:
-    """Each cuts as deep into the other."""
+def test_an_overlap_is_symmetric() -> None:
+    """Both links overlap by the same depth."""
     found = rolling(xyz=(-0.15, 0.2, 0.0))
     assert fails(clear_of, found, **CLEAR) == "'wheel' cuts 25 mm deep into 'base'"
     assert fails(clear_of, found, link="base", of="wheel", tolerance=0.002) == "'base' cuts 25 mm deep into 'wheel'"
 
 
 def test_the_visual_that_was_moved_inward_is_pointed_to() -> None:
-    """Where the visual has an origin, its xyz is the place; else the visual is."""
+    """If the visual has an origin, the failure points to its xyz; otherwise to the visual."""
     inward = link("wheel", visual(cylinder(), xyz="0 0 -0.025"))
     joined = joint("j", "continuous", "base", "wheel", xyz="-0.15 0.2 0", rpy=FORWARD)
     assert "50 mm deep" in fails(clear_of, scene(BASE, inward, joined), at='xyz="0 0 -0.025"', **CLEAR)
@@ -168,8 +168,8 @@ def test_the_visual_that_was_moved_inward_is_pointed_to() -> None:
 
 @settings(deadline=None, max_examples=40)
 @given(x=st.floats(-0.5, 0.5, width=16), z=st.floats(-0.5, 0.5, width=16), yaw=st.floats(-4.0, 4.0, width=16))
-def test_two_spheres_cut_as_deep_as_their_radii_overlap(x: float, z: float, yaw: float) -> None:
-    """For spheres the depth is known: the radii less the distance of the centres."""
+def test_the_depth_of_two_spheres(x: float, z: float, yaw: float) -> None:
+    """For spheres the depth is known: the sum of the radii minus the distance of the centres."""
     one, other = link("base", visual(sphere(0.3))), link("wheel", visual(sphere(0.2)))
     found = scene(one, other, joint("j", "fixed", "base", "wheel", xyz=(x, 0.0, z), rpy=(0.0, 0.0, yaw)))
     depth = 0.5 - (x * x + z * z) ** 0.5
@@ -181,20 +181,20 @@ def test_two_spheres_cut_as_deep_as_their_radii_overlap(x: float, z: float, yaw:
         assert outcome.measured == pytest.approx(depth, abs=2e-4)
 
 
-def test_no_visual_of_a_link_cuts_into_the_other() -> None:
-    """All that a link shows counts: an axle that reaches into the base cuts, though the wheel itself does not."""
+def test_all_visuals_of_a_link_count() -> None:
+    """An axle that reaches into the base overlaps it, even if the wheel does not."""
     axle = visual(cylinder(0.01, 0.3))
     joined = joint("j", "continuous", "base", "wheel", xyz="-0.15 0.225 0.1", rpy=FORWARD)
     fails(clear_of, scene(BASE, link("wheel", visual(cylinder()), axle), joined), **CLEAR)
 
 
-def test_too_many_shapes_are_left_to_a_person() -> None:
-    """Up to 2,000 pairs are compared; beyond that a person has to look, even where some cut."""
-    for ours, theirs, depth in ((40, 50, 0.0), (40, 50, 0.1), (1, 2001, 0.1), (2001, 1, 0.0)):
-        one, other = link("base", *[visual(sphere(0.5))] * theirs), link("wheel", *[visual(sphere(0.5))] * ours)
+def test_too_many_shapes_need_manual_grading() -> None:
+    """At most 2,000 pairs are compared; beyond that manual grading is needed, even if some overlap."""
+    for own, theirs, depth in ((40, 50, 0.0), (40, 50, 0.1), (1, 2001, 0.1), (2001, 1, 0.0)):
+        one, other = link("base", *[visual(sphere(0.5))] * theirs), link("wheel", *[visual(sphere(0.5))] * own)
         found = scene(one, other, joint("j", "fixed", "base", "wheel", xyz=(1.0 - depth, 0.0, 0.0)))
         outcome = graded(clear_of, found, **CLEAR)
-        if ours * theirs > 2000:
+        if own * theirs > 2000:
             assert outcome.status == "pending"
             assert outcome.message == "'wheel' and 'base' show too many shapes to compare; needs manual grading"
         else:

@@ -1,16 +1,16 @@
-"""What holds of all checks: the cases, missing links, links without joints, loops of joints, meshes, empty visuals."""
+"""Properties of all checks: the cases, missing links, links without joints, loops of joints, meshes, empty visuals."""
 
 import pytest
 
 from grader.checks.registry import describe
-from tests.checks.asking import ask, graded, missing
 from tests.checks.cases import CASES, Case
+from tests.checks.outcomes import ask, graded, missing
 from tests.checks.robots import Scene, box, joint, mesh
 
-# The arguments that name links, and the checks that ask how one link stands to another.
+# The arguments that name links, and the checks of the relation of two links.
 NAMING = ("link", "relative_to", "parent", "holds", "on", "of", "base")
 LISTING = ("links", "wheels")
-OPTIONAL = {("joints_named", "parent")}  # a joint that holds a link has its name, whatever the parent is called
+OPTIONAL = {("joints_named", "parent")}  # a parent joint has its name, whatever the parent link is called
 RELATED = [case for case in CASES if case.name != "joints_named" and set(NAMING) & set(case.arguments) - {"link"}]
 RELATED = [case for case in RELATED if case.arguments.get("relative_to") != case.arguments.get("link")]
 
@@ -24,29 +24,29 @@ every_related_case = pytest.mark.parametrize("case", RELATED, ids=[case.name for
 
 @every_case
 def test_the_passing_robot_passes(case: Case) -> None:
-    """A check passes the robot that is as it should be, says what it found, and points to no place."""
+    """A check passes a correct robot, says what it found, and has no location."""
     outcome = ask(case.check, case.passing, **case.arguments)
-    assert (outcome.status, outcome.message, outcome.location) == ("passed", case.says, None)
+    assert (outcome.status, outcome.message, outcome.location) == ("passed", case.pass_message, None)
 
 
 @every_case
 def test_the_failing_robot_fails(case: Case) -> None:
-    """A check fails the robot that is not, says what it found and expected, and points to the place in the file."""
+    """A check fails an incorrect robot, says what it found and expected, and points into the file."""
     outcome = ask(case.check, case.failing, **case.arguments)
-    assert (outcome.status, outcome.message) == ("failed", case.complains)
-    assert outcome.location == (None if case.at is None else case.failing.place(case.at))
+    assert (outcome.status, outcome.message) == ("failed", case.fail_message)
+    assert outcome.location == (None if case.at is None else case.failing.location_of(case.at))
 
 
 @every_case
 def test_a_grade_run_finds_the_same(case: Case) -> None:
-    """A check answers the same when it is asked as a criterion."""
+    """A check has the same result as a criterion of a rubric."""
     for scene in (case.passing, case.failing):
         assert graded(case.check, scene, **case.arguments) == ask(case.check, scene, **case.arguments)
 
 
 @every_case
 def test_a_link_that_is_missing_is_named(case: Case) -> None:
-    """Whichever link a check asks for, a missing one is named, and the links that there are too."""
+    """If a link is missing, the message names it and the existing links."""
     for argument in set(NAMING) & set(case.arguments):
         if (case.name, argument) in OPTIONAL:
             continue
@@ -59,16 +59,16 @@ def test_a_link_that_is_missing_is_named(case: Case) -> None:
 
 
 @every_related_case
-def test_links_that_no_joint_joins_have_no_relation(case: Case) -> None:
-    """Where no joints lead from one link to the other, a check says so instead of measuring."""
+def test_unconnected_links_are_reported(case: Case) -> None:
+    """If no joints connect two links, a check says so instead of measuring."""
     error = missing(case.check, case.passing.without_joints(), **case.arguments)
     assert error.kind == "connection"
     assert "no chain of joints leads from " in str(error)
 
 
 @every_related_case
-def test_a_loop_of_joints_does_not_hang_a_check(case: Case) -> None:
-    """A loop makes ROS 2 reject the file: the joint that closes it is left out, and the rest is looked at."""
+def test_a_loop_of_joints_stops_no_check(case: Case) -> None:
+    """ROS 2 rejects a file with a loop; the joint that closes it is ignored and the rest is examined."""
     inner, outer = case.passing.links[-1], case.passing.links[0]
     looped = Scene(case.passing.text.replace("</robot>", joint("zz_back", "fixed", inner, outer) + "\n</robot>"))
     assert ask(case.check, looped, **case.arguments) == ask(case.check, case.passing, **case.arguments)
@@ -76,13 +76,13 @@ def test_a_loop_of_joints_does_not_hang_a_check(case: Case) -> None:
 
 @every_case
 def test_a_mesh_has_a_frame_and_a_colour_but_no_size(case: Case) -> None:
-    """What is measured of a mesh needs manual grading; a mesh is no box, cylinder or sphere."""
+    """Measuring a mesh needs manual grading; a mesh is no box, cylinder or sphere."""
     outcome = graded(case.check, case.passing.with_shape(mesh()), **case.arguments)
-    assert outcome.status == case.of_a_mesh
+    assert outcome.status == case.mesh_status
 
 
 def test_a_pending_outcome_names_the_mesh() -> None:
-    """The person who has to look is told at which mesh and why."""
+    """The message names the mesh and the reason, for the person who grades it."""
     for case in CASES:
         outcome = graded(case.check, case.passing.with_shape(mesh("package://my_robot/wheel.dae")), **case.arguments)
         if outcome.status == "pending":
@@ -92,7 +92,7 @@ def test_a_pending_outcome_names_the_mesh() -> None:
 
 @every_case
 def test_a_shape_without_size_is_no_shape(case: Case) -> None:
-    """Checks that look at what is shown say that a zero-size visual shows nothing; the others do not mind it."""
+    """Checks of visible shapes say that a zero-size visual shows nothing; other checks ignore this."""
     empty = case.passing.with_shape(box(0.0, 0.0, 0.0))
     if case.needs_size:
         error = missing(case.check, empty, **case.arguments)
@@ -112,7 +112,7 @@ def test_every_tolerance_has_an_edge(case: Case) -> None:
 @every_edge
 @pytest.mark.parametrize("sign", [1, -1])
 def test_the_edge_of_a_tolerance(case: Case, argument: str, sign: int) -> None:
-    """A check passes just inside its tolerance, and fails just outside, unless it has one side and this is the other."""
+    """A check passes just inside its tolerance and fails just outside, unless the tolerance is one-sided."""
     edge, tolerance = case.edges[argument], case.arguments[argument]
     inside, outside = (ask(case.check, edge(sign * share * tolerance), **case.arguments) for share in (0.95, 1.05))
     assert inside.status == "passed", inside

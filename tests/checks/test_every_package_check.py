@@ -1,16 +1,16 @@
-"""What holds of all checks of a submission: the cases, a grade run, and submissions without a package."""
+"""Properties of all checks of a submission: the cases, a grade run, and submissions without a package."""
 
 import pytest
 
 from grader.checks.registry import describe
-from tests.checks.asking import ask, graded, missing
+from tests.checks.outcomes import ask, graded, missing
 from tests.checks.package_cases import PACKAGE_CASES, PENDING_CASES, PackageCase, PendingCase
-from tests.checks.submitted import FOLDER, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, URDF, Submitted, png
+from tests.checks.submissions import FOLDER, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, URDF, Submitted, png
 
 every_case = pytest.mark.parametrize("case", PACKAGE_CASES, ids=[case.name for case in PACKAGE_CASES])
 every_pending_case = pytest.mark.parametrize("case", PENDING_CASES, ids=[case.name for case in PENDING_CASES])
 
-# Contents that no file of a package should have, and that no check may stumble over.
+# Contents that no file of a package should have, and that must not break a check.
 ODD = {
     "empty": b"",
     "binary": bytes(range(256)) * 20,
@@ -27,38 +27,38 @@ ODD = {
 
 @every_case
 def test_the_passing_submission_passes(case: PackageCase) -> None:
-    """A check passes the submission that is as it should be, says what it found, and points to no place."""
+    """A check passes a correct submission, says what it found, and has no location."""
     outcome = ask(case.check, case.passing, **case.arguments)
-    assert (outcome.status, outcome.message, outcome.location) == ("passed", case.says, None)
+    assert (outcome.status, outcome.message, outcome.location) == ("passed", case.pass_message, None)
 
 
 @every_case
 def test_the_failing_submission_fails(case: PackageCase) -> None:
-    """A check fails the submission that is not, says what it found, and points to the place in the file."""
+    """A check fails an incorrect submission, says what it found, and points into the file."""
     outcome = ask(case.check, case.failing, **case.arguments)
-    assert (outcome.status, outcome.message) == ("failed", case.complains)
-    assert outcome.location == (None if case.at is None else case.failing.place(*case.at))
+    assert (outcome.status, outcome.message) == ("failed", case.fail_message)
+    assert outcome.location == (None if case.at is None else case.failing.location_of(*case.at))
 
 
 @every_pending_case
-def test_what_a_person_decides_is_pending(case: PendingCase) -> None:
-    """A check that a person decides shows what was found, or says that nothing was."""
+def test_manual_checks_are_pending(case: PendingCase) -> None:
+    """A check that needs manual grading shows what was found, or says that nothing was."""
     found, nothing = (ask(case.check, submitted, **case.arguments) for submitted in (REFERENCE, case.without))
-    place = None if case.at is None else REFERENCE.place(*case.at)
-    assert (found.status, found.message, found.location) == ("pending", case.found, place)
+    at_location = None if case.at is None else REFERENCE.location_of(*case.at)
+    assert (found.status, found.message, found.location) == ("pending", case.found, at_location)
     assert (nothing.status, nothing.message, nothing.location) == ("pending", case.not_found, None)
 
 
 @every_case
 def test_a_grade_run_finds_the_same(case: PackageCase) -> None:
-    """A check answers the same when it is asked as a criterion."""
+    """A check has the same result as a criterion of a rubric."""
     for submitted in (case.passing, case.failing):
         assert graded(case.check, submitted, **case.arguments) == ask(case.check, submitted, **case.arguments)
 
 
 @every_case
 def test_without_a_package_the_same_is_missed(case: PackageCase) -> None:
-    """Every check of a package says that there is none, as a criterion and, where it can be asked, alone."""
+    """Every check of a package says that there is none, as a criterion and, if possible, alone."""
     pictures = Submitted({"Task1_Step8.png": png()})
     outcome = graded(case.check, pictures, **case.arguments)
     message = "the submission has no ROS 2 package: there is no package.xml"
@@ -70,8 +70,8 @@ def test_without_a_package_the_same_is_missed(case: PackageCase) -> None:
 
 @every_case
 @pytest.mark.parametrize("path", [MANIFEST, SETUP, LAUNCH, RVIZ, URDF])
-def test_a_file_that_is_not_there_breaks_no_check(case: PackageCase, path: str) -> None:
-    """Whichever file is missing, a check passes, fails or leaves it open, in words of its own."""
+def test_a_missing_file_breaks_no_check(case: PackageCase, path: str) -> None:
+    """Whichever file is missing, a check passes, fails or is pending with its own message."""
     outcome = graded(case.check, REFERENCE.without(path), **case.arguments)
     assert outcome.status in ("passed", "failed", "pending"), outcome
 
@@ -79,7 +79,7 @@ def test_a_file_that_is_not_there_breaks_no_check(case: PackageCase, path: str) 
 @every_case
 @pytest.mark.parametrize("content", ODD.values(), ids=ODD)
 def test_odd_files_break_no_check(case: PackageCase, content: bytes) -> None:
-    """Whatever stands in the files, a check passes, fails or leaves it open, in words of its own."""
+    """Whatever the files contain, a check passes, fails or is pending with its own message."""
     for path in (MANIFEST, SETUP, LAUNCH, RVIZ, URDF):
         outcome = graded(case.check, REFERENCE.with_files({path: content}), **case.arguments)
         assert outcome.status in ("passed", "failed", "pending"), (path, outcome)
@@ -89,7 +89,7 @@ def test_odd_files_break_no_check(case: PackageCase, content: bytes) -> None:
 
 @every_case
 def test_the_folder_of_the_package_does_not_matter(case: PackageCase) -> None:
-    """A package is judged the same, wherever it is in what was handed in."""
+    """A package is graded the same wherever it is in the submission."""
     deeper = f"ws/src/{FOLDER}"
     for submitted in (case.passing, case.failing):
         moved = Submitted(
@@ -98,6 +98,6 @@ def test_the_folder_of_the_package_does_not_matter(case: PackageCase) -> None:
                 for path, content in submitted.files.items()
             }
         )
-        here, there = (ask(case.check, files, **case.arguments) for files in (submitted, moved))
-        assert there.status == here.status
-        assert there.message == here.message
+        first, second = (ask(case.check, files, **case.arguments) for files in (submitted, moved))
+        assert second.status == first.status
+        assert second.message == first.message

@@ -1,10 +1,10 @@
-"""The launch file: its name, what it starts, and whether what it names is where a build puts it."""
+"""The launch file: its name, the nodes that it starts, and whether the files that it names are installed there."""
 
 import pytest
 
 from grader.checks.launch import launch_finds_files, launch_found, launch_starts
-from tests.checks.asking import finds, lacks
-from tests.checks.submitted import FOLDER, LAUNCH, REFERENCE, RVIZ, SETUP, URDF, Submitted, start_of
+from tests.checks.outcomes import finds, lacks
+from tests.checks.submissions import FOLDER, LAUNCH, REFERENCE, RVIZ, SETUP, URDF, Submitted, start_of
 
 NAME = "my_robot_rviz.launch.py"
 STATES = "joint_state_publisher or joint_state_publisher_gui"
@@ -28,7 +28,7 @@ INNER = "my_robot/launch/robot.launch.py"
 
 
 def launch(old: str, new: str, of: Submitted = REFERENCE) -> Submitted:
-    """A submission with another text in its launch file."""
+    """Return a submission with another text in its launch file."""
     return of.replacing(LAUNCH, old, new)
 
 
@@ -42,22 +42,22 @@ WITH_IMPORTS = launch(
 
 
 def described(code: str) -> Submitted:
-    """The reference with another way to get at the robot's description."""
+    """Return the reference with another way to load the robot's description."""
     return launch(READ, f"    robot_description = {code}\n", WITH_IMPORTS)
 
 
 def declaring(argument: str, of: Submitted) -> Submitted:
-    """A submission that declares another launch argument before the others."""
+    """Return a submission that declares another launch argument before the others."""
     return launch(GUI, f"        {argument},\n{GUI}", of)
 
 
 def starts(submitted: Submitted) -> tuple[str, str, object]:
-    """What is found of the nodes that the lab asks for."""
+    """Return the outcome for the nodes that the lab asks for."""
     return finds(launch_starts, submitted, name=NAME, nodes=NODES)
 
 
 def finds_files(submitted: Submitted) -> tuple[str, str, object]:
-    """What is found of the files that the launch file names."""
+    """Return the outcome for the files that the launch file names."""
     return finds(launch_finds_files, submitted, name=NAME)
 
 
@@ -147,13 +147,13 @@ launch:
 
 @pytest.mark.parametrize("submitted", [REFERENCE, IN_XML, IN_YAML, INCLUDES], ids=["py", "xml", "yaml", "two"])
 def test_the_launch_file_is_found_in_any_language(submitted: Submitted) -> None:
-    """Its name counts, and not the language that it is written in."""
+    """The name counts, not the language of the launch file."""
     path = next(name for name in (LAUNCH, XML, YAML) if name in submitted.files).removeprefix("my_robot/")
     assert finds(launch_found, submitted, name=NAME) == ("passed", f"the launch file is {path}", None)
 
 
 def test_the_launch_file_is_found_in_any_folder() -> None:
-    """Where it stands is for setup.py to know."""
+    """The folder of the launch file is graded by the check of setup.py."""
     submitted = REFERENCE.renaming(LAUNCH, "my_robot/my_robot_rviz.launch.py")
     assert finds(launch_found, submitted, name=NAME) == ("passed", "the launch file is my_robot_rviz.launch.py", None)
 
@@ -161,8 +161,8 @@ def test_the_launch_file_is_found_in_any_folder() -> None:
 @pytest.mark.parametrize(
     "name", ["my_robot_rvix.launch.py", "my_robot_rviz_launch.py", "display.launch.py", "my_robot_rviz.py"]
 )
-def test_another_name_costs_the_name_only(name: str) -> None:
-    """A launch file of another name fails for its name, and is looked at all the same."""
+def test_another_name_fails_only_the_name(name: str) -> None:
+    """A launch file of another name fails the check of its name and is examined all the same."""
     submitted = REFERENCE.renaming(LAUNCH, f"my_robot/launch/{name}")
     message = f"there is no launch file 'my_robot_rviz.launch.py'; the package has launch/{name}"
     assert finds(launch_found, submitted, name=NAME) == ("failed", message, None)
@@ -170,8 +170,8 @@ def test_another_name_costs_the_name_only(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["my_robot_rviz", "my_robot_rviz.launch", "my_robot_rviz.launch.py.txt"])
-def test_without_a_proper_ending_it_cannot_be_started(name: str) -> None:
-    """A launch file without an extension, or with one more, is named, and looked at all the same."""
+def test_a_wrong_extension_is_reported(name: str) -> None:
+    """A launch file without an extension, or with an additional one, is named and examined all the same."""
     submitted = REFERENCE.renaming(LAUNCH, f"my_robot/launch/{name}")
     message = (
         f"there is no launch file 'my_robot_rviz.launch.py'; the package has launch/{name}, "
@@ -181,8 +181,8 @@ def test_without_a_proper_ending_it_cannot_be_started(name: str) -> None:
     assert starts(submitted) == ("passed", STARTED, None)
 
 
-def test_the_file_of_the_name_is_meant() -> None:
-    """Of several launch files the named one is looked at; else the one that is named most like it."""
+def test_the_launch_file_with_the_expected_name_is_graded() -> None:
+    """Of several launch files the one with the expected name is examined; else the one with the most similar name."""
     broken = "import nothing\n"
     several = REFERENCE.with_files({"my_robot/launch/a.launch.py": broken})
     assert finds(launch_found, several, name=NAME)[0] == "passed"
@@ -191,8 +191,8 @@ def test_the_file_of_the_name_is_meant() -> None:
     assert finds(launch_found, misspelt, name=NAME)[1].endswith("launch/my_robot_rvix.launch.py")
 
 
-def test_without_launch_file_the_same_is_missed() -> None:
-    """No launch file is one thing that is missed, whatever is asked of it."""
+def test_a_missing_launch_file_is_one_fault() -> None:
+    """Without a launch file every check reports the same missing thing."""
     gone, empty = REFERENCE.without("my_robot/launch"), REFERENCE.renaming(LAUNCH, "my_robot/launch/README.md")
     message = "the package has no launch file: no file ends in .launch.py, .launch.xml or .launch.yaml"
     for submitted, words in ((gone, f"{message}, and there is no folder launch"), (empty, message)):
@@ -211,19 +211,19 @@ def test_without_launch_file_the_same_is_missed() -> None:
     ids=["py", "imports", "urdf_launch", "include", "xml", "yaml"],
 )
 def test_equivalent_launch_files_pass(submitted: Submitted) -> None:
-    """The nodes are found in every language, and in launch files that are included."""
+    """Nodes are found in every language and in included launch files."""
     assert starts(submitted) == ("passed", STARTED, None)
     assert finds_files(submitted)[0] == "passed"
 
 
 def test_the_defaults_of_arguments_count() -> None:
-    """Which of two nodes is started is told by the default of an argument."""
+    """The default of an argument determines which of two nodes is started."""
     off = launch("default_value='true'", "default_value='false'")
     assert starts(off) == ("passed", "the launch file starts joint_state_publisher, robot_state_publisher, rviz2", None)
 
 
 def test_other_nodes_do_not_matter() -> None:
-    """More may be started than is asked for; a node of another package is named with it."""
+    """More nodes may be started than expected; a node of another package is reported with the package's name."""
     more = launch(RVIZ_NODE, RVIZ_NODE + "        Node(package='turtlesim', executable='turtlesim_node'),\n")
     assert starts(more) == ("passed", STARTED + ", turtlesim/turtlesim_node", None)
 
@@ -262,13 +262,13 @@ def test_other_nodes_do_not_matter() -> None:
     ],
     ids=["left-out", "package", "executable", "misspelt", "description", "empty"],
 )  # fmt: skip
-def test_a_node_that_is_not_started_is_named(submitted: Submitted, missing: str, running: str, at: str | None) -> None:
-    """What is missing is named beside what is started, with the place of a node that comes near."""
-    place = submitted.place(LAUNCH, at) if at is not None else None
-    assert starts(submitted) == ("failed", f"the launch file does not start {missing}; it starts {running}", place)
+def test_a_missing_node_is_named(submitted: Submitted, missing: str, running: str, at: str | None) -> None:
+    """The message names the missing node and the started ones, and points to a similar node."""
+    location = submitted.location_of(LAUNCH, at) if at is not None else None
+    assert starts(submitted) == ("failed", f"the launch file does not start {missing}; it starts {running}", location)
 
 
-def test_a_node_that_is_made_and_forgotten() -> None:
+def test_a_node_outside_the_launch_description() -> None:
     """A node counts only if it is part of the LaunchDescription."""
     made = "    rviz = Node(package='rviz2', executable='rviz2')\n\n    return LaunchDescription(["
     submitted = launch("    return LaunchDescription([", made, launch(RVIZ_NODE, ""))
@@ -276,11 +276,11 @@ def test_a_node_that_is_made_and_forgotten() -> None:
         "the launch file does not start rviz2; it starts joint_state_publisher_gui, robot_state_publisher. "
         "It creates the node rviz2, but the LaunchDescription does not contain it"
     )
-    assert starts(submitted) == ("failed", message, submitted.place(LAUNCH, "Node(package='rviz2'"))
+    assert starts(submitted) == ("failed", message, submitted.location_of(LAUNCH, "Node(package='rviz2'"))
 
 
-def test_a_condition_that_is_off() -> None:
-    """A node behind a condition that is off by default is not started by the lab's command."""
+def test_a_false_condition() -> None:
+    """A node with a condition that is false by default is not started by the lab's command."""
     submitted = launch(
         "            arguments=['-d'", "            condition=UnlessCondition(gui),\n            arguments=['-d'"
     )
@@ -288,11 +288,11 @@ def test_a_condition_that_is_off() -> None:
         "the launch file does not start rviz2; it starts joint_state_publisher_gui, robot_state_publisher. "
         "A condition keeps rviz2 from starting, unless an argument is given"
     )
-    assert starts(submitted) == ("failed", message, submitted.place(LAUNCH, "Node(\n            package='rviz2'"))
+    assert starts(submitted) == ("failed", message, submitted.location_of(LAUNCH, "Node(\n            package='rviz2'"))
 
 
-def test_an_argument_without_default_is_for_a_person() -> None:
-    """Which node is started then depends on who starts it."""
+def test_an_argument_without_default_needs_manual_grading() -> None:
+    """Without a default, the node depends on the command line."""
     submitted = launch("default_value='true', ", "")
     assert starts(submitted) == (
         "pending",
@@ -306,11 +306,11 @@ def test_an_argument_without_default_is_for_a_person() -> None:
     )
 
 
-def test_what_only_a_run_tells_is_for_a_person() -> None:
-    """Nodes that depend on the machine, or on launch files that nobody has, are left open."""
+def test_values_known_only_at_run_time_need_manual_grading() -> None:
+    """Nodes that depend on the machine, or on launch files that are not in the submission, are pending."""
     submitted = launch("executable='rviz2'", "executable=os.environ['VIEWER']")
-    status, message, place = starts(submitted)
-    assert (status, place) == ("pending", None)
+    status, message, location = starts(submitted)
+    assert (status, location) == ("pending", None)
     assert message.startswith("cannot determine statically whether rviz2 is started: ")
     foreign = DISPLAY.replacing(LAUNCH, "'urdf_launch'", "'urdf_tutorial'")
     reason = "it includes share/urdf_tutorial/launch/display.launch.py, which the submission does not install"
@@ -363,14 +363,14 @@ def test_what_only_a_run_tells_is_for_a_person() -> None:
     ],
     ids=["node", "os", "argument", "in-command", "space", "items"],
 )
-def test_what_stops_the_launch_fails(submitted: Submitted, message: str, at: str) -> None:
-    """Whatever makes ros2 launch stop is told once, at its place, and the files count as found or as open."""
-    assert starts(submitted) == ("failed", message, submitted.place(LAUNCH, at))
+def test_errors_that_stop_the_launch_fail(submitted: Submitted, message: str, at: str) -> None:
+    """An error that stops ros2 launch is reported once, at its location; the files count as found or pending."""
+    assert starts(submitted) == ("failed", message, submitted.location_of(LAUNCH, at))
     assert finds_files(submitted)[0] in ("passed", "pending")
 
 
 def test_several_faults_are_counted() -> None:
-    """The first fault is told, and how many others there are."""
+    """The first fault is reported with the number of the others."""
     submitted = launch("from launch_ros.actions import Node\n", "", launch("import os\n", ""))
     assert starts(submitted)[1] == "the name 'os' is not defined or imported (and 1 more)"
 
@@ -406,15 +406,15 @@ def test_several_faults_are_counted() -> None:
     ],
     ids=["comma", "bracket", "entry", "empty", "return"],
 )
-def test_a_launch_file_of_which_nothing_is_known(submitted: Submitted, message: str, at: str | None) -> None:
-    """A fault that hides everything is missed once, under one key, by both checks."""
+def test_an_unreadable_launch_file_is_missed_once(submitted: Submitted, message: str, at: str | None) -> None:
+    """A fault that hides everything is reported once, under one key, by both checks."""
     for check, arguments in ((launch_starts, {"nodes": NODES}), (launch_finds_files, {})):
-        *key, place = lacks(check, submitted, name=NAME, **arguments)
+        *key, location = lacks(check, submitted, name=NAME, **arguments)
         assert key == ["launch file", "launch/my_robot_rviz.launch.py", message]
         if at is None:
-            assert place == start_of(LAUNCH)
+            assert location == start_of(LAUNCH)
         elif at != ")\n":
-            assert place == submitted.place(LAUNCH, at)
+            assert location == submitted.location_of(LAUNCH, at)
     assert finds(launch_found, submitted, name=NAME)[0] == "passed"
 
 
@@ -444,12 +444,12 @@ def test_a_launch_file_of_which_nothing_is_known(submitted: Submitted, message: 
     ids=["xml", "yaml", "key", "root"],
 )
 def test_xml_and_yaml_that_cannot_be_read(submitted: Submitted, path: str, message: str, at: str) -> None:
-    """A launch file in another language is missed in the same way."""
-    kind, name, words, place = lacks(launch_starts, submitted, name=NAME, nodes=NODES)
+    """An unreadable launch file in XML or YAML is reported in the same way."""
+    kind, name, words, location = lacks(launch_starts, submitted, name=NAME, nodes=NODES)
     assert (kind, name) == ("launch file", path.removeprefix("my_robot/"))
     assert words.startswith(message)
-    assert place is not None
-    assert (place.path, place.line) == (path, submitted.place(path, at).line)
+    assert location is not None
+    assert (location.path, location.line) == (path, submitted.location_of(path, at).line)
 
 
 @pytest.mark.parametrize(
@@ -469,8 +469,8 @@ def test_xml_and_yaml_that_cannot_be_read(submitted: Submitted, path: str, messa
     ],
     ids=["find", "type", "argument"],
 )
-def test_what_ros1_wrote_stops_the_launch(old: str, new: str, message: str) -> None:
-    """Words of ROS 1 in a launch file in XML are told, with those of ROS 2."""
+def test_ros1_syntax_stops_the_launch(old: str, new: str, message: str) -> None:
+    """ROS 1 tags in an XML launch file are reported with their ROS 2 equivalents."""
     submitted = IN_XML.replacing(XML, old, new)
     status, words, _ = starts(submitted)
     assert (status, words) == ("failed", message)
@@ -479,8 +479,8 @@ def test_what_ros1_wrote_stops_the_launch(old: str, new: str, message: str) -> N
 # --- What it names ----------------------------------------------------------------------------------------------------
 
 
-def test_what_is_found_is_named() -> None:
-    """It is said which files are where they are looked for."""
+def test_found_files_are_named() -> None:
+    """The message lists the files that are installed where the launch file expects them."""
     assert finds_files(REFERENCE) == ("passed", FOUND, None)
     inner = FOUND.replace(
         "installs share/my_robot/my_robot.urdf and",
@@ -505,8 +505,8 @@ def test_what_is_found_is_named() -> None:
     ],
     ids=["open", "f", "plus", "command", "value", "substitution", "pieces", "cat", "process_file", "pretty"],
 )
-def test_ways_to_read_the_urdf(code: str) -> None:
-    """However the file is read, where it is looked for is what counts."""
+def test_equivalent_code_that_reads_the_urdf(code: str) -> None:
+    """However the URDF is read, the path that is used counts."""
     assert finds_files(described(code)) == ("passed", FOUND, None)
     assert starts(described(code)) == ("passed", STARTED, None)
     wrong = described(code.replace("my_robot.urdf", "urdf/my_robot.urdf"))
@@ -514,8 +514,8 @@ def test_ways_to_read_the_urdf(code: str) -> None:
     assert finds_files(wrong)[:2] == ("failed", message)
 
 
-def test_the_default_of_an_argument_is_looked_for() -> None:
-    """A path may be the default of a launch argument; without a default a person has to look."""
+def test_the_default_of_an_argument_is_a_path() -> None:
+    """A path may be the default of a launch argument; without a default manual grading is needed."""
     model = described("Command(['xacro ', LaunchConfiguration('model')])")
     right = declaring("DeclareLaunchArgument('model', default_value=os.path.join(share, 'my_robot.urdf'))", model)
     assert finds_files(right) == ("passed", FOUND, None)
@@ -527,7 +527,7 @@ def test_the_default_of_an_argument_is_looked_for() -> None:
 
 
 @pytest.mark.parametrize("spelling", ["['-d' + {}]", "['--display-config', {}]", "['-d', {}, '--fullscreen']"])
-def test_ways_to_open_the_rviz_file(spelling: str) -> None:
+def test_options_that_open_the_rviz_file(spelling: str) -> None:
     """Every spelling of RViz's option is known."""
     assert finds_files(launch(f"['-d', {RVIZ_PATH}]", spelling.format(RVIZ_PATH))) == ("passed", FOUND, None)
 
@@ -539,15 +539,15 @@ NESTED = REFERENCE.replacing(
 )
 
 
-def test_flat_and_nested_paths_have_to_agree() -> None:
-    """The launch file and setup.py have to mean the same place, whichever it is."""
-    wanted = launch(URDF_PATH, "os.path.join(share, 'urdf', 'my_robot.urdf')")
+def test_launch_file_and_setup_py_must_agree() -> None:
+    """The launch file and setup.py must use the same location, flat or nested."""
+    required = launch(URDF_PATH, "os.path.join(share, 'urdf', 'my_robot.urdf')")
     flat, nested = "share/my_robot/my_robot.urdf", "share/my_robot/urdf/my_robot.urdf"
-    agreeing = Submitted({**NESTED.files, LAUNCH: wanted.files[LAUNCH]})
+    agreeing = Submitted({**NESTED.files, LAUNCH: required.files[LAUNCH]})
     assert finds_files(agreeing) == ("passed", FOUND.replace(flat, nested), None)
-    for submitted, asked, put in ((NESTED, flat, nested), (wanted, nested, flat)):
-        message = f"the launch file looks for the URDF at {asked}, but a build installs it as {put}"
-        assert finds_files(submitted) == ("failed", message, submitted.place(LAUNCH, "open("))
+    for submitted, requested, put in ((NESTED, flat, nested), (required, nested, flat)):
+        message = f"the launch file looks for the URDF at {requested}, but a build installs it as {put}"
+        assert finds_files(submitted) == ("failed", message, submitted.location_of(LAUNCH, "open("))
 
 
 @pytest.mark.parametrize(
@@ -645,42 +645,42 @@ def test_flat_and_nested_paths_have_to_agree() -> None:
         "bare-d", "no-description", "path-given", "urdf_launch-path", "urdf_launch-package", "urdf_launch-rviz",
     ],
 )  # fmt: skip
-def test_a_file_that_is_not_where_it_is_looked_for(submitted: Submitted, message: str, at: str) -> None:
-    """Each way to miss a file is told in its own words, where it is named; the nodes are started all the same."""
-    assert finds_files(submitted) == ("failed", message, submitted.place(LAUNCH, at))
+def test_a_file_at_the_wrong_path(submitted: Submitted, message: str, at: str) -> None:
+    """Each kind of wrong path has its own message where the path is written; the nodes still count as started."""
+    assert finds_files(submitted) == ("failed", message, submitted.location_of(LAUNCH, at))
     assert starts(submitted)[0] == "passed"
 
 
-def test_the_same_in_xml_and_yaml() -> None:
-    """The other languages are held to the same paths."""
+def test_xml_and_yaml_are_held_to_the_same_paths() -> None:
+    """Launch files in XML and YAML are checked for the same paths."""
     wrong = IN_XML.replacing(XML, "/my_robot.urdf", "/urdf/my_robot.urdf")
     message = "the launch file looks for the URDF at share/my_robot/urdf/my_robot.urdf, but a build installs it as share/my_robot/my_robot.urdf"
-    at = wrong.place(XML, "<param")
+    at = wrong.location_of(XML, "<param")
     assert finds_files(wrong) == ("failed", message, at)
     other = IN_YAML.replacing(YAML, "/my_robot.rviz", "/rviz/my_robot.rviz")
     words = "the launch file looks for the RViz file at share/my_robot/rviz/my_robot.rviz, but a build installs it as share/my_robot/my_robot.rviz"
     assert finds_files(other)[:2] == ("failed", words)
 
 
-def test_two_wrong_paths_are_both_told() -> None:
+def test_two_wrong_paths_are_both_reported() -> None:
     """One fault does not hide the other."""
     submitted = launch(RVIZ_PATH, "'my_robot.rviz'", launch(URDF_PATH, "'/home/me/my_robot.urdf'"))
-    status, message, place = finds_files(submitted)
-    assert (status, place) == ("failed", submitted.place(LAUNCH, "open("))
+    status, message, location = finds_files(submitted)
+    assert (status, location) == ("failed", submitted.location_of(LAUNCH, "open("))
     assert "/home/me/my_robot.urdf" in message
     assert "; the launch file looks for the RViz file at my_robot.rviz, relative to the folder" in message
 
 
 def test_a_node_that_is_not_started_needs_no_file() -> None:
-    """Whether RViz is started is another criterion's business."""
+    """Whether RViz is started is graded by another criterion."""
     assert finds_files(launch(RVIZ_NODE, ""))[:2] == (
         "passed",
         "a build installs share/my_robot/my_robot.urdf, where the launch file looks for them",
     )
 
 
-def test_a_launch_file_that_names_nothing_is_missed() -> None:
-    """Without any file that is named there is nothing to judge."""
+def test_a_launch_file_without_paths() -> None:
+    """If no file is named, there is nothing to check."""
     text = "from launch import LaunchDescription\n\n\ndef generate_launch_description():\n    return LaunchDescription([])\n"
     expected = ("named file", "", "the launch file names neither a URDF nor an RViz file", None)
     assert lacks(launch_finds_files, REFERENCE.with_files({LAUNCH: text}), name=NAME) == expected
@@ -697,19 +697,19 @@ def test_a_launch_file_that_names_nothing_is_missed() -> None:
     ],
     ids=["urdf", "rviz", "no-setup", "syntax", "no-call"],
 )  # fmt: skip
-def test_what_is_not_installed_is_missed_as_such(submitted: Submitted, key: str) -> None:
-    """Where a file is not installed at all, the same is missed as by the check of what is installed."""
+def test_a_file_that_is_not_installed(submitted: Submitted, key: str) -> None:
+    """A file that is not installed is the same missing thing as in the check of installed files."""
     assert lacks(launch_finds_files, submitted, name=NAME)[:2] == (key, FOLDER)
 
 
 @pytest.mark.parametrize(("path", "kind"), [(URDF, "URDF"), (RVIZ, "RViz file")])
-def test_a_file_that_does_not_exist_is_missed_as_such(path: str, kind: str) -> None:
-    """Where the package has no such file, the same is missed as by the checks of that file."""
+def test_a_file_that_does_not_exist(path: str, kind: str) -> None:
+    """A file that the package does not contain is the same missing thing as in the checks of that file."""
     assert lacks(launch_finds_files, REFERENCE.without(path), name=NAME)[:2] == (f"{kind} in the package", "")
 
 
-def test_what_is_installed_cannot_be_told() -> None:
-    """What a person has to find out about setup.py, a person has to find out here."""
+def test_unknown_installation_needs_manual_grading() -> None:
+    """If setup.py needs manual grading, so do the paths of the launch file."""
     unknown = REFERENCE.replacing(SETUP, "glob('urdf/*')", "os.environ['FILES'].split()")
     message = "cannot determine statically whether a build installs share/my_robot/my_robot.urdf; needs manual grading"
     assert finds_files(unknown) == ("pending", message, None)
@@ -719,15 +719,15 @@ def test_what_is_installed_cannot_be_told() -> None:
     assert finds_files(cmake)[0] == "pending"
 
 
-def test_a_file_of_another_package_is_for_a_person() -> None:
-    """Where other packages have their files, only a machine with ROS 2 knows."""
+def test_a_file_of_another_package_needs_manual_grading() -> None:
+    """The files of packages that are not submitted are only known on a machine with ROS 2."""
     other = launch("get_package_share_directory('my_robot')", "get_package_share_directory('urdf_tutorial')")
     message = "the URDF is in 'urdf_tutorial', which is not part of the submission; needs manual grading"
     assert finds_files(other) == ("pending", message, None)
 
 
 def test_a_second_package_of_the_submission_counts() -> None:
-    """The URDF may be in a description package that was handed in, too."""
+    """The URDF may be in a description package of the same submission."""
     description = {
         path.replace(FOLDER, "my_description", 1): str(content).replace("my_robot'", "my_description'")
         for path, content in REFERENCE.without(LAUNCH, RVIZ).files.items()
@@ -748,7 +748,7 @@ def test_a_second_package_of_the_submission_counts() -> None:
     )
 
 
-def test_another_name_in_package_xml_is_no_fault_here() -> None:
+def test_another_name_in_package_xml_is_ignored() -> None:
     """The package is found by its entry in the resource index."""
     submitted = REFERENCE.replacing("my_robot/package.xml", ">my_robot<", ">robot_lab<")
     assert finds_files(submitted) == ("passed", FOUND, None)
@@ -777,45 +777,45 @@ def test_another_name_in_package_xml_is_no_fault_here() -> None:
     ],
     ids=["elsewhere", "no-such-file"],
 )
-def test_an_included_file_that_is_not_there(submitted: Submitted, message: str) -> None:
-    """An included launch file has to be where it is looked for; what would have been started is left open."""
-    place = submitted.place(LAUNCH, "IncludeLaunchDescription(P")
-    assert finds_files(submitted) == ("failed", message, place)
+def test_a_missing_included_file(submitted: Submitted, message: str) -> None:
+    """An included launch file must exist at its path; its nodes are unknown and pending."""
+    location = submitted.location_of(LAUNCH, "IncludeLaunchDescription(P")
+    assert finds_files(submitted) == ("failed", message, location)
     assert starts(submitted)[0] == "pending"
 
 
 def test_an_included_file_that_is_not_installed() -> None:
-    """An included launch file has to be installed, too."""
+    """An included launch file must be installed, too."""
     entry = "glob(os.path.join('launch', '*launch.[pxy][yma]*'))"
     submitted = INCLUDES.replacing(SETUP, entry, "['launch/my_robot_rviz.launch.py']")
     message = "the launch file looks for the launch file at share/my_robot/launch/robot.launch.py, but a build does not install robot.launch.py"
-    place = submitted.place(LAUNCH, "IncludeLaunchDescription(P")
-    assert lacks(launch_finds_files, submitted, name=NAME) == ("installed include", FOLDER, message, place)
+    location = submitted.location_of(LAUNCH, "IncludeLaunchDescription(P")
+    assert lacks(launch_finds_files, submitted, name=NAME) == ("installed include", FOLDER, message, location)
 
 
 def test_a_fault_in_an_included_file() -> None:
-    """What is wrong in an included file is told with its place there."""
+    """A fault in an included file is reported at its location there."""
     fault = INCLUDES.replacing(INNER, "from launch_ros.actions import Node\n", "")
     message = "the name 'Node' is not defined or imported"
     assert starts(fault) == (
         "failed",
         message,
-        fault.place(INNER, "Node(\n            package='joint_state_publisher',"),
+        fault.location_of(INNER, "Node(\n            package='joint_state_publisher',"),
     )
     broken = INCLUDES.replacing(INNER, "    ])\n", "")
-    place = broken.place(INNER, "[\n        DeclareLaunchArgument")
+    location = broken.location_of(INNER, "[\n        DeclareLaunchArgument")
     expected = (
         "launch file",
         "launch/my_robot_rviz.launch.py",
         "Python cannot read the file: '[' was never closed",
-        place,
+        location,
     )
     assert lacks(launch_starts, broken, name=NAME, nodes=NODES) == expected
     assert lacks(launch_finds_files, broken, name=NAME) == expected
 
 
-def test_a_function_that_ros_calls_is_followed() -> None:
-    """OpaqueFunction calls its function with a context: what it returns is started, too."""
+def test_opaque_functions_are_evaluated() -> None:
+    """OpaqueFunction calls its function with a context; the actions that it returns are started, too."""
     submitted = launch(
         RVIZ_NODE,
         "        OpaqueFunction(function=lambda context: [\n"

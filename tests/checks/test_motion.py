@@ -1,4 +1,4 @@
-"""What moves when a joint is turned: rolling forward, the frame's axes, turning without wobble."""
+"""Motion when a joint is turned: rolling forward, the frame's axes, turning without wobble."""
 
 from math import cos, radians, sin
 
@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grader.checks.motion import axis_along, rolls_forward, turns_about_itself
-from tests.checks.asking import Arguments, ask, fails, graded, missing, passes
 from tests.checks.cases import BASE, FORWARD, WHEEL, Case, cases_of, rolling
+from tests.checks.outcomes import Arguments, ask, fails, graded, missing, passes
 from tests.checks.robots import Scene, box, cylinder, joint, link, mesh, scene, sphere, turned, visual
 
 FORWARDS: Arguments = {"link": "wheel", "base": "base", "tolerance": 1.0}
@@ -26,7 +26,7 @@ JOINT = " (joint 'wheel_joint')"
 
 
 def with_wheel(*visuals: str, kind: str = "continuous", rpy: str = FORWARD, axis: str = "0 0 1") -> Scene:
-    """A base with a wheel that shows these visuals."""
+    """Return a base with a wheel that shows these visuals."""
     return scene(
         BASE,
         link("wheel", *visuals),
@@ -36,7 +36,7 @@ def with_wheel(*visuals: str, kind: str = "continuous", rpy: str = FORWARD, axis
 
 @cases_of("motion")
 def test_directions_are_measured_in_degrees(case: Case) -> None:
-    """Every outcome carries what was measured and expected; angles are in degrees."""
+    """Every outcome carries the measured and expected values; angles are in degrees."""
     outcome = ask(case.check, case.failing, **case.arguments)
     assert outcome.measured is not None
     assert outcome.expected is not None
@@ -59,8 +59,8 @@ def test_directions_are_measured_in_degrees(case: Case) -> None:
         ("0 1 0", "0 1 0"),
     ],
 )
-def test_every_way_to_turn_about_the_left_is_forward(rpy: str, axis: str) -> None:
-    """Whichever way the frame is turned, what counts is that the axis points to the base's left."""
+def test_an_axis_to_the_left_drives_forward(rpy: str, axis: str) -> None:
+    """However the frame is turned, the wheel drives forward if its axis points to the base's left."""
     passes(rolls_forward, with_wheel(visual(sphere(0.1)), rpy=rpy, axis=axis), **FORWARDS)
 
 
@@ -74,8 +74,8 @@ def test_every_way_to_turn_about_the_left_is_forward(rpy: str, axis: str) -> Non
     ],
     ids=["mirrored", "negated", "negated-unturned", "turned-round"],
 )
-def test_a_wheel_the_other_way_round_drives_backward(rpy: str, axis: str, at: str) -> None:
-    """A mirrored frame or a negated axis turns the wheel the other way: that is where to look."""
+def test_a_reversed_wheel_drives_backward(rpy: str, axis: str, at: str) -> None:
+    """A mirrored frame or a negated axis reverses the wheel, and the failure points to it."""
     found = with_wheel(visual(sphere(0.1)), rpy=rpy, axis=axis)
     message = fails(rolls_forward, found, at=at, **FORWARDS)
     assert (
@@ -87,7 +87,7 @@ def test_a_wheel_the_other_way_round_drives_backward(rpy: str, axis: str, at: st
 
 
 def test_a_wheel_along_x_drives_sideways() -> None:
-    """A wheel whose axis lies along the base's x axis rolls to the side."""
+    """A wheel whose axis lies along the base's x axis rolls sideways."""
     for pitch, y in ((90, "-1"), (-90, "1")):
         message = fails(rolls_forward, rolling(rpy=turned(pitch=pitch)), at="rpy=", **FORWARDS)
         assert message == (
@@ -96,7 +96,7 @@ def test_a_wheel_along_x_drives_sideways() -> None:
 
 
 def test_a_wheel_that_lies_flat_does_not_roll() -> None:
-    """A wheel that turns about the vertical stays where it is: its lowest point is its middle."""
+    """A wheel that turns about the vertical stays where it is: its lowest point is its centre."""
     flat = rolling(rpy="")
     message = fails(rolls_forward, flat, at='xyz="0 0 1"', **FORWARDS)
     assert message == "'wheel' does not roll when its joint turns: its lowest point does not move (joint 'wheel_joint')"
@@ -110,7 +110,7 @@ def test_a_wheel_that_turns_about_its_contact_does_not_roll() -> None:
 
 
 def test_a_tilted_wheel_rolls_where_its_axis_points() -> None:
-    """A cambered wheel rolls straight; its contact moves sideways and forward as its axis says."""
+    """A cambered wheel rolls straight; its contact point moves as its axis says."""
     passes(rolls_forward, rolling(rpy=turned(roll=-80)), **FORWARDS)
     passes(rolls_forward, rolling(rpy=turned(roll=-100)), **FORWARDS)
 
@@ -119,7 +119,7 @@ def test_a_tilted_wheel_rolls_where_its_axis_points() -> None:
     ("off", "fine"), [(0.0, True), (0.99, True), (1.0, True), (-1.0, True), (1.01, False), (-1.01, False)]
 )
 def test_straight_ahead_has_a_tolerance(off: float, fine: bool) -> None:
-    """The wheel may toe in or out by the tolerance, its end included; beyond it the message says by how much."""
+    """The wheel may toe in or out by the tolerance, inclusive; beyond it the message says by how much."""
     outcome = ask(rolls_forward, rolling(rpy=turned(roll=-90, yaw=off)), **FORWARDS)
     assert (outcome.status == "passed") == fine
     assert outcome.measured == pytest.approx((cos(radians(off)), sin(radians(off)), 0.0))
@@ -135,13 +135,13 @@ def test_straight_ahead_has_a_tolerance(off: float, fine: bool) -> None:
         (136.0, "backward; it should drive it forward"),
     ],
 )
-def test_a_heading_is_told_in_words(yaw: float, words: str) -> None:
-    """Up to 45 degrees is forward with a slant, from 135 backward, and sideways between, with the direction."""
+def test_headings_are_described_in_words(yaw: float, words: str) -> None:
+    """Up to 45 degrees is forward with a deviation, from 135 backward, and between them sideways with the direction."""
     assert fails(rolls_forward, rolling(rpy=turned(roll=-90, yaw=yaw)), **FORWARDS).endswith(words + JOINT)
 
 
-def test_a_small_slant_is_told_though_it_passes() -> None:
-    """A slant that a reader can see in the file is told; rounded angles are not."""
+def test_a_small_deviation_is_reported_though_it_passes() -> None:
+    """A deviation that is visible in the file is reported; rounded angles are not."""
     assert (
         passes(rolls_forward, rolling(rpy="-1.57 0 0.01"), **FORWARDS)
         == f"{ROLLS}, 0.573 degrees off straight ahead{JOINT}"
@@ -149,7 +149,7 @@ def test_a_small_slant_is_told_though_it_passes() -> None:
     assert passes(rolls_forward, rolling(rpy="-1.57 0 0"), **FORWARDS) == ROLLS + JOINT
 
 
-def test_forward_and_up_are_the_rubrics() -> None:
+def test_forward_and_up_are_arguments() -> None:
     """Another lab may drive along y, or on a wall; directions need not be unit vectors."""
     sideways = rolling(rpy=turned(pitch=-90))
     passes(rolls_forward, sideways, **FORWARDS, forward=(0.0, 3.0, 0.0))
@@ -160,21 +160,21 @@ def test_forward_and_up_are_the_rubrics() -> None:
 
 
 def test_the_lowest_of_several_visuals_touches_the_ground() -> None:
-    """A hub beside the wheel does not touch the ground, so it does not matter."""
+    """A hub beside the wheel does not touch the ground and is ignored."""
     hub = visual(box(0.01, 0.01, 0.01), xyz="0.05 0 0")
     for order in ((hub, visual(cylinder())), (visual(cylinder()), hub)):
         passes(rolls_forward, with_wheel(*order), **FORWARDS)
 
 
 def test_a_wheel_without_an_axis_points_to_its_joint() -> None:
-    """Where no axis is written ROS 2 takes x; the joint is where it is missing."""
+    """ROS 2 uses x if no axis is given; the failure points to the joint."""
     found = scene(BASE, WHEEL, joint("wheel_joint", "continuous", "base", "wheel", rpy=FORWARD))
     message = fails(rolls_forward, found, at="<joint", **FORWARDS)
     assert "sideways" in message or "does not roll" in message
 
 
-def test_the_joint_next_to_the_wheel_is_turned() -> None:
-    """Of several moving joints the one nearest to the wheel counts; a steering joint above it is left at 0."""
+def test_the_joint_nearest_to_the_wheel_is_turned() -> None:
+    """Of several moving joints the one nearest to the wheel counts; a steering joint above it stays at 0."""
     steered = scene(
         BASE,
         link("fork"),
@@ -187,7 +187,7 @@ def test_the_joint_next_to_the_wheel_is_turned() -> None:
 
 
 def test_the_moving_joint_may_stand_above_a_mount() -> None:
-    """The wheel may be fixed to what the joint turns."""
+    """The wheel may be fixed to a link that the joint turns."""
     mounted = scene(
         BASE,
         link("axle"),
@@ -199,8 +199,8 @@ def test_the_moving_joint_may_stand_above_a_mount() -> None:
     passes(turns_about_itself, mounted, **ITSELF)
 
 
-def test_a_wheel_that_follows_another_joint_is_turned_itself() -> None:
-    """A mimic joint is turned for the question, whatever it follows."""
+def test_a_mimic_wheel_is_turned_itself() -> None:
+    """A mimic joint is turned directly, whatever joint it follows."""
     follower = joint("wheel_joint", "continuous", "base", "wheel", rpy=FORWARD, axis="0 0 1",
                      more='<mimic joint="other" multiplier="-1"/>')  # fmt: skip
     leader = joint("other", "continuous", "base", "x", axis="0 0 1")
@@ -208,8 +208,8 @@ def test_a_wheel_that_follows_another_joint_is_turned_itself() -> None:
 
 
 @pytest.mark.parametrize("kind", ["fixed", "Continuous", "", "wheel"])
-def test_a_wheel_on_a_joint_that_does_not_move_misses_one(kind: str) -> None:
-    """Fixed joints and types that do not exist move nothing: the moving joint is missing."""
+def test_a_wheel_without_a_moving_joint_misses_one(kind: str) -> None:
+    """Fixed joints and unknown types move nothing, so the moving joint is missing."""
     for check, arguments in ((rolls_forward, FORWARDS), (turns_about_itself, ITSELF)):
         error = missing(check, rolling(kind=kind), **arguments)
         assert (error.kind, error.name) == ("moving joint", "wheel")
@@ -219,21 +219,21 @@ def test_a_wheel_on_a_joint_that_does_not_move_misses_one(kind: str) -> None:
         )
 
 
-def test_a_link_does_not_move_against_itself() -> None:
-    """Where base and wheel are one link there is no joint between."""
+def test_a_link_does_not_move_relative_to_itself() -> None:
+    """If base and wheel are one link, there is no joint between them."""
     assert missing(rolls_forward, rolling(), **{**FORWARDS, "link": "base"}).kind == "moving joint"
 
 
 @pytest.mark.parametrize("kind", ["planar", "floating", "prismatic"])
 def test_a_joint_of_another_kind_is_the_students_fault(kind: str) -> None:
-    """A joint that slides or floats is no error of the grader's: it fails, or misses a joint that turns."""
+    """A prismatic or floating joint is no error of the grader: it fails, or misses a joint that turns."""
     for check, arguments in ((rolls_forward, FORWARDS), (turns_about_itself, ITSELF)):
         assert graded(check, rolling(kind=kind), **arguments).status in ("passed", "failed")
     assert graded(rolls_forward, rolling(kind=kind), **FORWARDS).status == "failed"
 
 
-def test_a_revolute_joint_turns_too() -> None:
-    """How far a joint may turn is another criterion."""
+def test_a_revolute_joint_is_accepted() -> None:
+    """The limits of a joint are graded by another criterion."""
     passes(rolls_forward, rolling(kind="revolute"), **FORWARDS)
     passes(turns_about_itself, rolling(kind="revolute"), **ITSELF)
 
@@ -247,15 +247,15 @@ def test_a_revolute_joint_turns_too() -> None:
     ],
     ids=["zero-axis", "unreadable-axis", "unreadable-origin"],
 )
-def test_nothing_rolls_on_a_joint_without_a_pose(found: Scene, reason: str, at: str) -> None:
-    """Where the joint's pose is undefined that is what is missing, and why."""
+def test_a_joint_without_a_pose_cannot_roll(found: Scene, reason: str, at: str) -> None:
+    """If the joint's pose is undefined, that is the missing thing, with its reason."""
     error = missing(rolls_forward, found, **FORWARDS)
     assert (error.kind, error.name) == ("pose below joint", "wheel_joint")
     assert fails(rolls_forward, found, at=at, **FORWARDS) == f"the pose is undefined: {reason} (joint 'wheel_joint')"
 
 
 def test_a_swapped_joint_still_has_a_direction() -> None:
-    """With parent and child the other way round the base turns under the wheel: the other way."""
+    """With parent and child swapped, the base turns below the wheel, in the opposite direction."""
     swapped = scene(BASE, WHEEL, joint("wheel_joint", "continuous", "wheel", "base", rpy=turned(roll=90), axis="0 1 0"))
     assert "backward" in fails(rolls_forward, swapped, **FORWARDS)
 
@@ -263,7 +263,7 @@ def test_a_swapped_joint_still_has_a_direction() -> None:
 @settings(deadline=None, max_examples=80)
 @given(yaw=st.floats(-180.0, 180.0), spin=st.floats(-4.0, 4.0), radius=st.floats(0.01, 2.0))
 def test_a_wheel_drives_where_its_axis_says(yaw: float, spin: float, radius: float) -> None:
-    """For every heading, size and starting turn of the wheel, it drives across its axis, seen from above."""
+    """For every heading, size and initial turn of the wheel, it drives perpendicular to its axis, seen from above."""
     found = scene(
         BASE,
         link("wheel", visual(cylinder(radius, 0.05), rpy=(0.0, 0.0, spin))),
@@ -280,7 +280,7 @@ def test_a_wheel_drives_where_its_axis_says(yaw: float, spin: float, radius: flo
 
 @pytest.mark.parametrize("angle", ["roll", "yaw"])
 def test_an_axis_has_a_tolerance(angle: str) -> None:
-    """An axis may be off by the tolerance, its end included; beyond it the message says by how much."""
+    """An axis may be off by the tolerance, inclusive; beyond it the message says by how much."""
     for off, fine in ((0.0, True), (0.99, True), (1.0, True), (-1.0, True), (1.01, False), (-1.01, False)):
         rpy = turned(roll=-90 + off) if angle == "roll" else turned(roll=-90, yaw=off)
         outcome = ask(axis_along, rolling(rpy=rpy), **ALONG)
@@ -302,29 +302,29 @@ def test_an_axis_has_a_tolerance(angle: str) -> None:
         ((1.0, 0.0, 1.0), (1.0, 1.0, 0.0), "the direction 1 0 1"),
     ],
 )
-def test_any_axis_of_a_frame_can_be_asked_for(
+def test_any_axis_of_a_frame_can_be_checked(
     axis: tuple[float, float, float], direction: tuple[float, float, float], name: str
 ) -> None:
-    """An axis is named as what it is; neither it nor the direction has to be a unit vector."""
+    """Any axis can be named; neither it nor the direction has to be a unit vector."""
     message = passes(axis_along, rolling(), **{**ALONG, "axis": axis, "direction": direction})
     assert message.startswith(f"{name} of the frame 'wheel' points along ")
 
 
 def test_the_joints_axis_does_not_turn_the_frame() -> None:
-    """It is the frame that is asked for, whatever it turns about and however the picture is turned."""
+    """The frame is checked, whatever axis the joint turns about and however the visual is turned."""
     passes(axis_along, rolling(axis="0 0 -1"), **ALONG)
     passes(axis_along, with_wheel(visual(cylinder(), rpy="1 2 3"), axis="1 0 0"), **ALONG)
 
 
-def test_a_frame_that_is_not_turned_points_to_what_is_there() -> None:
-    """Without an rpy the origin is pointed to, without an origin the link."""
+def test_a_frame_that_is_not_turned_has_a_location() -> None:
+    """Without an rpy the failure points to the origin, without an origin to the link."""
     message = fails(axis_along, rolling(rpy=""), at='<origin xyz="-0.15 0.225 0.0"', **ALONG)
     assert message.endswith("points along 0 0 1 in 'base'; it should point along 0 1 0 (90 degrees off)")
     bare = scene(BASE, WHEEL, joint("wheel_joint", "continuous", "base", "wheel"))
     fails(axis_along, bare, at='<link name="wheel"', **ALONG)
 
 
-def test_an_axis_is_told_in_the_frame_that_is_named() -> None:
+def test_an_axis_is_given_in_the_named_frame() -> None:
     """In a turned frame the same axis has other coordinates."""
     found = scene(BASE, WHEEL, link("mast"), joint("m", "fixed", "base", "mast", rpy=turned(yaw=90)),
                   joint("j", "continuous", "base", "wheel", rpy=FORWARD))  # fmt: skip
@@ -334,7 +334,7 @@ def test_an_axis_is_told_in_the_frame_that_is_named() -> None:
 @settings(deadline=None, max_examples=80)
 @given(off=st.floats(0.0, 180.0), about=st.floats(0.0, 360.0))
 def test_the_angle_between_axes_is_exact(off: float, about: float) -> None:
-    """However small or large the angle, it is the one by which the frame was turned."""
+    """However small or large, the measured angle is the one by which the frame was turned."""
     tilt = rolling(rpy=(0.0, radians(off), radians(about)))
     outcome = ask(axis_along, tilt, **{**ALONG, "direction": (0.0, 0.0, 1.0), "tolerance": off + 1e-6})
     assert outcome.status == "passed"
@@ -346,7 +346,7 @@ def test_the_angle_between_axes_is_exact(off: float, about: float) -> None:
 
 
 def test_a_cylinder_may_be_moved_along_its_axis() -> None:
-    """Where on the axis the wheel sits does not matter, nor which way the axis points."""
+    """The position of the wheel on the axis and the sign of the axis do not matter."""
     for xyz in ("0 0 0.025", "0 0 -0.5", "0 0 0"):
         for axis in ("0 0 1", "0 0 -1", "0 0 3"):
             passes(turns_about_itself, with_wheel(visual(cylinder(), xyz=xyz), axis=axis), **ITSELF)
@@ -356,7 +356,7 @@ def test_a_cylinder_may_be_moved_along_its_axis() -> None:
     ("axis", "rpy"),
     [("0 1 0", "1.5708 0 0"), ("0 1 0", "-1.5708 0 0"), ("1 0 0", "0 1.5708 0"), ("0 0 1", "3.1416 0 0")],
 )
-def test_the_picture_may_be_turned_instead_of_the_frame(axis: str, rpy: str) -> None:
+def test_the_visual_may_be_turned_instead_of_the_frame(axis: str, rpy: str) -> None:
     """Axis and cylinder must agree, wherever the turn is written."""
     passes(turns_about_itself, with_wheel(visual(cylinder(), rpy=rpy), rpy="", axis=axis), **ITSELF)
 
@@ -365,7 +365,7 @@ def test_the_picture_may_be_turned_instead_of_the_frame(axis: str, rpy: str) -> 
     ("off", "fine"), [(0.99, True), (1.0, True), (-1.0, True), (1.01, False), (-1.01, False), (90.0, False)]
 )
 def test_a_wobble_has_a_tolerance(off: float, fine: bool) -> None:
-    """The joint's axis may be off the cylinder's by the angle, its end included; beyond it the wheel wobbles."""
+    """The joint's axis may be off the cylinder's by the angle, inclusive; beyond it the wheel wobbles."""
     found = with_wheel(visual(cylinder(), rpy=turned(pitch=off)))
     outcome = ask(turns_about_itself, found, **ITSELF)
     assert (outcome.status == "passed") == fine
@@ -376,15 +376,15 @@ def test_a_wobble_has_a_tolerance(off: float, fine: bool) -> None:
         assert outcome.message == (
             f"'wheel' wobbles: its joint axis is {abs(off):g} degrees off the cylinder's axis; it should be along it (joint 'wheel_joint')"
         )
-        assert outcome.location == found.place('xyz="0 0 1"')
+        assert outcome.location == found.location_of('xyz="0 0 1"')
 
 
 @pytest.mark.parametrize(
     ("off", "fine"), [(0.0019, True), (0.002, True), (-0.002, True), (0.0021, False), (-0.0021, False)]
 )
 @pytest.mark.parametrize("axis", ["x", "y"])
-def test_an_axle_beside_the_middle_has_a_tolerance(axis: str, off: float, fine: bool) -> None:
-    """The axis may pass the cylinder's by the tolerance, its end included; beyond it the message says how far."""
+def test_an_eccentric_axle_has_a_tolerance(axis: str, off: float, fine: bool) -> None:
+    """The axis may be off the cylinder's by the tolerance, inclusive; beyond it the message gives the distance."""
     xyz = f"{off!r} 0 0.025" if axis == "x" else f"0 {off!r} 0.025"
     found = with_wheel(visual(cylinder(), xyz=xyz))
     outcome = ask(turns_about_itself, found, **ITSELF)
@@ -395,11 +395,11 @@ def test_an_axle_beside_the_middle_has_a_tolerance(axis: str, off: float, fine: 
         assert outcome.message == (
             "'wheel' turns off centre: its joint axis is 2.1 mm from the cylinder's axis; it should be on it (joint 'wheel_joint')"
         )
-        assert outcome.location == found.place(f'xyz="{xyz}"')
+        assert outcome.location == found.location_of(f'xyz="{xyz}"')
 
 
-def test_a_wheel_that_shows_no_cylinder_has_no_axis() -> None:
-    """Boxes, spheres and meshes do not turn about themselves: a cylinder is missing, as it is for the shape's criterion."""
+def test_a_wheel_without_a_cylinder_has_no_axis() -> None:
+    """Boxes, spheres and meshes have no axis: a cylinder is missing, as for the criterion of the shape."""
     for shape in (box(0.2, 0.2, 0.05), sphere(0.1), mesh()):
         found = rolling().with_shape(shape)
         error = missing(turns_about_itself, found, **ITSELF)
@@ -413,8 +413,8 @@ def test_the_cylinder_beside_a_larger_shape_is_found() -> None:
     passes(turns_about_itself, with_wheel(visual(cylinder()), fender), **ITSELF)
 
 
-def test_a_hub_does_not_turn_the_wheel_about_itself() -> None:
-    """Of several cylinders the largest is the wheel."""
+def test_the_largest_cylinder_is_the_wheel() -> None:
+    """Of several cylinders the largest is the wheel, not the hub."""
     hub, wheel = visual(cylinder(0.01, 0.1)), visual(cylinder(), xyz="0.05 0 0")
     for order in ((hub, wheel), (wheel, hub)):
         assert "50 mm from the cylinder's axis" in fails(
@@ -429,10 +429,10 @@ def test_a_hub_does_not_turn_the_wheel_about_itself() -> None:
     beside=st.floats(0.0, 1.0, width=16),
     around=st.floats(0.0, 6.0, width=16),
 )
-def test_how_far_an_axle_is_beside_the_middle_does_not_depend_on_the_frame(
+def test_the_eccentricity_does_not_depend_on_the_frame(
     rpy: tuple[float, float, float], along: float, beside: float, around: float
 ) -> None:
-    """The distance between the two axes is what was written, however the joint is turned and wherever the wheel sits."""
+    """The distance of the two axes is as written, however the joint is turned and wherever the wheel is."""
     xyz = f"{beside * cos(around)!r} {beside * sin(around)!r} {along!r}"
     joined = joint("wheel_joint", "continuous", "base", "wheel", rpy=rpy, axis="0 0 -1")
     outcome = ask(turns_about_itself, scene(BASE, link("wheel", visual(cylinder(), xyz=xyz)), joined), **ITSELF)
@@ -442,8 +442,8 @@ def test_how_far_an_axle_is_beside_the_middle_does_not_depend_on_the_frame(
 
 @settings(deadline=None, max_examples=60)
 @given(tilt=st.floats(0.0, 180.0))
-def test_a_wobble_is_never_more_than_a_right_angle(tilt: float) -> None:
-    """An axis has no head and no tail: turned by 179 degrees it is one degree off."""
+def test_a_wobble_is_at_most_a_right_angle(tilt: float) -> None:
+    """An axis has no sign: turned by 179 degrees it is one degree off."""
     found = with_wheel(visual(cylinder(), rpy=(radians(tilt), 0.0, 0.0)))
     outcome = ask(turns_about_itself, found, **{**ITSELF, "angle": 0.0})
     if min(tilt, 180.0 - tilt) > 1e-6:

@@ -1,11 +1,11 @@
-"""The package, and what a build by its setup.py would install."""
+"""The package, and the files that a build by its setup.py would install."""
 
 import pytest
 
 from grader.checks.package import build_installs, installs_files, package_found, package_type, setup_imports
 from grader.source import Location
-from tests.checks.asking import finds, lacks
-from tests.checks.submitted import (
+from tests.checks.outcomes import finds, lacks
+from tests.checks.submissions import (
     FOLDER,
     LAUNCH,
     MANIFEST,
@@ -34,17 +34,17 @@ every_kind = pytest.mark.parametrize("kind", KINDS)
 
 
 def setup(old: str, new: str, of: Submitted = REFERENCE) -> Submitted:
-    """A submission with another text in its setup.py."""
+    """Return a submission with another text in its setup.py."""
     return of.replacing(SETUP, old, new)
 
 
 def manifest(old: str, new: str) -> Submitted:
-    """The reference with another text in its package.xml."""
+    """Return the reference with another text in its package.xml."""
     return REFERENCE.replacing(MANIFEST, old, new)
 
 
-def said(submitted: Submitted) -> dict[str, str]:
-    """What is said of each kind of file: its status, or what is missed."""
+def statuses(submitted: Submitted) -> dict[str, str]:
+    """Return the status for each kind of file, or what is missing."""
     found: dict[str, str] = {}
     for kind, name in KINDS.items():
         try:
@@ -58,7 +58,7 @@ def said(submitted: Submitted) -> dict[str, str]:
 
 
 def test_the_package_of_the_lab_is_found() -> None:
-    """A package of the right name passes, wherever it is in what was handed in."""
+    """A package of the expected name passes, wherever it is in the submission."""
     message = "the package is named 'my_robot'"
     assert finds(package_found, REFERENCE, name="my_robot") == ("passed", message, None)
     deeper = REFERENCE.renaming(FOLDER, "ros2_ws/src/my_robot")
@@ -69,26 +69,26 @@ def test_the_package_of_the_lab_is_found() -> None:
     assert finds(package_found, top, name="my_robot") == ("passed", message, None)
 
 
-def test_another_fileis_told() -> None:
-    """A package that names itself otherwise fails at its name."""
+def test_another_name_is_reported() -> None:
+    """A package.xml with another name fails at that name."""
     other = manifest("<name>my_robot</name>", "<name>my_robt</name>")
     message = "the package is named 'my_robt'; it should be named 'my_robot'"
-    assert finds(package_found, other, name="my_robot") == ("failed", message, other.place(MANIFEST, "<name>"))
+    assert finds(package_found, other, name="my_robot") == ("failed", message, other.location_of(MANIFEST, "<name>"))
 
 
-def test_the_filecounts_to_the_letter() -> None:
-    """ROS 2 tells capitals from small letters."""
+def test_the_name_is_case_sensitive() -> None:
+    """ROS 2 distinguishes upper and lower case."""
     other = manifest("<name>my_robot</name>", "<name>My_Robot</name>")
     assert finds(package_found, other, name="my_robot")[0] == "failed"
 
 
-def test_blanks_around_the_filedo_not_count() -> None:
+def test_blanks_around_the_name_are_ignored() -> None:
     """ROS 2 strips the name of a package."""
     assert finds(package_found, manifest(">my_robot<", ">\n  my_robot\n  <"), name="my_robot")[0] == "passed"
 
 
-def test_of_several_packages_the_named_one_is_meant() -> None:
-    """Another package in the submission does not get in the way."""
+def test_the_package_with_the_expected_name_is_graded() -> None:
+    """Another package in the submission does not interfere."""
     other = manifest(">my_robot<", ">helpers<").files[MANIFEST]
     both = REFERENCE.with_files({"a_helpers/package.xml": other, "a_helpers/setup.py": ""})
     assert finds(package_found, both, name="my_robot")[0] == "passed"
@@ -97,23 +97,23 @@ def test_of_several_packages_the_named_one_is_meant() -> None:
 @pytest.mark.parametrize(
     "submitted", [Submitted({"x.png": png()}), Submitted({"my_robot.urdf": REFERENCE.files[URDF]})]
 )
-def test_no_package_is_missed(submitted: Submitted) -> None:
+def test_a_missing_package_is_reported(submitted: Submitted) -> None:
     """Pictures or a URDF are no package."""
     message = "the submission has no ROS 2 package: there is no package.xml"
     assert lacks(package_found, submitted, name="my_robot") == ("package", "", message, None)
 
 
-def test_a_package_without_package_xml_is_missed() -> None:
-    """A setup.py alone makes no package, and both checks of package.xml miss the same."""
+def test_a_package_without_package_xml() -> None:
+    """A setup.py alone is no package, and both checks of package.xml miss the same thing."""
     message = "the folder 'my_robot' has a setup.py, but no package.xml, so it is not a ROS 2 package"
     expected = ("package.xml", "my_robot", message, None)
     assert lacks(package_found, REFERENCE.without(MANIFEST), name="my_robot") == expected
     assert lacks(package_type, REFERENCE.without(MANIFEST), build_type="ament_python") == expected
 
 
-def test_a_missing_package_xml_costs_no_installed_file() -> None:
-    """That setup.py lists the missing package.xml is not counted a second time."""
-    assert said(REFERENCE.without(MANIFEST)) == dict.fromkeys(KINDS, "passed")
+def test_a_missing_package_xml_fails_no_installed_file() -> None:
+    """A package.xml that setup.py lists but does not exist is not counted twice."""
+    assert statuses(REFERENCE.without(MANIFEST)) == dict.fromkeys(KINDS, "passed")
 
 
 @pytest.mark.parametrize(
@@ -135,22 +135,22 @@ def test_a_missing_package_xml_costs_no_installed_file() -> None:
     ids=["broken", "robot"],
 )
 def test_a_package_xml_that_cannot_be_read(submitted: Submitted, message: str, line: int, column: int) -> None:
-    """A broken package.xml is missed once, under one key, with its place."""
+    """A broken package.xml is missed once, under one key, with its location."""
     expected = ("package.xml", "my_robot", message, Location(MANIFEST, line, column))
     assert lacks(package_found, submitted, name="my_robot") == expected
     assert lacks(package_type, submitted, build_type="ament_python") == expected
 
 
 def test_a_package_without_name() -> None:
-    """A name that is missing or empty fails the name, and leaves the build type alone."""
+    """A name that is missing or empty fails the check of the name, not that of the build type."""
     none, empty = manifest("  <name>my_robot</name>\n", ""), manifest(">my_robot<", "> <")
     assert finds(package_found, none, name="my_robot") == (
         "failed",
         "package.xml has no <name>",
-        none.place(MANIFEST, "<package"),
+        none.location_of(MANIFEST, "<package"),
     )
     message = "<name> of package.xml is empty"
-    assert finds(package_found, empty, name="my_robot") == ("failed", message, empty.place(MANIFEST, "<name>"))
+    assert finds(package_found, empty, name="my_robot") == ("failed", message, empty.location_of(MANIFEST, "<name>"))
     for files in (none, empty):
         assert finds(package_type, files, build_type="ament_python")[0] == "passed"
 
@@ -177,17 +177,17 @@ def test_a_package_without_name() -> None:
     ids=["cmake", "misspelt", "empty", "none", "catkin"],
 )
 def test_another_build_type_fails(old: str, new: str, message: str, at: str) -> None:
-    """Another build type, or none, fails where it is or should be said."""
+    """Another build type, or none, fails where it is or should be."""
     submitted = manifest(old, new)
     assert finds(package_type, submitted, build_type="ament_python") == (
         "failed",
         message,
-        submitted.place(MANIFEST, at),
+        submitted.location_of(MANIFEST, at),
     )
 
 
 def test_the_build_type_passes() -> None:
-    """The build type that is asked for passes, blanks around it or not."""
+    """The expected build type passes, with or without blanks around it."""
     for submitted in (REFERENCE, manifest("ament_python", "\n ament_python ")):
         expected = ("passed", "the build type is 'ament_python'", None)
         assert finds(package_type, submitted, build_type="ament_python") == expected
@@ -198,7 +198,7 @@ def test_the_build_type_passes() -> None:
 
 @every_kind
 def test_the_reference_is_installed(kind: str) -> None:
-    """It is said which file is installed where."""
+    """The message says which file is installed where."""
     message = f"a build installs {SOURCES[kind]} as {INSTALLED[kind]}"
     assert finds(build_installs, REFERENCE, kind=kind, name=KINDS[kind]) == ("passed", message, None)
 
@@ -223,14 +223,14 @@ def test_the_reference_is_installed(kind: str) -> None:
         "list", "ending", "name", "join", "listdir", "f-string", "plus", "plain", "slash", "module", "nested", "alias",
     ],
 )  # fmt: skip
-def test_ways_to_say_the_same_pass(submitted: Submitted) -> None:
-    """However data_files is written, what it installs is what counts."""
+def test_equivalent_data_files_pass(submitted: Submitted) -> None:
+    """However data_files is written, the installed files count."""
     if "glob.glob" in str(submitted.files[SETUP]):
         submitted = setup("from glob import glob", "import glob", submitted).replacing(
             SETUP, " glob('rviz", " glob.glob('rviz"
         )
         submitted = submitted.replacing(SETUP, " glob(os", " glob.glob(os")
-    assert said(submitted) == dict.fromkeys(KINDS, "passed")
+    assert statuses(submitted) == dict.fromkeys(KINDS, "passed")
     assert finds(setup_imports, submitted)[0] == "passed"
 
 
@@ -254,24 +254,24 @@ def entries():
 
 setup(name=package_name, packages=[package_name], data_files=entries())
 """
-    assert said(REFERENCE.with_files({SETUP: text})) == dict.fromkeys(KINDS, "passed")
+    assert statuses(REFERENCE.with_files({SETUP: text})) == dict.fromkeys(KINDS, "passed")
 
 
-def test_another_fileof_the_file_passes() -> None:
-    """A URDF or RViz file of another name is the one that is meant if there is no other."""
+def test_another_name_of_the_file_passes() -> None:
+    """A URDF or RViz file of another name is accepted if there is no other."""
     other = REFERENCE.renaming(URDF, "my_robot/urdf/robot.urdf.xacro").renaming(RVIZ, "my_robot/rviz/view.rviz")
-    assert said(other) == dict.fromkeys(KINDS, "passed")
+    assert statuses(other) == dict.fromkeys(KINDS, "passed")
 
 
 @pytest.mark.parametrize(
     ("kind", "entry"), [("urdf", URDF_ENTRY), ("launch", LAUNCH_ENTRY), ("rviz", RVIZ_ENTRY)], ids=list(KINDS)
 )
-def test_a_missing_entry_is_told(kind: str, entry: str) -> None:
-    """A file that no entry names is missed by its kind, and the others are installed."""
+def test_a_missing_entry_is_reported(kind: str, entry: str) -> None:
+    """A file without an entry fails for its kind; the others are installed."""
     submitted = setup(f"        {entry}\n", "")
     message = f"a build does not install {SOURCES[kind]}: no entry of data_files in setup.py names it"
     assert lacks(build_installs, submitted, kind=kind, name=KINDS[kind]) == (f"installed {kind}", FOLDER, message, None)
-    assert said(submitted) == {**dict.fromkeys(KINDS, "passed"), kind: f"installed {kind}"}
+    assert statuses(submitted) == {**dict.fromkeys(KINDS, "passed"), kind: f"installed {kind}"}
 
 
 @pytest.mark.parametrize(
@@ -310,15 +310,15 @@ def test_a_missing_entry_is_told(kind: str, entry: str) -> None:
     ],
     ids=["folder", "folder-and-ending", "ending", "language", "other-folder"],
 )
-def test_a_pattern_that_finds_nothing_is_told(submitted: Submitted, kind: str, reason: str, at: str) -> None:
-    """A glob without a match installs nothing, in silence: it is named, with its place."""
+def test_a_pattern_without_a_match_is_reported(submitted: Submitted, kind: str, reason: str, at: str) -> None:
+    """A glob without a match installs nothing, silently: it is reported with its location."""
     message = f"a build does not install {SOURCES[kind]}: {reason}"
-    expected = (f"installed {kind}", FOLDER, message, submitted.place(SETUP, at))
+    expected = (f"installed {kind}", FOLDER, message, submitted.location_of(SETUP, at))
     assert lacks(build_installs, submitted, kind=kind, name=KINDS[kind]) == expected
 
 
-def test_a_pattern_for_something_else_is_not_blamed() -> None:
-    """A pattern that finds nothing, but was never meant for the file, is no reason."""
+def test_an_unrelated_pattern_is_not_blamed() -> None:
+    """A pattern without a match that is not meant for the file is not the reason."""
     submitted = setup(URDF_ENTRY, "(os.path.join('share', package_name, 'config'), glob('config/*.yaml')),")
     message = "a build does not install urdf/my_robot.urdf: no entry of data_files in setup.py names it"
     assert lacks(build_installs, submitted, kind="urdf", name="my_robot.urdf")[2] == message
@@ -341,27 +341,27 @@ def test_a_pattern_for_something_else_is_not_blamed() -> None:
     ids=list(KINDS),
 )
 def test_no_such_file_at_all(kind: str, folder: str, message: str) -> None:
-    """Where a package has no file of the kind, that is what is missed."""
+    """If a package has no file of the kind, the file is the missing thing."""
     what = {"urdf": "URDF", "rviz": "RViz file", "launch": "launch file"}[kind]
     expected = (f"{what} in the package", "", message, None)
     assert lacks(build_installs, REFERENCE.without(folder), kind=kind, name=KINDS[kind]) == expected
 
 
-def test_a_launch_file_of_another_fileis_installed() -> None:
-    """That it is named otherwise is another criterion's business."""
+def test_a_launch_file_of_another_name_is_installed() -> None:
+    """The name is graded by another criterion."""
     for name in ("my_robot_rvix.launch.py", "display.launch.py", "my_robot_rviz_launch.py", "my_robot_rviz.launch.xml"):
         submitted = REFERENCE.renaming(LAUNCH, f"my_robot/launch/{name}")
         assert finds(build_installs, submitted, kind="launch", name=KINDS["launch"])[0] == "passed"
 
 
-def test_a_launch_file_without_extension_is_not_found_by_the_pattern() -> None:
-    """The usual pattern does not find it; glob('launch/*') does."""
+def test_a_launch_file_without_extension_does_not_match() -> None:
+    """The usual pattern does not match it; glob('launch/*') does."""
     bare = REFERENCE.renaming(LAUNCH, "my_robot/launch/my_robot_rviz")
     message = (
         "a build does not install launch/my_robot_rviz: the pattern 'launch/*launch.[pxy][yma]*' in setup.py matches no file; "
         "there is launch/my_robot_rviz"
     )
-    expected = ("installed launch", FOLDER, message, bare.place(SETUP, "glob(os.path"))
+    expected = ("installed launch", FOLDER, message, bare.location_of(SETUP, "glob(os.path"))
     assert lacks(build_installs, bare, kind="launch", name=KINDS["launch"]) == expected
     all_files = setup("'*launch.[pxy][yma]*'", "'*'", bare)
     assert finds(build_installs, all_files, kind="launch", name=KINDS["launch"])[0] == "passed"
@@ -372,22 +372,22 @@ def test_a_launch_file_without_extension_is_not_found_by_the_pattern() -> None:
     [("'share'", "share/my_robot.urdf"), ("os.path.join('lib', package_name)", "lib/my_robot/my_robot.urdf")],
     ids=["share", "lib"],
 )
-def test_a_file_that_goes_elsewhere_fails(folder: str, target: str) -> None:
-    """ROS 2 looks below share/<package> only."""
+def test_a_file_installed_elsewhere_fails(folder: str, target: str) -> None:
+    """ROS 2 searches share/<package> only."""
     submitted = setup(URDF_ENTRY, f"({folder}, glob('urdf/*')),")
     message = (
         f"a build installs urdf/my_robot.urdf as {target}; ROS 2 looks for the package's files below share/my_robot/"
     )
-    expected = ("failed", message, submitted.place(SETUP, "glob('urdf/*')"))
+    expected = ("failed", message, submitted.location_of(SETUP, "glob('urdf/*')"))
     assert finds(build_installs, submitted, kind="urdf", name="my_robot.urdf") == expected
 
 
-def test_the_filein_the_resource_index_counts() -> None:
+def test_the_name_in_the_resource_index_counts() -> None:
     """ROS 2 finds a package by its entry in the resource index, so another name in package.xml is one fault, not four."""
     other = manifest(">my_robot<", ">robot_lab<")
-    assert said(other) == dict.fromkeys(KINDS, "passed")
+    assert statuses(other) == dict.fromkeys(KINDS, "passed")
     marker = "        ('share/ament_index/resource_index/packages', ['resource/' + package_name]),\n"
-    assert said(setup(marker, "", other)) == dict.fromkeys(KINDS, "failed")
+    assert statuses(setup(marker, "", other)) == dict.fromkeys(KINDS, "failed")
 
 
 @pytest.mark.parametrize(
@@ -432,13 +432,13 @@ def test_the_filein_the_resource_index_counts() -> None:
     ],
     ids=["no-file", "folder", "misspelt", "no-list", "launch"],
 )
-def test_an_entry_that_stops_the_build_costs_its_own_kind(
+def test_an_entry_that_stops_the_build_fails_its_own_kind(
     submitted: Submitted, kind: str, at: str, reason: str
 ) -> None:
-    """An entry that cannot be installed fails the kind that it is about, and no other."""
-    expected = ("failed", f"the build stops here: {reason}", submitted.place(SETUP, at))
+    """An entry that cannot be installed fails only the kind of file that it is about."""
+    expected = ("failed", f"the build stops here: {reason}", submitted.location_of(SETUP, at))
     assert finds(build_installs, submitted, kind=kind, name=KINDS[kind]) == expected
-    assert said(submitted) == {**dict.fromkeys(KINDS, "passed"), kind: "failed"}
+    assert statuses(submitted) == {**dict.fromkeys(KINDS, "passed"), kind: "failed"}
 
 
 @pytest.mark.parametrize(
@@ -462,8 +462,8 @@ def test_an_entry_that_stops_the_build_costs_its_own_kind(
     ],
     ids=["resource", "package.xml", "packages"],
 )
-def test_what_stops_the_whole_build_costs_one_criterion(submitted: Submitted, reason: str) -> None:
-    """An entry that is about no kind of file counts as one about the URDF: one mistake costs one criterion."""
+def test_an_error_that_stops_the_build_fails_one_criterion(submitted: Submitted, reason: str) -> None:
+    """An entry about no kind of file counts as one about the URDF, so that one mistake fails one criterion."""
     for kind, file in KINDS.items():
         status, message, _ = finds(build_installs, submitted, kind=kind, name=file)
         assert status == ("failed" if kind == "urdf" else "passed")
@@ -471,7 +471,7 @@ def test_what_stops_the_whole_build_costs_one_criterion(submitted: Submitted, re
 
 
 @every_kind
-def test_without_setup_py_it_is_missed(kind: str) -> None:
+def test_a_package_without_setup_py(kind: str) -> None:
     """A package without setup.py installs nothing."""
     message = "the package has no setup.py, so a build of an ament_python package installs nothing"
     expected = ("setup.py", FOLDER, message, None)
@@ -481,10 +481,10 @@ def test_without_setup_py_it_is_missed(kind: str) -> None:
 
 
 def test_a_setup_py_with_a_syntax_error_is_missed() -> None:
-    """Python's own message is given at Python's own place, under one key for all that need setup.py."""
+    """Python's own message is reported at Python's location, under one key for all checks that need setup.py."""
     comma = setup("zip_safe=True,", "zip_safe=True")
     message = "Python cannot read setup.py: invalid syntax. Perhaps you forgot a comma?"
-    expected = ("setup.py", FOLDER, message, comma.place(SETUP, "True\n"))
+    expected = ("setup.py", FOLDER, message, comma.location_of(SETUP, "True\n"))
     bracket = setup("    ],\n    install", "    install")
     for kind, file in KINDS.items():
         assert lacks(build_installs, comma, kind=kind, name=file) == expected
@@ -493,17 +493,17 @@ def test_a_setup_py_with_a_syntax_error_is_missed() -> None:
 
 
 def test_a_setup_py_in_another_encoding_is_missed() -> None:
-    """Python reads UTF-8 unless it is told otherwise."""
+    """Python reads UTF-8 by default."""
     umlaut = REFERENCE.with_files({SETUP: b"# caf\xe9\n" + REFERENCE.data(SETUP)})
     assert lacks(setup_imports, umlaut)[0::3] == ("setup.py", start_of(SETUP))
-    told = REFERENCE.with_files({SETUP: b"# -*- coding: latin-1 -*-\n# caf\xe9\n" + REFERENCE.data(SETUP)})
-    assert finds(setup_imports, told)[0] == "passed"
-    assert said(told) == dict.fromkeys(KINDS, "passed")
+    declared = REFERENCE.with_files({SETUP: b"# -*- coding: latin-1 -*-\n# caf\xe9\n" + REFERENCE.data(SETUP)})
+    assert finds(setup_imports, declared)[0] == "passed"
+    assert statuses(declared) == dict.fromkeys(KINDS, "passed")
 
 
 @pytest.mark.parametrize("text", ["", "from setuptools import setup\n", "import os\n\nprint(os.getcwd())\n"])
 def test_a_setup_py_without_setup_is_one_fault(text: str) -> None:
-    """A setup.py that never calls setup() installs nothing: one thing is missed, the same for each kind."""
+    """A setup.py that never calls setup() installs nothing: one missing thing, the same for each kind."""
     submitted = REFERENCE.with_files({SETUP: text})
     expected = ("call of setup", FOLDER, "a build installs nothing: setup.py does not call setup()", None)
     for kind, file in KINDS.items():
@@ -514,12 +514,12 @@ def test_a_setup_py_without_setup_is_one_fault(text: str) -> None:
 def test_setup_below_the_main_guard_is_called() -> None:
     """A build runs setup.py as the main program."""
     body = str(REFERENCE.files[SETUP]).replace("\nsetup(", "\nif __name__ == '__main__':\n  setup(")
-    assert said(REFERENCE.with_files({SETUP: body})) == dict.fromkeys(KINDS, "passed")
+    assert statuses(REFERENCE.with_files({SETUP: body})) == dict.fromkeys(KINDS, "passed")
 
 
 @every_kind
-def test_what_cmake_installs_is_for_a_person(kind: str) -> None:
-    """What CMakeLists.txt installs is not followed, and there is no setup.py to judge."""
+def test_cmake_packages_need_manual_grading(kind: str) -> None:
+    """CMakeLists.txt is not evaluated, and there is no setup.py."""
     cmake = (
         manifest("ament_python", "ament_cmake").without(SETUP).with_files({"my_robot/CMakeLists.txt": "install()\n"})
     )
@@ -534,20 +534,20 @@ def test_what_cmake_installs_is_for_a_person(kind: str) -> None:
 
 
 @every_kind
-def test_what_cannot_be_followed_is_for_a_person(kind: str) -> None:
-    """Entries that only a run would tell leave every file open that is not seen to be installed."""
+def test_entries_known_only_at_run_time_need_manual_grading(kind: str) -> None:
+    """Entries that cannot be determined statically leave every file pending that is not known to be installed."""
     submitted = setup("glob('urdf/*')", "os.environ['FILES'].split()")
-    status, message, place = finds(build_installs, submitted, kind=kind, name=KINDS[kind])
+    status, message, location = finds(build_installs, submitted, kind=kind, name=KINDS[kind])
     if kind != "urdf":
         assert status == "passed"
         return
-    assert (status, place) == ("pending", None)
+    assert (status, location) == ("pending", None)
     assert message.startswith("cannot determine statically whether a build installs urdf/my_robot.urdf: ")
     assert message.endswith(" of setup.py); needs manual grading")
 
 
-def test_a_setup_py_that_is_too_large_is_for_a_person() -> None:
-    """What was not read is neither right nor wrong."""
+def test_a_setup_py_that_is_too_large_needs_manual_grading() -> None:
+    """A file that was not read neither passes nor fails."""
     large = REFERENCE.with_files({SETUP: str(REFERENCE.files[SETUP]) + "#" * 200_000})
     message = "setup.py cannot be read (my_robot/setup.py is larger than 131072 bytes); needs manual grading"
     for kind, file in KINDS.items():
@@ -556,7 +556,7 @@ def test_a_setup_py_that_is_too_large_is_for_a_person() -> None:
 
 
 def test_files_by_patterns() -> None:
-    """A lab may ask for files of any kind by their names."""
+    """A lab may ask for files of any kind by patterns."""
     with_config = REFERENCE.with_files({"my_robot/config/nav.yaml": "{}\n"})
     assert lacks(installs_files, REFERENCE, files=["config/*.yaml", "*.yml"]) == (
         "file",
@@ -604,19 +604,19 @@ def test_files_by_patterns() -> None:
     ],
     ids=["os", "glob", "module", "variable"],
 )
-def test_a_filethat_is_not_defined(submitted: Submitted, message: str, at: str) -> None:
-    """A name that nothing defines is told once, at its first use."""
-    assert finds(setup_imports, submitted) == ("failed", message, submitted.place(SETUP, at))
+def test_an_undefined_name(submitted: Submitted, message: str, at: str) -> None:
+    """An undefined name is reported once, at its first use."""
+    assert finds(setup_imports, submitted) == ("failed", message, submitted.location_of(SETUP, at))
 
 
 @pytest.mark.parametrize("line", ["import os\n", "from glob import glob\n"])
-def test_a_missing_import_costs_no_installed_file(line: str) -> None:
-    """What is meant is clear: the import is missed once, and the files count as installed."""
-    assert said(setup(line, "")) == dict.fromkeys(KINDS, "passed")
+def test_a_missing_import_fails_no_installed_file(line: str) -> None:
+    """The import fails once, and the files count as installed."""
+    assert statuses(setup(line, "")) == dict.fromkeys(KINDS, "passed")
 
 
-def test_several_names_are_listed() -> None:
-    """All names are told at once, however often they are used; of many only the first."""
+def test_several_undefined_names_are_listed() -> None:
+    """All names are reported at once, each once; of many only the first."""
     both = setup("import os\n", "").replacing(SETUP, "from glob import glob\n", "")
     status, message, _ = finds(setup_imports, both)
     assert status == "failed"
@@ -626,7 +626,7 @@ def test_several_names_are_listed() -> None:
 
 
 def test_the_reference_defines_its_names() -> None:
-    """Names that are imported, assigned or built in are fine."""
+    """Names that are imported, assigned or built in are defined."""
     expected = ("passed", "every name that setup.py uses is defined", None)
     assert finds(setup_imports, REFERENCE) == expected
     assert finds(setup_imports, setup("import os\n", "import os\n\nassert len(str(__file__)) > 0\n")) == expected

@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from grader.checks.contact import clear_of, stands_on
 from grader.checks.placement import bottom_at_height, bottoms_at_height, centre_at, frame_at, under_the_base
 from grader.robot.kinematics import Configuration
-from tests.checks.asking import Arguments, ask, fails, graded, missing, passes
 from tests.checks.cases import BASE, CASTER, FOOT, FORWARD, LIDAR, WHEEL, Case, cases_of, mounted, rolling, standing
+from tests.checks.outcomes import Arguments, ask, fails, graded, missing, passes
 from tests.checks.robots import Scene, box, cylinder, joint, link, mesh, numbers, scene, sphere, turned, visual
 
 FRAME: Arguments = {"link": "lidar", "relative_to": "base", "xyz": (0.15, 0.0, 0.225), "tolerance": 0.002}
@@ -22,13 +22,13 @@ ON: Arguments = {"link": "lidar", "on": "base", "tolerance": 0.002}
 CLEAR: Arguments = {"link": "wheel", "of": "base", "tolerance": 0.002}
 UNDER: Arguments = {"link": "foot", "base": "base", "wheels": ["wheel"], "tolerance": 0.002, "angle": 1.0}
 
-# Offsets in metres from what is expected, and whether a tolerance of 2 mm takes them.
+# Offsets in metres from the expected value, and whether they are within a tolerance of 2 mm.
 OFFSETS = [(0.0, True), (0.0019, True), (0.002, True), (-0.002, True), (0.0021, False), (-0.0021, False)]
 
 
 @cases_of("placement")
-def test_places_are_measured_in_metres(case: Case) -> None:
-    """Every outcome carries what was measured and expected, the tolerance, and metres as the unit."""
+def test_positions_are_measured_in_metres(case: Case) -> None:
+    """Every outcome carries the measured and expected values, the tolerance, and metres as the unit."""
     for found in (case.passing, case.failing):
         outcome = ask(case.check, found, **case.arguments)
         assert outcome.measured is not None
@@ -37,12 +37,12 @@ def test_places_are_measured_in_metres(case: Case) -> None:
 
 
 def hanging(kind: str, **more: str) -> Scene:
-    """A base with a wheel on a joint that is broken in some way."""
+    """Return a base with a wheel on a joint that is broken in some way."""
     return scene(BASE, WHEEL, joint("wheel_joint", kind, "base", "wheel", **more))
 
 
 def far_away() -> Scene:
-    """A base with a wheel so far away that its place is no number."""
+    """Return a base with a wheel so far away that its position is not finite."""
     far = numbers((1e308, 1e308, 1e308))
     mount, wheel = (
         joint("mount_joint", "fixed", "base", "m", xyz=far),
@@ -61,16 +61,16 @@ def far_away() -> Scene:
     ],
     ids=["zero-axis", "two-numbers", "letters", "overflow"],
 )
-def test_nothing_is_known_behind_a_joint_without_a_pose(found: Scene, reason: str, at: str) -> None:
-    """Where a joint's pose is undefined every check of what is behind it misses the same thing, and says why."""
+def test_poses_below_a_joint_without_a_pose_are_unknown(found: Scene, reason: str, at: str) -> None:
+    """If a joint's pose is undefined, every check below it misses the same thing, with the reason."""
     for check, arguments in ((frame_at, {**FRAME, "link": "wheel"}), (centre_at, CENTRE), (clear_of, CLEAR)):
         error = missing(check, found, **arguments)
         assert (error.kind, error.name) == ("pose below joint", "wheel_joint")
         assert fails(check, found, at=at, **arguments) == f"the pose is undefined: {reason} (joint 'wheel_joint')"
 
 
-def test_a_joint_without_a_pose_hides_nothing_before_it() -> None:
-    """What stands before the broken joint is measured as ever, and so is what hangs together behind it."""
+def test_a_joint_without_a_pose_hides_nothing_above_it() -> None:
+    """Links above the broken joint are measured as usual, and so are links of one frame group below it."""
     broken = joint("a", "fixed", "foot", "base", xyz="0 0")
     found = scene(FOOT, BASE, LIDAR, broken, joint("b", "fixed", "base", "lidar", xyz="0.15 0 0.225"))
     passes(frame_at, found, **FRAME)
@@ -80,7 +80,7 @@ def test_a_joint_without_a_pose_hides_nothing_before_it() -> None:
 
 @pytest.mark.parametrize("kind", ["continuous", "revolute", "prismatic", "planar", "floating", "fixed", "Fixed", ""])
 def test_joints_of_every_type_are_at_zero(kind: str) -> None:
-    """Places are measured with every joint at 0, whatever its type and even if it has none that exists."""
+    """Positions are measured with every joint at 0, whatever its type, even an unknown one."""
     joined = joint("j", kind, "base", "wheel", xyz=(-0.15, 0.225, 0.0), rpy=FORWARD, axis="0 0 1")
     passes(centre_at, scene(BASE, WHEEL, joined), **CENTRE)
 
@@ -90,7 +90,7 @@ def test_joints_of_every_type_are_at_zero(kind: str) -> None:
 
 @pytest.mark.parametrize(("axis", "offset"), list(product(range(3), OFFSETS)))
 def test_a_frame_has_a_tolerance_along_each_axis(axis: int, offset: tuple[float, bool]) -> None:
-    """Each coordinate may be off by the tolerance, its end included; beyond it the message says which and how far."""
+    """Each coordinate may be off by the tolerance, inclusive; beyond it the message says which and how far."""
     off, fine = offset
     xyz = [0.15, 0.0, 0.225]
     xyz[axis] += off
@@ -106,34 +106,34 @@ def test_a_frame_has_a_tolerance_along_each_axis(axis: int, offset: tuple[float,
 
 
 def test_a_frame_without_an_origin_points_to_its_joint() -> None:
-    """Where no origin is written, the joint is where it is missing."""
+    """If no origin is given, the failure points to the joint."""
     found = scene(BASE, LIDAR, joint("j", "fixed", "base", "lidar"))
     message = fails(frame_at, found, at="<joint", **FRAME)
     assert message.endswith("it should be at 0.15 0 0.225 m (x 150 mm too small, z 225 mm too small)")
 
 
 def test_an_origin_without_xyz_points_to_its_tag() -> None:
-    """An origin that leaves its xyz out is pointed to as a whole."""
+    """If an origin has no xyz, the failure points to the whole origin."""
     fails(frame_at, scene(BASE, LIDAR, joint("j", "fixed", "base", "lidar", rpy="0 0 1")), at="<origin rpy", **FRAME)
 
 
 def test_the_offset_of_a_visual_does_not_move_the_frame() -> None:
-    """The picture is right, but the frame is not: that is what the check is for."""
+    """The visual is correct but the frame is not: that is what the check is for."""
     found = scene(BASE, link("lidar", visual(cylinder(), xyz="0.15 0 0.225")), joint("j", "fixed", "base", "lidar"))
     fails(frame_at, found, **FRAME)
     passes(stands_on, found, **ON)
 
 
-def test_frames_are_measured_in_the_frame_that_is_named() -> None:
-    """Where the other frame is turned and moved, the point is given in it, also from child to parent."""
+def test_frames_are_measured_in_the_named_frame() -> None:
+    """If the other frame is turned and moved, the point is given in it, also from child to parent."""
     found = mounted((1.0, 2.0, 3.0), turned(yaw=90))
     passes(frame_at, found, link="lidar", relative_to="base", xyz=(1.0, 2.0, 3.0), tolerance=1e-9)
     passes(frame_at, found, link="base", relative_to="lidar", xyz=(-2.0, 1.0, -3.0), tolerance=1e-9)
     passes(frame_at, found, link="base", relative_to="base", xyz=(0.0, 0.0, 0.0), tolerance=0.0)
 
 
-def test_a_root_that_is_elsewhere_points_to_its_link() -> None:
-    """The frame of the root has no joint above it: its link is where to look."""
+def test_a_misplaced_root_points_to_its_link() -> None:
+    """The root's frame has no parent joint: the failure points to its link."""
     arguments: Arguments = {"link": "base", "relative_to": "lidar", "xyz": (0.0, 0.0, 0.0), "tolerance": 0.002}
     fails(frame_at, mounted(), at='<link name="base"', **arguments)
 
@@ -147,7 +147,7 @@ angles = st.tuples(*[st.floats(-4.0, 4.0, width=16)] * 3)
 def test_a_frame_passes_where_forward_kinematics_puts_it(
     steps: list[tuple[tuple[float, ...], tuple[float, ...]]], moves: bool
 ) -> None:
-    """However many joints lead to a link, its frame is where they put it, within any tolerance but rounding."""
+    """However many joints lead to a link, its frame is where they place it, within rounding."""
     names = ["base", *(f"m{index}" for index in range(len(steps) - 1)), "lidar"]
     kind = "continuous" if moves else "fixed"
     joined = [
@@ -162,7 +162,7 @@ def test_a_frame_passes_where_forward_kinematics_puts_it(
 
 
 def _walked(steps: list[tuple[tuple[float, ...], tuple[float, ...]]]) -> tuple[float, float, float]:
-    """The end of a chain of origins, worked out from its tip: turn about x, y and z, then move."""
+    """Return the end of a chain of origins, computed from its tip: turn about x, y and z, then move."""
     x, y, z = 0.0, 0.0, 0.0
     for (u, v, w), (roll, pitch, yaw) in reversed(steps):
         y, z = y * cos(roll) - z * sin(roll), y * sin(roll) + z * cos(roll)
@@ -177,7 +177,7 @@ def _walked(steps: list[tuple[tuple[float, ...], tuple[float, ...]]]) -> tuple[f
 
 @pytest.mark.parametrize(("axis", "offset"), list(product(range(3), OFFSETS)))
 def test_a_centre_has_a_tolerance_along_each_axis(axis: int, offset: tuple[float, bool]) -> None:
-    """Each coordinate may be off by the tolerance, its end included, whichever origin it comes from."""
+    """Each coordinate may be off by the tolerance, inclusive, whichever origin it comes from."""
     off, fine = offset
     xyz = [-0.15, 0.225, 0.0]
     xyz[axis] += off
@@ -203,14 +203,14 @@ def test_a_centre_has_a_tolerance_along_each_axis(axis: int, offset: tuple[float
     ],
 )
 def test_joint_and_visual_place_the_centre_together(joint_xyz: str, visual_xyz: str, rpy: str) -> None:
-    """It does not matter how the way to the centre is split between the two origins."""
+    """It does not matter how the path to the centre is split between the two origins."""
     wheel = link("wheel", visual(cylinder(), xyz=visual_xyz))
     found = scene(BASE, wheel, joint("j", "continuous", "base", "wheel", xyz=joint_xyz, rpy=rpy))
     assert passes(centre_at, found, **CENTRE) == "the centre of the visual of 'wheel' is at -0.15 0.225 0 m in 'base'"
 
 
-def test_a_wrong_centre_is_pointed_to_where_it_was_moved() -> None:
-    """The visual's origin is pointed to where it moves the shape, else the joint's, else the joint."""
+def test_a_wrong_centre_points_to_what_moved_it() -> None:
+    """The failure points to the visual's origin if that moves the shape, else to the joint's origin, else to the joint."""
     moved = link("wheel", visual(cylinder(), xyz="0 0 -0.025"))
     joined = joint("j", "continuous", "base", "wheel", xyz="-0.15 0.2 0", rpy=FORWARD)
     fails(centre_at, scene(BASE, moved, joined), at='xyz="0 0 -0.025"', **CENTRE)
@@ -219,8 +219,8 @@ def test_a_wrong_centre_is_pointed_to_where_it_was_moved() -> None:
     fails(centre_at, scene(BASE, WHEEL, joint("j", "fixed", "base", "wheel")), at="<joint", **CENTRE)
 
 
-def test_a_wrong_centre_is_pointed_to_along_its_error() -> None:
-    """A visual that is moved across the error is not to blame: the joint is, whose origin is written for that."""
+def test_a_wrong_centre_points_along_its_error() -> None:
+    """A visual moved perpendicular to the error is not the cause; the failure points to the joint's origin."""
     moved = link("wheel", visual(cylinder(), xyz="0 0 0.025"))
     for xyz in ("-0.1 0.2 0", "-0.15 0.2 0.1"):
         joined = joint("j", "continuous", "base", "wheel", xyz=xyz, rpy=FORWARD)
@@ -229,8 +229,8 @@ def test_a_wrong_centre_is_pointed_to_along_its_error() -> None:
     fails(centre_at, scene(BASE, moved, unturned), at='xyz="0 0 0.025"', **CENTRE)
 
 
-def test_the_centre_of_the_named_shape_counts() -> None:
-    """A larger shape of another kind beside the wheel does not move its centre where the rubric names one."""
+def test_the_centre_of_the_expected_shape_counts() -> None:
+    """If the rubric names a shape, a larger shape of another kind beside the wheel does not move the centre."""
     wheel, fender = visual(cylinder()), visual(box(0.5, 0.5, 0.5), xyz="0 0 1")
     for order in ((wheel, fender), (fender, wheel)):
         found = scene(BASE, link("wheel", *order), joint("j", "continuous", "base", "wheel", xyz="-0.15 0.225 0"))
@@ -245,7 +245,7 @@ def test_the_centre_of_the_named_shape_counts() -> None:
 
 
 def test_a_rigid_link_has_no_moving_joint_above_it() -> None:
-    """With `rigid` a link must also be fixed; the place alone is not enough."""
+    """With `rigid` a link must also be fixed; the position alone is not enough."""
     loose = rolling()
     message = fails(centre_at, loose, at='type="continuous"', **CENTRE, rigid=True)
     assert message == "a joint between 'base' and 'wheel' is continuous; it should be fixed (joint 'wheel_joint')"
@@ -253,8 +253,8 @@ def test_a_rigid_link_has_no_moving_joint_above_it() -> None:
     passes(centre_at, rolling(kind="fixed"), **CENTRE, rigid=True)
 
 
-def test_a_rigid_link_does_not_hang_on_what_moves() -> None:
-    """A caster that is fixed to a wheel turns with it: the parent in its own joint is what is wrong, not the wheel's type."""
+def test_a_rigid_link_has_no_moving_parent() -> None:
+    """A caster fixed to a wheel turns with it: the parent in the caster's joint is wrong, not the wheel's type."""
     on_wheel = joint("caster_joint", "fixed", "wheel", "caster")
     found = Scene(rolling().text.replace("</robot>", f"{CASTER}\n{on_wheel}\n</robot>"))
     arguments: Arguments = {**CENTRE, "link": "caster", "rigid": True}
@@ -266,7 +266,7 @@ def test_a_rigid_link_does_not_hang_on_what_moves() -> None:
     passes(centre_at, found, **{**arguments, "rigid": False})
 
 
-def test_the_largest_visual_is_the_one_whose_centre_counts() -> None:
+def test_the_centre_of_the_largest_visual_counts() -> None:
     """A hub or a marker beside the wheel does not move its centre."""
     hub = visual(cylinder(0.01, 0.02), xyz="0 0 0.5")
     for order in ((hub, visual(cylinder())), (visual(cylinder()), hub)):
@@ -275,7 +275,7 @@ def test_the_largest_visual_is_the_one_whose_centre_counts() -> None:
 
 
 def test_the_centre_of_a_mesh_is_unknown() -> None:
-    """A mesh may lie anywhere about its origin: a person has to see where its centre is."""
+    """A mesh may lie anywhere about its origin, so its centre needs manual grading."""
     for xyz in ((-0.15, 0.225, 0.0), (-0.15, 0.2, 0.0)):
         assert graded(centre_at, rolling(xyz=xyz).with_shape(mesh()), **CENTRE).status == "pending"
 
@@ -285,7 +285,7 @@ def test_the_centre_of_a_mesh_is_unknown() -> None:
 
 @pytest.mark.parametrize("offset", OFFSETS)
 def test_a_bottom_has_a_tolerance(offset: tuple[float, bool]) -> None:
-    """The lowest point may be off by the tolerance, its end included; beyond it the message says how far and where to."""
+    """The lowest point may be off by the tolerance, inclusive; beyond it the message gives distance and direction."""
     off, fine = offset
     found = scene(link("base", visual(box(0.6, 0.4, 0.2), xyz=(0.0, 0.0, 0.1 + off))))
     outcome = ask(bottom_at_height, found, **BOTTOM)
@@ -298,7 +298,7 @@ def test_a_bottom_has_a_tolerance(offset: tuple[float, bool]) -> None:
             outcome.message
             == f"the bottom of 'base' in the frame 'base' is at z = {off} m; it should be 0 m (2.1 mm too {side})"
         )
-        assert outcome.location == found.place('xyz="')
+        assert outcome.location == found.location_of('xyz="')
 
 
 @pytest.mark.parametrize(
@@ -317,21 +317,21 @@ def test_a_bottom_has_a_tolerance(offset: tuple[float, bool]) -> None:
     ],
 )
 def test_the_bottom_is_that_of_the_shape_as_it_lies(shape: str, rpy: str, bottom: float) -> None:
-    """Boxes, cylinders and spheres reach down as far as they do, however they are turned."""
+    """Boxes, cylinders and spheres reach as far down as their shape does, however they are turned."""
     found = scene(link("base", visual(shape, rpy=rpy)))
     passes(bottom_at_height, found, link="base", relative_to="base", height=bottom, tolerance=1e-9)
 
 
 def test_the_lowest_of_several_visuals_counts() -> None:
-    """A foot below the box is its bottom; where the body stands is where to look."""
+    """A foot below the box is its bottom; the failure points to the origin of the body."""
     foot = visual(sphere(0.01), xyz="0 0 -0.04")
     found = scene(link("base", visual(box(0.6, 0.4, 0.2), xyz="0 0 0.1"), foot))
     message = fails(bottom_at_height, found, at='xyz="0 0 0.1"', **BOTTOM)
     assert message == "the bottom of 'base' in the frame 'base' is at z = -0.05 m; it should be 0 m (50 mm too low)"
 
 
-def test_only_the_bottom_of_the_named_shape_counts() -> None:
-    """Where the rubric names a shape that the link shows, others may reach lower; the largest of its kind counts."""
+def test_only_the_bottom_of_the_expected_shape_counts() -> None:
+    """If the rubric names a shape that the link shows, other shapes may be lower; the largest of its kind counts."""
     body, ball = visual(box(0.6, 0.4, 0.2), xyz="0 0 0.1"), visual(sphere(1.0))
     foot = visual(box(0.01, 0.01, 0.01), xyz="0 0 -0.5")
     for order in ((body, ball, foot), (foot, ball, body)):
@@ -343,8 +343,8 @@ def test_only_the_bottom_of_the_named_shape_counts() -> None:
             )
 
 
-def test_a_bottom_is_measured_in_the_frame_that_is_named() -> None:
-    """The height of a frame above another one is added, its turn is taken into account."""
+def test_a_bottom_is_measured_in_the_named_frame() -> None:
+    """The height and the rotation of the other frame are taken into account."""
     found = mounted((0.0, 0.0, 1.0), turned(roll=90))
     passes(bottom_at_height, found, link="lidar", relative_to="base", height=0.9, tolerance=1e-9)
     passes(bottom_at_height, found, link="lidar", relative_to="lidar", height=-0.025, tolerance=1e-9)
@@ -360,7 +360,7 @@ def test_a_sphere_stands_on_its_lowest_point_however_it_is_turned(rpy: tuple[flo
 
 @pytest.mark.parametrize("offset", OFFSETS)
 def test_every_bottom_has_the_tolerance(offset: tuple[float, bool]) -> None:
-    """One wheel that is off is named with its distance, and the origin that puts it there pointed to."""
+    """One wheel that is off is named with its distance, and the failure points to the origin that places it."""
     off, fine = offset
     found = standing(wheel=off)
     outcome = ask(bottoms_at_height, found, **BOTTOMS)
@@ -370,11 +370,11 @@ def test_every_bottom_has_the_tolerance(offset: tuple[float, bool]) -> None:
         assert outcome.message.endswith(
             f" m in 'foot'; they should be at 0 m ('wheel' 2.1 mm too {'high' if off > 0 else 'low'})"
         )
-        assert outcome.location == found.place('xyz="-0.15 0.225')
+        assert outcome.location == found.location_of('xyz="-0.15 0.225')
 
 
-def test_all_bottoms_that_are_off_are_told() -> None:
-    """Every link that hangs or sinks is named; where all do alike, what lifts them all is pointed to."""
+def test_all_wrong_bottoms_are_reported() -> None:
+    """Every link that is off is named; if all are off alike, the failure points to their common cause."""
     message = fails(bottoms_at_height, standing(height=0.15), at='xyz="0 0 0.15"', **BOTTOMS)
     assert message == (
         "the bottoms of 'wheel' and 'caster' are at z = 0.05 0.05 m in 'foot'; they should be at 0 m"
@@ -382,8 +382,8 @@ def test_all_bottoms_that_are_off_are_told() -> None:
     )
 
 
-def test_of_bottoms_that_are_off_differently_the_first_is_pointed_to() -> None:
-    """Where each is off by another distance no single origin is to blame; the first wrong link's is the place."""
+def test_bottoms_that_are_off_differently_point_to_the_first() -> None:
+    """If the distances differ, no single origin is the cause; the failure points to the first wrong link's."""
     found = standing(height=0.15, wheel=0.05)
     message = fails(bottoms_at_height, found, at='xyz="-0.15 0.225', **BOTTOMS)
     assert message.endswith(" ('wheel' 100 mm too high, 'caster' 50 mm too high)")
@@ -392,7 +392,7 @@ def test_of_bottoms_that_are_off_differently_the_first_is_pointed_to() -> None:
 
 
 def test_a_missing_link_does_not_hide_one_that_is_off() -> None:
-    """What can be measured is judged first; only where that is right, what is missing counts."""
+    """What can be measured is graded first; only if that is correct, the missing link counts."""
     both: Arguments = {**BOTTOMS, "links": ["nowhere", "wheel"]}
     assert missing(bottoms_at_height, standing(), **both).name == "nowhere"
     message = fails(bottoms_at_height, standing(wheel=0.05), **both)
@@ -402,7 +402,7 @@ def test_a_missing_link_does_not_hide_one_that_is_off() -> None:
 
 
 def test_a_mesh_does_not_hide_a_bottom_that_is_off() -> None:
-    """A link of unknown size leaves the verdict open only where all others are right."""
+    """A link of unknown size leaves the outcome pending only if all others are correct."""
     open_ = standing().text.replace(sphere(0.05), mesh())
     assert graded(bottoms_at_height, Scene(open_), **BOTTOMS).status == "pending"
     closed = standing(wheel=0.05).text.replace(sphere(0.05), mesh())
@@ -414,7 +414,7 @@ def test_a_mesh_does_not_hide_a_bottom_that_is_off() -> None:
 
 @pytest.mark.parametrize("offset", OFFSETS)
 def test_a_footprint_has_a_tolerance_in_height(offset: tuple[float, bool]) -> None:
-    """The wheels' lowest points may be off the footprint by the tolerance, its end included."""
+    """The wheels' lowest points may be off the footprint by the tolerance, inclusive."""
     off, fine = offset
     found = standing(height=0.1 + off)
     outcome = ask(under_the_base, found, **UNDER)
@@ -422,12 +422,12 @@ def test_a_footprint_has_a_tolerance_in_height(offset: tuple[float, bool]) -> No
     assert outcome.measured == pytest.approx((0.0, 0.0, off))
     if not fine:
         assert outcome.message.endswith(f": the lowest point of 'wheel' is 2.1 mm {'above' if off > 0 else 'below'} it")
-        assert outcome.location == found.place('xyz="0 0 0.')
+        assert outcome.location == found.location_of('xyz="0 0 0.')
 
 
 @pytest.mark.parametrize(("axis", "offset"), list(product("xy", OFFSETS)))
 def test_a_footprint_has_a_tolerance_in_the_plane(axis: str, offset: tuple[float, bool]) -> None:
-    """The base may stand off the footprint by the tolerance in x and in y, its end included."""
+    """The base may be off the footprint by the tolerance in x and in y, inclusive."""
     off, fine = offset
     found = standing(xy=f"{off!r} 0" if axis == "x" else f"0 {off!r}")
     outcome = ask(under_the_base, found, **UNDER)
@@ -439,7 +439,7 @@ def test_a_footprint_has_a_tolerance_in_the_plane(axis: str, offset: tuple[float
 
 @pytest.mark.parametrize("angle", ["roll", "pitch", "yaw"])
 def test_a_footprint_has_a_tolerance_in_its_angle(angle: str) -> None:
-    """The base may be turned by the angle, its end included, about any axis; the wheel then hardly moves."""
+    """The base may be turned by the angle, inclusive, about any axis; the wheel then hardly moves."""
     loose: Arguments = {**UNDER, "tolerance": 0.1}
     for degrees, fine in ((0.99, True), (1.0, True), (-1.0, True), (1.01, False), (-1.01, False), (180.0, False)):
         found = standing(rpy=turned(**{angle: degrees}))
@@ -449,8 +449,8 @@ def test_a_footprint_has_a_tolerance_in_its_angle(angle: str) -> None:
             assert "'base' is turned by 180 degrees in it and should not be turned" in outcome.message
 
 
-def test_all_faults_of_a_footprint_are_told() -> None:
-    """Place, turn and height are told together."""
+def test_all_faults_of_a_footprint_are_reported() -> None:
+    """Position, rotation and height are reported together."""
     found = standing(height=0.2, xy="0.3 0", rpy=turned(yaw=90))
     message = fails(under_the_base, found, at='xyz="0.3 0 0.2"', **UNDER)
     assert message == (
@@ -459,8 +459,8 @@ def test_all_faults_of_a_footprint_are_told() -> None:
     )
 
 
-def test_the_footprint_is_judged_by_the_wheels_that_are_there() -> None:
-    """A missing wheel does not hide that the footprint is too low, and is told where all else is right."""
+def test_the_footprint_is_measured_with_the_existing_wheels() -> None:
+    """A missing wheel does not hide that the footprint is too low, and is reported if the rest is correct."""
     both: Arguments = {**UNDER, "wheels": ["nowhere", "wheel"]}
     assert missing(under_the_base, standing(), **both).name == "nowhere"
     assert fails(under_the_base, standing(height=0.05), **both).endswith(
@@ -468,21 +468,21 @@ def test_the_footprint_is_judged_by_the_wheels_that_are_there() -> None:
     )
 
 
-def test_a_wheel_of_unknown_size_leaves_the_height_open() -> None:
-    """A mesh for a wheel is pending where the rest is right, and does not hide that the base is turned."""
+def test_a_wheel_of_unknown_size_leaves_the_height_pending() -> None:
+    """A mesh for a wheel is pending if the rest is correct, and does not hide that the base is turned."""
     assert graded(under_the_base, standing().with_shape(mesh()), **UNDER).status == "pending"
     assert graded(under_the_base, standing(rpy=turned(yaw=90)).with_shape(mesh()), **UNDER).status == "failed"
 
 
 def test_a_footprint_need_not_be_the_root() -> None:
-    """The check measures frames; who is whose parent is another criterion."""
+    """The check measures frames; the parents are graded by another criterion."""
     upside = scene(FOOT, BASE, WHEEL, joint("base_joint", "fixed", "base", "foot", xyz="0 0 -0.1"),
                    joint("wheel_joint", "continuous", "base", "wheel", xyz="-0.15 0.225 0", rpy=FORWARD))  # fmt: skip
     passes(under_the_base, upside, **UNDER)
 
 
 def test_both_wheels_count() -> None:
-    """Each wheel's lowest point is compared, and each that is off is told."""
+    """Each wheel's lowest point is compared, and each wheel that is off is reported."""
     low = link("low", visual(cylinder(0.2)))
     found = Scene(
         standing().text.replace("</robot>", f"{low}\n{joint('k', 'continuous', 'base', 'low', rpy=FORWARD)}\n</robot>")
@@ -492,8 +492,8 @@ def test_both_wheels_count() -> None:
     assert message.endswith(": the lowest point of 'low' is 100 mm below it")
 
 
-def test_a_wheel_is_pointed_to_only_where_the_footprint_is_right() -> None:
-    """Where another fault or all wheels tell of the base's own place, its joint is where to look."""
+def test_a_wheel_is_the_location_only_if_the_footprint_is_correct() -> None:
+    """If another fault or all wheels indicate the base's own position, the failure points to its joint."""
     low = link("low", visual(cylinder()))
     both: Arguments = {**UNDER, "wheels": ["wheel", "low"]}
 
@@ -507,8 +507,8 @@ def test_a_wheel_is_pointed_to_only_where_the_footprint_is_right() -> None:
     fails(under_the_base, beside(standing(xy="0.3 0"), 0.05), at='xyz="0.3 0 0.1"', **both)
 
 
-def test_places_do_not_depend_on_positions_given() -> None:
-    """A check measures the configuration that it is given: turning a wheel leaves its centre where it is."""
+def test_positions_do_not_depend_on_the_wheel_angle() -> None:
+    """A check measures the given configuration: turning a wheel leaves its centre where it is."""
     robot = rolling().robot
     turned_robot = Configuration(robot.robot, {"wheel_joint": pi / 3})
     assert centre_at(turned_robot, **CENTRE).status == "passed"

@@ -1,11 +1,11 @@
-"""The RViz file: which one is meant, its fixed frame, and whether it shows the robot."""
+"""The RViz file: which one is graded, its fixed frame, and whether it shows the robot."""
 
 import pytest
 
 from grader.checks.rviz import rviz_display_on, rviz_fixed_frame, rviz_found, rviz_shows_robot
 from grader.source import Location
-from tests.checks.asking import Finding, finds, lacks
-from tests.checks.submitted import LAUNCH, REFERENCE, RVIZ, SETUP, URDF, Submitted, png, start_of
+from tests.checks.outcomes import Finding, finds, lacks
+from tests.checks.submissions import LAUNCH, REFERENCE, RVIZ, SETUP, URDF, Submitted, png, start_of
 
 NAME = "my_robot.rviz"
 BY_LAUNCH = "my_robot_rviz.launch.py"
@@ -17,22 +17,22 @@ SHOWN = "the display 'RobotModel' shows the robot"
 
 
 def rviz(old: str, new: str, of: Submitted = REFERENCE) -> Submitted:
-    """A submission with another text in its RViz file."""
+    """Return a submission with another text in its RViz file."""
     return of.replacing(RVIZ, old, new)
 
 
 def frame_of(submitted: Submitted) -> Finding:
-    """What is found of the fixed frame."""
+    """Return the outcome for the fixed frame."""
     return finds(rviz_fixed_frame, submitted, name=NAME, frame=FRAME, launch=BY_LAUNCH)
 
 
 def robot_in(submitted: Submitted) -> Finding:
-    """What is found of the display of the robot."""
+    """Return the outcome for the display of the robot."""
     return finds(rviz_shows_robot, submitted, name=NAME, launch=BY_LAUNCH)
 
 
 def grouped(model: str = MODEL, enabled: str = "true") -> Submitted:
-    """The reference with its RobotModel in a group."""
+    """Return the reference with its RobotModel in a group."""
     inner = "".join(f"    {line}\n" for line in model.splitlines())
     group = f"    - Class: rviz_common/Group\n      Displays:\n{inner}      Enabled: {enabled}\n      Name: Mine\n"
     return rviz(MODEL, group)
@@ -41,8 +41,8 @@ def grouped(model: str = MODEL, enabled: str = "true") -> Submitted:
 # --- Which file is meant ----------------------------------------------------------------------------------------------
 
 
-def test_the_file_of_the_name_is_found() -> None:
-    """The RViz file of the lab's name passes, wherever it stands in the package."""
+def test_a_file_of_the_expected_name_is_found() -> None:
+    """The RViz file with the lab's name passes, wherever it is in the package."""
     assert finds(rviz_found, REFERENCE, name=NAME) == ("passed", "the RViz file is rviz/my_robot.rviz", None)
     beside = REFERENCE.renaming(RVIZ, "my_robot/urdf/my_robot.rviz")
     expected = ("passed", "the RViz file is urdf/my_robot.rviz", None)
@@ -64,7 +64,7 @@ OPENED = OTHER.replacing(LAUNCH, "'my_robot.rviz'", "'view.rviz'")
     ids=["installed", "home", "nested", "not-installed"],
 )
 def test_the_file_that_the_launch_file_opens_is_found(submitted: Submitted) -> None:
-    """Under another name, the file that the launch file opens is meant; a wrong folder is a fault of the launch file's."""
+    """A file of another name is graded if the launch file opens it; a wrong folder is a fault of the launch file."""
     expected = ("passed", "the RViz file is rviz/view.rviz", None)
     assert finds(rviz_found, submitted, name=NAME, launch=BY_LAUNCH) == expected
     assert frame_of(submitted)[0] == "passed"
@@ -73,8 +73,8 @@ def test_the_file_that_the_launch_file_opens_is_found(submitted: Submitted) -> N
 @pytest.mark.parametrize(
     "submitted", [OTHER, OTHER.replacing(LAUNCH, "'-d', os.path.join(share, 'my_robot.rviz')", "")]
 )
-def test_another_file_that_nothing_opens_fails(submitted: Submitted) -> None:
-    """A file of another name that the launch file does not open is not the lab's, but it is looked at."""
+def test_a_file_that_nothing_opens_fails(submitted: Submitted) -> None:
+    """A file of another name that the launch file does not open fails but is examined."""
     message = "there is no RViz file 'my_robot.rviz'; the package has rviz/view.rviz"
     assert finds(rviz_found, submitted, name=NAME, launch=BY_LAUNCH) == ("failed", message, None)
     assert finds(rviz_found, submitted, name=NAME) == ("failed", message, None)
@@ -89,25 +89,25 @@ def test_another_file_that_nothing_opens_fails(submitted: Submitted) -> None:
     ],
     ids=["syntax", "environment"],
 )
-def test_whether_the_launch_file_opens_it_cannot_be_told(submitted: Submitted) -> None:
-    """A launch file that cannot be followed does not cost the RViz file its name."""
+def test_an_unknown_launch_file_does_not_fail_the_name(submitted: Submitted) -> None:
+    """A launch file that cannot be evaluated does not fail the name of the RViz file."""
     message = "cannot determine statically whether the launch file opens rviz/view.rviz; needs manual grading"
     assert finds(rviz_found, submitted, name=NAME, launch=BY_LAUNCH) == ("pending", message, None)
 
 
-def test_of_two_files_the_opened_one_is_meant() -> None:
-    """The file that the launch file opens is graded, else that of the lab's name."""
+def test_the_opened_file_is_graded() -> None:
+    """The file that the launch file opens is graded, else the one with the lab's name."""
     map_ = TEXT.replace("base_footprint", "map")
     two = REFERENCE.with_files({"my_robot/rviz/a.rviz": map_})
     assert frame_of(two)[0] == "passed"
     opened = two.replacing(LAUNCH, "'my_robot.rviz'", "'a.rviz'")
     assert finds(rviz_found, opened, name=NAME, launch=BY_LAUNCH)[1] == "the RViz file is rviz/a.rviz"
-    place = opened.place("my_robot/rviz/a.rviz", "map\n    Frame Rate")
-    assert frame_of(opened)[0::2] == ("failed", place)
+    location = opened.location_of("my_robot/rviz/a.rviz", "map\n    Frame Rate")
+    assert frame_of(opened)[0::2] == ("failed", location)
 
 
-def test_no_rviz_file_is_missed() -> None:
-    """Without an RViz file, all of the checks miss the same."""
+def test_a_missing_rviz_file_is_one_fault() -> None:
+    """Without an RViz file all checks miss the same thing."""
     expected = ("RViz file in the package", "", "the package has no RViz file: no file ends in .rviz", None)
     for submitted in (REFERENCE.without(RVIZ), REFERENCE.renaming(RVIZ, NAME)):
         assert lacks(rviz_found, submitted, name=NAME, launch=BY_LAUNCH) == expected
@@ -116,8 +116,8 @@ def test_no_rviz_file_is_missed() -> None:
         assert lacks(rviz_display_on, submitted, name=NAME, kind="TF") == expected
 
 
-def test_no_package_is_missed() -> None:
-    """The check of the fixed frame is asked of the submission, and misses the package as others do."""
+def test_a_missing_package_is_reported() -> None:
+    """The check of the fixed frame examines the submission, and misses the package as others do."""
     expected = ("package", "", "the submission has no ROS 2 package: there is no package.xml", None)
     assert lacks(rviz_fixed_frame, Submitted({"x.png": png()}), name=NAME, frame=FRAME) == expected
 
@@ -137,16 +137,16 @@ def test_no_package_is_missed() -> None:
     ],
     ids=["tab", "bracket", "text", "empty", "python"],
 )
-def test_a_file_that_is_none_is_missed(text: str, message: str, line: int) -> None:
-    """A file that RViz cannot read is missed once, with the place; that it is there is found all the same."""
+def test_an_unreadable_file_is_missed(text: str, message: str, line: int) -> None:
+    """A file that RViz cannot read is missed once, with its location; the check of its existence passes."""
     submitted = REFERENCE.with_files({RVIZ: text})
-    kind, name, words, place = lacks(rviz_fixed_frame, submitted, name=NAME, frame=FRAME)
+    kind, name, words, location = lacks(rviz_fixed_frame, submitted, name=NAME, frame=FRAME)
     assert (kind, name) == ("RViz file", "rviz/my_robot.rviz")
     assert words.startswith(message)
-    assert place is not None
-    assert (place.path, place.line) == (RVIZ, line)
-    assert lacks(rviz_shows_robot, submitted, name=NAME) == (kind, name, words, place)
-    assert lacks(rviz_display_on, submitted, name=NAME, kind="TF") == (kind, name, words, place)
+    assert location is not None
+    assert (location.path, location.line) == (RVIZ, line)
+    assert lacks(rviz_shows_robot, submitted, name=NAME) == (kind, name, words, location)
+    assert lacks(rviz_display_on, submitted, name=NAME, kind="TF") == (kind, name, words, location)
     assert finds(rviz_found, submitted, name=NAME)[0] == "passed"
 
 
@@ -157,7 +157,7 @@ def test_a_file_that_is_none_is_missed(text: str, message: str, line: int) -> No
     "spelling", ["base_footprint", '"base_footprint"', "'base_footprint'", "  base_footprint   # ground"]
 )
 def test_the_fixed_frame_passes(spelling: str) -> None:
-    """However YAML spells it."""
+    """Every YAML spelling of the frame passes."""
     submitted = rviz("Fixed Frame: base_footprint", f"Fixed Frame: {spelling}")
     assert frame_of(submitted) == ("passed", "the Fixed Frame is 'base_footprint'", None)
 
@@ -172,23 +172,23 @@ def test_the_fixed_frame_passes(spelling: str) -> None:
     ],
 )
 def test_another_fixed_frame_fails(frame: str, hint: str) -> None:
-    """Another frame fails at its value; one that the robot does not have is told as such."""
+    """Another frame fails at its value; the message says if the robot does not have that frame."""
     submitted = rviz("Fixed Frame: base_footprint", f"Fixed Frame: {frame}")
     message = f"the Fixed Frame is {frame!r}; it should be 'base_footprint'{hint}"
-    assert frame_of(submitted) == ("failed", message, submitted.place(RVIZ, f"{frame}\n    Frame Rate"))
+    assert frame_of(submitted) == ("failed", message, submitted.location_of(RVIZ, f"{frame}\n    Frame Rate"))
 
 
 @pytest.mark.parametrize("line", ["", "    Fixed Frame:\n", '    Fixed Frame: ""\n'], ids=["none", "nothing", "empty"])
 def test_no_fixed_frame_fails(line: str) -> None:
     """A frame that is absent or empty is not set."""
-    status, message, place = frame_of(rviz("    Fixed Frame: base_footprint\n", line))
+    status, message, location = frame_of(rviz("    Fixed Frame: base_footprint\n", line))
     assert (status, message) == ("failed", "the RViz file sets no Fixed Frame; it should be 'base_footprint'")
-    assert place is not None
-    assert (place.path, place.line) == (RVIZ, 40 if line else 7)
+    assert location is not None
+    assert (location.path, location.line) == (RVIZ, 40 if line else 7)
 
 
-def test_a_frame_that_the_robot_lacks_is_not_this_files_fault() -> None:
-    """The right frame passes; what the URDF is without is told, and graded where it belongs."""
+def test_a_frame_missing_in_the_urdf_passes() -> None:
+    """The correct frame passes even if the URDF lacks it, which is mentioned and graded elsewhere."""
     submitted = REFERENCE.replacing(URDF, "base_footprint", "base_ground")
     message = "the Fixed Frame is 'base_footprint', which the robot does not have"
     assert frame_of(submitted) == ("passed", message, None)
@@ -196,7 +196,7 @@ def test_a_frame_that_the_robot_lacks_is_not_this_files_fault() -> None:
 
 @pytest.mark.parametrize("submitted", [REFERENCE.without(URDF), REFERENCE.replacing(URDF, "</robot>", "")])
 def test_the_frame_needs_no_urdf(submitted: Submitted) -> None:
-    """Without a robot the frame is judged by its name."""
+    """Without a robot the frame is compared by its name."""
     assert frame_of(submitted) == ("passed", "the Fixed Frame is 'base_footprint'", None)
     other = rviz("Fixed Frame: base_footprint", "Fixed Frame: map", submitted)
     assert frame_of(other)[:2] == ("failed", "the Fixed Frame is 'map'; it should be 'base_footprint'")
@@ -225,8 +225,8 @@ def test_the_frame_needs_no_urdf(submitted: Submitted) -> None:
         "one-of-two", "ros1-beside",
     ],
 )  # fmt: skip
-def test_a_robot_model_that_is_on_passes(submitted: Submitted) -> None:
-    """One display that shows the robot is enough, whatever group it is in and whatever its topic's quality of service is."""
+def test_an_enabled_robot_model_passes(submitted: Submitted) -> None:
+    """One display that shows the robot is enough, whatever its group and its topic's quality of service."""
     assert robot_in(submitted) == ("passed", SHOWN, None)
 
 
@@ -270,15 +270,15 @@ def test_a_robot_model_that_is_on_passes(submitted: Submitted) -> None:
     ids=["off", "not-on", "group", "ros1", "bare", "topic", "empty", "no-topic", "visual"],
 )
 def test_a_robot_model_that_shows_nothing_fails(submitted: Submitted, message: str) -> None:
-    """What keeps the robot from being shown is told, at the class of the display."""
+    """The message says why the robot is not shown, at the class of the display."""
     lines = enumerate(str(submitted.files[RVIZ]).splitlines(), start=1)
     number, line = next((number, line) for number, line in lines if "RobotModel" in line)
-    place = Location(RVIZ, number, line.index("Class: ") + len("Class: ") + 1)
-    assert robot_in(submitted) == ("failed", message, place)
+    location = Location(RVIZ, number, line.index("Class: ") + len("Class: ") + 1)
+    assert robot_in(submitted) == ("failed", message, location)
 
 
 def test_no_robot_model_fails() -> None:
-    """The displays that there are are listed, each once."""
+    """The existing displays are listed, each once."""
     message = "there is no RobotModel display; the displays are: "
     assert robot_in(rviz(MODEL, TF)) == ("failed", f"{message}Grid and TF", None)
     none = rviz(TEXT[TEXT.index("    - Alpha: 0.5") : TEXT.index("  Enabled: true\n  Global")], "    []\n")
@@ -299,10 +299,10 @@ def test_no_robot_model_fails() -> None:
     ],
     ids=["file", "plugin"],
 )
-def test_a_robot_model_that_may_show_something_is_for_a_person(submitted: Submitted, message: str) -> None:
-    """What only a machine with the same file or plugin shows is left open, another display that is off or not."""
-    place = submitted.place(RVIZ, str(submitted.files[RVIZ]).splitlines()[16].strip().removeprefix("Class: "))
-    assert robot_in(submitted) == ("pending", message, place)
+def test_a_robot_model_that_may_show_something_needs_manual_grading(submitted: Submitted, message: str) -> None:
+    """A display that depends on a file or plug-in of another machine is pending, whether another display is off or not."""
+    location = submitted.location_of(RVIZ, str(submitted.files[RVIZ]).splitlines()[16].strip().removeprefix("Class: "))
+    assert robot_in(submitted) == ("pending", message, location)
     off = MODEL.replace("Enabled: true\n      Name", "Enabled: false\n      Name")
     assert robot_in(rviz("    - Alpha: 1\n", off + "    - Alpha: 1\n", submitted))[:2] == ("pending", message)
 
@@ -311,8 +311,8 @@ def test_a_robot_model_that_may_show_something_is_for_a_person(submitted: Submit
 
 
 @pytest.mark.parametrize("kind", ["TF", "rviz_default_plugins/TF", "Grid"])
-def test_a_display_that_is_on_passes(kind: str) -> None:
-    """A display is asked for by its class, with its package or without."""
+def test_an_enabled_display_passes(kind: str) -> None:
+    """A display is found by its class, with or without its package."""
     assert finds(rviz_display_on, REFERENCE, name=NAME, kind=kind) == ("passed", f"a {kind} display is on", None)
 
 
@@ -332,27 +332,27 @@ def test_a_display_that_is_on_passes(kind: str) -> None:
     ],
     ids=["off", "ros1"],
 )
-def test_a_display_that_is_not_on_fails(old: str, new: str, message: str) -> None:
-    """A display that is off, or of ROS 1, fails at its class."""
+def test_a_disabled_display_fails(old: str, new: str, message: str) -> None:
+    """A display that is disabled, or of ROS 1, fails at its class."""
     submitted = rviz(old, new)
-    place = submitted.place(RVIZ, new.split("\n", maxsplit=1)[0] + "\n")
-    assert finds(rviz_display_on, submitted, name=NAME, kind="TF") == ("failed", message, place)
+    location = submitted.location_of(RVIZ, new.split("\n", maxsplit=1)[0] + "\n")
+    assert finds(rviz_display_on, submitted, name=NAME, kind="TF") == ("failed", message, location)
 
 
-def test_a_display_that_is_not_there_fails() -> None:
-    """The displays that there are are listed."""
+def test_a_missing_display_fails() -> None:
+    """The existing displays are listed."""
     message = "there is no LaserScan display; the displays are: Grid, RobotModel and TF"
     assert finds(rviz_display_on, REFERENCE, name=NAME, kind="LaserScan") == ("failed", message, None)
 
 
-def test_another_topic_may_be_asked_for() -> None:
-    """The topic of the robot is an argument."""
+def test_the_topic_is_an_argument() -> None:
+    """A rubric may ask for another topic of the robot."""
     other = rviz("Value: /robot_description", "Value: /other/robot_description")
     assert finds(rviz_shows_robot, other, name=NAME, topic="other/robot_description")[0] == "passed"
     assert finds(rviz_shows_robot, REFERENCE, name=NAME, topic="other/robot_description")[0] == "failed"
 
 
-def test_the_beginning_of_a_file_is_the_place_of_what_it_is_without() -> None:
-    """A file that is no RViz file is pointed to at its first character."""
+def test_an_unreadable_file_has_its_start_as_location() -> None:
+    """The failure for a file that is no RViz file points to its first character."""
     submitted = REFERENCE.with_files({RVIZ: "Panels: []\n"})
     assert lacks(rviz_shows_robot, submitted, name=NAME)[3] == start_of(RVIZ)

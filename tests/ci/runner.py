@@ -1,4 +1,4 @@
-"""Runs the steps of an action or a workflow as GitHub's runner does: with environment files, contexts and outputs."""
+"""Run the steps of an action or a workflow as GitHub's runner does: with environment files, contexts and outputs."""
 
 import os
 import re
@@ -10,7 +10,7 @@ from typing import Any
 
 import yaml
 
-from tests.command_line import PATIENCE
+from tests.command_line import HANG_TIMEOUT
 
 Step = dict[str, Any]
 _EXPRESSION = re.compile(r"\$\{\{\s*(.+?)\s*\}\}")
@@ -18,7 +18,7 @@ _KEPT = ("HOME", "PATH", "LANG", "TMPDIR", "PIP_NO_INDEX", "PIP_FIND_LINKS", "PI
 
 
 def load(path: Path) -> dict[str, Any]:
-    """A YAML file; `on`, which YAML takes for a truth value, is left as it is."""
+    """Return a YAML file; `on`, which YAML reads as a boolean, stays text."""
     data = yaml.safe_load(path.read_text(encoding="utf-8"))
     assert isinstance(data, dict)
     return data
@@ -26,7 +26,7 @@ def load(path: Path) -> dict[str, Any]:
 
 @dataclass
 class Done:
-    """What became of one step."""
+    """The result of one step."""
 
     code: int
     stdout: str
@@ -35,7 +35,7 @@ class Done:
 
 @dataclass
 class Runner:
-    """A job's machine: its workspace, its temporary folder, and what its steps have said so far."""
+    """A job's machine: its workspace, its temporary folder, and the results of its steps so far."""
 
     workspace: Path
     temp: Path
@@ -46,7 +46,10 @@ class Runner:
     summary: str = ""
 
     def job(self, steps: list[Step], variables: Mapping[str, str] = {}) -> int:
-        """Run the steps of a job; the exit code of the first that failed. Later ones run only if they say `always()`."""
+        """Run the steps of a job and return the exit code of the first that failed.
+
+        Later ones run only with `always()`.
+        """
         failed = 0
         for step in steps:
             if not self._is_due(step.get("if", "success()"), failed):
@@ -57,7 +60,7 @@ class Runner:
         return failed
 
     def step(self, step: Step, variables: Mapping[str, str] = {}) -> Done:
-        """Run one step, and take its outputs and its summary."""
+        """Run one step, and read its outputs and its summary."""
         if "uses" in step:
             given = {key: self.value(str(value)) for key, value in step.get("with", {}).items()}
             return self.actions[step["uses"]](self, given)
@@ -76,13 +79,13 @@ class Runner:
             capture_output=True,
             text=True,
             check=False,
-            timeout=PATIENCE,
+            timeout=HANG_TIMEOUT,
         )
         self._take(step.get("id", ""), files)
         return Done(ran.returncode, ran.stdout, ran.stderr)
 
     def value(self, text: str) -> str:
-        """A text with its expressions replaced by what the contexts hold; one that is not known is a mistake of the file."""
+        """Return a text with its expressions replaced by values of the contexts; unknown names are errors."""
         return _EXPRESSION.sub(lambda found: self._context(found[1]), text)
 
     def _context(self, name: str) -> str:
@@ -91,9 +94,9 @@ class Runner:
         return {"runner.temp": str(self.temp), **self.contexts}[name]
 
     def _is_due(self, condition: str, failed: int) -> bool:
-        terms = [each.strip() for each in condition.split("&&")]
+        terms = [term.strip() for term in condition.split("&&")]
         known = {"always()": True, "success()": not failed}
-        bound = [known[each] if each in known else bool(self._context(each)) for each in terms]
+        bound = [known[term] if term in known else bool(self._context(term)) for term in terms]
         return all(bound) and (not failed or "always()" in terms)
 
     def _environment(self) -> dict[str, str]:
@@ -117,7 +120,7 @@ class Runner:
 
 
 def composite(path: Path, but: str) -> Callable[[Runner, Mapping[str, str]], Done]:
-    """The action in a folder as something that a runner can use: its steps, but for one that has been run, with its inputs and outputs."""
+    """Return the action in a folder as a callable for the runner: its steps except one, with its inputs and outputs."""
 
     def use(runner: Runner, given: Mapping[str, str]) -> Done:
         action = load(path / "action.yml")
@@ -130,7 +133,7 @@ def composite(path: Path, but: str) -> Callable[[Runner, Mapping[str, str]], Don
         runner.summary += inner.summary
         for name, about in action["outputs"].items():
             runner.contexts[f"steps.grade.outputs.{name}"] = inner.value(about["value"])
-        outputs = "".join(each.stdout for _, each in inner.done)
-        return Done(code, outputs, "".join(each.stderr for _, each in inner.done))
+        outputs = "".join(done.stdout for _, done in inner.done)
+        return Done(code, outputs, "".join(done.stderr for _, done in inner.done))
 
     return use

@@ -7,11 +7,11 @@ import sys
 from pathlib import Path
 
 from tests.ci.conftest import git, repository
-from tests.command_line import PATIENCE, ROOT
+from tests.command_line import HANG_TIMEOUT, ROOT
 
 
-def test_a_commit_is_held_back(tmp_path: Path, published: Path) -> None:
-    """A robot with a mistake cannot be committed, a right one can; the arguments of the hook are the grader's."""
+def test_a_commit_with_a_mistake_is_rejected(tmp_path: Path, published: Path) -> None:
+    """A robot with a mistake cannot be committed, a correct one can; the hook's arguments are those of the grader."""
     work = tmp_path / "work"
     shutil.copytree(ROOT / "submissions" / "several-mistakes", work)
     (work / ".pre-commit-config.yaml").write_text(
@@ -31,7 +31,7 @@ def test_a_commit_is_held_back(tmp_path: Path, published: Path) -> None:
 
 
 def _commit(work: Path, home: Path) -> subprocess.CompletedProcess[str]:
-    """What pre-commit does at a commit; what it installs is kept for the next time."""
+    """Run pre-commit as at a commit; installed hooks are cached for the next run."""
     return subprocess.run(
         [sys.executable, "-m", "pre_commit", "run", "--all-files"],
         cwd=work,
@@ -39,5 +39,5 @@ def _commit(work: Path, home: Path) -> subprocess.CompletedProcess[str]:
         capture_output=True,
         text=True,
         check=False,
-        timeout=PATIENCE,
+        timeout=HANG_TIMEOUT,
     )

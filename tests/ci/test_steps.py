@@ -13,7 +13,7 @@ import pytest
 
 from tests.ci.conftest import git, repository
 from tests.ci.runner import Done, Runner, composite, load
-from tests.command_line import PATIENCE, ROOT
+from tests.command_line import HANG_TIMEOUT, ROOT
 
 CHECKOUT = "actions/checkout@de0fac2e4500dabe0009e67214ff5f5447ce83dd"
 PYTHON = "actions/setup-python@a309ff8b426b58ec0e2a45f0f869d46889d02405"
@@ -24,19 +24,19 @@ pytestmark = pytest.mark.skipif(os.name == "nt" or shutil.which("bash") is None,
 
 
 def instead_of_github(host: Path) -> dict[str, str]:
-    """What has git fetch from a folder what it is told to fetch from GitHub."""
+    """Return git settings that fetch from a folder instead of from GitHub."""
     key, value = f"url.{host.as_uri()}/.insteadOf", "https://github.com/"
     return {"GIT_CONFIG_COUNT": "1", "GIT_CONFIG_KEY_0": key, "GIT_CONFIG_VALUE_0": value}
 
 
 def nothing(_runner: Runner, _given: Mapping[str, str]) -> Done:
-    """An action that has nothing to do here."""
+    """Stand in for an action that is not needed here."""
     return Done(0, "", "")
 
 
 @pytest.fixture(scope="session")
 def temp(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The temporary folder of a job, in which the action is installed once."""
+    """Return the temporary folder of a job, in which the action is installed once."""
     temp = tmp_path_factory.mktemp("temp")
     installing = Runner(temp, temp)
     installing.contexts = {"github.action_path": str(ROOT), "github.action_repository": "", "inputs.version": ""}
@@ -55,27 +55,27 @@ class Job:
         self.defaults = {f"inputs.{name}": about["default"] for name, about in action["inputs"].items()}
 
     def grade(self, **inputs: str) -> Done:
-        """Run it with some inputs; `_` stands for `-` in their names."""
+        """Run the step with some inputs; `_` in a name stands for `-`."""
         given = {f"inputs.{name.replace('_', '-')}": value for name, value in inputs.items()}
         self.runner.contexts = {**self.defaults, **given}
         self.runner.summary = ""
         return self.runner.step(self.step)
 
     def output(self, name: str) -> str:
-        """One of the outputs."""
+        """Return one of the outputs."""
         return self.runner.value(f"${{{{ steps.grade.outputs.{name} }}}}")
 
 
 @pytest.fixture
 def job(tmp_path: Path, temp: Path) -> Job:
-    """A job in a repository with the reference in it."""
+    """Return a job in a repository that contains the reference."""
     shutil.copytree(ROOT / "submissions" / "reference", tmp_path / "work")
     return Job(tmp_path / "work", temp)
 
 
 @pytest.mark.slow
 def test_a_green_check(job: Job) -> None:
-    """A robot without mistakes ends with 0, and gives score, summary and reports."""
+    """A robot without mistakes exits with 0 and has score, summary and reports."""
     done = job.grade()
     assert done.code == 0, done.stderr
     assert (job.output("score"), job.output("max-score"), job.output("pending")) == ("90", "100", "10")
@@ -87,7 +87,7 @@ def test_a_green_check(job: Job) -> None:
 
 
 def test_a_red_check(job: Job, tmp_path: Path) -> None:
-    """A mistake ends with 1, is annotated on its line, and gives outputs all the same."""
+    """A mistake exits with 1, is annotated on its line, and the outputs are set all the same."""
     [urdf] = (tmp_path / "work").rglob("*.urdf")
     urdf.write_bytes((ROOT / "submissions" / "several-mistakes" / "my_robot.urdf").read_bytes())
     done = job.grade()
@@ -101,7 +101,7 @@ def test_a_red_check(job: Job, tmp_path: Path) -> None:
 
 
 def test_inputs(job: Job) -> None:
-    """Threshold, parts, path and rubric are those that are given."""
+    """Threshold, parts, path and rubric are those of the inputs."""
     done = job.grade(part="task1\nquestions", path=".")
     assert (done.code, job.output("max-score")) == (0, "78")
     [setup] = (job.runner.workspace).rglob("setup.py")
@@ -113,7 +113,7 @@ def test_inputs(job: Job) -> None:
 
 
 def test_nothing_graded(job: Job, tmp_path: Path) -> None:
-    """Where nothing can be graded the check is red, says why, and gives no score at all, not even an older one."""
+    """If nothing can be graded, the check is red, says why, and sets no score, not even an older one."""
     assert job.grade().code == 0
     shutil.rmtree(tmp_path / "work")
     (tmp_path / "work").mkdir()
@@ -136,8 +136,8 @@ def _report(job: Job) -> str:
     return Path(job.output("report-json")).read_text(encoding="utf-8")
 
 
-def test_inputs_are_no_commands(job: Job, tmp_path: Path) -> None:
-    """Nothing in an input is run, and none is taken for an option."""
+def test_inputs_are_not_executed(job: Job, tmp_path: Path) -> None:
+    """No input is run as a command or read as an option."""
     for text in ("$(touch owned)", "; touch owned", "`touch owned`", '" && touch owned "', "--help"):
         for name in ("path", "rubric", "part", "fail_under", "expect_rubric"):
             assert job.grade(**{name: text}).code == 2, (name, text)
@@ -145,7 +145,7 @@ def test_inputs_are_no_commands(job: Job, tmp_path: Path) -> None:
 
 
 def test_modules_in_the_repository_are_not_imported(job: Job, tmp_path: Path) -> None:
-    """Files that are named as Python's own modules, or as the grader, are a student's files and nothing else."""
+    """Files named like Python's own modules, or like the grader, are not imported."""
     for name in ("json.py", "sys.py", "grader.py", "typing.py", "sitecustomize.py", "venv.py", "pip.py"):
         (tmp_path / "work" / name).write_text("raise SystemExit('imported')\n", encoding="utf-8")
     shutil.copytree(ROOT / "rubrics", tmp_path / "work" / "rubrics")
@@ -177,7 +177,7 @@ def test_the_student_workflow(tmp_path: Path, temp: Path) -> None:
 
 @pytest.mark.slow
 def test_a_version_is_taken_from_the_repository(tmp_path: Path, published: Path) -> None:
-    """The input `version` installs that tag; what is no tag is refused before anything is installed."""
+    """The input `version` installs that tag; anything that is no tag is refused before the installation."""
     action = load(ROOT / "action.yml")
     runner = Runner(tmp_path, tmp_path, instead_of_github(published))
     for version, code in (("; touch owned", 2), ("--help", 2), ("v1", 0)):
@@ -194,7 +194,7 @@ def test_a_version_is_taken_from_the_repository(tmp_path: Path, published: Path)
 
 
 def too_large(host: Path) -> None:
-    """Repositories that no runner should check out: large as fetched, large once unpacked, with many files."""
+    """Make repositories that no runner should check out: large to fetch, large when unpacked, with many files."""
     for name in ("lab6-pushed", "lab6-zeros", "lab6-many"):
         (host / name).mkdir()
     (host / "lab6-pushed" / "video.mp4").write_bytes(random.Random(1).randbytes(3 * 2**20))
@@ -207,7 +207,7 @@ def too_large(host: Path) -> None:
 
 @pytest.mark.slow
 def test_the_class_workflow(tmp_path: Path, published: Path) -> None:
-    """The template for a class organisation fetches every student's repository and grades it, whoever broke what."""
+    """The template for a class organisation fetches and grades every student's repository, even if some are broken."""
     host = tmp_path / "host"
     for name, sample in (("lab6-ada", "reference"), ("lab6-grace", "missing-import-os"), ("other", "reference")):
         shutil.copytree(ROOT / "submissions" / sample, host / name)
@@ -243,15 +243,15 @@ def test_the_class_workflow(tmp_path: Path, published: Path) -> None:
     runner.actions[CHECKOUT] = checkout
     limits = {**{name: str(value) for name, value in workflow["env"].items()}, "MAX_MEGABYTES": "2", "MAX_FILES": "200"}
     assert runner.job(workflow["jobs"]["grade"]["steps"], limits) == 0, runner.done
-    said = "".join(each.stdout for _, each in runner.done)
+    printed = "".join(done.stdout for _, done in runner.done)
     for name in ("gone", "pushed"):
         why = "Not graded: this repository could not be fetched, or is larger than MAX_MEGABYTES (2)."
-        assert f"::warning title=lab6-{name}::{why}" in said
+        assert f"::warning title=lab6-{name}::{why}" in printed
     for name in ("many", "zeros"):
         why = "Not graded: it has more than MAX_MEGABYTES (2) or MAX_FILES (200) in this workflow."
-        assert f"::warning title=lab6-{name}::{why}" in said
+        assert f"::warning title=lab6-{name}::{why}" in printed
     assert {path.name for path in (runner.temp / "class").iterdir()} == {"lab6-ada", "lab6-grace", "lab6-none"}
-    assert "::warning title=lab6-none::This repository is empty." in said
+    assert "::warning title=lab6-none::This repository is empty." in printed
     grades = (runner.temp / "grades.csv").read_text(encoding="utf-8")
     assert len(grades.splitlines()) == 5  # a header, the roster, and the empty one
     assert {path.name for path in (runner.temp / "reports").iterdir()} == {"ada.md", "grace.md", "index.csv", "none.md"}
@@ -259,7 +259,7 @@ def test_the_class_workflow(tmp_path: Path, published: Path) -> None:
 
 @pytest.mark.slow
 def test_the_classroom50_autograder(tmp_path: Path, published: Path) -> None:
-    """The autograder for Classroom 50 writes both files in the student's checkout, and ends well with a bad mark."""
+    """The autograder for Classroom 50 writes both files to the student's checkout, and exits with 0 for a low mark."""
     work = tmp_path / "work"
     shutil.copytree(ROOT / "submissions" / "missing-import-os", work)
     (tmp_path / "victim").write_text("precious")
@@ -274,7 +274,7 @@ def test_the_classroom50_autograder(tmp_path: Path, published: Path) -> None:
         env={**os.environ, **variables},
         capture_output=True,
         check=False,
-        timeout=PATIENCE,
+        timeout=HANG_TIMEOUT,
     )
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "victim").read_text() == "precious"
@@ -296,7 +296,7 @@ def test_the_classroom50_autograder(tmp_path: Path, published: Path) -> None:
 
 @pytest.mark.parametrize(("sample", "code"), [("reference", 0), ("missing-import-os", 1), ("xacro-in-urdf", None)])
 def test_the_gitlab_job(tmp_path: Path, sample: str, code: int | None) -> None:
-    """The exit code is the grader's, reports are not written through what a student has committed, nor left from before."""
+    """The exit code is the grader's; reports are not written through a student's symlinks, and old reports are removed."""
     work = tmp_path / "work"
     shutil.copytree(ROOT / "submissions" / sample, work)
     (tmp_path / "victim").mkdir()
@@ -314,8 +314,8 @@ def test_the_gitlab_job(tmp_path: Path, sample: str, code: int | None) -> None:
     assert "|| true" not in script
 
 
-def test_a_job_says_what_was_not_decided(job: Job, tmp_path: Path) -> None:
-    """In an annotation and first thing in the summary: a mesh is in the place of the base's box."""
+def test_a_job_reports_undecided_criteria(job: Job, tmp_path: Path) -> None:
+    """An annotation and the first line of the summary name the criterion: the base shows a mesh instead of a box."""
     [urdf] = (tmp_path / "work").rglob("*.urdf")
     text = urdf.read_text(encoding="utf-8")
     urdf.write_text(

@@ -1,4 +1,4 @@
-"""The files that others copy or name are valid, and the pages that show them show them as they are."""
+"""The files that users copy are valid, and the pages quote them exactly."""
 
 import re
 import subprocess
@@ -19,8 +19,8 @@ SCHEMAS = {
 
 
 @pytest.mark.parametrize("name", SCHEMAS)
-def test_the_file_is_what_its_host_takes(name: str) -> None:
-    """An action, a workflow and a GitLab job satisfy the schemas that are published for them."""
+def test_the_file_is_valid_for_its_host(name: str) -> None:
+    """An action, a workflow and a GitLab job satisfy their published schemas."""
     done = subprocess.run(
         [sys.executable, "-m", "check_jsonschema", "--builtin-schema", SCHEMAS[name], str(ROOT / name)],
         capture_output=True,
@@ -30,8 +30,8 @@ def test_the_file_is_what_its_host_takes(name: str) -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_the_schemas_refuse_what_is_wrong(tmp_path: Path) -> None:
-    """A step with a misspelt key is refused, so that the test above can fail."""
+def test_the_schemas_reject_mistakes(tmp_path: Path) -> None:
+    """A step with a misspelt key is rejected, so the test above can fail."""
     text = (ROOT / "docs/ci/student-repository.yml").read_text(encoding="utf-8").replace("runs-on:", "run-on:")
     (tmp_path / "bad.yml").write_text(text, encoding="utf-8")
     done = subprocess.run(
@@ -46,7 +46,7 @@ WORKFLOWS = ("action.yml", "docs/ci/class.yml", "docs/ci/student-repository.yml"
 
 
 def zizmor(*files: Path) -> subprocess.CompletedProcess[str]:
-    """Look for ways to attack a workflow, without the network; ends with another code than 0 if there is one above "low"."""
+    """Return zizmor's audit of a workflow, without the network; the exit code is not 0 above the severity "low"."""
     program = Path(sys.executable).with_name("zizmor")
     options = ("--offline", "--no-progress", "--no-config", "--min-severity", "medium")
     return subprocess.run([program, *options, *files], capture_output=True, text=True, check=False)
@@ -67,8 +67,8 @@ def test_zizmor_finds_nothing() -> None:
         ("  workflow_dispatch:", "  pull_request_target:", "dangerous-triggers"),
     ],
 )
-def test_zizmor_finds_what_is_there(tmp_path: Path, before: str, after: str, audit: str) -> None:
-    """A workflow that is less careful is told, so that the test above can fail."""
+def test_zizmor_finds_problems(tmp_path: Path, before: str, after: str, audit: str) -> None:
+    """A less careful workflow is reported, so the test above can fail."""
     text = (ROOT / "docs/ci/class.yml").read_text(encoding="utf-8")
     assert before in text
     (tmp_path / "class.yml").write_text(text.replace(before, after), encoding="utf-8")
@@ -78,7 +78,7 @@ def test_zizmor_finds_what_is_there(tmp_path: Path, before: str, after: str, aud
 
 
 def test_no_token_stays_in_a_checkout() -> None:
-    """Each checkout says so, each action is pinned to a commit with its version behind it, and permissions are to read."""
+    """Checkouts drop their tokens, actions are pinned to a commit followed by its version, permissions are read-only."""
     for name in WORKFLOWS[1:]:
         text, workflow = (ROOT / name).read_text(encoding="utf-8"), load(ROOT / name)
         assert workflow["permissions"] == {"contents": "read"}
@@ -92,22 +92,22 @@ def test_no_token_stays_in_a_checkout() -> None:
 
 
 def test_hooks_are_valid() -> None:
-    """pre-commit takes the file of hooks."""
+    """pre-commit accepts the file of hooks."""
     done = subprocess.run(
         [sys.executable, "-m", "pre_commit", "validate-manifest", str(ROOT / ".pre-commit-hooks.yaml")], check=False
     )
     assert done.returncode == 0
 
 
-def test_the_page_shows_the_files() -> None:
-    """What an instructor copies from the page is what is tested here."""
+def test_the_page_quotes_the_files() -> None:
+    """The files that an instructor copies from the page are those that are tested here."""
     page = (ROOT / "docs/ci.md").read_text(encoding="utf-8")
     shown = re.findall(r"```(?:yaml|python)\n(.*?)```", page, re.DOTALL)
     for name in ("student-repository.yml", "class.yml", "gitlab-ci.yml", "classroom50.py"):
         assert (ROOT / "docs/ci" / name).read_text(encoding="utf-8") in shown, name
 
 
-def test_the_page_tells_of_each_input_and_output() -> None:
+def test_the_page_lists_each_input_and_output() -> None:
     """Every input and output of the action is in the page's tables."""
     page = (ROOT / "docs/ci.md").read_text(encoding="utf-8")
     action = load(ROOT / "action.yml")

@@ -8,26 +8,26 @@ from grader.classroom.intake.intake import Intake
 
 
 def lay_out(top: Path, *paths: str) -> Path:
-    """Make a folder with these files in it, empty ones; a folder is a path that ends in a slash."""
+    """Make a folder with these empty files; a path that ends in a slash is a folder."""
     top.mkdir(parents=True, exist_ok=True)
     for path in paths:
-        place = top / path
+        folder = top / path
         if path.endswith("/"):
-            place.mkdir(parents=True, exist_ok=True)
+            folder.mkdir(parents=True, exist_ok=True)
         else:
-            place.parent.mkdir(parents=True, exist_ok=True)
-            place.touch()
+            folder.parent.mkdir(parents=True, exist_ok=True)
+            folder.touch()
     return top
 
 
-def pack(place: Path, names: Iterable[str]) -> Path:
-    """Make a zip with these members, empty ones."""
-    with zipfile.ZipFile(place, "w") as archive:
+def pack(folder: Path, names: Iterable[str]) -> Path:
+    """Make a zip with these empty members."""
+    with zipfile.ZipFile(folder, "w") as archive:
         for name in names:
             archive.writestr(name, b"")
-    return place
+    return folder
 
 
-def taken(intake: Intake) -> dict[str, tuple[str, ...]]:
+def assigned(intake: Intake) -> dict[str, tuple[str, ...]]:
     """Return the paths of each submission by its student's key, in order."""
-    return {each.student.key: each.paths for each in intake.submissions()}
+    return {submission.student.key: submission.paths for submission in intake.submissions()}

@@ -1,4 +1,4 @@
-"""Runs of the command line over whole classes, as a user does: in processes of their own."""
+"""Run commands over whole classes as a user does: in processes of their own."""
 
 import io
 import os
@@ -15,7 +15,7 @@ from typing import Any
 
 from grader.cli.app import run as run_here
 from grader.usecases.class_reports import INDEX
-from tests.command_line import GRADER, PATIENCE, run, run_process, surroundings
+from tests.command_line import GRADER, HANG_TIMEOUT, clean_environment, run, run_process
 from tests.samples import ROOT
 
 sys.path.insert(0, str(ROOT / "benchmarks"))  # a folder of scripts
@@ -28,32 +28,32 @@ WITH_HOSTILE = {"PYTHONPATH": str(HOSTILE)}
 HOSTILE_RUBRIC = str(HOSTILE / "hostile.toml")
 
 Done = subprocess.CompletedProcess[str]
-_SKIPPED = ("latin-name", "links-out", "deep-folders")  # what a zip holds otherwise than a folder does
+_SKIPPED = ("latin-name", "links-out", "deep-folders")  # what a zip cannot hold as a folder does
 
 
 def grader(*arguments: str | Path, cwd: str = "", **variables: str) -> Done:
-    """Run the command line; its standard output and standard error."""
+    """Run the command line and return its result with standard output and standard error."""
     words = [*map(str, arguments)]
     done = run_process(words, variables=variables, folder=Path(cwd)) if cwd else run(words, **variables)
     return Done(done.args, done.returncode, done.stdout.decode(), done.stderr.decode())
 
 
-def here(*arguments: str | Path) -> Done:
-    """Run the command line in this process: its workers stay, so that many small classes cost little."""
-    said, complained = io.StringIO(), io.StringIO()
-    with redirect_stdout(said), redirect_stderr(complained):
-        code = run_here([str(each) for each in arguments])
-    return Done(arguments, code, said.getvalue(), complained.getvalue())
+def run_in_process(*arguments: str | Path) -> Done:
+    """Run the command line in this process: its worker pool is reused, so that many small classes are fast."""
+    output, complained = io.StringIO(), io.StringIO()
+    with redirect_stdout(output), redirect_stderr(complained):
+        code = run_here([str(argument) for argument in arguments])
+    return Done(arguments, code, output.getvalue(), complained.getvalue())
 
 
 def environment(**variables: str) -> dict[str, str]:
-    """The environment of a command, 80 columns wide."""
-    return {**surroundings(), **variables}
+    """Return the environment of a command, 80 columns wide."""
+    return {**clean_environment(), **variables}
 
 
 @contextmanager
 def started(*arguments: str | Path, **variables: str) -> Iterator[subprocess.Popen[str]]:
-    """A command that runs, in a session of its own; whatever is left of it is ended."""
+    """Yield a running command in its own session; its processes are killed at the end."""
     process = subprocess.Popen(
         [*GRADER, *map(str, arguments)],
         env=environment(**variables),
@@ -66,19 +66,19 @@ def started(*arguments: str | Path, **variables: str) -> Iterator[subprocess.Pop
         try:
             yield process
         finally:
-            for each in session_of(process):
+            for pid in session_of(process):
                 with suppress(ProcessLookupError):
-                    os.kill(each, signal.SIGKILL)
+                    os.kill(pid, signal.SIGKILL)
 
 
 def session_of(process: "subprocess.Popen[str]") -> list[int]:
-    """The processes that a command has started, itself among them; those that have ended and wait for their parent are left out."""
+    """Return the ids of a command and of the processes that it started, without zombies."""
     found = []
-    for each in Path("/proc").glob("[0-9]*"):
+    for path in Path("/proc").glob("[0-9]*"):
         try:
-            state = (each / "stat").read_text().rpartition(")")[2].split()[0]
-            if os.getsid(int(each.name)) == process.pid and state != "Z":
-                found.append(int(each.name))
+            state = (path / "stat").read_text().rpartition(")")[2].split()[0]
+            if os.getsid(int(path.name)) == process.pid and state != "Z":
+                found.append(int(path.name))
         except OSError:
             continue
     return found
@@ -86,7 +86,7 @@ def session_of(process: "subprocess.Popen[str]") -> list[int]:
 
 def eventually(condition: Callable[[], Any]) -> bool:
     """Return whether a condition comes true before the timeout."""
-    end = time.monotonic() + PATIENCE
+    end = time.monotonic() + HANG_TIMEOUT
     while not condition():
         if time.monotonic() > end:
             return False
@@ -95,9 +95,9 @@ def eventually(condition: Callable[[], Any]) -> bool:
 
 
 def shell_code(code: int) -> int:
-    """The exit code as a shell tells it: 130 as well where CPython ends itself by the signal of Ctrl-C.
+    """Return the exit code as a shell reports it: 130 as well if CPython ends itself by the signal of Ctrl-C.
 
-    It does so where Ctrl-C comes while it runs a text as code, as dataclasses do when they are imported.
+    CPython does this if Ctrl-C arrives while it executes source text, as dataclasses do on import.
     """
     return 128 - code if code < 0 else code
 
@@ -112,19 +112,19 @@ def rows(gradebook: Path, query: str, *values: Any) -> list[tuple[Any, ...]]:
 
 
 def verdicts(gradebook: Path) -> dict[str, str]:
-    """The verdict on everyone."""
+    """Return the verdict of every student."""
     return {str(key): str(verdict) for key, verdict in rows(gradebook, "SELECT key, verdict FROM grade")}
 
 
 def reasons(gradebook: Path) -> dict[str, str]:
-    """Why those who are not graded are not."""
+    """Return the reasons of submissions that are not graded."""
     return {
         str(key): str(reason) for key, reason in rows(gradebook, "SELECT key, reason FROM grade WHERE reason <> ''")
     }
 
 
-def doubled(gradebook: Path) -> list[tuple[Any, ...]]:
-    """Results that are there more than once."""
+def duplicates(gradebook: Path) -> list[tuple[Any, ...]]:
+    """Return results that occur more than once."""
     return rows(gradebook, "SELECT student FROM result GROUP BY student, digest, rubric, version HAVING count(*) > 1")
 
 
@@ -142,45 +142,47 @@ def counted(done: Done) -> str:
 
 
 def contents(folder: Path) -> dict[str, bytes]:
-    """All files of a folder by name, but for the index of reports."""
+    """Return all files of a folder by name, without the index of reports."""
     return {path.name: path.read_bytes() for path in folder.iterdir() if path.name != INDEX}
 
 
-def report_here(path: Path, to: Path) -> tuple[int, bytes | str]:
-    """Return the exit code and report of `grader grade PATH --format json`, run in this process; its error if there is no report."""
-    said = io.StringIO()
+def report_in_process(path: Path, to: Path) -> tuple[int, bytes | str]:
+    """Run `grader grade PATH --format json` in this process and return the exit code and the report or error."""
+    output = io.StringIO()
     to.unlink(missing_ok=True)
-    with redirect_stdout(io.StringIO()), redirect_stderr(said):
+    with redirect_stdout(io.StringIO()), redirect_stderr(output):
         code = run_here(["grade", "--save", f"json={to}", "--format", "json", "--", str(path)])
-    return code, to.read_bytes() if to.exists() else said.getvalue()
+    return code, to.read_bytes() if to.exists() else output.getvalue()
 
 
 def urdf_class(folder: Path, count: int, seed: int = 1) -> Path:
-    """A class of single URDFs."""
+    """Make a class of single URDFs."""
     for _ in made_up.make_class(folder, count, seed):
         pass
     return folder
 
 
 def mixed_class(folder: Path, count: int, layout: str = "folders", seed: int = 1, *, for_zip: bool = False) -> Path:
-    """A class of all kinds; `for_zip` leaves out what a zip does not hold as a folder does."""
-    for each in made_up.make_class(folder, count, seed, "mixed", layout):
-        if for_zip and (each.kind in _SKIPPED or not each.person.name.isprintable()):
-            for path in each.paths:
-                place = folder / path
-                shutil.rmtree(place) if place.is_dir() else place.unlink(missing_ok=True)
+    """Make a class of all kinds of submissions; `for_zip` omits what a zip cannot hold as a folder does."""
+    for submission in made_up.make_class(folder, count, seed, "mixed", layout):
+        if for_zip and (submission.kind in _SKIPPED or not submission.person.name.isprintable()):
+            for path in submission.paths:
+                target = folder / path
+                shutil.rmtree(target) if target.is_dir() else target.unlink(missing_ok=True)
     return folder
 
 
 def class_with_roster(folder: Path, roster: Path, count: int) -> tuple[list[str], int]:
-    """A class of all kinds, and its roster: the keys of those who are not in it, and how many of it have submitted nothing."""
+    """Make a class with a roster; return the keys of students who are not on it, and how many on it submitted nothing."""
     written = list(made_up.make_class(folder, count, 1, "mixed"))
     made_up.write_beside(written, count, "folders", None, roster, None)
-    return [each.person.key for each in written[count:]], sum(not each.paths for each in written[:count])
+    return [submission.person.key for submission in written[count:]], sum(
+        not submission.paths for submission in written[:count]
+    )
 
 
 def hostile_class(folder: Path, *names: str) -> Path:
-    """A class whose robots are called so, each of a student of that name."""
+    """Make a class with robots of these names, each of a student of that name."""
     folder.mkdir()
     for name in names:
         robot = name.partition("-")[0]

@@ -1,4 +1,4 @@
-"""A small lab, gradebooks in which its submissions came out as asked, and a class of it on the disk."""
+"""A small lab, gradebooks with given results for it, and a class of it on disk."""
 
 import subprocess
 from collections.abc import Iterable
@@ -14,7 +14,7 @@ from grader.classroom.students import ClassSubmission, Student
 from grader.files.reading import sha256_of
 from grader.grading.report import Report, Result
 from grader.grading.rubric import Rubric, read_rubric
-from tests.command_line import run_with_input, surroundings
+from tests.command_line import clean_environment, run_with_input
 from tests.samples import ROOT
 
 POINTS = {"loads": "3", "box": "2.5", "tall": "0.5", "essay": "4", "picture": "1"}
@@ -30,12 +30,12 @@ _CRITERIA = {
     "picture": 'part = "report"\ncheck = "evidence_shown"\nwith = { names = ["screen"] }',
 }
 _STATUSES = {sign: status for status, sign in STATUS_LETTERS.items()}
-ENVIRONMENT = surroundings()
+ENVIRONMENT = clean_environment()
 HOSTILE = ROOT / "tests" / "classroom" / "hostile"
 
 
 def lab_text(late: str = "", **points: str) -> str:
-    """The lab as TOML: `points` are those of criteria that differ, `late` is the table of the late policy."""
+    """Return the lab as TOML; `points` overrides those of some criteria, `late` is the table of the late policy."""
     worth = {name: points.get(name, POINTS.get(name, "1")) for name in (*POINTS, *points)}
     rows = [
         f'[[criterion]]\nid = "{name}"\ntitle = "About {name}"\npoints = {value}\n{_CRITERIA.get(name, _CRITERIA["loads"])}'
@@ -47,12 +47,12 @@ def lab_text(late: str = "", **points: str) -> str:
 
 
 def lab(late: str = "", **points: str) -> Rubric:
-    """The lab as a rubric."""
+    """Return the lab as a rubric."""
     return read_rubric(lab_text(late, **points).encode(), Path("small.toml"))
 
 
-def came_out(rubric: Rubric, key: str, signs: str, digest: str = "a", reason: str = "") -> GradingResult:
-    """A submission whose criteria came out as these signs say; one that has a reason could not be read."""
+def graded_as(rubric: Rubric, key: str, signs: str, digest: str = "a", reason: str = "") -> GradingResult:
+    """Return the result of a submission from one sign per criterion; one with a reason could not be read."""
     results = tuple(
         Result(criterion, Outcome(_STATUSES[sign], f"what was found of {criterion.id}"))
         for criterion, sign in zip(rubric.criteria, signs, strict=True)
@@ -65,21 +65,21 @@ def came_out(rubric: Rubric, key: str, signs: str, digest: str = "a", reason: st
     return result_of(report, Task(key, (key,)), verdict, reason, sha256_of(digest.encode()), "")
 
 
-def graded_into(book: Gradebook, rubric: Rubric, found: Iterable[GradingResult], submitted: str = "") -> int:
-    """Keep what came out as one run; its number."""
+def record_run(book: Gradebook, rubric: Rubric, found: Iterable[GradingResult], submitted: str = "") -> int:
+    """Record results as one run and return its number."""
     writer = RunWriter(book, "class", "folders", rubric)
     with book.transaction():
-        for each in found:
-            who = Student(each.key)
+        for graded in found:
+            who = Student(graded.key)
             student = save_student(book, who, None)
-            result = writer.add_result(student, each)
-            writer.add_submission(student, result, ClassSubmission(who, (each.key,), submitted=submitted), "")
+            result = writer.add_result(student, graded)
+            writer.add_submission(student, result, ClassSubmission(who, (graded.key,), submitted=submitted), "")
     writer.finish()
     return writer.run
 
 
 def units(points: str | Decimal) -> int:
-    """Points in ten-thousandths."""
+    """Return points in ten-thousandths."""
     return int(Decimal(points) * 10_000)
 
 
@@ -94,7 +94,7 @@ def grader(*arguments: object, stdin: str | bytes = "", **variables: str) -> sub
 
 
 def refusal(done: subprocess.CompletedProcess[str]) -> str:
-    """The one plain line in which a command was refused."""
+    """Return the single line in which a command was refused."""
     assert done.returncode == 2, done
     assert done.stdout == "", done
     assert done.stderr.startswith("grader: "), done
@@ -104,7 +104,7 @@ def refusal(done: subprocess.CompletedProcess[str]) -> str:
 
 
 def urdf(size: str = "1 1 1") -> str:
-    """A robot of one box."""
+    """Return a robot of one box."""
     return (
         f'<robot name="r"><link name="base"><visual><geometry><box size="{size}"/></geometry></visual></link></robot>'
     )
@@ -116,8 +116,8 @@ PNG = bytes.fromhex(
 )
 
 
-def hand_in(folder: Path, size: str = "1 1 1", answer: str = "The roots.") -> None:
-    """A submission with all that the lab asks for."""
+def write_submission(folder: Path, size: str = "1 1 1", answer: str = "The roots.") -> None:
+    """Write a submission with everything that the lab asks for."""
     folder.mkdir(parents=True)
     (folder / "robot.urdf").write_text(urdf(size))
     (folder / "answers.md").write_text(f"# Step 1\n\n{answer}\n")
@@ -135,12 +135,12 @@ emil,Ben Oh,emil@example.org,eo5,105
 
 
 def make_class(top: Path, late: str = "") -> Path:
-    """A class: anna's is right, ben's is a URDF alone, cleo's no zip, dora has none, emil's box is wrong; the path of the lab."""
+    """Make a class (anna correct, ben a single URDF, cleo no zip, dora missing, emil a wrong box); return the lab's path."""
     folder = top / "class"
-    hand_in(folder / "anna")
+    write_submission(folder / "anna")
     (folder / "ben.urdf").write_text(urdf())
     (folder / "cleo.zip").write_bytes(b"PK\x03\x04 broken")
-    hand_in(folder / "emil", "1 1 2", "[bold]\x1b[31mRed\x1b[0m roots[/bold] \u202eturned")
+    write_submission(folder / "emil", "1 1 2", "[bold]\x1b[31mRed\x1b[0m roots[/bold] \u202eturned")
     (top / "roster.csv").write_text(ROSTER)
     (top / "small.toml").write_text(lab_text(late))
     return top / "small.toml"

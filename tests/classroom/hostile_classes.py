@@ -1,4 +1,4 @@
-"""Classes that hostile students have written to: whatever they do, nobody's result or mark is anybody else's.
+"""Classes with hostile students: whatever they write, every result and mark stays with its own student.
 
 A class is laid out as one of the layouts, with or without a roster, graded, and marked. Then a student adds what a student can
 add: further folders and files in every odd spelling, symlinks to others' work, attempts, archives. After each addition the class
@@ -67,15 +67,15 @@ _CRITERION = RUBRIC.criteria[-1]
 
 
 def work(owner: str) -> bytes:
-    """A URDF that tells whose it is."""
+    """Return a URDF that tells whose it is."""
     return f"<robot name='{owner}'><link name='{owner}'/></robot>".encode()
 
 
-class Here(Executor):
-    """Grades in this process, at once."""
+class InlineExecutor(Executor):
+    """An executor that runs functions in this process, at once."""
 
     def submit(self, function: Callable[..., Any], /, *arguments: Any, **named: Any) -> "Future[Any]":
-        """Have a function run."""
+        """Run a function."""
         done: Future[Any] = Future()
         done.set_result(function(*arguments, **named))
         return done
@@ -83,14 +83,14 @@ class Here(Executor):
 
 @dataclass(frozen=True)
 class Class:
-    """How a class is laid out: where each student's submission stands, and where a student can write."""
+    """The layout of a class: where each student's submission is, and where a student can write."""
 
     layout: str
     spelling: str
     has_roster: bool
 
     def place(self, owner: str) -> str:
-        """The folder of a student, as the platform or the instructor names it."""
+        """Return the folder of a student, as the platform or the instructor names it."""
         name = {"login": owner, "name": _FULL[owner], "email": f"{owner}@example.org"}[self.spelling]
         match self.layout:
             case "prefixed":
@@ -107,7 +107,7 @@ class Class:
                 return name
 
     def addition(self, name: str) -> str:
-        """Where a hostile student, or another one with a hostile name, can put something: never into another's folder."""
+        """Return where a hostile student, or another with a hostile name, can write: never into another's folder."""
         match self.layout:
             case "prefixed":
                 return f"lab6-{name}" if not name.startswith("lab6-") else name
@@ -123,24 +123,24 @@ class Class:
                 return name
 
     def is_own(self, name: str) -> bool:
-        """Whether a folder of this name is a student's own by the roster: a key, login or address, exactly as it is there.
+        """Return whether a folder of this name is a student's own by the roster: exactly a key, login or address of it.
 
-        The instructor or the platform names these folders, but not what lies in a team's folder or what an LMS names.
+        The instructor or the platform names these folders, but not files in a team's folder or names in an LMS.
         """
-        words = {each for owner in NAMES for each in (owner, f"k{_NUMBER[owner]}", f"{owner}@example.org")}
+        words = {word for owner in NAMES for word in (owner, f"k{_NUMBER[owner]}", f"{owner}@example.org")}
         is_named_by_instructor = self.layout in ("folders", "prefixed", "nbgrader")
         stem = name.removeprefix("./").removeprefix("lab6-").split(".urdf")[0].split(".zip")[0]
         return self.has_roster and is_named_by_instructor and stem in words
 
     @staticmethod
     def in_canvas(name: str) -> str:
-        """A name as Canvas writes it."""
+        """Return a name as Canvas writes it."""
         words = name.split()
         return "".join(letter for letter in "".join(words[1:] + words[:1]).lower() if letter.isalnum() or letter == "_")
 
     @property
     def roster(self) -> Roster | None:
-        """Everybody but the hostile student's additions."""
+        """Return the roster: everybody but the hostile student's additions."""
         if not self.has_roster:
             return None
         in_canvas, in_moodle = self.layout == "canvas", self.layout == "moodle"
@@ -157,7 +157,7 @@ class Class:
 
 
 def _variants(name: str) -> list[str]:
-    """Spellings of a name that somebody might take for it."""
+    """Return spellings of a name that could be mistaken for it."""
     full, number = _FULL[name], _NUMBER[name]
     return [
         name, name.upper(), name.title(), full, full.lower(), f"{full.split()[1]}, {full.split()[0]}", full.split()[1],
@@ -168,12 +168,12 @@ def _variants(name: str) -> list[str]:
     ]  # fmt: skip
 
 
-HOSTILE = st.sampled_from([each for name in NAMES for each in _variants(name)])
+HOSTILE = st.sampled_from([_variant for name in NAMES for _variant in _variants(name)])
 LINKS = st.sampled_from(["my_robot.urdf", "urdf", "attempt_9", "src/my_robot", "timestamp.txt", "zz.zip"])
 
 
 class HostileClass(RuleBasedStateMachine):
-    """A class, graded again after each thing that a hostile student adds."""
+    """A class, graded again after each action of a hostile student."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -182,7 +182,7 @@ class HostileClass(RuleBasedStateMachine):
         self.root = self.top / "class"
 
     def teardown(self) -> None:
-        """Remove everything."""
+        """Remove all files."""
         self._stack.close()
 
     @initialize(
@@ -192,7 +192,7 @@ class HostileClass(RuleBasedStateMachine):
         is_zip=st.booleans(),
     )
     def grade_the_class(self, layout: str, spelling: str, has_roster: bool, is_zip: bool) -> None:
-        """Lay the class out, as a folder or a zip, grade it, and give everybody a manual mark."""
+        """Lay the class out as a folder or a zip, grade it, and give every student a manual mark."""
         self.made = Class(layout, spelling, has_roster)
         self.source = self.top / "class.zip" if is_zip else self.root
         for name in (*NAMES, MALLORY):
@@ -206,7 +206,7 @@ class HostileClass(RuleBasedStateMachine):
 
     @rule(name=HOSTILE, is_zip=st.booleans())
     def add_a_submission(self, name: str, is_zip: bool) -> None:
-        """Another submission with a hostile name."""
+        """Add another submission with a hostile name."""
         if self.made.is_own(name):
             return
         place = self.made.addition(name)
@@ -218,7 +218,7 @@ class HostileClass(RuleBasedStateMachine):
         victim=st.sampled_from(NAMES), at=LINKS, is_absolute=st.booleans(), part=st.sampled_from(["", "/my_robot.urdf"])
     )
     def link_to_another(self, victim: str, at: str, is_absolute: bool, part: str) -> None:
-        """A symlink in a student's own folder to the work of another."""
+        """Add a symlink in a student's own folder to another's work."""
         link = self.root / self.made.place(MALLORY) / at
         target = self.root / (self.made.place(victim) + part)
         link.parent.mkdir(parents=True, exist_ok=True)
@@ -230,7 +230,7 @@ class HostileClass(RuleBasedStateMachine):
 
     @rule(victim=st.sampled_from(NAMES), name=HOSTILE)
     def add_a_link_as_submission(self, victim: str, name: str) -> None:
-        """A symlink in place of a further submission."""
+        """Add a symlink in place of another submission."""
         link = self.root / self.made.addition(name)
         with suppress(OSError, ValueError):
             link.parent.mkdir(parents=True, exist_ok=True)
@@ -239,7 +239,7 @@ class HostileClass(RuleBasedStateMachine):
 
     @rule(number=st.integers(1, 20))
     def add_an_attempt(self, number: int) -> None:
-        """One more attempt of one's own."""
+        """Add another attempt."""
         with suppress(FileExistsError):  # a symlink is there already
             self._write(f"{self.made.place(MALLORY)}/attempt_{number}/my_robot.urdf", MALLORY)
         self._check()
@@ -255,12 +255,12 @@ class HostileClass(RuleBasedStateMachine):
                 archive.writestr("my_robot.urdf", work(owner))
 
     def _write(self, path: str, owner: str) -> None:
-        """Write a file below the class, but never through a symlink: that is not what a student can do."""
+        """Write a file below the class, but never through a symlink, because students cannot do that."""
         place = self.root / path
         place.parent.mkdir(parents=True, exist_ok=True)
         if place.parent.resolve() == Path(os.path.normpath(place.parent)) and not place.is_symlink():
             victims = [self.made.place(name) for name in NAMES if name != owner]
-            if not any(f"{os.path.normpath(place)}/".startswith(f"{self.root}/{each}/") for each in victims):
+            if not any(f"{os.path.normpath(place)}/".startswith(f"{self.root}/{victim}/") for victim in victims):
                 place.write_bytes(work(owner))
 
     def _grade(self) -> None:
@@ -269,13 +269,13 @@ class HostileClass(RuleBasedStateMachine):
         if self.source != self.root:
             _pack(self.root, self.source)
         intake = read_class(self.source, roster, layout, rubric_id="lab6")
-        for hand_in in intake.submissions():
-            self._check_files(hand_in.paths, hand_in.names, hand_in.student.key)
-        told = RunSettings(str(self.source), layout, len(intake), 1, roster=roster)
-        Batch(self.book, RUBRIC, told, Here()).grade(intake)
+        for submission in intake.submissions():
+            self._check_files(submission.paths, submission.names, submission.student.key)
+        reported = RunSettings(str(self.source), layout, len(intake), 1, roster=roster)
+        Batch(self.book, RUBRIC, reported, InlineExecutor()).grade(intake)
 
     def _check_files(self, paths: tuple[str, ...], names: tuple[str, ...], key: str) -> None:
-        """What is read of a submission is that of whom its folder belongs to, and of nobody else."""
+        """Assert that the files read for a submission belong to the owner of its folder."""
         owners = {next((name for name in NAMES if _is_below(path, self.made.place(name))), MALLORY) for path in paths}
         assert len(owners) == 1, (key, paths)
         try:
@@ -296,7 +296,7 @@ class HostileClass(RuleBasedStateMachine):
         assert self._marks() == self.before, (self.made, sorted(os.listdir(self.root)))
 
     def _marks(self) -> dict[str, tuple[Any, ...]]:
-        """The mark of each honest student: by the roster's key, and without a roster by the folder."""
+        """Return the mark of each honest student, by the roster's key or by the folder."""
         found = {}
         for standing in Grades(self.book).all():
             owner = self._owner_of(standing)
@@ -312,7 +312,7 @@ class HostileClass(RuleBasedStateMachine):
 
 
 def _pack(folder: Path, to: Path) -> None:
-    """A class folder as a zip, symlinks as such; what has a name that a zip cannot hold stays out."""
+    """Pack a class folder as a zip with symlinks; names that a zip cannot hold are omitted."""
     is_zip.cache_clear()
     with zipfile.ZipFile(to, "w") as archive:
         for path in sorted(folder.rglob("*"), key=str):
@@ -330,12 +330,12 @@ def _is_below(path: str, place: str) -> bool:
 
 
 def _fast() -> str | None:
-    """A file system in memory, where there is one."""
+    """Return a file system in memory, if there is one."""
     return "/dev/shm" if Path("/dev/shm").is_dir() else None
 
 
 def try_classes(number: int) -> None:
-    """Try so many classes; raises AssertionError, with the shortest way there, for the first that does not hold."""
+    """Try so many classes; raise AssertionError with the shortest sequence of actions for the first failure."""
     run_state_machine_as_test(
         HostileClass,
         settings=settings(
@@ -349,7 +349,7 @@ def try_classes(number: int) -> None:
 
 
 if __name__ == "__main__":
-    asked = int(sys.argv[1])
+    requested = int(sys.argv[1])
     start = time.monotonic()
-    try_classes(asked)
-    print(f"{asked} classes, {time.monotonic() - start:.0f} s: no result and no mark of anybody was anybody else's")
+    try_classes(requested)
+    print(f"{requested} classes, {time.monotonic() - start:.0f} s: no result and no mark of anybody was anybody else's")

@@ -3,6 +3,6 @@
 from tests.classroom.hostile_classes import try_classes
 
 
-def test_nobody_gets_anything_of_another_student() -> None:
-    """No result comes from a file outside of the student's folder, and no addition of another student changes a mark."""
+def test_students_cannot_affect_others() -> None:
+    """No result comes from a file outside the student's folder, and no addition of another student changes a mark."""
     try_classes(60)

@@ -1,4 +1,4 @@
-"""Which student is meant: one table for every place that asks, and how names are compared."""
+"""Matching students: one table for every place that matches, and how names are compared."""
 
 from collections.abc import Callable
 from decimal import Decimal
@@ -24,41 +24,41 @@ CAL = Student("300", "José de la Cruz", "ann@other.example")
 DEE = Student("400", "André Dee", "andr\u00e9@example.org")
 CLASS = (ANN, BEA, CAL, DEE)
 
-Asked = Callable[[str], Student | None]
+Matcher = Callable[[str], Student | None]
 
 
 def in_roster(name: str) -> Student | None:
-    """Whose a folder of this name is."""
-    place = Roster(map(RosterEntry, CLASS)).match(Student(name)).position
-    return None if place is None else CLASS[place]
+    """Return the student of a folder of this name."""
+    path = Roster(map(RosterEntry, CLASS)).match(Student(name)).position
+    return None if path is None else CLASS[path]
 
 
 def in_a_team(name: str) -> Student | None:
-    """Whose a folder of this name is in the team of everybody."""
-    found = Roster(RosterEntry(each, "red") for each in CLASS).match(
+    """Return the student of a folder of this name in the team of everybody."""
+    found = Roster(RosterEntry(student, "red") for student in CLASS).match(
         Student(f"red/{name}", name, login=name, team="red")
     )
     return None if found.position is None else CLASS[found.position]
 
 
 def in_lms(name: str) -> Student | None:
-    """Whose grade goes into a row of an LMS file that has this login, address and name."""
+    """Return the student of a row of an LMS file that has this login, address and name."""
     row = LmsStudent(1, name, Student("", name, email=name, login=name))
-    grade = join([row], [LmsGrade(each, Decimal(1)) for each in CLASS]).get(1)
+    grade = join([row], [LmsGrade(student, Decimal(1)) for student in CLASS]).get(1)
     return grade.student if grade is not None else None
 
 
 def join(rows: list[LmsStudent], grades: list[LmsGrade]) -> dict[int, LmsGrade]:
-    """The grades by row number."""
+    """Return the grades by row number."""
     return match_rows(rows, grades, Preflight(""))
 
 
 def in_gradebook(name: str, tmp_path: Path) -> Student | None:
-    """Whom `grader mark` takes this name for."""
+    """Return the student that `grader mark` finds by this name."""
     with Gradebook(tmp_path / "book.db", create=True) as book:
         with book.transaction():
-            for each in CLASS:
-                save_student(book, each, None)
+            for student in CLASS:
+                save_student(book, student, None)
         try:
             return Grades(book).find(name).student
         except InputError:
@@ -76,39 +76,39 @@ SURE = [  # in every place
 
 @pytest.mark.parametrize(("name", "student"), SURE)
 @pytest.mark.parametrize("ask", [in_roster, in_a_team, in_lms])
-def test_a_name_means_the_same_everywhere(ask: Asked, name: str, student: Student | None) -> None:
-    """Whether a folder, a team's folder or a row of an LMS file has the name, the same student is meant."""
+def test_a_name_means_the_same_everywhere(ask: Matcher, name: str, student: Student | None) -> None:
+    """A name means the same student as a folder, a folder of a team, or a row of an LMS file."""
     assert ask(name) == student
 
 
 @pytest.mark.parametrize(("name", "student"), SURE)
-def test_what_a_person_types_means_the_same(name: str, student: Student | None, tmp_path: Path) -> None:
-    """`grader mark` takes a name for the same student."""
+def test_grader_mark_matches_the_same(name: str, student: Student | None, tmp_path: Path) -> None:
+    """`grader mark` finds the same student by a name."""
     assert in_gradebook(name, tmp_path) == student
 
 
 @pytest.mark.parametrize("name", ["AASH", "ANN@example.org"])
-def test_case_counts_only_for_a_mark(name: str, tmp_path: Path) -> None:
-    """Logins and addresses may differ in case, but a manual mark asks for the exact one."""
+def test_case_matters_only_for_marks(name: str, tmp_path: Path) -> None:
+    """Logins and addresses may differ in case, but `grader mark` needs the exact one."""
     assert [ask(name) for ask in (in_roster, in_a_team, in_lms)] == [ANN] * 3
     assert in_gradebook(name, tmp_path) is None
 
 
 @pytest.mark.parametrize(("name", "roster", "team"), [("bea", BEA, BEA), ("cruz", None, CAL), ("ash", None, None)])
-def test_the_weakest_clues(name: str, roster: Student | None, team: Student | None) -> None:
+def test_the_weakest_identifiers(name: str, roster: Student | None, team: Student | None) -> None:
     """The local part of an address counts for a folder, a surname in a team only, and neither in an LMS file."""
     assert (in_roster(name), in_a_team(name), in_lms(name)) == (roster, team, None)
 
 
-def test_exact_case_decides_before_another() -> None:
-    """Beside the exact word another case is nobody's."""
+def test_exact_case_takes_precedence() -> None:
+    """Beside the exact name, another case matches nobody."""
     grades = [LmsGrade(Student(key), Decimal(1)) for key in ("alice", "ALICE")]
     found = join([LmsStudent(1, "alice", Student("", login="alice"))], grades)
     assert found[1].student.key == "alice"
 
 
-def test_numbers_of_an_lms_decide() -> None:
-    """A number goes before a name, and a name is of nobody whose number is another."""
+def test_lms_numbers_take_precedence() -> None:
+    """A number takes precedence over a name, and a name matches nobody whose number differs."""
     people = Roster(map(RosterEntry, CLASS))
     assert people.match(Student("x", "Ann Ash", canvas="5")).position == 1
     assert people.match(Student("x", moodle="6")).position == 1
@@ -116,31 +116,31 @@ def test_numbers_of_an_lms_decide() -> None:
     assert (found.position, found.doubt) == (None, "has the name of 200, but another number")
 
 
-def test_what_is_not_on_the_roster_is_matched_by_number_only() -> None:
-    """A folder that calls itself Ann Ash gets no row of an LMS file; one with the LMS's own number does."""
+def test_unmatched_submissions_match_an_lms_by_number_only() -> None:
+    """A folder named Ann Ash gets no row of an LMS file; one with the LMS's number does."""
     row = LmsStudent(1, "Ann Ash", Student("", "Ann Ash", login="aash", canvas="7"))
-    stranger = LmsGrade(Student("aash", "Ann Ash"), Decimal(1), is_on_roster=False)
+    unmatched = LmsGrade(Student("aash", "Ann Ash"), Decimal(1), is_on_roster=False)
     numbered = LmsGrade(Student("aash", "Ann Ash", canvas="7"), Decimal(1), is_on_roster=False)
-    assert not join([row], [stranger])
-    assert join([row], [stranger, LmsGrade(ANN, Decimal(2))])[1].student == ANN
+    assert not join([row], [unmatched])
+    assert join([row], [unmatched, LmsGrade(ANN, Decimal(2))])[1].student == ANN
     assert join([row], [numbered])[1] == numbered
 
 
 @given(st.lists(st.sampled_from("abAB"), min_size=1, max_size=5), st.lists(st.sampled_from("abAB"), max_size=5))
-def test_pairs_are_the_only_ones(rows: list[str], keys: list[str]) -> None:
-    """A row has a grade exactly where one row and one student have its word, or, if none has it exactly, its letters."""
+def test_only_unique_pairs_match(rows: list[str], keys: list[str]) -> None:
+    """A row has a grade exactly if one row and one student share its value, exactly or else ignoring case."""
     grades = [LmsGrade(Student(key, login=f"{key}{index}"), Decimal(index)) for index, key in enumerate(keys)]
     found = join([LmsStudent(index, row, Student("", login=row)) for index, row in enumerate(rows)], grades)
     for index, row in enumerate(rows):
-        exact = [each for each in grades if each.student.key == row]
+        exact = [grade for grade in grades if grade.student.key == row]
         if rows.count(row) == 1 and len(exact) == 1:
             assert found[index] == exact[0]
         elif exact or keys.count(row.swapcase()) != 1 or rows.count(row) > 1:
             assert index not in found
 
 
-def test_clues_that_are_not_known_are_none() -> None:
-    """An empty field is no clue: two students without a number are not the same."""
+def test_empty_identifiers_match_nothing() -> None:
+    """An empty field is no identifier: two students without a number are not the same."""
     people = People([clues_of(Student("a")), clues_of(Student("b"))])
     assert set(people.clues[0]) == {Clue.WORD, Clue.ANY_CASE}
     assert people.named("") == ()
@@ -156,22 +156,22 @@ def test_clues_that_are_not_known_are_none() -> None:
         ("!?", ""),
     ],
 )
-def test_what_canvas_makes_of_a_name(name: str, form: str) -> None:
-    """Small letters, marks, digits and underscores of any script are what is left."""
+def test_names_in_canvas_files(name: str, form: str) -> None:
+    """Lower-case letters, marks, digits and underscores of any script are kept."""
     assert canvas_name(name) == form
 
 
 @given(st.lists(st.from_regex(r"[^\W_]{1,8}", fullmatch=True), min_size=1, max_size=6))
 def test_canvas_may_sort_by_any_word(words: list[str]) -> None:
-    """Wherever the surname begins, the sortable name is among those that are known."""
+    """Wherever the surname begins, the sortable name is among the known ones."""
     forms = set(canvas_names(" ".join(words)))
     for index in range(len(words)):
         assert canvas_name(f"{' '.join(words[index:])}, {' '.join(words[:index])}") in forms
 
 
 @given(st.text(max_size=30))
-def test_a_plain_name_stays_plain(name: str) -> None:
-    """To make a name plain twice changes nothing, and the two orders of a name are one."""
+def test_normalisation_is_idempotent(name: str) -> None:
+    """Normalising a name twice changes nothing, and both orders of a name are equal."""
     plain = plain_name(name.replace(",", " "))
     assert plain_name(plain) == plain
     assert plain_name("Ash, Ann") == plain_name("ann  ASH")

@@ -1,4 +1,4 @@
-"""A small class that was graded once; each test gets a copy of it."""
+"""Fixtures: a small class that was graded once; each test gets a copy of it."""
 
 import shutil
 from pathlib import Path
@@ -10,7 +10,7 @@ from tests.classroom.gradebooks import batch, make_class
 
 @pytest.fixture(scope="session")
 def graded_class(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A class with its roster, rubric and gradebook, not to be changed."""
+    """Return a class with its roster, rubric and gradebook. Tests must not change it."""
     top = tmp_path_factory.mktemp("small")
     make_class(top)
     done = batch(top)
@@ -20,6 +20,6 @@ def graded_class(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def top(graded_class: Path, tmp_path: Path) -> Path:
-    """A copy of the class that can be marked and graded again."""
+    """Return a copy of the class that can be marked and graded again."""
     shutil.copytree(graded_class, tmp_path / "small")
     return tmp_path / "small"

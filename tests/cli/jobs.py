@@ -1,4 +1,4 @@
-"""A job of GitHub Actions: a checkout, what the runner says of it in variables, and a file for the summary."""
+"""A job of GitHub Actions: a checkout, the variables that the runner sets, and a file for the summary."""
 
 import shutil
 from collections.abc import Mapping
@@ -13,7 +13,7 @@ ON_GITHUB: Mapping[str, str] = {}
 ELSEWHERE: Mapping[str, str] = {"GITHUB_ACTIONS": ""}
 
 
-class Job:
+class GithubJob:
     """A checkout with a submission in it, and the file that becomes the job's summary."""
 
     def __init__(self, folder: Path) -> None:
@@ -23,7 +23,7 @@ class Job:
         self.summary = folder / "summary.md"
 
     def run(self, *arguments: str, start: Path | None = None, around: Mapping[str, str] = ON_GITHUB) -> Done:
-        """Run the command line in the checkout, as a step does; `around` are variables that are otherwise than there."""
+        """Run the command line in the checkout, as a step does; `around` overrides variables of the runner."""
         job = {
             "GITHUB_ACTIONS": "true",
             "GITHUB_WORKSPACE": str(self.checkout),
@@ -32,7 +32,7 @@ class Job:
         return run_with_input(arguments, b"", {**job, **around}, start or self.checkout)
 
     def files(self, path: str, start: Path | None = None, around: Mapping[str, str] = ON_GITHUB) -> set[str | None]:
-        """The files that a path's annotations are put on."""
+        """Return the files that the annotations of a path refer to."""
         done = self.run("grade", path, start=start, around=around)
         assert done.returncode in (0, 1), done.stderr
-        return {each.get("file") for each in commands(done.stderr.decode())} - {None}
+        return {command.get("file") for command in commands(done.stderr.decode())} - {None}

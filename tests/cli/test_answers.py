@@ -20,8 +20,8 @@ REFERENCE = ROOT / "submissions" / "reference"
 OF_LAB6 = ("The model vanishes", "joint_state_publisher_gui, publishes")
 
 
-def apart(top: Path, answers: str = f'essay = "{SECRET}"') -> Path:
-    """The small lab with its model answers in a file of its own."""
+def with_separate_answers(top: Path, answers: str = f'essay = "{SECRET}"') -> Path:
+    """Write the small lab with its model answers in a separate file."""
     rubric = top / "small.toml"
     text = lab_text().replace(INLINE, "").replace('id = "small"', 'id = "small"\nanswers = "small.answers.toml"', 1)
     rubric.write_text(text, encoding="utf-8")
@@ -30,12 +30,12 @@ def apart(top: Path, answers: str = f'essay = "{SECRET}"') -> Path:
 
 
 @pytest.mark.parametrize("is_apart", [True, False])
-def test_no_report_of_grade_or_batch_holds_one(graded_class: Path, tmp_path: Path, is_apart: bool) -> None:
-    """In any format, saved or printed, in a job's summary or log, with the answer in the rubric or apart."""
+def test_no_report_of_grade_or_batch_contains_one(graded_class: Path, tmp_path: Path, is_apart: bool) -> None:
+    """In any format, saved or printed, in a job's summary or log, with the answer in the rubric or in a separate file."""
     top = tmp_path / "small"
     shutil.copytree(graded_class / "class", top / "class")
     shutil.copy(graded_class / "roster.csv", top)
-    rubric = apart(top) if is_apart else top / "small.toml"
+    rubric = with_separate_answers(top) if is_apart else top / "small.toml"
     if not is_apart:
         rubric.write_text(lab_text(), encoding="utf-8")
         assert SECRET in rubric.read_text(encoding="utf-8")
@@ -45,11 +45,11 @@ def test_no_report_of_grade_or_batch_holds_one(graded_class: Path, tmp_path: Pat
     summary = {"GITHUB_ACTIONS": "true", "GITHUB_STEP_SUMMARY": str(out / "summary")}
     done = grader("grade", top / "class" / "anna", "--rubric", rubric, *saves, **CLASSROOM50, **summary)
     assert done.returncode == 0, done.stderr
-    formats = [each for each in Format if each.needs != "identity"]
-    wanted = [part for kind in formats for part in ("--report-format", kind)]
-    graded = batch(top, "--reports", out / "reports", *wanted, "--csv", out / "csv")
+    formats = [file_format for file_format in Format if file_format.needs != "identity"]
+    expected = [part for kind in formats for part in ("--report-format", kind)]
+    graded = batch(top, "--reports", out / "reports", *expected, "--csv", out / "csv")
     assert graded.returncode == 0, graded.stderr
-    said = [done.stdout, done.stderr, graded.stdout, graded.stderr]
+    output = [done.stdout, done.stderr, graded.stdout, graded.stderr]
     for arguments in (
         ("explain", "essay", "--rubric", rubric),
         ("rubric", "show", rubric),
@@ -59,21 +59,21 @@ def test_no_report_of_grade_or_batch_holds_one(graded_class: Path, tmp_path: Pat
     ):
         shown = grader(*arguments)
         assert shown.returncode == 0, shown.stderr
-        said.append(shown.stdout + shown.stderr)
+        output.append(shown.stdout + shown.stderr)
     files = [path.read_text(encoding="utf-8") for path in out.rglob("*") if path.is_file()]
     assert len(files) > 2 * len(Format)
     assert any("The roots." in text for text in files)  # what the student has answered
-    assert all("of the roots" not in text for text in (*files, *said))
+    assert all("of the roots" not in text for text in (*files, *output))
 
 
-def test_those_who_grade_are_shown_them(top: Path) -> None:
-    """By `rubric show --answers`, `grade --answers` in three formats, and `review`, also where the rubric is not at hand."""
-    rubric = apart(top)
+def test_those_who_grade_see_them(top: Path) -> None:
+    """`rubric show --answers`, `grade --answers` in three formats, and `review` show them, also without the rubric."""
+    rubric = with_separate_answers(top)
     assert f"    Model answer: {SECRET}\n" in grader("rubric", "show", rubric, "--answers").stdout
     anna = ("grade", top / "class" / "anna", "--rubric", rubric, "--answers", "--format")
     assert SECRET in grader(*anna, "terminal").stdout
     assert f"\n  {SECRET}\n  ```\n" in grader(*anna, "markdown").stdout
-    (essay,) = [each for each in json.loads(grader(*anna, "json").stdout)["results"] if each["id"] == "essay"]
+    (essay,) = [result for result in json.loads(grader(*anna, "json").stdout)["results"] if result["id"] == "essay"]
     assert essay["expected"] == SECRET
     assert batch(top, "--force").returncode == 0
     for file in top.glob("*.toml"):
@@ -82,11 +82,11 @@ def test_those_who_grade_are_shown_them(top: Path) -> None:
     assert f"Model answer:\n  {SECRET}\n" in done.stdout
 
 
-def test_formats_for_students_hold_none_with_answers_either(top: Path, tmp_path: Path) -> None:
-    """Neither Gradescope's result nor the summary of a job, which students read."""
+def test_formats_for_students_never_contain_them(top: Path, tmp_path: Path) -> None:
+    """Neither Gradescope's results nor a job's summary, which students read, contains them with --answers."""
     summary = tmp_path / "summary"
     shown = grader(
-        "grade", top / "class" / "anna", "--rubric", apart(top), "--answers", "--format", "gradescope",
+        "grade", top / "class" / "anna", "--rubric", with_separate_answers(top), "--answers", "--format", "gradescope",
         GITHUB_ACTIONS="true", GITHUB_STEP_SUMMARY=str(summary),
     )  # fmt: skip
     assert shown.returncode == 0, shown.stderr
@@ -94,9 +94,9 @@ def test_formats_for_students_hold_none_with_answers_either(top: Path, tmp_path:
     assert "of the roots" not in shown.stdout + shown.stderr + summary.read_text(encoding="utf-8")
 
 
-def test_without_the_file_the_rubric_works(top: Path) -> None:
-    """It has the same hash, grades alike, and `rubric check` and `--answers` say that there are no model answers."""
-    rubric = apart(top)
+def test_the_rubric_works_without_the_file(top: Path) -> None:
+    """The hash and grades are the same, and `rubric check` and `--answers` say that there are no model answers."""
+    rubric = with_separate_answers(top)
     before, shown = load_rubric(str(rubric)).sha256, grader("rubric", "show", rubric)
     graded = grader("grade", top / "class" / "anna", "--rubric", rubric, "--format", "json")
     (top / "small.answers.toml").unlink()
@@ -124,56 +124,56 @@ def test_without_the_file_the_rubric_works(top: Path) -> None:
         ("essay = ", " not readable as TOML: Invalid value (at end of document)"),
     ],
 )
-def test_mistakes_in_the_file_have_their_line(tmp_path: Path, answers: str, why: str) -> None:
-    """As those in the rubric have; what needs no model answers does not read the file."""
-    rubric = apart(tmp_path, answers)
+def test_mistakes_in_the_file_have_lines(tmp_path: Path, answers: str, why: str) -> None:
+    """Mistakes are reported like those in the rubric; commands that need no model answers do not read the file."""
+    rubric = with_separate_answers(tmp_path, answers)
     done = grader("rubric", "check", rubric)
     assert (done.returncode, done.stdout) == (2, "")
     assert done.stderr.splitlines()[-1] == f"grader: {tmp_path}/small.answers.toml:{why}"
     assert grader("rubric", "show", rubric).returncode == 0
 
 
-def test_an_answer_has_one_place(tmp_path: Path) -> None:
-    """One in the rubric and in the file is refused."""
-    rubric = apart(tmp_path)
+def test_an_answer_in_two_files_is_refused(tmp_path: Path) -> None:
+    """A model answer in both the rubric and the file is refused."""
+    rubric = with_separate_answers(tmp_path)
     rubric.write_text(rubric.read_text().replace('question = "Why?"', f'question = "Why?"{INLINE}'), encoding="utf-8")
     why = f"{tmp_path}/small.answers.toml:1: the answer to essay is already in the rubric: remove one of the two"
     assert refusal(grader("rubric", "check", rubric)) == why
 
 
 @pytest.mark.parametrize("name", ["/etc/a.toml", "../a.toml", "a/../../a.toml", "C:\\\\a.toml", "a", ""])
-def test_the_file_is_in_the_folder_of_the_rubric(tmp_path: Path, name: str) -> None:
-    """Nothing outside of it is read, whatever a rubric in a student's repository names."""
-    rubric = apart(tmp_path)
+def test_the_file_must_be_in_the_folder_of_the_rubric(tmp_path: Path, name: str) -> None:
+    """No file outside it is read, whatever a rubric in a student's repository names."""
+    rubric = with_separate_answers(tmp_path)
     rubric.write_text(rubric.read_text().replace("small.answers.toml", name), encoding="utf-8")
     assert f"{rubric}:2: answers must be a .toml file in the rubric's folder" in refusal(
         grader("rubric", "show", rubric)
     )
 
 
-def test_a_link_to_a_file_elsewhere_is_not_followed(tmp_path: Path) -> None:
-    """A rubric in a student's repository cannot have other files quoted."""
+def test_a_symlink_to_another_file_is_not_followed(tmp_path: Path) -> None:
+    """A rubric in a student's repository cannot quote other files."""
     (tmp_path / "lab").mkdir()
-    rubric = apart(tmp_path / "lab")
+    rubric = with_separate_answers(tmp_path / "lab")
     (tmp_path / "lab" / "small.answers.toml").rename(tmp_path / "elsewhere.toml")
     (tmp_path / "lab" / "small.answers.toml").symlink_to(tmp_path / "elsewhere.toml")
     assert "must be in the rubric's folder" in refusal(grader("rubric", "show", rubric, "--answers"))
 
 
-def test_lab6_keeps_its_answers_apart() -> None:
-    """They are no rubric, are shown when asked for, and are not in the file that students may have."""
+def test_lab6_has_a_separate_file() -> None:
+    """The file is no rubric, its answers are shown on request, and the rubric that students may have contains none."""
     assert "lab6" in shipped_rubrics()
     assert "lab6.answers" not in shipped_rubrics()
     shown = grader("rubric", "show", "lab6", "--answers").stdout
-    assert all(each in " ".join(shown.split()) for each in OF_LAB6)
+    assert all(answer in " ".join(shown.split()) for answer in OF_LAB6)
     text = " ".join((ROOT / "rubrics" / "lab6.toml").read_text(encoding="utf-8").split())
     for arguments in (("rubric", "show", "lab6"), ("grade", REFERENCE), ("grade", REFERENCE, "--format", "json")):
         text += " ".join(grader(*arguments).stdout.split())
-    assert not any(each in text for each in OF_LAB6)
+    assert not any(answer in text for answer in OF_LAB6)
 
 
-def test_a_gradebook_of_an_earlier_grader(top: Path) -> None:
-    """Its records hold the model answer and its marks an account: reports show neither, and `review` finds the former."""
+def test_a_gradebook_of_an_earlier_version(top: Path) -> None:
+    """Its records hold the model answer and its marks an account: reports show neither, and `review` finds the answer."""
     book = _version_1(top / "book.db")
     with book:
         _as_it_was(book)
@@ -187,7 +187,7 @@ def test_a_gradebook_of_an_earlier_grader(top: Path) -> None:
     done = batch(top, "--reports", reports, "--report-format", "json", "--report-format", "markdown")
     assert done.returncode == 0, done.stderr
     anna_has = json.loads((reports / "anna.json").read_text(encoding="utf-8"))
-    (picture,) = [each for each in anna_has["results"] if each["id"] == "picture"]
+    (picture,) = [result for result in anna_has["results"] if result["id"] == "picture"]
     assert picture["mark"] == {"points": 1, "by": "", "comment": "fine"}
     assert "Marked manually: fine." in (reports / "anna.md").read_text(encoding="utf-8")
     text = "".join(path.read_text(encoding="utf-8") for path in reports.iterdir())
@@ -219,7 +219,7 @@ def _version_1(path: Path) -> sqlite3.Connection:
 
 
 def _as_it_was(book: sqlite3.Connection) -> None:
-    """Put the model answer into the records, as version 0.1.0 has kept it."""
+    """Put the model answer into the records, as version 0.1.0 did."""
     import zlib
 
     rows = list(book.execute("SELECT id, record FROM result"))

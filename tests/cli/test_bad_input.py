@@ -1,4 +1,4 @@
-"""Bad input: one clear line on standard error, the right exit code, nothing on standard output, no traceback."""
+"""Bad input: one clear line on standard error, the correct exit code, nothing on standard output, no traceback."""
 
 import json
 import os
@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.command_line import PATIENCE, run_with_input
+from tests.command_line import HANG_TIMEOUT, run_with_input
 from tests.golden.cases import ROOT, run
 
 REFERENCE = ROOT / "submissions/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
@@ -17,7 +17,7 @@ MEBIBYTE = 1024 * 1024
 
 
 def refuse(*arguments: str, words: str, code: int = 2) -> None:
-    """A command must fail with one line that holds the words."""
+    """Assert that a command fails with one line that contains the words."""
     done = run(arguments)
     message = done.stderr.decode()
     assert done.returncode == code
@@ -30,21 +30,21 @@ def refuse(*arguments: str, words: str, code: int = 2) -> None:
 
 @pytest.mark.parametrize("command", ["grade", "inspect"])
 class TestPaths:
-    """What a path can lead to."""
+    """Paths that cannot be graded."""
 
     def test_missing(self, command: str, tmp_path: Path) -> None:
-        """A path that is not there."""
+        """A path that does not exist."""
         refuse(command, str(tmp_path / "nothing.urdf"), words="does not exist")
 
     def test_empty_folder(self, command: str, tmp_path: Path) -> None:
-        """A folder with nothing in it, and one with nothing but hidden files."""
+        """An empty folder, and one with only hidden files."""
         refuse(command, str(tmp_path), words="is empty")
         (tmp_path / ".git").mkdir()
         (tmp_path / ".git" / "config").touch()
         refuse(command, str(tmp_path), words="hidden files and build folders are ignored")
 
     def test_damaged_archive(self, command: str, tmp_path: Path) -> None:
-        """An archive that is cut off, one that is empty, and kinds that are not read."""
+        """A truncated archive, an empty one, and unsupported kinds."""
         (tmp_path / "lab6.ZIP").write_bytes(b"PK\x03\x04")
         refuse(command, str(tmp_path / "lab6.ZIP"), words="cannot be read as an archive")
         (tmp_path / "lab6.tar.gz").touch()
@@ -56,13 +56,13 @@ class TestPaths:
         refuse(command, str(tmp_path / "empty.zip"), words="is empty")
 
     def test_too_large(self, command: str, tmp_path: Path) -> None:
-        """A file over the limit."""
+        """A file above the size limit."""
         (tmp_path / "large.urdf").write_bytes(b" " * (2 * MEBIBYTE))
         refuse(command, str(tmp_path / "large.urdf"), words="larger than 1048576 bytes")
 
     @pytest.mark.skipif(os.geteuid() == 0, reason="root may read every file")
     def test_unreadable(self, command: str, tmp_path: Path) -> None:
-        """A file without permission to read it."""
+        """A file without read permission."""
         (tmp_path / "secret.urdf").touch(mode=0o000)
         refuse(command, str(tmp_path / "secret.urdf"), words="Permission denied")
 
@@ -72,16 +72,16 @@ class TestPaths:
         refuse(command, str(tmp_path / "pipe.urdf"), words="not a regular file")
 
     def test_device(self, command: str) -> None:
-        """A device without end."""
+        """A device that never ends."""
         refuse(command, "/dev/zero", words="not a regular file")
 
-    def test_link_loop(self, command: str, tmp_path: Path) -> None:
+    def test_symlink_loop(self, command: str, tmp_path: Path) -> None:
         """A symbolic link to itself."""
         (tmp_path / "loop.urdf").symlink_to(tmp_path / "loop.urdf")
         refuse(command, str(tmp_path / "loop.urdf"), words="ymbolic link")
 
-    def test_link_out_of_a_folder(self, command: str, tmp_path: Path) -> None:
-        """A link that leads out of the folder that was handed in is not followed."""
+    def test_symlink_out_of_a_folder(self, command: str, tmp_path: Path) -> None:
+        """A symlink that leads out of the submission is not followed."""
         folder = tmp_path / "submission"
         folder.mkdir()
         (folder / "my_robot.urdf").symlink_to(REFERENCE)
@@ -92,12 +92,12 @@ class TestPaths:
         refuse(command, str(tmp_path / ("x" * 5000)), words="cannot read")
 
     def test_control_characters_in_a_name(self, command: str, tmp_path: Path) -> None:
-        """A name with an escape sequence is spelt out."""
+        """A name with an escape sequence is printed escaped."""
         refuse(command, str(tmp_path / "\x1b[31m\nred.urdf"), words="\\x1b[31m\\x0ared.urdf")
 
 
 def test_a_folder_without_a_urdf_is_graded_and_cannot_be_inspected(tmp_path: Path) -> None:
-    """What was handed in without a URDF gets a report that says so; there is nothing to inspect."""
+    """A submission without a URDF gets a report that says so; there is nothing to inspect."""
     (tmp_path / "build").mkdir()
     (tmp_path / "build" / "old.urdf").write_bytes(REFERENCE.read_bytes())
     (tmp_path / "notes.txt").write_text("no robot")
@@ -111,8 +111,8 @@ def test_a_folder_without_a_urdf_is_graded_and_cannot_be_inspected(tmp_path: Pat
     refuse("inspect", str(tmp_path), words="has no URDF")
 
 
-def test_a_urdf_alone_has_no_package() -> None:
-    """A part that needs more than a URDF cannot be asked of one."""
+def test_a_single_urdf_has_no_package() -> None:
+    """A part that needs more than a URDF cannot be selected for a single URDF."""
     refuse("grade", str(REFERENCE), "--part", "task2", words="give the folder or archive")
 
 
@@ -130,8 +130,8 @@ CONTENTS = {
 
 
 @pytest.mark.parametrize("name", CONTENTS)
-def test_unreadable_content_is_a_report_like_any_other(name: str, tmp_path: Path) -> None:
-    """A file that ROS 2 cannot read loses urdf-loads, the rest is skipped because of it; the exit code is 1."""
+def test_an_unreadable_urdf_gets_a_report(name: str, tmp_path: Path) -> None:
+    """A file that ROS 2 cannot read fails urdf-loads, the rest is skipped; the exit code is 1."""
     (tmp_path / "my_robot.urdf").write_bytes(CONTENTS[name])
     done = run(("grade", str(tmp_path / "my_robot.urdf"), "--format", "json"))
     assert (done.returncode, done.stderr) == (1, b"")
@@ -143,8 +143,8 @@ def test_unreadable_content_is_a_report_like_any_other(name: str, tmp_path: Path
     assert run(("inspect", str(tmp_path / "my_robot.urdf"))).returncode == 1
 
 
-def test_a_doctype_that_ros_loads_is_graded_and_opens_nothing(tmp_path: Path) -> None:
-    """ROS 2 leaves entities as they stand, and so do we."""
+def test_a_doctype_is_graded_and_opens_nothing(tmp_path: Path) -> None:
+    """ROS 2 leaves entities unresolved, and so does the grader."""
     text = b'<!DOCTYPE r [<!ENTITY x SYSTEM "file:///etc/passwd">]>\n<robot name="a"><link name="&x;"/></robot>'
     (tmp_path / "a.urdf").write_bytes(text)
     done = run(("inspect", str(tmp_path / "a.urdf"), "--format", "json"))
@@ -177,7 +177,7 @@ def test_usage() -> None:
 
 
 def test_a_rubric_with_mistakes_is_refused_with_all_of_them(tmp_path: Path) -> None:
-    """Every mistake has a line of its own, and nothing is graded."""
+    """Every mistake is on a line of its own, and nothing is graded."""
     text = 'id = "x"\ntitel = "y"\n[[part]]\nid = "p"\n[[criterion]]\nid = "a"\npart = "q"\npoints = -1\ncheck = "urdf_load"\n'
     (tmp_path / "bad.toml").write_text(text)
     done = run(("grade", str(REFERENCE), "--rubric", str(tmp_path / "bad.toml")))
@@ -191,10 +191,12 @@ def test_a_rubric_with_mistakes_is_refused_with_all_of_them(tmp_path: Path) -> N
 
 @pytest.mark.parametrize("form", ["terminal", "json"])
 def test_closed_standard_output(form: str) -> None:
-    """One line on standard error and exit code 2, whether it was closed before or breaks on the way."""
+    """One line on standard error and exit code 2, whether it was closed before or during the output."""
     command = f'"{sys.executable}" -m grader grade submissions/reference --format {form}'
     for redirected in (f"{command} >&-", f"({command}; echo $? >&2) | true", f"{command} > /dev/full"):
-        done = subprocess.run(["bash", "-c", redirected], cwd=ROOT, capture_output=True, check=False, timeout=PATIENCE)
+        done = subprocess.run(
+            ["bash", "-c", redirected], cwd=ROOT, capture_output=True, check=False, timeout=HANG_TIMEOUT
+        )
         assert b"standard output" in done.stderr or b"| true" in redirected.encode(), done.stderr
         assert b"Traceback" not in done.stderr
         if "|" not in redirected:

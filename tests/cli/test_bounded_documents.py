@@ -1,4 +1,4 @@
-"""A Word file that takes for ever: what it costs, what it does to a mark, and what is left of the process that reads it."""
+"""A Word file that takes very long: its cost, its effect on a mark, and the end of the process that reads it."""
 
 import io
 import os
@@ -15,7 +15,7 @@ import pytest
 from grader.cli.app import run
 from grader.documents.converter import __file__ as converter
 from tests.classroom.class_runs import eventually, grader, rows, session_of, started
-from tests.command_line import PATIENCE
+from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
 
 REFERENCE = ROOT / "rubrics" / "lab6" / "my_robot"
@@ -23,7 +23,7 @@ _SPAN = 100_000  # columns that a cell of the table declares: each costs as much
 
 
 def slow_docx() -> bytes:
-    """A Word file of a few kilobytes that takes minutes to read."""
+    """Return a Word file of a few kilobytes that takes minutes to read."""
     module = pytest.importorskip("docx")
     document = module.Document()
     table = document.add_table(rows=500, cols=1)
@@ -35,20 +35,20 @@ def slow_docx() -> bytes:
     return data.getvalue()
 
 
-def hand_in(folder: Path) -> Path:
-    """The reference solution with a slow document beside it."""
+def write_submission(folder: Path) -> Path:
+    """Write the reference solution with a slow document beside it."""
     shutil.copytree(REFERENCE, folder / "my_robot")
     (folder / "answers.docx").write_bytes(slow_docx())
     (folder / "notes.md").write_text("Task 1 step 15: It vanishes.\n")
     return folder
 
 
-def test_a_slow_document_leaves_its_criteria_to_a_person(
+def test_a_slow_document_needs_manual_grading(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """It is not read, everything else has its result, and another document is read all the same."""
     monkeypatch.setattr("grader.documents.collection.MAX_SECONDS", 1.0)
-    assert run(["grade", str(hand_in(tmp_path / "alice"))]) == 0
+    assert run(["grade", str(write_submission(tmp_path / "alice"))]) == 0
     shown = " ".join(capsys.readouterr().out.split())
     assert shown.count("the Word and PDF files take longer than 1 s in all; needs manual grading") == 2
     assert "The answer in notes.md, from line 1, needs manual grading" in shown
@@ -56,18 +56,18 @@ def test_a_slow_document_leaves_its_criteria_to_a_person(
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, -15), (signal.SIGKILL, -9)])
-def test_no_converter_outlives_a_grader_that_is_ended(number: signal.Signals, code: int, tmp_path: Path) -> None:
-    """However the grader ends, the process that reads a document for it ends, too."""
-    with started("grade", hand_in(tmp_path / "alice")) as process:
+def test_no_converter_outlives_the_grader(number: signal.Signals, code: int, tmp_path: Path) -> None:
+    """However the grader ends, its converter process ends, too."""
+    with started("grade", write_submission(tmp_path / "alice")) as process:
         _stop_converter(process)
         process.send_signal(number)  # to the grader alone
-        assert process.wait(PATIENCE) == code
+        assert process.wait(HANG_TIMEOUT) == code
         assert eventually(lambda: not session_of(process))
 
 
-def test_no_converter_outlives_a_batch_that_is_ended(tmp_path: Path) -> None:
-    """A worker that is ended takes its converter with it."""
-    hand_in(tmp_path / "class" / "alice")
+def test_no_converter_outlives_a_killed_batch(tmp_path: Path) -> None:
+    """A worker that is killed takes its converter with it."""
+    write_submission(tmp_path / "class" / "alice")
     with started("batch", tmp_path / "class", "--gradebook", tmp_path / "lab.db", "--jobs", "1") as process:
         _stop_converter(process)
         process.kill()
@@ -75,23 +75,23 @@ def test_no_converter_outlives_a_batch_that_is_ended(tmp_path: Path) -> None:
 
 
 def _stop_converter(process: "subprocess.Popen[str]") -> None:
-    """Wait for the converter, and stop it: it must be ended from outside, and not end by its own limits."""
+    """Wait for the converter, and stop it, so that it can only be killed and does not reach its own limits."""
     assert eventually(lambda: _converters(process))
     os.kill(_converters(process)[0], signal.SIGSTOP)
 
 
 def _converters(process: "subprocess.Popen[str]") -> list[int]:
-    """The processes that have limited their processor time, which they do after all else is set up."""
+    """Return the processes that have limited their processor time, which is the last step of a converter's start."""
     found = []
-    for each in session_of(process):
+    for pid in session_of(process):
         with suppress(OSError):
-            if not re.search(r"Max cpu time +unlimited", Path(f"/proc/{each}/limits").read_text()):
-                found.append(each)
+            if not re.search(r"Max cpu time +unlimited", Path(f"/proc/{pid}/limits").read_text()):
+                found.append(pid)
     return found
 
 
 def test_a_converter_without_a_death_signal_watches_its_parent(tmp_path: Path) -> None:
-    """Where the kernel does not end it, a thread does: that of a system without PR_SET_PDEATHSIG."""
+    """A thread ends the converter on systems without PR_SET_PDEATHSIG."""
     child = (
         f"import sys, time; sys.path.insert(0, {str(ROOT)!r}); from grader.documents import converter as it\n"
         "it._has_death_signal = lambda: False\n"
@@ -113,16 +113,18 @@ def test_a_converter_without_a_death_signal_watches_its_parent(tmp_path: Path) -
         assert eventually(lambda: not session_of(process))
 
 
-def test_a_converter_whose_parent_is_gone_ends_at_once() -> None:
-    """A parent that ends before the kernel is told of it leaves nothing behind."""
+def test_a_converter_without_a_parent_ends_at_once() -> None:
+    """A parent that ends before the kernel is told about it leaves no converter."""
     other = os.getppid()  # not the parent of what is started here
-    done = subprocess.run([sys.executable, "-P", converter, "docx", "600", str(other)], timeout=PATIENCE, check=False)
+    done = subprocess.run(
+        [sys.executable, "-P", converter, "docx", "600", str(other)], timeout=HANG_TIMEOUT, check=False
+    )
     assert done.returncode == 1
 
 
 def test_a_mark_never_depends_on_a_document(tmp_path: Path) -> None:
-    """A submission whose grading is lost to a document is graded without it, and has the points of one that has none."""
-    hand_in(tmp_path / "class" / "alice")
+    """If grading fails because of a document, the submission is graded again without it, with the same points."""
+    write_submission(tmp_path / "class" / "alice")
     shutil.copytree(REFERENCE, tmp_path / "class" / "bob" / "my_robot")
     book = tmp_path / "lab.db"
     done = grader("batch", tmp_path / "class", "--gradebook", book, "--timeout", "4", "--jobs", "2")

@@ -1,4 +1,4 @@
-"""What one input may cost: processor time and memory of the whole command, and what a limit says of itself."""
+"""The cost of a single input: processor time and memory of the whole command, and messages about limits."""
 
 import gzip
 import io
@@ -16,8 +16,8 @@ from typing import NamedTuple
 import pytest
 
 from tests.classroom.class_runs import counted, environment, grader, reasons, verdicts
-from tests.command_line import GRADER, PATIENCE
-from tests.patience import BUSY
+from tests.command_line import GRADER, HANG_TIMEOUT
+from tests.processor_time import BUSY
 from tests.samples import ROOT
 
 MIB = 1024 * 1024
@@ -26,7 +26,7 @@ _SECONDS, _MEMORY = 1.0 * BUSY, 200 * MIB
 
 
 class Cost(NamedTuple):
-    """What a command took, and what it said."""
+    """The cost and the output of a command."""
 
     seconds: float
     bytes: int
@@ -35,7 +35,7 @@ class Cost(NamedTuple):
     err: str
 
 
-# A process in between: what is measured of a child begins with the memory of the process that it was forked from.
+# An intermediate process, because a child's peak memory starts with that of the process that forked it.
 _MEASURED = """
 import json, os, subprocess, sys
 process = subprocess.Popen(sys.argv[2:])
@@ -47,12 +47,12 @@ with open(sys.argv[1], "w") as file:
 
 
 def cost(*arguments: str | Path) -> Cost:
-    """Run the command line in a process of its own."""
+    """Run the command line in a process of its own and return its cost."""
     return measured(*GRADER, *arguments)
 
 
 def measured(*command: str | Path) -> Cost:
-    """Run a command."""
+    """Run a command and return its cost."""
     with tempfile.TemporaryDirectory() as folder:
         figures = Path(folder) / "figures.json"
         done = subprocess.run(
@@ -60,7 +60,7 @@ def measured(*command: str | Path) -> Cost:
             env=environment(),
             capture_output=True,
             text=True,
-            timeout=PATIENCE,
+            timeout=HANG_TIMEOUT,
             check=True,
         )
         seconds, size, code = json.loads(figures.read_text())
@@ -68,7 +68,7 @@ def measured(*command: str | Path) -> Cost:
 
 
 def filled(piece: Callable[[int], str], size: int = MIB - 300) -> str:
-    """Pieces one behind the other, up to a size."""
+    """Repeat pieces up to a size."""
 
     def pieces() -> Iterator[str]:
         left, number = size, 0
@@ -81,7 +81,7 @@ def filled(piece: Callable[[int], str], size: int = MIB - 300) -> str:
 
 
 def robot(body: str) -> str:
-    """A URDF with this body."""
+    """Return a URDF with this body."""
     return f'<robot name="r">{body}</robot>'
 
 
@@ -104,7 +104,7 @@ URDFS = {
 @pytest.mark.parametrize("command", ["inspect", "grade"])
 @pytest.mark.parametrize("kind", URDFS)
 def test_a_urdf_of_a_megabyte(kind: str, command: str, tmp_path: Path) -> None:
-    """Whatever it is made of, it takes less than a second."""
+    """Whatever its content, it takes less than a second."""
     (tmp_path / "a.urdf").write_text(URDFS[kind])
     used = cost(command, tmp_path / "a.urdf")
     assert used.code in (0, 1), used.err
@@ -154,7 +154,7 @@ DOCUMENTS = {
 
 @pytest.mark.parametrize("kind", DOCUMENTS)
 def test_documents_of_a_megabyte(kind: str, tmp_path: Path) -> None:
-    """Texts with answers take less than a second together."""
+    """Documents with answers take less than a second together."""
     text, count = DOCUMENTS[kind]
     (tmp_path / "my_robot.urdf").write_bytes(URDF)
     for number in range(count):
@@ -165,9 +165,9 @@ def test_documents_of_a_megabyte(kind: str, tmp_path: Path) -> None:
     assert used.bytes < _MEMORY
 
 
-def tarred(place: Path, files: dict[str, bytes], links: dict[str, str]) -> Path:
-    """A tar.gz of some files and links."""
-    with tarfile.open(place, "w:gz") as archive:
+def tarred(path: Path, files: dict[str, bytes], links: dict[str, str]) -> Path:
+    """Make a tar.gz of some files and symlinks."""
+    with tarfile.open(path, "w:gz") as archive:
         for name, data in files.items():
             info = tarfile.TarInfo(name)
             info.size = len(data)
@@ -176,14 +176,14 @@ def tarred(place: Path, files: dict[str, bytes], links: dict[str, str]) -> Path:
             info = tarfile.TarInfo(name)
             info.type, info.linkname = tarfile.SYMTYPE, target
             archive.addfile(info)
-    return place
+    return path
 
 
 @pytest.mark.parametrize(
     "name", ["{0}.txt", "{0}/package.xml", "{0}.png", "{0}.urdf", "/".join("e" * 10 for _ in range(50)) + "/{0}"]
 )
-def test_links_to_one_folder(name: str, tmp_path: Path) -> None:
-    """240 links to a folder of 200 files take less than a second."""
+def test_symlinks_to_one_folder(name: str, tmp_path: Path) -> None:
+    """240 symlinks to a folder of 200 files take less than a second."""
     files = {"my_robot.urdf": URDF} | {f"d/{name.format(n)}": b"x" for n in range(200)}
     used = cost("grade", tarred(tmp_path / "lab6.tar.gz", files, {f"l{n}": "d" for n in range(240)}))
     assert used.code == 1, used.err
@@ -192,7 +192,7 @@ def test_links_to_one_folder(name: str, tmp_path: Path) -> None:
 
 
 def zipped(files: dict[str, bytes]) -> bytes:
-    """A zip whose members are stored as they are."""
+    """Make a zip whose members are stored uncompressed."""
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w") as archive:
         for name, content in files.items():
@@ -201,7 +201,7 @@ def zipped(files: dict[str, bytes]) -> bytes:
 
 
 def test_archives_in_archives(tmp_path: Path) -> None:
-    """Neither their size nor how many there are decides how much memory it takes."""
+    """Neither their sizes nor their number determines the memory used."""
     noise = random.Random(1).randbytes(60 * MIB)
     inner = zipped({"my_robot.urdf": URDF, "noise.bin": noise})
     (tmp_path / "lab6.zip").write_bytes(zipped({f"{n}/in.zip": zipped({"in.zip": inner}) for n in range(3)}))
@@ -212,8 +212,8 @@ def test_archives_in_archives(tmp_path: Path) -> None:
     assert used.bytes < _MEMORY
 
 
-def test_a_class_zip_of_archives_is_read_in_pieces(tmp_path: Path) -> None:
-    """What a student has handed in is never in memory as a whole."""
+def test_a_class_zip_of_archives_is_read_in_chunks(tmp_path: Path) -> None:
+    """A submission is never in memory as a whole."""
     noise = random.Random(1).randbytes(60 * MIB)
     (tmp_path / "class.zip").write_bytes(
         zipped({"ann.zip": zipped({"my_robot.urdf": URDF, **{f"{n}.bin": noise for n in range(4)}})})
@@ -230,58 +230,58 @@ def test_a_class_zip_of_archives_is_read_in_pieces(tmp_path: Path) -> None:
 # --- One large file -----------------------------------------------------------------------------------------------------
 
 
-def sparse(place: Path, megabytes: int) -> Path:
-    """A file of so many megabytes that takes no room on the disk."""
-    with place.open("wb") as file:
+def sparse(path: Path, megabytes: int) -> Path:
+    """Make a sparse file of so many megabytes."""
+    with path.open("wb") as file:
         file.truncate(megabytes * 1_000_000)
-    return place
+    return path
 
 
-def large_hand_in(kind: str, place: Path, size: int) -> Path:
-    """The reference's URDF beside a video of so many bytes, none of which a test has to write where that can be."""
+def large_submission(kind: str, path: Path, size: int) -> Path:
+    """Write the reference's URDF beside a video of so many bytes, sparse where possible."""
     video = "Task3_Step3.mp4"
     if kind == "folder":
-        place.mkdir()
-        (place / "my_robot.urdf").write_bytes(URDF)
-        sparse(place / video, size // 1_000_000)
+        path.mkdir()
+        (path / "my_robot.urdf").write_bytes(URDF)
+        sparse(path / video, size // 1_000_000)
     elif kind == "zip":
-        with zipfile.ZipFile(place, "w") as archive:
+        with zipfile.ZipFile(path, "w") as archive:
             archive.writestr(video, b"")
             archive.writestr("my_robot.urdf", URDF)
             archive.infolist()[0].file_size = size
     else:
         head, small = tarfile.TarInfo(video), tarfile.TarInfo("my_robot.urdf")
         head.size, small.size = size, len(URDF)
-        with place.open("wb") as file:
+        with path.open("wb") as file:
             file.write(head.tobuf())
             file.seek(size + -size % 512, io.SEEK_CUR)
             file.write(small.tobuf() + URDF + bytes(-len(URDF) % 512 + 1024))
         if kind == "tar.gz":
-            place.write_bytes(gzip.compress(place.read_bytes(), 0))
-    return place
+            path.write_bytes(gzip.compress(path.read_bytes(), 0))
+    return path
 
 
 @pytest.mark.parametrize("kind", ["folder", "zip", "tar", "tar.gz"])
-def test_a_video_is_ignored_by_name(kind: str, tmp_path: Path) -> None:
-    """The rest is graded, the report names the file with its size, and it is evidence all the same."""
+def test_a_video_is_ignored_and_named(kind: str, tmp_path: Path) -> None:
+    """The rest is graded, the report names the file with its size, and it counts as evidence all the same."""
     size = 100_000_000 if kind == "tar.gz" else 600_000_000  # what is decompressed has to be written first
-    used = cost("grade", large_hand_in(kind, tmp_path / f"lab6.{kind}", size), "--part", "task1", "--part", "task3")
-    said = " ".join(used.out.split())
+    used = cost("grade", large_submission(kind, tmp_path / f"lab6.{kind}", size), "--part", "task1", "--part", "task3")
+    output = " ".join(used.out.split())
     assert (
         f"Task3_Step3.mp4 ({size // 1_000_000} MB) is larger than 64 MiB, the limit for one file, and was ignored"
-        in said
+        in output
     )
-    assert f"Task3_Step3.mp4 ({size // 1_000_000}.0 MB)" in said
-    assert (used.code, "70 / 72 points" in said) == (0, True), said
+    assert f"Task3_Step3.mp4 ({size // 1_000_000}.0 MB)" in output
+    assert (used.code, "70 / 72 points" in output) == (0, True), output
     assert used.seconds < _SECONDS * 1.5
     assert used.bytes < _MEMORY
 
 
 def test_a_compressed_tar_is_read_to_a_limit(tmp_path: Path) -> None:
-    """A file that is ignored has to be decompressed all the same: so much and no more; the message names the limit."""
-    place = large_hand_in("tar.gz", tmp_path / "plain.tar.gz", 80_000_000)
+    """An ignored file must be decompressed all the same, up to a limit that the message names."""
+    path = large_submission("tar.gz", tmp_path / "plain.tar.gz", 80_000_000)
     packed = tmp_path / "lab6.tar.gz"
-    packed.write_bytes(gzip.compress(gzip.decompress(place.read_bytes())))
+    packed.write_bytes(gzip.compress(gzip.decompress(path.read_bytes())))
     used = cost("grade", packed)
     assert used.code == 2
     assert "would unpack to more than 33554432 bytes, the limit for an archive, and was not read" in used.err
@@ -289,7 +289,7 @@ def test_a_compressed_tar_is_read_to_a_limit(tmp_path: Path) -> None:
     assert used.bytes < _MEMORY
 
 
-def test_a_bomb_in_a_zip_is_ignored_by_what_it_declares(tmp_path: Path) -> None:
+def test_a_zip_bomb_is_ignored_by_its_declared_size(tmp_path: Path) -> None:
     """Nothing of it is unpacked."""
     with zipfile.ZipFile(tmp_path / "lab6.zip", "w", zipfile.ZIP_DEFLATED) as archive:
         archive.writestr("bomb.txt", bytes(100 * MIB))
@@ -304,8 +304,8 @@ def test_a_bomb_in_a_zip_is_ignored_by_what_it_declares(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("kind", ["file", "folder", "zip", "class.zip"])
-def test_a_class_has_a_limit_that_can_be_raised(kind: str, tmp_path: Path) -> None:
-    """What was too large is graded again when --max-size is raised, and nothing twice for the same limit."""
+def test_the_limit_of_a_class_can_be_raised(kind: str, tmp_path: Path) -> None:
+    """Too large submissions are graded again when --max-size is raised, and not again for the same limit."""
     large = URDF + b"<!--" + b" " * MIB + b"-->"
     folder = tmp_path / "class"
     (folder / "ann").mkdir(parents=True)

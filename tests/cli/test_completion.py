@@ -1,4 +1,4 @@
-"""Completion: what the shell is offered for a word, in its own form, and never an error in the middle of what is typed."""
+"""Completion: the words offered to each shell, in its format, and never an error while the user types."""
 
 import os
 import shutil
@@ -12,7 +12,7 @@ from grader.cli.app import COMMANDS
 from grader.grading.rubric import shipped_rubrics
 from grader.report.formats import Format
 from grader.report.rubrics import EVERY_KIND
-from tests.command_line import PATIENCE
+from tests.command_line import HANG_TIMEOUT
 from tests.golden.cases import ROOT, run
 
 PARTS = ["task1", "task2", "task3", "questions"]
@@ -26,12 +26,12 @@ def rubrics(start: str) -> list[str]:
 
 
 def codes(start: str) -> list[str]:
-    """The codes of problems that begin so."""
+    """Return the codes of problems that start with this prefix."""
     return [kind.code for kind in EVERY_KIND if kind.code.startswith(start)]
 
 
 def in_bash(line: str) -> list[str]:
-    """What bash is offered for the last word of a line."""
+    """Return the completions of bash for the last word of a line."""
     done = run((), _GRADER_COMPLETE="complete_bash", COMP_WORDS=line, COMP_CWORD=str(line.count(" ")))
     assert (done.returncode, done.stderr) == (0, b"")
     return done.stdout.decode().split()
@@ -67,9 +67,9 @@ def in_bash(line: str) -> list[str]:
         ("grader bundle ", ["gradescope"]),
     ],
 )
-def test_what_is_offered(line: str, offered: list[str]) -> None:
-    """Commands, options, and the names that an option or argument takes."""
-    assert [each for each in in_bash(line) if each in offered] == offered
+def test_completions(line: str, offered: list[str]) -> None:
+    """Commands, options, and the values of an option or argument."""
+    assert [word for word in in_bash(line) if word in offered] == offered
     assert len(in_bash(line)) == len(set(in_bash(line)) & set(offered))
 
 
@@ -90,8 +90,8 @@ def test_what_is_offered(line: str, offered: list[str]) -> None:
         "",
     ],
 )
-def test_nothing_is_offered_where_nothing_is_known(line: str) -> None:
-    """The shell completes the name of a file then, if it likes."""
+def test_no_completions(line: str) -> None:
+    """If nothing is known, the shell may complete file names."""
     assert set(in_bash(line)) <= set(COMMANDS)
 
 
@@ -105,23 +105,23 @@ def test_nothing_is_offered_where_nothing_is_known(line: str) -> None:
         {"_GRADER_COMPLETE": "complete_fish"},
     ],
 )
-def test_a_shell_that_asks_wrongly_is_told_nothing(variables: dict[str, str]) -> None:
+def test_invalid_requests_print_nothing(variables: dict[str, str]) -> None:
     """No error, no traceback."""
     done = run((), **variables)
     assert (done.returncode, done.stdout.strip(), done.stderr) == (0, b"", b"")
 
 
-def test_a_shell_that_does_not_listen() -> None:
-    """Standard output that is closed is no error either."""
-    asked = {**os.environ, "_GRADER_COMPLETE": "complete_bash", "COMP_WORDS": "grader g", "COMP_CWORD": "1"}
+def test_closed_standard_output_is_no_error() -> None:
+    """A shell that closes standard output causes no error."""
+    requested = {**os.environ, "_GRADER_COMPLETE": "complete_bash", "COMP_WORDS": "grader g", "COMP_CWORD": "1"}
     for redirected in (">&-", "> /dev/full"):
         command = ["bash", "-c", f'"{sys.executable}" -m grader {redirected}']
-        done = subprocess.run(command, cwd=ROOT, env=asked, capture_output=True, check=False, timeout=PATIENCE)
+        done = subprocess.run(command, cwd=ROOT, env=requested, capture_output=True, check=False, timeout=HANG_TIMEOUT)
         assert (done.returncode, done.stderr) == (0, b"")
 
 
 def test_zsh() -> None:
-    """Every word with what it means, whole; and files where nothing is known."""
+    """Every word with its description, whole; and files if nothing is known."""
     done = run((), _GRADER_COMPLETE="complete_zsh", _TYPER_COMPLETE_ARGS="grader grade x --part ta")
     assert done.stdout.decode().split("\n")[:2] == [
         '_arguments \'*: :(("task1":"A wheeled base in URDF"',
@@ -134,12 +134,12 @@ def test_zsh() -> None:
 
 
 def test_fish() -> None:
-    """It asks first whether there is anything, and then what: a tab stands before the meaning."""
+    """fish first asks whether there are completions, then for them: a tab precedes the description."""
     line = {"_GRADER_COMPLETE": "complete_fish", "_TYPER_COMPLETE_ARGS": "grader explain URDF05"}
     assert run((), **line, _TYPER_COMPLETE_FISH_ACTION="is-args").returncode == 0
     words = run((), **line, _TYPER_COMPLETE_FISH_ACTION="get-args").stdout.decode().splitlines()
-    assert [each.partition("\t")[0] for each in words] == codes("URDF05")
-    assert all(each.partition("\t")[2] for each in words)
+    assert [word.partition("\t")[0] for word in words] == codes("URDF05")
+    assert all(word.partition("\t")[2] for word in words)
     line["_TYPER_COMPLETE_ARGS"] = "grader grade "
     assert run((), **line, _TYPER_COMPLETE_FISH_ACTION="is-args").returncode == 1
 
@@ -156,7 +156,7 @@ ask() {
 
 
 def sourced(tmp_path: Path, *lines: str) -> list[str]:
-    """What a bash that has read our script prints for these lines."""
+    """Return the output of a bash that has sourced the script for these lines."""
     program = tmp_path / "bin" / "grader"
     program.parent.mkdir()
     program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m grader "$@"\n')
@@ -168,14 +168,14 @@ def sourced(tmp_path: Path, *lines: str) -> list[str]:
         env={**os.environ, "PATH": path, "HOME": str(tmp_path)},
         capture_output=True,
         check=False,
-        timeout=PATIENCE,
+        timeout=HANG_TIMEOUT,
     )
     assert done.stderr == b""
     return done.stdout.decode().splitlines()
 
 
 def test_a_real_bash(tmp_path: Path) -> None:
-    """It takes an equals sign for a word of its own, expands what is typed for bin, and shows no error."""
+    """bash splits words at equals signs, expands what is typed for bin, and shows no error."""
     program = "bin/grader"
     assert sourced(
         tmp_path,
@@ -203,14 +203,14 @@ def test_a_real_bash(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
-def test_the_script_is_read_by_its_shell(shell: str) -> None:
-    """Both spellings print it, and the shell finds nothing wrong with it."""
+def test_the_script_is_valid_for_its_shell(shell: str) -> None:
+    """Both spellings of the option print it, and the shell finds no error in it."""
     script = run(("--show-completion", shell)).stdout
     assert script == run((f"--show-completion={shell}",)).stdout
     assert b"grader" in script
     if shutil.which(shell) is None:
         pytest.skip(f"there is no {shell} here")
-    done = subprocess.run([shell, "-n"], input=script, capture_output=True, check=False, timeout=PATIENCE)
+    done = subprocess.run([shell, "-n"], input=script, capture_output=True, check=False, timeout=HANG_TIMEOUT)
     assert (done.returncode, done.stderr) == (0, b"")
 
 
@@ -222,8 +222,8 @@ def test_the_script_is_read_by_its_shell(shell: str) -> None:
         ("fish", ".config/fish/completions/grader.fish"),
     ],
 )
-def test_it_is_put_where_the_shell_reads_it(shell: str, file: str, tmp_path: Path) -> None:
-    """Twice is once, and what the shell read before stays."""
+def test_installation(shell: str, file: str, tmp_path: Path) -> None:
+    """Installing twice is the same as once, and the rest of the shell's start-up file is kept."""
     (tmp_path / ".bashrc").write_text("alias ll='ls -l'\n")
     for _ in range(2):
         done = run(("--install-completion", shell), HOME=str(tmp_path))
@@ -232,11 +232,11 @@ def test_it_is_put_where_the_shell_reads_it(shell: str, file: str, tmp_path: Pat
     assert (tmp_path / file).read_bytes().strip() == run(("--show-completion", shell)).stdout.strip()
     lines = (tmp_path / ".bashrc").read_text().split("\n")
     assert lines[0] == "alias ll='ls -l'"
-    assert [each for each in lines[1:] if each] == ([f"source '{tmp_path / file}'"] if shell == "bash" else [])
+    assert [line for line in lines[1:] if line] == ([f"source '{tmp_path / file}'"] if shell == "bash" else [])
 
 
 def refuse(words: str, *arguments: str, **variables: str) -> None:
-    """One line on standard error, exit code 2."""
+    """Assert one line on standard error and exit code 2."""
     done = run(arguments, **variables)
     assert (done.returncode, done.stdout) == (2, b"")
     assert done.stderr.startswith(b"grader: ")
@@ -244,8 +244,8 @@ def refuse(words: str, *arguments: str, **variables: str) -> None:
     assert words in done.stderr.decode()
 
 
-def test_what_cannot_be_set_up(tmp_path: Path) -> None:
-    """Another shell, more than one, and a home that cannot be written to; the next thing to type is said."""
+def test_impossible_installations(tmp_path: Path) -> None:
+    """Another shell, more than one, and a home that cannot be written to; the message says what to type."""
     refuse("takes one of bash, zsh, fish, not 'tcsh'", "--show-completion", "tcsh")
     refuse("takes one of bash, zsh, fish, not 'bash zsh'", "--install-completion", "bash", "zsh")
     (tmp_path / ".bashrc").mkdir()
@@ -254,8 +254,8 @@ def test_what_cannot_be_set_up(tmp_path: Path) -> None:
     refuse(advice, "--install-completion", "bash", HOME=str(tmp_path))
 
 
-def test_the_shell_is_found_out(tmp_path: Path) -> None:
-    """By who started us; where that is no shell that we know, it has to be named."""
+def test_the_shell_is_detected(tmp_path: Path) -> None:
+    """By the parent process; an unknown shell must be named."""
     command = f'"{sys.executable}" -m grader --show-completion; true'
     for shell, words in (
         ("bash", "_grader_completion() {"),
@@ -263,5 +263,7 @@ def test_the_shell_is_found_out(tmp_path: Path) -> None:
     ):
         program = tmp_path / shell
         program.symlink_to(shutil.which("bash") or "bash")
-        done = subprocess.run([program, "-c", command], cwd=ROOT, capture_output=True, check=False, timeout=PATIENCE)
+        done = subprocess.run(
+            [program, "-c", command], cwd=ROOT, capture_output=True, check=False, timeout=HANG_TIMEOUT
+        )
         assert words in (done.stdout + done.stderr).decode()

@@ -1,4 +1,4 @@
-"""grader diff: who changed between two runs or gradebooks, and why, for a person and for programs."""
+"""grader diff: who changed between two runs or gradebooks, and why, for people and programs."""
 
 import json
 import re
@@ -9,11 +9,21 @@ from typing import Any
 import jsonschema
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from tests.classroom.gradebooks import batch, came_out, graded_into, grader, hand_in, lab, lab_text, refusal, urdf
+from tests.classroom.gradebooks import (
+    batch,
+    graded_as,
+    grader,
+    lab,
+    lab_text,
+    record_run,
+    refusal,
+    urdf,
+    write_submission,
+)
 
 
 def diff(top: Path, *more: object) -> str:
-    """What it says, without the line that names the runs."""
+    """Return the output without the line that names the runs."""
     done = grader("diff", top / "book.db", *more)
     assert (done.returncode, done.stderr) == (0, "")
     first, rest = done.stdout.split("\nrun 2", 1)[0], done.stdout
@@ -22,7 +32,7 @@ def diff(top: Path, *more: object) -> str:
 
 
 def as_json(*arguments: object) -> dict[str, Any]:
-    """The same as JSON, which the schema knows."""
+    """Return the same as JSON, valid under its schema."""
     data = json.loads(grader("diff", *arguments, "--format", "json").stdout)
     jsonschema.validate(data, json.loads(grader("schema", "diff").stdout))
     return dict(data)
@@ -36,12 +46,12 @@ def test_one_run_is_not_enough(graded_class: Path) -> None:
 
 
 def test_all_reasons(top: Path) -> None:
-    """Nothing changed, then one thing after the other did."""
+    """First no change, then one reason after the other."""
     batch(top)
     assert diff(top) == "nothing changed\n"
     assert as_json(top / "book.db")["students"] == []
     (top / "class" / "anna" / "robot.urdf").write_text(urdf("2 2 2"))
-    hand_in(top / "class" / "dora")
+    write_submission(top / "class" / "dora")
     batch(top)
     assert diff(top) == (
         "anna: 6 to 3 (-3)\n  the submission changed\n    box: 2.5 to 0 (-2.5)\n    tall: 0.5 to 0 (-0.5)\n"
@@ -60,9 +70,9 @@ def test_all_reasons(top: Path) -> None:
 
 
 def test_two_gradebooks(top: Path, tmp_path: Path) -> None:
-    """Who was in one only is told, and the JSON form has all of it."""
+    """Students in only one of them are reported, and the JSON form is complete."""
     shutil.copy(top / "book.db", tmp_path / "before.db")
-    hand_in(top / "class" / "zoe")
+    write_submission(top / "class" / "zoe")
     batch(top)
     grader("mark", "emil", "essay", "0", "--gradebook", top / "book.db")
     data = as_json(tmp_path / "before.db", top / "book.db")
@@ -73,22 +83,22 @@ def test_two_gradebooks(top: Path, tmp_path: Path) -> None:
         {"id": "zoe", "before": None, "after": 6, "because": ["first submission"], "criteria": []},
     ]
     back = as_json(top / "book.db", tmp_path / "before.db")["students"]
-    assert [each["because"] for each in back] == [["manual marks changed"], ["no longer there"]]
+    assert [change["because"] for change in back] == [["manual marks changed"], ["no longer there"]]
     both = refusal(grader("diff", top / "book.db", tmp_path / "before.db", "--from", 1))
     assert both == "--from and --to choose runs of one gradebook: give one gradebook, or omit them"
     assert "there is no gradebook" in refusal(grader("diff", top / "book.db", tmp_path / "none.db"))
 
 
 def test_one_damaged_zip_is_a_few_lines(tmp_path: Path) -> None:
-    """Many criteria that took the same step are one line, there are at most twelve, and a verdict alone is said to be."""
+    """Criteria with the same change share a line, there are at most twelve, and a change of the verdict alone counts."""
     numbers = range(1, 31)
     for name, rubric in (
         ("few", lab(**{f"c{number}": "1" for number in numbers})),
         ("many", lab(**{f"c{number}": str(number) for number in numbers})),
     ):
         with Gradebook(tmp_path / f"{name}.db", create=True) as book:
-            graded_into(book, rubric, [came_out(rubric, "anna", "ppp??" + "f" * 30)])
-            graded_into(book, rubric, [came_out(rubric, "anna", "fff??" + "?" * 15 + "p" * 15, "b")])
+            record_run(book, rubric, [graded_as(rubric, "anna", "ppp??" + "f" * 30)])
+            record_run(book, rubric, [graded_as(rubric, "anna", "fff??" + "?" * 15 + "p" * 15, "b")])
     lines = grader("diff", tmp_path / "few.db").stdout.splitlines()
     assert lines[3:] == [
         "    loads: 3 to 0 (-3)",
@@ -100,24 +110,24 @@ def test_one_damaged_zip_is_a_few_lines(tmp_path: Path) -> None:
     lines = grader("diff", tmp_path / "many.db").stdout.splitlines()
     assert len(lines) == 3 + 12 + 1
     assert lines[-2:] == ["    c23: 0 to 23 (+23)", "    ... and 7 more"]
-    told = as_json(tmp_path / "many.db")["students"][0]["criteria"]
-    assert len(told) == 33
+    reported = as_json(tmp_path / "many.db")["students"][0]["criteria"]
+    assert len(reported) == 33
 
 
 def test_only_the_verdict_changed(tmp_path: Path) -> None:
-    """No step is made up where no criterion took one."""
+    """No criterion is reported if none changed."""
     rubric = lab()
     with Gradebook(tmp_path / "book.db", create=True) as book:
-        graded_into(book, rubric, [came_out(rubric, "anna", "?????")])
-        graded_into(book, rubric, [came_out(rubric, "anna", "?????", "b", "it is no zip")])
+        record_run(book, rubric, [graded_as(rubric, "anna", "?????")])
+        record_run(book, rubric, [graded_as(rubric, "anna", "?????", "b", "it is no zip")])
     assert diff(tmp_path) == (
         "anna: 0 as before, only the status changed\n  the submission changed; it was graded, and is unreadable\n"
     )
 
 
-def test_names_are_harmless(top: Path) -> None:
-    """A key that would colour or turn the terminal is spelt out."""
-    hand_in(top / "class" / "x[red]\x1b[31m\u202ey")
+def test_names_are_escaped(top: Path) -> None:
+    """Escape sequences and bidirectional marks in a key are escaped."""
+    write_submission(top / "class" / "x[red]\x1b[31m\u202ey")
     batch(top)
     text = diff(top)
     assert "[red]" in text

@@ -1,21 +1,21 @@
-"""grader grade --expect-rubric, and that no file of a student's is ever taken for the rubric."""
+"""grader grade --expect-rubric: a student's file is never used as the rubric."""
 
 from pathlib import Path
 
 import pytest
 
-from tests.cli.jobs import ELSEWHERE, Job
+from tests.cli.jobs import ELSEWHERE, GithubJob
 from tests.samples import LAB6
 
 
 @pytest.fixture
-def job(tmp_path: Path) -> Job:
-    """A job of its own."""
-    return Job(tmp_path)
+def job(tmp_path: Path) -> GithubJob:
+    """Return a job of its own."""
+    return GithubJob(tmp_path)
 
 
-def test_the_rubric_is_the_courses(job: Job) -> None:
-    """Whatever a repository calls its files, an id means the rubric that comes with the grader; a path means the file."""
+def test_an_id_is_the_shipped_rubric(job: GithubJob) -> None:
+    """Whatever files a repository contains, an id means the shipped rubric and a path means the file."""
     own = LAB6.data.replace(b"IRP Lab 6", b"My own")
     for name in ("lab6", "lab6.toml", "rubrics/lab6.toml", "grader/rubrics/lab6.toml", ".toml/lab6"):
         file = job.checkout / name
@@ -43,8 +43,8 @@ def test_the_rubric_is_the_courses(job: Job) -> None:
         ("", "--expect-rubric takes the 64 digits"),
     ],
 )
-def test_expected_rubric(job: Job, given: str, words: str) -> None:
-    """Only the very bytes that are expected are graded by, in upper or lower case; what is no hash is refused."""
+def test_expected_rubric(job: GithubJob, given: str, words: str) -> None:
+    """Only a rubric with the expected hash is used, in upper or lower case; anything that is no hash is refused."""
     done = job.run("grade", "my_robot.urdf", "--expect-rubric", given, around=ELSEWHERE)
     assert done.returncode == (2 if words else 1)
     assert words in done.stderr.decode()

@@ -1,4 +1,4 @@
-"""grader export: the current grades in a CSV, as JSON, in a gradebook of Canvas and in a worksheet of Moodle."""
+"""grader export: the current grades as CSV, as JSON, in a Canvas gradebook and in a Moodle worksheet."""
 
 import csv
 import io
@@ -28,7 +28,17 @@ from grader.errors import InputError
 from grader.files.opening import ARCHIVES
 from grader.grading.grade import grade
 from grader.usecases.export import preflight_lines
-from tests.classroom.gradebooks import batch, came_out, graded_into, grader, hand_in, lab, lab_text, make_class, refusal
+from tests.classroom.gradebooks import (
+    batch,
+    graded_as,
+    grader,
+    lab,
+    lab_text,
+    make_class,
+    record_run,
+    refusal,
+    write_submission,
+)
 from tests.samples import LAB6, ROOT, opened
 
 sys.path.insert(0, str(ROOT / "benchmarks"))  # a folder of scripts
@@ -44,24 +54,24 @@ def export(top: Path, target: str, *more: object) -> Any:
 
 
 def table(text: str) -> dict[str, dict[str, str]]:
-    """The rows of a CSV by what stands in their first cell."""
+    """Return the rows of a CSV by their first cell."""
     return {next(iter(row.values())): row for row in csv.DictReader(io.StringIO(text))}
 
 
 def mark(top: Path, key: str, **points: str) -> None:
-    """Mark criteria by hand."""
+    """Add manual marks to criteria."""
     with Gradebook(top / "book.db") as book:
         standings = Grades(book)
         standing = standings.find(key)
-        for name, each in points.items():
-            add_mark(book, standing, criterion_of(standings.rubric(standing.rubric), name), Decimal(each), "me", "")
+        for name, value in points.items():
+            add_mark(book, standing, criterion_of(standings.rubric(standing.rubric), name), Decimal(value), "me", "")
 
 
 # --- For a spreadsheet, and for programs ------------------------------------------------------------------------------
 
 
 def test_csv(top: Path) -> None:
-    """A row for everyone, cells of what nobody has decided are empty, and whoever is not final says why."""
+    """There is a row for every student, undecided cells are empty, and a grade that is not final has its reason."""
     mark(top, "anna", essay="3.5", picture="1")
     mark(top, "emil", box="1.25")
     done = export(top, "csv")
@@ -81,25 +91,25 @@ def test_csv(top: Path) -> None:
     assert (top / "same.csv").read_bytes() == (top / "grades.csv").read_bytes()
 
 
-def test_the_view_the_csv_and_the_json_say_the_same(top: Path) -> None:
-    """SELECT * FROM grade is what the command line says, for everyone."""
+def test_view_csv_and_json_agree(top: Path) -> None:
+    """SELECT * FROM grade gives the same as the command line, for every student."""
     mark(top, "anna", essay="1.2345", loads="0")
     mark(top, "cleo", box="2.5")
     mark(top, "ben", picture="1")
     rows = table(export(top, "csv").stdout)
     data = json.loads(export(top, "json").stdout)
     jsonschema.validate(data, json.loads(grader("schema", "class").stdout))
-    told = {each["id"]: each for each in data["students"]}
+    reported = {student["id"]: student for student in data["students"]}
     with Gradebook(top / "book.db") as book:
         view = {row[0]: row[1:] for row in book.rows("SELECT key, verdict, score, out_of, pending FROM grade")}
-    assert view.keys() == rows.keys() == told.keys()
+    assert view.keys() == rows.keys() == reported.keys()
     for key, (verdict, *numbers) in view.items():
-        assert verdict == rows[key]["status"] == told[key]["status"]
+        assert verdict == rows[key]["status"] == reported[key]["status"]
         for name, number in zip(("score", "max_score", "pending"), numbers, strict=True):
             exact = None if number is None else Decimal(number) / 10_000
             assert exact == (Decimal(rows[key][name]) if rows[key][name] else None)
-            assert exact == (None if told[key][name] is None else Decimal(str(told[key][name])))
-        cells = [Decimal(rows[key][each] or 0) for each in ("loads", "box", "tall", "essay", "picture")]
+            assert exact == (None if reported[key][name] is None else Decimal(str(reported[key][name])))
+        cells = [Decimal(rows[key][column] or 0) for column in ("loads", "box", "tall", "essay", "picture")]
         assert sum(cells) == Decimal(rows[key]["score"] or 0)
 
 
@@ -118,9 +128,9 @@ AWKWARD = {
 }
 
 
-def test_no_spreadsheet_runs_what_students_call_themselves(tmp_path: Path) -> None:
-    """Formulas get an apostrophe, what turns or colours is spelt out, all other names stay."""
-    hand_in(tmp_path / "class" / "anna")
+def test_no_spreadsheet_runs_students_names(tmp_path: Path) -> None:
+    """Formulas get an apostrophe, escapes and bidirectional marks are escaped, all other names are unchanged."""
+    write_submission(tmp_path / "class" / "anna")
     lines = io.StringIO(newline="")
     csv.writer(lines).writerows([("id", "name"), *((f"s{number}", name) for number, name in enumerate(AWKWARD))])
     (tmp_path / "roster.csv").write_bytes(lines.getvalue().encode())
@@ -144,10 +154,10 @@ emil,Emil So,,,,5 days,105
 POLICY = "due = 2026-09-10T12:00:00Z\ngrace_minutes = 60\npercent_per_day = 10\nfloor_percent = 40"
 
 
-def test_lateness_is_a_line_of_its_own(tmp_path: Path) -> None:
-    """In CSV, JSON, the student's report and the LMS; no criterion's points change by it."""
+def test_the_late_penalty_is_a_line_of_its_own(tmp_path: Path) -> None:
+    """In CSV, JSON, the student's report and the LMS; it changes no criterion's points."""
     for key in ("anna", "ben", "cleo", "dora", "emil"):
-        hand_in(tmp_path / "class" / key)
+        write_submission(tmp_path / "class" / key)
     (tmp_path / "roster.csv").write_text(LATE_ROSTER)
     (tmp_path / "small.toml").write_text(lab_text(POLICY))
     formats = ("--report-format", "json", "--report-format", "terminal")
@@ -160,20 +170,20 @@ def test_lateness_is_a_line_of_its_own(tmp_path: Path) -> None:
         "anna": ("11", "2", "-2.2", "8.8"),
         "ben": ("11", "1", "-1.1", "9.9"),
         "cleo": ("11", "0", "0", "11"),
-        "dora": ("11", "1", "-1.1", "9.9"),  # nobody knows when
+        "dora": ("11", "1", "-1.1", "9.9"),  # the time is unknown
         "emil": ("11", "5", "-5.5", "5.5"),
     }
     assert {tuple(row[name] for name in ("loads", "box", "tall", "essay", "picture")) for row in rows.values()} == {
         ("3", "2.5", "0.5", "4", "1")
     }
-    told = {each["id"]: each for each in json.loads(export(tmp_path, "json").stdout)["students"]}
+    reported = {student["id"]: student for student in json.loads(export(tmp_path, "json").stdout)["students"]}
     words = "2 days late: submitted 2026-09-12T10:00:00Z, deadline 2026-09-10T12:00+00:00"
-    assert told["anna"]["late"] == {"days": 2, "points": -2.2, "because": words}
-    assert (told["anna"]["score"], told["anna"]["total"]) == (11, 8.8)
+    assert reported["anna"]["late"] == {"days": 2, "points": -2.2, "because": words}
+    assert (reported["anna"]["score"], reported["anna"]["total"]) == (11, 8.8)
     report = json.loads((tmp_path / "reports" / "anna.json").read_text())
     jsonschema.validate(report, json.loads(grader("schema", "report").stdout))
     assert report["score"] == 6
-    assert report["notes"] == [f"{words}: the late penalty is 1.6 points, the total is 4.4"]  # no deeper than the floor
+    assert report["notes"] == [f"{words}: the late penalty is 1.6 points, the total is 4.4"]  # not below the floor
     assert f"Note: {report['notes'][0]}" in " ".join((tmp_path / "reports" / "anna.txt").read_text().split())
     later = table(export(tmp_path, "csv", "--due", "2026-09-11T12:00:00Z").stdout)
     assert {key: row["late_days"] for key, row in later.items()} == {
@@ -189,7 +199,7 @@ def test_lateness_is_a_line_of_its_own(tmp_path: Path) -> None:
 
 
 def canvas(points: str = "11", **numbers: str) -> str:
-    """A gradebook of Canvas with these students."""
+    """Return a Canvas gradebook with these students."""
     rows = "".join(f'"{key.title()}, X",{number},,{key},S1,\n' for key, number in numbers.items())
     return f"Student,ID,SIS User ID,SIS Login ID,Section,A small lab (77)\n    Points Possible,,,,,{points}\n{rows}"
 
@@ -198,7 +208,7 @@ EVERYONE = {"anna": "101", "ben": "102", "cleo": "103", "dora": "104", "emil": "
 
 
 def test_who_gets_a_grade_in_canvas(top: Path) -> None:
-    """What waits, could not be read or was not handed in is left out, and the reason is told."""
+    """Pending, unreadable and missing submissions are omitted with the reason."""
     mark(top, "anna", essay="3.5", picture="1")
     (top / "canvas.csv").write_text(canvas(**EVERYONE))
     done = export(top, "canvas", "--into", top / "canvas.csv", "--strict")
@@ -215,8 +225,8 @@ def test_who_gets_a_grade_in_canvas(top: Path) -> None:
     assert zero.stdout == done.stdout + '"Emil, X",105,,emil,S1,3.00\n'
 
 
-def test_only_what_waits_is_taken_for_zero(top: Path) -> None:
-    """Whoever is no longer in the class folder, or was not graded by the newest rubric, gets no grade by it."""
+def test_only_pending_criteria_count_as_zero(top: Path) -> None:
+    """With the option, students who left the class folder or have an older rubric still get no grade."""
     (top / "canvas.csv").write_text(canvas(**EVERYONE))
     assert batch(top).returncode == 0  # where the copy is
     shutil.rmtree(top / "class" / "emil")
@@ -227,7 +237,7 @@ def test_only_what_waits_is_taken_for_zero(top: Path) -> None:
 
 
 def test_strict_writes_nothing(top: Path) -> None:
-    """Where a row has no student or a student no row; without it the rest is written."""
+    """If a row has no student or a student no row, nothing is written; without the option the rest is."""
     mark(top, "anna", essay="3.5", picture="1")
     (top / "canvas.csv").write_text(canvas(anna="101", zoe="999"))
     (top / "out.csv").write_text("as it was")
@@ -260,34 +270,34 @@ def test_strict_writes_nothing(top: Path) -> None:
     ],
 )
 def test_what_is_refused(arguments: tuple[str, ...], why: str, graded_class: Path) -> None:
-    """In one plain line."""
+    """Refused with one plain line."""
     assert refusal(export(graded_class, *arguments)).startswith(why)
 
 
 def test_without_a_target(graded_class: Path) -> None:
-    """The choices are on one line, without the tabs that they come with."""
+    """The choices are on one line, without the tabs around them."""
     why = refusal(grader("export", "--gradebook", graded_class / "book.db"))
     assert "Choose from: csv, canvas, moodle, json (`grader export --help` shows the usage)" in why
 
 
 @pytest.mark.parametrize("name", ["book.db", "../small/book.db", "link.db", "hard.db", "book.db-wal", "book.db-shm"])
 def test_the_gradebook_is_never_replaced(name: str, top: Path) -> None:
-    """Nor what SQLite keeps beside it, whatever it is called; all marks by hand are in there."""
+    """Nor SQLite's files beside it, under any name; it contains all manual marks."""
     mark(top, "anna", essay="3.5")
     (top / "link.db").symlink_to("book.db")
     (top / "hard.db").hardlink_to(top / "book.db")
-    before = {each.name: each.read_bytes() for each in top.iterdir() if each.is_file()}
+    before = {path.name: path.read_bytes() for path in top.iterdir() if path.is_file()}
     why = "this would overwrite the gradebook and all its manual marks"
     assert refusal(export(top, "csv", "--output", top / name)) == f"cannot write {top / name}: {why}"
     book = ("--gradebook", top / "link.db")
     assert refusal(grader("export", "csv", *book, "--output", top / name)).endswith(why)
-    assert {each.name: each.read_bytes() for each in top.iterdir() if each.is_file()} == before
+    assert {path.name: path.read_bytes() for path in top.iterdir() if path.is_file()} == before
 
 
 @pytest.mark.parametrize("name", ["lms.csv", "../small/lms.csv", "link.csv", "hard.csv"])
 @pytest.mark.parametrize("target", ["canvas", "moodle"])
 def test_the_file_of_the_lms_is_never_replaced(name: str, target: str, top: Path) -> None:
-    """Rows without a grade are left out of what is written: in its place they would be lost. It is refused by any name."""
+    """Rows without a grade are omitted in the output and would be lost. The target is refused under any name."""
     lms = top / "lms.csv"
     lms.write_text(canvas(ben="102", nobody="9"))
     (top / "link.csv").symlink_to("lms.csv")
@@ -303,19 +313,19 @@ def test_the_file_of_the_lms_is_never_replaced(name: str, target: str, top: Path
 
 
 def test_without_an_output_no_file_is_written(top: Path) -> None:
-    """The filled file is printed, and the one that was read stays as it was."""
+    """The filled file is printed, and the source file is unchanged."""
     (top / "canvas.csv").write_text(canvas(ben="102"))
     for arguments in (("csv",), ("json",), ("canvas", "--into", top / "canvas.csv")):
-        before = {each: (each.read_bytes(), each.stat().st_mtime_ns) for each in top.rglob("*") if each.is_file()}
+        before = {path: (path.read_bytes(), path.stat().st_mtime_ns) for path in top.rglob("*") if path.is_file()}
         done = export(top, *arguments)
         assert done.returncode == 0, done.stderr
         assert done.stdout
-        after = {each: (each.read_bytes(), each.stat().st_mtime_ns) for each in top.rglob("*") if each.is_file()}
+        after = {path: (path.read_bytes(), path.stat().st_mtime_ns) for path in top.rglob("*") if path.is_file()}
         assert after == before
 
 
-def test_no_link_of_a_submission_is_followed(top: Path) -> None:
-    """The gradebook knows the class: a link that a student has put there leads nowhere, one beside it does."""
+def test_no_symlink_of_a_submission_is_followed(top: Path) -> None:
+    """The gradebook knows the class: a student's symlink is not followed, one beside the class is."""
     assert batch(top).returncode == 0  # the gradebook comes from a copy of the class
     (top / "class" / "anna" / "grades.csv").symlink_to(top / "victim")
     (top / "class" / "anna" / "out").symlink_to(top)
@@ -329,7 +339,7 @@ def test_no_link_of_a_submission_is_followed(top: Path) -> None:
 
 
 def test_another_maximum_is_refused(top: Path) -> None:
-    """Nothing is written unless the points are wanted as they are; then the warning says what the LMS makes of them."""
+    """Nothing is written unless the points are confirmed; then a warning says what the LMS makes of them."""
     (top / "canvas.csv").write_text(canvas("100", ben="102"))
     arguments = ("canvas", "--into", top / "canvas.csv", "--output", top / "out.csv")
     assert refusal(export(top, *arguments)) == (
@@ -343,14 +353,14 @@ def test_another_maximum_is_refused(top: Path) -> None:
     assert (top / "out.csv").read_text().endswith("ben,S1,6.00\n")
 
 
-def test_a_large_class_does_not_flood_the_screen() -> None:
-    """Who has no grade is a line for each reason, and no kind of lines goes on for ever."""
-    waits = [RowNote(number, f"Student {number}", "10 points need manual grading") for number in range(3, 41)]
+def test_the_output_for_a_large_class_is_short() -> None:
+    """Students without a grade are one line for each reason, and every kind of line is limited."""
+    pending = [RowNote(number, f"Student {number}", "10 points need manual grading") for number in range(3, 41)]
     late = [RowNote(number, f"Doe, {number}", "nothing was submitted") for number in (41, 42)]
     one = [RowNote(43, "Zoe", "has a grade that is locked in Moodle")]
     unknown = [RowNote(number, "x\x1b", "nobody") for number in range(50, 103)]
     conflicts = [Conflict(number, "y", "1", "2") for number in range(50)]
-    found = Preflight("Grade", 0, 0, conflicts, [*waits, *late, *one], unknown, warnings=["warned"])
+    found = Preflight("Grade", 0, 0, conflicts, [*pending, *late, *one], unknown, warnings=["warned"])
     lines = list(preflight_lines(found))
     assert lines[0] == "column 'Grade': 0 filled in, 0 already the same"
     assert lines[1:51] == [f"row {number}, y: was 1, becomes 2" for number in range(50)]
@@ -364,10 +374,10 @@ def test_a_large_class_does_not_flood_the_screen() -> None:
 
 
 def test_almost_all_points_are_not_all(tmp_path: Path) -> None:
-    """99.996 of 100 is 99.99 where there are two decimals, and itself everywhere else."""
+    """99.996 of 100 is 99.99 with two decimals, and unchanged everywhere else."""
     rubric = lab(loads="95.996", box="0.004", tall="0", essay="0", picture="4")
     with Gradebook(tmp_path / "book.db", create=True) as book:
-        graded_into(book, rubric, [came_out(rubric, "anna", "pfppp")])
+        record_run(book, rubric, [graded_as(rubric, "anna", "pfppp")])
     (tmp_path / "canvas.csv").write_text(canvas("100", anna="101"))
     head = "Identifier,Full name,Username,Grade,Maximum grade,Last modified (grade),Feedback comments"
     (tmp_path / "moodle.csv").write_text(f"{head}\nParticipant 1,Anna,anna,,100.00,-,\n")
@@ -382,8 +392,8 @@ def test_almost_all_points_are_not_all(tmp_path: Path) -> None:
     assert "mean 99.9, standard deviation 0.0, lowest 99.996, median 99.996, highest 99.996" in " ".join(text.split())
 
 
-def test_what_a_student_reads_in_moodle(tmp_path: Path) -> None:
-    """What is missing and why, what a person said of it, and what being late costs; harmless in a web page."""
+def test_feedback_in_moodle(tmp_path: Path) -> None:
+    """Lost points with the reason, manual comments, and the late penalty; harmless in a web page."""
     make_class(tmp_path, POLICY)
     (tmp_path / "roster.csv").write_text("id,name,late\nemil,Ben Oh,2 days\n")
     assert batch(tmp_path).returncode == 0
@@ -414,14 +424,14 @@ def test_what_a_student_reads_in_moodle(tmp_path: Path) -> None:
 SIZE = 40
 
 
-class Trip(NamedTuple):
-    """A class as an LMS hands it out, unpacked and as a zip, with its roster and the LMS's file."""
+class LmsClass(NamedTuple):
+    """A class as an LMS provides it, unpacked and as a zip, with its roster and the LMS's file."""
 
     layout: str
     top: Path
 
     def export(self, folder: str) -> Any:
-        """Grade the class that is in `folder`, and fill the LMS's file."""
+        """Grade the class in `folder`, and fill the LMS's file."""
         book = ("--gradebook", self.top / f"{folder}.db")
         done = grader("batch", self.top / folder, *book, "--roster", self.top / "roster.csv", "--jobs", 2)
         assert done.returncode == 0, done.stderr
@@ -431,15 +441,15 @@ class Trip(NamedTuple):
         assert done.returncode == 0, done.stderr
         return done
 
-    def hand_ins(self) -> Iterator[ClassSubmission]:
-        """Whoever is on the roster and has handed something in."""
+    def submissions(self) -> Iterator[ClassSubmission]:
+        """Return the submissions of students on the roster."""
         intake = read_class(self.top / "class", read_roster(self.top / "roster.csv"))
-        return (each for each in intake.submissions() if each.student.key not in intake.unmatched)
+        return (submission for submission in intake.submissions() if submission.student.key not in intake.unmatched)
 
 
 @pytest.fixture(scope="module", params=["canvas", "moodle"])
-def trip(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Trip:
-    """A made-up class of all kinds of hand-ins."""
+def lms_class(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> LmsClass:
+    """Generate a class of all kinds of submissions."""
     top = tmp_path_factory.mktemp(request.param)
     written = list(made_up.make_class(top / "class", SIZE, 5, "mixed", request.param))
     made_up.write_beside(written, SIZE, request.param, None, top / "roster.csv", top / "lms.csv")
@@ -447,17 +457,17 @@ def trip(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
         for path in sorted((top / "class").rglob("*")):
             if not path.is_symlink():
                 archive.write(path, path.relative_to(top / "class"))
-    return Trip(request.param, top)
+    return LmsClass(request.param, top)
 
 
-def by_itself(trip: Trip, each: ClassSubmission, scratch: Path) -> Decimal | None:
-    """The points of `grader grade` on what one student has handed in; None where it is refused, or nothing in it can be read."""
-    path = trip.top / "class" / each.paths[0]
-    if len(each.paths) > 1:
-        path = scratch / each.student.key
+def points_alone(lms_class: LmsClass, entry: ClassSubmission, scratch: Path) -> Decimal | None:
+    """Return the points of `grader grade` for one student; None if the submission is refused or unreadable."""
+    path = lms_class.top / "class" / entry.paths[0]
+    if len(entry.paths) > 1:
+        path = scratch / entry.student.key
         path.mkdir()
-        for name, file in zip(each.names, each.paths, strict=True):
-            shutil.copy(trip.top / "class" / file, path / name)
+        for name, file in zip(entry.names, entry.paths, strict=True):
+            shutil.copy(lms_class.top / "class" / file, path / name)
     try:
         submission = opened(path)
     except InputError:
@@ -466,51 +476,51 @@ def by_itself(trip: Trip, each: ClassSubmission, scratch: Path) -> Decimal | Non
     return grade(LAB6, submission).score if submission.is_single or files else None
 
 
-def test_everyone_has_the_points_of_grader_grade(trip: Trip, tmp_path: Path) -> None:
-    """Each graded student, in the LMS's own file, and nobody else; the same from a zip."""
-    done = trip.export("class")
-    filled = cells(trip, "class.csv")
-    given = cells(trip, "lms.csv")
-    wanted = {}
-    for each in trip.hand_ins():
-        points = by_itself(trip, each, tmp_path)
+def test_everyone_has_the_points_of_grader_grade(lms_class: LmsClass, tmp_path: Path) -> None:
+    """Each graded student has a row in the LMS's file, and nobody else; the same from a zip."""
+    done = lms_class.export("class")
+    filled = cells(lms_class, "class.csv")
+    given = cells(lms_class, "lms.csv")
+    expected = {}
+    for submission in lms_class.submissions():
+        points = points_alone(lms_class, submission, tmp_path)
         if points is not None:
-            wanted[number_of(trip, each)] = f"{points:.2f}"
-    assert {number: row[grade_column(trip)] for number, row in filled.items()} == wanted
-    assert len(wanted) > SIZE // 2
-    left_out = re.findall(r"without a grade, .*: (\d+) \(", done.stderr)
-    assert sum(map(int, left_out)) == len(given) - len(filled)
+            expected[number_of(lms_class, submission)] = f"{points:.2f}"
+    assert {number: row[grade_column(lms_class)] for number, row in filled.items()} == expected
+    assert len(expected) > SIZE // 2
+    omitted = re.findall(r"without a grade, .*: (\d+) \(", done.stderr)
+    assert sum(map(int, omitted)) == len(given) - len(filled)
     for number, row in filled.items():
-        same = [index for index in range(len(row)) if index not in (grade_column(trip), 9)]
+        same = [index for index in range(len(row)) if index not in (grade_column(lms_class), 9)]
         assert [row[index] for index in same] == [given[number][index] for index in same]
-    trip.export("class.zip")
-    assert cells(trip, "class.zip.csv") == filled
+    lms_class.export("class.zip")
+    assert cells(lms_class, "class.zip.csv") == filled
 
 
-def grade_column(trip: Trip) -> int:
-    """Which cell the grade is in."""
-    return 5 if trip.layout == "canvas" else 4
+def grade_column(lms_class: LmsClass) -> int:
+    """Return the index of the grade's column."""
+    return 5 if lms_class.layout == "canvas" else 4
 
 
-def number_of(trip: Trip, each: ClassSubmission) -> str:
-    """What the LMS's file has for a student."""
-    return each.student.canvas if trip.layout == "canvas" else f"Participant {each.student.moodle}"
+def number_of(lms_class: LmsClass, submission: ClassSubmission) -> str:
+    """Return the student's identifier in the LMS's file."""
+    return submission.student.canvas if lms_class.layout == "canvas" else f"Participant {submission.student.moodle}"
 
 
-def cells(trip: Trip, name: str) -> dict[str, list[str]]:
-    """The students' rows of a file, by the LMS's number."""
-    rows = list(csv.reader(io.StringIO((trip.top / name).read_bytes().decode("utf-8-sig"), newline="")))
-    if trip.layout == "moodle":
+def cells(lms_class: LmsClass, name: str) -> dict[str, list[str]]:
+    """Return the students' rows of a file by the LMS's number."""
+    rows = list(csv.reader(io.StringIO((lms_class.top / name).read_bytes().decode("utf-8-sig"), newline="")))
+    if lms_class.layout == "moodle":
         return {row[0]: row for row in rows[1:]}
     return {row[1]: row for row in rows[2:]}
 
 
-def test_only_cells_of_grades_change(trip: Trip) -> None:
-    """Byte for byte: every line that is left is the line that was there, with points in it."""
-    if not (trip.top / "class.csv").exists():
-        trip.export("class")
-    given, filled = ((trip.top / name).read_bytes() for name in ("lms.csv", "class.csv"))
-    if trip.layout == "moodle":
+def test_only_cells_of_grades_change(lms_class: LmsClass) -> None:
+    """Every remaining line is unchanged byte for byte except for its points."""
+    if not (lms_class.top / "class.csv").exists():
+        lms_class.export("class")
+    given, filled = ((lms_class.top / name).read_bytes() for name in ("lms.csv", "class.csv"))
+    if lms_class.layout == "moodle":
         filled = re.sub(rb',(?:"<p>|<p>).*-->"?$', b",", filled, flags=re.MULTILINE)
         plain = re.sub(rb",\d+\.\d\d,100\.00,", b",,100.00,", filled)
     else:
@@ -521,11 +531,13 @@ def test_only_cells_of_grades_change(trip: Trip) -> None:
     assert [line for line in before if line in set(plain.splitlines(keepends=True))] == plain.splitlines(keepends=True)
 
 
-def test_a_second_import_changes_nothing(trip: Trip, tmp_path: Path) -> None:
-    """Filled once, all rows are the same already."""
-    if not (trip.top / "class.csv").exists():
-        trip.export("class")
-    book = ("--gradebook", trip.top / "class.db", "--pending-as-zero")
-    done = grader("export", trip.layout, *book, "--into", trip.top / "class.csv", "--output", tmp_path / "again.csv")
+def test_a_second_import_changes_nothing(lms_class: LmsClass, tmp_path: Path) -> None:
+    """After the first import every row is the same already."""
+    if not (lms_class.top / "class.csv").exists():
+        lms_class.export("class")
+    book = ("--gradebook", lms_class.top / "class.db", "--pending-as-zero")
+    done = grader(
+        "export", lms_class.layout, *book, "--into", lms_class.top / "class.csv", "--output", tmp_path / "again.csv"
+    )
     assert ": 0 filled in, " in done.stderr
-    assert (tmp_path / "again.csv").read_bytes() == (trip.top / "class.csv").read_bytes()
+    assert (tmp_path / "again.csv").read_bytes() == (lms_class.top / "class.csv").read_bytes()

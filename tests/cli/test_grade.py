@@ -1,4 +1,4 @@
-"""grader grade: thresholds, parts, saved reports, where the URDF of a folder is found."""
+"""grader grade: thresholds, parts, saved reports, and the URDF of a folder."""
 
 import json
 from pathlib import Path
@@ -15,7 +15,7 @@ MISTAKEN = "submissions/lidar-offset-in-visual/my_robot.urdf"  # 64 of 70
     ("threshold", "code"), [("64", 0), ("64.0", 0), ("64.1", 1), ("91%", 0), ("91.5%", 1), ("0", 0), ("100%", 1)]
 )
 def test_fail_under(threshold: str, code: int) -> None:
-    """The threshold is in points, or in percent of what can be earned; reaching it is enough."""
+    """The threshold is in points, or in percent of the maximum; reaching it is enough."""
     assert run(("grade", MISTAKEN, "--fail-under", threshold)).returncode == code
 
 
@@ -26,7 +26,7 @@ def test_without_a_threshold_every_criterion_must_pass() -> None:
 
 
 def test_saved_reports_equal_printed_ones(tmp_path: Path) -> None:
-    """One run writes several reports; a file holds no colour, whatever the terminal takes."""
+    """One run writes several reports; files contain no colours, whatever the terminal supports."""
     saves = ("--save", f"json={tmp_path / 'a.json'}", "--save", f"terminal={tmp_path / 'a.txt'}")
     done = run(("grade", MISTAKEN, "--format", "json", *saves))
     assert (tmp_path / "a.json").read_bytes() == done.stdout
@@ -34,8 +34,8 @@ def test_saved_reports_equal_printed_ones(tmp_path: Path) -> None:
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.json", "a.txt"]
 
 
-def test_the_urdf_that_the_rubric_expects_comes_first(tmp_path: Path) -> None:
-    """Path, then name, then the one nearest to the top; the report names the others, and why they are not graded."""
+def test_the_urdf_that_the_rubric_expects_is_graded(tmp_path: Path) -> None:
+    """The path takes precedence, then the name, then the shortest path; the report lists the others with the reason."""
     for name in ("box.urdf", "a/my_robot.urdf", "ws/src/my_robot/urdf/my_robot.urdf", "install/urdf/my_robot.urdf"):
         path = tmp_path / name
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -54,8 +54,8 @@ def test_the_urdf_that_the_rubric_expects_comes_first(tmp_path: Path) -> None:
     assert done.stderr == b""
 
 
-def test_ids_and_paths_hold_nothing_of_the_machine(tmp_path: Path) -> None:
-    """The same file in another folder gives the same report but for the submission's name."""
+def test_ids_and_paths_do_not_depend_on_the_machine(tmp_path: Path) -> None:
+    """The same file in another folder gives the same report except for the submission's name."""
     for name in ("alice", "bob"):
         (tmp_path / name).mkdir()
         (tmp_path / name / "my_robot.urdf").write_bytes(REFERENCE.read_bytes())

@@ -1,4 +1,4 @@
-"""The help: every command is told in one whole line, and every example that it gives can be typed."""
+"""The help: every command has one whole summary line, and every example can be typed."""
 
 import re
 import shlex
@@ -15,17 +15,17 @@ PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
 
 
 def walk(command: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
-    """Every command below this one and itself, by what is typed."""
+    """Yield every command below this one and itself, with the words to type."""
     yield path, command
-    for name, each in getattr(command, "commands", {}).items():
-        yield from walk(each, (*path, name))
+    for name, subcommand in getattr(command, "commands", {}).items():
+        yield from walk(subcommand, (*path, name))
 
 
 PATHS = [path for path, _ in walk(get_command(make_app(COMMANDS)))]
 
 
 def parse(line: str) -> None:
-    """Have a command line taken in without doing anything; fails where it is wrong usage."""
+    """Parse a command line without running it; fail if it is wrong usage."""
     words = shlex.split(line, comments=True)
     assert words[0] == "grader"
     for sign in (">", "|"):
@@ -47,7 +47,7 @@ def test_help_at_eighty_columns(path: tuple[str, ...]) -> None:
     assert max(map(len, text.splitlines())) <= 80
     examples = re.search(r"\n  Examples:\n\n((?:    .*\n|\n)+)", text)
     assert examples is not None
-    lines = [each.strip() for each in examples[1].splitlines() if each.strip()]
+    lines = [line.strip() for line in examples[1].splitlines() if line.strip()]
     assert lines
     for line in lines:
         assert line.startswith(" ".join(("grader", *path))), line
@@ -56,7 +56,7 @@ def test_help_at_eighty_columns(path: tuple[str, ...]) -> None:
 
 @pytest.mark.parametrize("path", [path for path in PATHS if path], ids=" ".join)
 def test_the_summary_is_one_line(path: tuple[str, ...]) -> None:
-    """In the list of commands the whole first sentence stands beside the name."""
+    """The list of commands shows the whole first sentence beside the name."""
     listed = run((*path[:-1], "--help")).stdout.decode().partition("\nCommands:\n")[2]
     command = dict(walk(get_command(make_app(COMMANDS))))[path]
     summary = command.help.partition("\n")[0]
@@ -66,7 +66,7 @@ def test_the_summary_is_one_line(path: tuple[str, ...]) -> None:
 
 @pytest.mark.parametrize("words", [(), ("rubric",)], ids=["grader", "rubric"])
 def test_without_a_command_the_help_is_shown(words: tuple[str, ...]) -> None:
-    """On standard error, because nothing was done."""
+    """It is printed to standard error, because nothing was done."""
     done = run(words)
     assert (done.returncode, done.stdout) == (2, b"")
     assert done.stderr.decode().split() == run((*words, "--help")).stdout.decode().split()
@@ -74,7 +74,7 @@ def test_without_a_command_the_help_is_shown(words: tuple[str, ...]) -> None:
 
 @pytest.mark.parametrize("words", [("--version",), ("-V",), ("--version", "grade"), ("-V", "--help")])
 def test_the_version(words: tuple[str, ...]) -> None:
-    """Both spellings, whatever else is typed behind them."""
+    """Both spellings work, whatever follows them."""
     from grader import __version__
 
     done = run(words)
@@ -82,8 +82,8 @@ def test_the_version(words: tuple[str, ...]) -> None:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_commands_of_the_documentation_can_be_typed(page: Any) -> None:
-    """Every line of shell that begins with our name."""
+def test_commands_in_the_documentation_are_valid(page: Any) -> None:
+    """Every shell line that starts with `grader` can be parsed."""
     for block in re.findall(r"```sh\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL):
         for line in block.replace("\\\n", " ").splitlines():
             if line.startswith("grader "):

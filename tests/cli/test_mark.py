@@ -1,4 +1,4 @@
-"""grader mark: a person's word on one criterion stays, whatever is graded again."""
+"""grader mark: a manual mark on one criterion is kept, whatever is graded again."""
 
 import json
 import subprocess
@@ -16,8 +16,8 @@ from grader.classroom.gradebook.grades import Grades
 from grader.report.formats import Format, OutputFormat
 from grader.report.schemas import REPORT_SCHEMA
 from grader.usecases.class_summary import class_summary
-from tests.classroom.gradebooks import ENVIRONMENT, HOSTILE, batch, grader, hand_in, lab_text, refusal, urdf
-from tests.command_line import PATIENCE
+from tests.classroom.gradebooks import ENVIRONMENT, HOSTILE, batch, grader, lab_text, refusal, urdf, write_submission
+from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
 
 GRADE = ("score", "max_score", "pending")
@@ -31,10 +31,10 @@ def mark(top: Path, *arguments: object, **more: Any) -> subprocess.CompletedProc
 
 
 def student(top: Path, key: str) -> dict[str, Any]:
-    """A student's grade, as `grader export json` has it, which is what the view has."""
+    """Return a student's grade from `grader export json`, which equals the view."""
     with Gradebook(top / "book.db") as book:
         data = json.loads(class_summary(Grades(book), OutputFormat.JSON))
-        (found,) = [each for each in data["students"] if each["id"] == key]
+        (found,) = [student for student in data["students"] if student["id"] == key]
         ((score, out_of, pending, marks),) = book.rows(
             "SELECT score, out_of, pending, marks FROM grade WHERE key = ?", key
         )
@@ -44,14 +44,14 @@ def student(top: Path, key: str) -> dict[str, Any]:
 
 
 def marks(top: Path) -> list[tuple[Any, ...]]:
-    """All marks that were ever given."""
+    """Return all marks ever given."""
     with Gradebook(top / "book.db") as book:
         return list(book.rows("SELECT criterion, points, comment, author, at, result FROM mark ORDER BY id"))
 
 
 @pytest.mark.parametrize("name", ["anna", "ae1", "anna@example.org", "101", "Anna Ek"])
-def test_whoever_is_meant(name: str, top: Path) -> None:
-    """By key, login, address, number and name; one line says where they stand now."""
+def test_who_is_marked(name: str, top: Path) -> None:
+    """A student is found by key, login, address, number or name; one line gives the new score."""
     done = mark(top, name, "essay", "3,5", "--comment", "the roots are missing", "--by", "Kim")
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout == "anna: 9.5 of 11 points; needs manual grading: 1 point\n"
@@ -81,13 +81,13 @@ def test_whoever_is_meant(name: str, top: Path) -> None:
     ],
 )
 def test_what_is_refused(who: str, what: str, points: str, why: str, graded_class: Path) -> None:
-    """In one plain line, and nothing is kept."""
+    """One plain line, and nothing is recorded."""
     assert refusal(mark(graded_class, who, what, points)) == why.replace("TOP", str(graded_class))
     assert marks(graded_class) == []
 
 
 def test_a_number_below_zero_as_a_comment(top: Path) -> None:
-    """What follows an option is its own, and options may follow the points."""
+    """A value after an option belongs to it, and options may follow the points."""
     assert mark(top, "anna", "essay", "1", "--comment", "-1", "--by", "-2").returncode == 0
     assert marks(top)[0][1:4] == (10_000, "-1", "-2")
     assert refusal(mark(top, "anna", "essay", "-3", "--comment", "-1")) == "essay is worth 0 to 4 points, not -3"
@@ -95,8 +95,8 @@ def test_a_number_below_zero_as_a_comment(top: Path) -> None:
     assert refusal(done) == "essay is worth 0 to 4 points, not -3"
 
 
-def test_a_later_mark_goes_before_an_earlier_one(top: Path) -> None:
-    """And both are kept; - takes it back, and so does a second -, which changes nothing."""
+def test_a_later_mark_replaces_an_earlier_one(top: Path) -> None:
+    """Both are kept; `-` removes it, and another `-` changes nothing."""
     before = student(top, "anna")
     for points, score in (("3", 9), ("0", 6), ("4", 10), ("-", 6), ("-", 6), ("1", 7)):
         assert mark(top, "anna", "essay", points).returncode == 0
@@ -113,22 +113,22 @@ def test_a_later_mark_goes_before_an_earlier_one(top: Path) -> None:
         ("emil", "tall", "0.5", 3.5, 11, 5),  # skipped
         ("anna", "loads", "0", 3, 11, 5),  # passed
         ("anna", "picture", "1", 7, 11, 4),  # pending
-        ("ben", "essay", "4", 10, 10, 0),  # not asked of a URDF alone
+        ("ben", "essay", "4", 10, 10, 0),  # not part of the grading of a single URDF
         ("cleo", "box", "2.5", 2.5, 11, 8.5),  # nothing could be read
     ],
 )
-def test_whatever_the_check_says(
+def test_a_mark_overrides_a_check(
     key: str, criterion: str, points: str, score: float, out_of: float, pending: float, top: Path
 ) -> None:
-    """A person's word counts in its place, and is told beside it."""
+    """The mark counts instead of the check, and is shown beside it."""
     assert mark(top, key, criterion, points, "--comment", "seen").returncode == 0
     found = student(top, key)
     assert (found["score"], found["max_score"], found["pending"]) == (score, out_of, pending)
     assert (found["marks_by_hand"], found["total"]) == (1, score)
 
 
-def test_a_mark_where_the_grader_failed(tmp_path: Path) -> None:
-    """A person can give what a check that broke could not; the grade is final then."""
+def test_a_mark_on_an_errored_criterion(tmp_path: Path) -> None:
+    """A mark replaces the result of a check that failed with an error; the grade is final then."""
     (tmp_path / "class").mkdir()
     text = urdf().replace('name="r"', 'name="raises"')
     (tmp_path / "class" / "anna.urdf").write_text(text)
@@ -151,7 +151,7 @@ def test_a_mark_where_the_grader_failed(tmp_path: Path) -> None:
 
 
 def test_no_run_loses_a_mark(top: Path) -> None:
-    """Not the same again, not by force, not of another submission, not by another rubric, not after it is gone."""
+    """Not the same run, --force, another submission, another rubric, or a removed submission."""
     mark(top, "anna", "essay", "3", "--comment", "good", "--by", "Kim")
     mark(top, "anna", "box", "1", "--by", "Kim")
     kept = marks(top)
@@ -170,9 +170,9 @@ def test_no_run_loses_a_mark(top: Path) -> None:
     (top / "other.toml").write_text(lab_text(loads="2", extra="0.5"))
     assert score_after(rubric=top / "other.toml") == 6.5
     (top / "without.toml").write_text(lab_text().replace('"essay"', '"answer"'))
-    assert score_after(rubric=top / "without.toml") == 4  # nobody asks for an essay any more
+    assert score_after(rubric=top / "without.toml") == 4  # the rubric has no essay any more
     assert score_after() == 7
-    hand_in(top / "elsewhere" / "zoe")
+    write_submission(top / "elsewhere" / "zoe")
     added = ("batch", top / "elsewhere", "--gradebook", top / "book.db", "--rubric", top / "small.toml", "--add")
     assert grader(*added).returncode == 0
     assert (marks(top), student(top, "anna")["score"]) == (kept, 7)
@@ -181,8 +181,8 @@ def test_no_run_loses_a_mark(top: Path) -> None:
 HARMFUL = "[bold]x[/bold] \x1b]0;gone\x07\x1b[2J\u202eabc\r\n=1+1\t</p><script>"
 
 
-def test_a_comment_is_text(top: Path) -> None:
-    """It is kept as it was typed, and runs, colours and turns nothing wherever it is shown."""
+def test_a_comment_is_data(top: Path) -> None:
+    """It is kept as typed, and is neutralised wherever it is shown."""
     assert mark(top, "anna", "essay", "1", "--comment", HARMFUL, "--by", "[red]\x1b[31mme").returncode == 0
     assert marks(top)[0][2:4] == (HARMFUL, "[red]\x1b[31mme")
     done = batch(top, "--reports", top / "reports", "--report-format", "terminal", "--report-format", "json")
@@ -192,43 +192,46 @@ def test_a_comment_is_text(top: Path) -> None:
     assert not set(text) & set("\x1b\x07\r\u202e")
     report = json.loads((top / "reports" / "anna.json").read_text())
     jsonschema.validate(report, REPORT_SCHEMA)
-    (essay,) = [each for each in report["results"] if each["id"] == "essay"]
+    (essay,) = [result for result in report["results"] if result["id"] == "essay"]
     assert essay["mark"] == {"points": 1, "by": "[red]\x1b[31mme", "comment": HARMFUL}
 
 
-def test_bytes_that_are_no_text(top: Path) -> None:
+def test_undecodable_bytes(top: Path) -> None:
     """A comment in another encoding is kept as far as it can be read."""
     assert mark(top, "anna", "essay", "1", "--comment", b"gr\xfcn", "--by", b"\xff").returncode == 0
     assert marks(top)[0][2:4] == ("gr\\udcfcn", "\\udcff")
 
 
-def test_who_marks_if_nobody_says(top: Path) -> None:
-    """It is whoever is logged in, as the system has it."""
+def test_the_default_author(top: Path) -> None:
+    """The author is the account that is logged in."""
     assert mark(top, "anna", "essay", "1", LOGNAME="kim").returncode == 0
     assert marks(top)[0][3] == "kim"
 
 
-def test_marks_at_the_same_time(top: Path) -> None:
-    """Several people, and a batch that grades all again meanwhile: nothing is lost."""
-    wanted = [(key, name) for key in ("anna", "emil") for name in ("essay", "picture", "box", "loads")]
+def test_concurrent_marks(top: Path) -> None:
+    """Several graders, and a batch that grades everything meanwhile: nothing is lost."""
+    expected = [(key, name) for key in ("anna", "emil") for name in ("essay", "picture", "box", "loads")]
     command = [sys.executable, "-m", "grader"]
     book = str(top / "book.db")
     started = [
         subprocess.Popen(
-            [*command, "mark", *each, "0.5", "--gradebook", book], cwd=ROOT, env=ENVIRONMENT, stdout=subprocess.DEVNULL
+            [*command, "mark", *words, "0.5", "--gradebook", book],
+            cwd=ROOT,
+            env=ENVIRONMENT,
+            stdout=subprocess.DEVNULL,
         )
-        for each in wanted
+        for words in expected
     ]
     done = batch(top, "--force")
     assert done.returncode == 0, done.stderr
-    assert [each.wait(PATIENCE) for each in started] == [0] * len(wanted)
-    assert len(marks(top)) == len(wanted)
+    assert [process.wait(HANG_TIMEOUT) for process in started] == [0] * len(expected)
+    assert len(marks(top)) == len(expected)
     assert student(top, "anna")["score"] == 2.5
     assert student(top, "emil")["score"] == 2
 
 
 def test_marks_of_several_threads_wait_for_each_other(top: Path) -> None:
-    """A write that takes its time does not break another one."""
+    """A slow write does not break another one."""
     with Gradebook(top / "book.db") as book:
         with book.transaction():
             other: list[int] = []
@@ -240,8 +243,8 @@ def test_marks_of_several_threads_wait_for_each_other(top: Path) -> None:
     assert other == [0]
 
 
-def test_what_a_mark_replaces_is_told(top: Path) -> None:
-    """It is never asked about, and one that was taken back is replaced by nothing."""
+def test_a_replaced_mark_is_reported(top: Path) -> None:
+    """There is no question, and a removed mark is not reported as replaced."""
     assert mark(top, "anna", "essay", "3", "--by", "Kim", "--comment", "no\nroots").stderr == ""
     second = mark(top, "anna", "essay", "1")
     assert second.stdout == "anna: 7 of 11 points; needs manual grading: 1 point\n"
@@ -252,8 +255,11 @@ def test_what_a_mark_replaces_is_told(top: Path) -> None:
     assert mark(top, "anna", "essay", "2").stderr == ""
 
 
-def test_an_account_is_named_by_no_report(top: Path) -> None:
-    """Without `--by` no report, table or feedback says who marked; with it, that name. The gradebook keeps the account."""
+def test_no_report_names_an_account(top: Path) -> None:
+    """Without `--by` no report, table or feedback names an author; with it, that name.
+
+    The gradebook keeps the account.
+    """
     account = {"LOGNAME": "jdoe47"}
     assert mark(top, "anna", "essay", "3", "--comment", "fine", **account).returncode == 0
     assert mark(top, "emil", "essay", "3", "--by", "Kim", **account).returncode == 0
@@ -269,15 +275,15 @@ def test_an_account_is_named_by_no_report(top: Path) -> None:
         encoding="utf-8",
     )
     book = ("--gradebook", top / "book.db")
-    said = [done.stdout, done.stderr]
+    output = [done.stdout, done.stderr]
     for arguments in (("csv",), ("json",), ("moodle", "--into", worksheet, "--pending-as-zero")):
         shown = grader("export", *arguments, *book)
         assert shown.returncode == 0, shown.stderr
-        said.append(shown.stdout + shown.stderr)
-    assert "fine" in said[-1]
+        output.append(shown.stdout + shown.stderr)
+    assert "fine" in output[-1]
     files = [path.read_text(encoding="utf-8") for path in (*out.iterdir(), out.with_suffix(".csv"))]
     assert len(files) > len(Format)
-    assert all("jdoe47" not in text for text in (*files, *said))
+    assert all("jdoe47" not in text for text in (*files, *output))
     assert "Marked manually: fine." in (out / "anna.md").read_text(encoding="utf-8")
     assert "Marked by Kim." in (out / "emil.md").read_text(encoding="utf-8")
     assert [row[3] for row in marks(top)] == ["jdoe47", "Kim", "jdoe47"]

@@ -1,4 +1,4 @@
-"""Where there is a next step, the message says what to type."""
+"""If there is a next step, the message says what to type."""
 
 import re
 import shutil
@@ -16,8 +16,8 @@ BATCH = "grader batch PATH --gradebook book.db"
 
 
 @pytest.fixture
-def place(tmp_path: Path) -> Path:
-    """A folder to type in: a URDF, a class of one, a text, a package."""
+def path(tmp_path: Path) -> Path:
+    """Return a folder with a URDF, a class of one, a text and a package."""
     shutil.copy(SAMPLE, tmp_path / "my_robot.urdf")
     (tmp_path / "class" / "anna").mkdir(parents=True)
     shutil.copy(SAMPLE, tmp_path / "class" / "anna")
@@ -27,14 +27,14 @@ def place(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def typed(line: str, place: Path) -> Done:
-    """What comes of a line that is typed there."""
-    return run_with_input(line.split(), b"", folder=place)
+def typed(line: str, path: Path) -> Done:
+    """Run a line as if it were typed there."""
+    return run_with_input(line.split(), b"", folder=path)
 
 
-def refused(line: str, place: Path) -> str:
-    """The last line of what a command says that does not do what it is asked."""
-    done = typed(line, place)
+def refused(line: str, path: Path) -> str:
+    """Return the last line of a command that fails."""
+    done = typed(line, path)
     assert (done.returncode, done.stdout) == (2, b"")
     message = done.stderr.decode().splitlines()[-1]
     assert message.startswith("grader: ")
@@ -72,20 +72,20 @@ def refused(line: str, place: Path) -> str:
         ("export canvas --gradebook book.db", "give it with --into"),
     ],
 )
-def test_what_to_type_is_said(line: str, why: str, place: Path) -> None:
-    """In the same line that says what is wrong, and every command that it names is one of ours."""
-    message = refused(line, place)
+def test_the_next_command_is_named(line: str, why: str, path: Path) -> None:
+    """It is on the line that says what is wrong, and every named command exists."""
+    message = refused(line, path)
     assert why in message
     assert set(re.findall(r"\bgrader ([a-z]+)", message)) <= set(COMMANDS)
 
 
-def test_what_to_type_with_a_gradebook(place: Path) -> None:
-    """Whom and what to name, and how to come to something to compare."""
-    assert typed("batch class --gradebook book.db", place).returncode == 0
+def test_the_next_command_with_a_gradebook(path: Path) -> None:
+    """The messages name students, criteria and runs to choose from."""
+    assert typed("batch class --gradebook book.db", path).returncode == 0
     for line, why in (
         ("mark zoe lidar-frame 1 --gradebook book.db", "; `grader export csv --gradebook book.db` lists all students"),
         ("mark anna lidar 1 --gradebook book.db", "has no criterion 'lidar' (`grader rubric show lab6` lists them)"),
         ("diff book.db", f"run `{BATCH}` again, or name a second gradebook"),
         ("export csv --gradebook book.db --output out/a.csv", "there is no folder out (create it with `mkdir -p out`)"),
     ):
-        assert why in refused(line, place)
+        assert why in refused(line, path)

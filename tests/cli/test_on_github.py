@@ -1,25 +1,25 @@
-"""In a job of GitHub Actions: annotations on standard error, the report in the job's summary, and nothing else is another way."""
+"""In a job of GitHub Actions: annotations on standard error and the report in the job's summary; nothing else differs."""
 
 from pathlib import Path
 
 import pytest
 
-from tests.cli.jobs import ELSEWHERE, Job
+from tests.cli.jobs import ELSEWHERE, GithubJob
 from tests.report.readers import read_as_github
 from tests.report.workflow_commands import commands
 
-LIMIT = 1024 * 1024  # bytes that GitHub takes of a summary
+MAX_SUMMARY = 1024 * 1024  # bytes that GitHub accepts for a summary
 
 
 @pytest.fixture
-def job(tmp_path: Path) -> Job:
-    """A job of its own."""
-    return Job(tmp_path)
+def job(tmp_path: Path) -> GithubJob:
+    """Return a job of its own."""
+    return GithubJob(tmp_path)
 
 
 @pytest.mark.parametrize("form", ["terminal", "json", "markdown", "sarif"])
-def test_a_job_gets_annotations_and_a_summary(job: Job, form: str) -> None:
-    """Standard output is byte for byte what it is elsewhere; the annotations are those of their own format."""
+def test_a_job_gets_annotations_and_a_summary(job: GithubJob, form: str) -> None:
+    """Standard output is the same as elsewhere, byte for byte; the annotations equal the format github."""
     done = job.run("grade", "my_robot.urdf", "--format", form)
     elsewhere = job.run("grade", "my_robot.urdf", "--format", form, around=ELSEWHERE)
     assert (done.stdout, done.returncode) == (elsewhere.stdout, elsewhere.returncode)
@@ -31,8 +31,8 @@ def test_a_job_gets_annotations_and_a_summary(job: Job, form: str) -> None:
     assert commands(done.stdout.decode()) == []
 
 
-def test_annotations_that_are_asked_for_come_once(job: Job) -> None:
-    """The format github is the annotations: standard error stays empty, and the summary is there all the same."""
+def test_requested_annotations_are_printed_once(job: GithubJob) -> None:
+    """With the format github standard error stays empty, and the summary is written all the same."""
     done = job.run("grade", "my_robot.urdf", "--format", "github")
     assert len(commands(done.stdout.decode())) == 8
     assert done.stderr == b""
@@ -40,34 +40,34 @@ def test_annotations_that_are_asked_for_come_once(job: Job) -> None:
 
 
 @pytest.mark.parametrize("variable", ["GITHUB_ACTIONS", "GITHUB_STEP_SUMMARY"])
-def test_elsewhere_there_is_nothing_of_it(job: Job, variable: str) -> None:
-    """Another system that sets some of the variables, and a runner that has no summaries."""
+def test_no_annotations_elsewhere(job: GithubJob, variable: str) -> None:
+    """Another system that sets some of the variables, and a runner without summaries."""
     done = job.run("grade", "my_robot.urdf", around={variable: ""})
     assert (done.stderr == b"") == (variable == "GITHUB_ACTIONS")
     assert not job.summary.exists()
 
 
-def test_the_summary_is_added_to(job: Job) -> None:
-    """What another command of the step has written stays, and two reports stand one below the other."""
+def test_a_summary_is_appended(job: GithubJob) -> None:
+    """Text of another command of the step is kept, and two reports follow each other."""
     job.summary.write_text("# Built\n")
     for _ in range(2):
         job.run("grade", "my_robot.urdf")
     root = read_as_github(job.summary.read_text(encoding="utf-8"))
-    assert [each.text_content() for each in root.iter("h1")] == [
+    assert [heading.text_content() for heading in root.iter("h1")] == [
         "Built",
         *["42 / 70 points: IRP Lab 6: a wheeled base"] * 2,
     ]
 
 
 @pytest.mark.parametrize("room", [0, 1, 50, 200, 3000, 5806, 5807, 20_000])
-def test_the_summary_is_no_longer_than_github_takes(job: Job, room: int) -> None:
-    """Together with what is there already; where there is no room, nothing is added."""
+def test_the_summary_respects_githubs_limit(job: GithubJob, room: int) -> None:
+    """The existing text counts; without space for it, nothing is appended."""
     whole = job.run("grade", "my_robot.urdf", "--format", "markdown", around=ELSEWHERE).stdout
-    before = b"x" * (LIMIT - room - 1) + b"\n"
+    before = b"x" * (MAX_SUMMARY - room - 1) + b"\n"
     job.summary.write_bytes(before)
     assert job.run("grade", "my_robot.urdf").returncode == 1
     text = job.summary.read_bytes()
-    assert len(text) <= LIMIT
+    assert len(text) <= MAX_SUMMARY
     assert text.startswith(before)
     added = text.removeprefix(before)
     if room > len(whole):
@@ -79,12 +79,12 @@ def test_the_summary_is_no_longer_than_github_takes(job: Job, room: int) -> None
         assert room < 200
 
 
-@pytest.mark.parametrize("place", ["folder", "/dev/full", "nowhere/at/all.md"])
-def test_a_summary_that_cannot_be_written_changes_nothing_else(job: Job, place: str) -> None:
+@pytest.mark.parametrize("path", ["folder", "/dev/full", "nowhere/at/all.md"])
+def test_a_summary_that_cannot_be_written_changes_nothing_else(job: GithubJob, path: str) -> None:
     """One line says so; report, annotations and exit code are as always."""
     (job.checkout / "folder").mkdir()
     usual = job.run("grade", "my_robot.urdf")
-    done = job.run("grade", "my_robot.urdf", around={"GITHUB_STEP_SUMMARY": place})
+    done = job.run("grade", "my_robot.urdf", around={"GITHUB_STEP_SUMMARY": path})
     assert (done.stdout, done.returncode) == (usual.stdout, usual.returncode)
     added = done.stderr.removeprefix(usual.stderr)
     assert added.startswith(b"grader: cannot write the job summary: ")
@@ -104,38 +104,38 @@ def test_a_summary_that_cannot_be_written_changes_nothing_else(job: Job, place: 
         (("my_robot.urdf", "--fail-under", "many"), "--fail-under takes points"),
     ],
 )
-def test_where_nothing_was_graded_the_job_says_why(job: Job, arguments: tuple[str, ...], words: str) -> None:
+def test_a_job_without_a_report_says_why(job: GithubJob, arguments: tuple[str, ...], words: str) -> None:
     """As an annotation and in the summary, besides the line on standard error; exit code 2."""
     done = job.run("grade", *arguments)
     assert (done.returncode, done.stdout) == (2, b"")
-    (told,) = commands(done.stderr.decode())
-    assert (told.name, told.get("title"), told.get("file")) == ("error", "Nothing was graded", None)
-    assert words in told.data
-    assert done.stderr.decode().splitlines()[1] == f"grader: {told.data}"
+    (reported,) = commands(done.stderr.decode())
+    assert (reported.name, reported.get("title"), reported.get("file")) == ("error", "Nothing was graded", None)
+    assert words in reported.data
+    assert done.stderr.decode().splitlines()[1] == f"grader: {reported.data}"
     root = read_as_github(job.summary.read_text(encoding="utf-8"))
-    assert [root.findtext("h1"), root.findtext("p")] == ["Nothing was graded", told.data]
+    assert [root.findtext("h1"), root.findtext("p")] == ["Nothing was graded", reported.data]
 
 
-def test_every_mistake_of_a_rubric_is_in_the_annotation(job: Job) -> None:
+def test_every_mistake_of_a_rubric_is_in_the_annotation(job: GithubJob) -> None:
     """Line by line, as on standard error."""
     (job.checkout / "bad.toml").write_text('id = "x"\ntitel = "y"\n')
     done = job.run("grade", "my_robot.urdf", "--rubric", "bad.toml")
-    (told,) = commands(done.stderr.decode())
-    lines = told.data.splitlines()
+    (reported,) = commands(done.stderr.decode())
+    lines = reported.data.splitlines()
     assert len(lines) == 4
     assert done.stderr.decode().splitlines()[1:] == [f"grader: {line}" for line in lines]
 
 
 @pytest.mark.parametrize(("threshold", "code"), [("42", 0), ("60%", 0), ("42.5", 1), ("100%", 1)])
-def test_the_threshold_decides_whether_the_step_fails(job: Job, threshold: str, code: int) -> None:
-    """Annotations of errors alone fail no step."""
+def test_the_threshold_decides_whether_the_step_fails(job: GithubJob, threshold: str, code: int) -> None:
+    """Error annotations alone fail no step."""
     done = job.run("grade", "my_robot.urdf", "--fail-under", threshold)
     assert done.returncode == code
-    assert {each.name for each in commands(done.stderr.decode())} == {"notice", "error"}
+    assert {command.name for command in commands(done.stderr.decode())} == {"notice", "error"}
 
 
-def test_help_is_plain_text_in_a_job(job: Job) -> None:
-    """Some libraries colour what they print there."""
+def test_help_is_plain_text_in_a_job(job: GithubJob) -> None:
+    """Some libraries colour their help there."""
     for arguments in (("--help",), ("grade", "--help"), ("grade",), ("grad",)):
         done = job.run(*arguments)
         assert b"\x1b" not in done.stdout + done.stderr

@@ -1,4 +1,4 @@
-"""On macOS and Windows `grade` works: nothing that only POSIX systems or Linux have is needed to grade a submission."""
+"""On macOS and Windows `grade` works: it needs nothing that only POSIX systems or Linux have."""
 
 import os
 import shutil
@@ -11,7 +11,7 @@ import pytest
 from tests.samples import ROOT
 
 REFERENCE = ROOT / "submissions" / "reference"
-# A process in which everything is missing that Windows' Python has not.
+# A process without everything that Windows' Python lacks.
 _WITHOUT = """
 import os, signal, sys
 for name in ("fcntl", "resource", "pwd", "grp", "termios", "tty", "syslog"):
@@ -29,7 +29,7 @@ main()
 
 
 def elsewhere(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
-    """Run the command line as on a system without what POSIX has."""
+    """Run the command line as on a system without POSIX functions."""
     command = [sys.executable, "-W", "error", "-c", _WITHOUT, *map(str, arguments)]
     return subprocess.run(
         command, capture_output=True, text=True, check=False, timeout=60, env={**os.environ, "COLUMNS": "80"}
@@ -38,25 +38,25 @@ def elsewhere(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
 
 @pytest.mark.parametrize("kind", ["folder", "zip", "urdf"])
 def test_grade_needs_nothing_of_posix(tmp_path: Path, kind: str) -> None:
-    """A folder, an archive and a URDF get the report that they get here."""
-    place = REFERENCE
+    """A folder, an archive and a URDF get the same report as here."""
+    path = REFERENCE
     if kind == "zip":
-        place = Path(shutil.make_archive(str(tmp_path / "lab6"), "zip", REFERENCE))
+        path = Path(shutil.make_archive(str(tmp_path / "lab6"), "zip", REFERENCE))
     elif kind == "urdf":
-        place = ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf"
-    done = elsewhere("grade", place, "--format", "json")
+        path = ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf"
+    done = elsewhere("grade", path, "--format", "json")
     assert (done.returncode, done.stderr) == (0, "")
-    here = subprocess.run(
-        [sys.executable, "-m", "grader", "grade", str(place), "--format", "json"],
+    first = subprocess.run(
+        [sys.executable, "-m", "grader", "grade", str(path), "--format", "json"],
         capture_output=True,
         text=True,
         check=False,
     )
-    assert done.stdout == here.stdout
+    assert done.stdout == first.stdout
 
 
-def test_no_symlink_leads_out_there_either(tmp_path: Path) -> None:
-    """A symlink out of the submission is named and not followed, one inside is."""
+def test_no_symlink_out_of_a_submission_is_followed(tmp_path: Path) -> None:
+    """A symlink out of the submission is named and ignored, one inside is followed."""
     (tmp_path / "sub").mkdir()
     (tmp_path / "secret.urdf").write_text("<robot name='a'/>")
     (tmp_path / "sub/my_robot.urdf").symlink_to("../secret.urdf")

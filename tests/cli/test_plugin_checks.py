@@ -1,4 +1,4 @@
-"""Checks of other packages: a faulty one is an error of that package, never a result."""
+"""Plug-in checks: a faulty one is an error of its package, never a result."""
 
 import json
 from pathlib import Path
@@ -13,10 +13,10 @@ FAULTY = "the check behaves of the package hostile-checks is faulty: "
 
 
 def robot(folder: Path, name: str) -> str:
-    """A URDF whose robot asks the check for something."""
-    place = folder / "my_robot.urdf"
-    place.write_text(f"<robot name='{name}'><link name='base_link'/></robot>")
-    return str(place)
+    """Write a URDF whose robot's name tells the check how to behave."""
+    path = folder / "my_robot.urdf"
+    path.write_text(f"<robot name='{name}'><link name='base_link'/></robot>")
+    return str(path)
 
 
 @pytest.mark.parametrize(
@@ -41,8 +41,8 @@ def robot(folder: Path, name: str) -> str:
 @pytest.mark.parametrize("threshold", [(), ("--fail-under", "0")])
 def test_a_faulty_check_is_errored(tmp_path: Path, name: str, fault: str, threshold: tuple[str, ...]) -> None:
     """Whatever it raises or returns, the criterion is errored, the message names the package, and the exit code is 3."""
-    asked = ("grade", robot(tmp_path, name), "--rubric", HOSTILE_RUBRIC, "--format", "json", *threshold)
-    done = run(asked, **WITH_HOSTILE)
+    requested = ("grade", robot(tmp_path, name), "--rubric", HOSTILE_RUBRIC, "--format", "json", *threshold)
+    done = run(requested, **WITH_HOSTILE)
     assert done.returncode == 3
     loads, behaves = json.loads(done.stdout)["results"]
     assert (loads["status"], loads["points"]) == ("passed", 1)
@@ -50,8 +50,8 @@ def test_a_faulty_check_is_errored(tmp_path: Path, name: str, fault: str, thresh
     assert b"Traceback" not in done.stderr
 
 
-def test_a_check_that_works_decides(tmp_path: Path) -> None:
-    """A check of another package passes as the grader's own do."""
+def test_a_working_check_decides(tmp_path: Path) -> None:
+    """A plug-in check passes as the grader's own do."""
     done = run(("grade", robot(tmp_path, "fine"), "--rubric", HOSTILE_RUBRIC), **WITH_HOSTILE)
     assert done.returncode == 0, done.stderr
 
@@ -72,7 +72,7 @@ def test_a_check_that_works_decides(tmp_path: Path) -> None:
         ("is_not_there", "hostile_checks.nothing) cannot be used: AttributeError: "),
     ],
 )
-def test_a_check_that_is_no_check_is_a_mistake_of_the_rubric(tmp_path: Path, check: str, fault: str) -> None:
+def test_an_invalid_check_is_a_mistake_of_the_rubric(tmp_path: Path, check: str, fault: str) -> None:
     """The message has the rubric's line, and names package, function and argument; nothing is graded."""
     text = Path(HOSTILE_RUBRIC).read_text(encoding="utf-8").replace('check = "behaves"', f'check = "{check}"')
     (tmp_path / "lab.toml").write_text(text)

@@ -1,4 +1,4 @@
-"""Reports of a class have file names that are safe on every system, and no two alike."""
+"""Reports of a class have unique file names that are safe on every system."""
 
 import unicodedata
 
@@ -13,7 +13,7 @@ AWKWARD = st.text(st.sampled_from('aA.-/\\:*?"<>| \u202e\u00e9e\u0301שß測😀
 
 @given(st.lists(AWKWARD, max_size=8, unique=True))
 def test_names_are_safe_and_distinct(keys: list[str]) -> None:
-    """Whatever students are called: in upper or lower case, composed or not, they stay apart."""
+    """Names that differ in case or Unicode composition stay distinct."""
     names = file_names(keys)
     assert list(names) == keys
     assert len({unicodedata.normalize("NFC", name).casefold() for name in names.values()}) == len(keys)
@@ -26,18 +26,18 @@ def test_names_are_safe_and_distinct(keys: list[str]) -> None:
 
 @pytest.mark.parametrize("key", ["alice", "Alice Ash", "S700123", "O'Hara", "müller", "שלום", "a.b", "x(1)", "=1"])
 def test_plain_names_stay_as_they_are(key: str) -> None:
-    """A space is made an underscore by nobody who need not: only what is unsafe is changed."""
+    """Only unsafe characters are replaced; a space is kept."""
     name = file_names([key])[key]
     assert name == key or (" " in key and name.startswith("Alice_Ash-"))
 
 
 @pytest.mark.parametrize("key", ["CON", "con", "nul.txt", "Lpt1", "COM9.a.b", "aux"])
 def test_names_of_devices_are_avoided(key: str) -> None:
-    """Windows has no such files."""
+    """Windows has no files of such names."""
     assert file_names([key])[key].startswith("_")
 
 
-def test_a_name_does_not_depend_on_the_others_unless_they_are_alike() -> None:
-    """A report is found under the same name after the next run."""
+def test_a_name_depends_only_on_colliding_ones() -> None:
+    """A report has the same name after the next run."""
     assert file_names(["a/b", "c"])["a/b"] == file_names(["a/b", "x", "y"])["a/b"]
     assert set(file_names(["ann", "Ann"]).values()).isdisjoint({"ann", "Ann"})

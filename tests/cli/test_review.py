@@ -1,4 +1,4 @@
-"""grader review: what is shown, what may be typed, and that it goes on later where it was stopped."""
+"""grader review: the questions shown, the accepted answers, and that a later review continues."""
 
 import os
 import pty
@@ -14,26 +14,26 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import NewerMarkError, QueuedCriterion, mark, pending_criterion
 from tests.classroom.gradebooks import ENVIRONMENT, grader
-from tests.command_line import PATIENCE
+from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
 
 HELP = "points and a comment, s to skip, q to stop (all marks are kept), ? for this help"
 
 
 def review(top: Path, typed: str | bytes, *more: object, **variables: str) -> subprocess.CompletedProcess[str]:
-    """Answer with these lines."""
+    """Review with these input lines."""
     return grader("review", "--gradebook", top / "book.db", "--by", "Kim", *more, stdin=typed, **variables)
 
 
 def marks(top: Path) -> list[tuple[Any, ...]]:
-    """All marks that were given: whom, what, points, comment."""
+    """Return all marks: key, criterion, points, comment."""
     query = "SELECT key, criterion, points / 10000.0, comment FROM mark JOIN student ON student = student.id ORDER BY mark.id"
     with Gradebook(top / "book.db") as book:
         return list(book.rows(query))
 
 
-def test_one_after_the_other(top: Path) -> None:
-    """All essays, then all pictures; a URDF alone and what could not be read are not asked about."""
+def test_order_of_questions(top: Path) -> None:
+    """All essays, then all pictures; single URDFs and unreadable submissions are omitted."""
     done = review(top, "3.5 the roots are missing\n4\n0,5   too small to read  \n1\n")
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.endswith("4 marked, 0 left\n")
@@ -47,8 +47,8 @@ def test_one_after_the_other(top: Path) -> None:
     assert (again.returncode, again.stdout) == (0, "nothing needs manual grading\n")
 
 
-def test_what_is_shown(top: Path, graded_class: Path) -> None:
-    """Who and what it is, the answer, the model answer, where it stands, where the picture is; nothing that colours or turns."""
+def test_a_question(top: Path, graded_class: Path) -> None:
+    """Student, criterion, answer, model answer, location and picture; without control characters."""
     done = review(top, "s\ns\nq\n", COLUMNS="200")
     first, second, third, last = done.stdout.split("points, 0 to ")
     assert first == (
@@ -65,8 +65,8 @@ def test_what_is_shown(top: Path, graded_class: Path) -> None:
     assert not set(done.stdout) & set("\x1b\u202e")
 
 
-def test_stopping_and_going_on(top: Path) -> None:
-    """What was given is kept; the next review goes on with the rest, also with what was skipped."""
+def test_stopping_and_resuming(top: Path) -> None:
+    """Marks are kept; the next review continues with the rest, including skipped questions."""
     assert review(top, "s\n2\nquit\n").stdout.endswith("1 marked, 3 left\n")
     done = review(top, "1 now\n")
     assert "1 of 3  Anna Ek (anna): About essay" in done.stdout
@@ -86,8 +86,8 @@ def test_stopping_and_going_on(top: Path) -> None:
         ("\x1b[A", r"points are a number from 0 to 4, with at most 4 decimals, not '\x1b[A'"),
     ],
 )
-def test_what_is_no_answer_is_asked_again(typed: str, why: str, top: Path) -> None:
-    """And marks nothing."""
+def test_invalid_input_is_asked_again(typed: str, why: str, top: Path) -> None:
+    """Nothing is marked."""
     done = review(top, f"{typed}\n2 fine\n")
     assert done.stderr == f"grader: {why}\n"
     assert done.stdout.endswith("1 marked, 3 left\n")
@@ -95,22 +95,22 @@ def test_what_is_no_answer_is_asked_again(typed: str, why: str, top: Path) -> No
 
 
 @pytest.mark.parametrize("typed", ["", "\n\n", "S\n", "Q\n", "skip\nQUIT\n", "???"])
-def test_nothing_is_marked_by_chance(typed: str, graded_class: Path) -> None:
-    """The end of what is typed, empty lines, and words for going on and stopping, large or small."""
+def test_nothing_is_marked_by_accident(typed: str, graded_class: Path) -> None:
+    """End of input, empty lines, and words for skipping and stopping in any case mark nothing."""
     done = review(graded_class, typed)
     assert done.returncode == 0
     assert done.stdout.endswith("0 marked, 4 left\n")
     assert marks(graded_class) == []
 
 
-def test_bytes_that_are_no_text(top: Path) -> None:
+def test_undecodable_bytes(top: Path) -> None:
     """A comment in another encoding is kept as far as it can be read."""
     assert review(top, b"2 gr\xfcn \x00 [red]\n").stdout.endswith("1 marked, 3 left\n")
     assert marks(top) == [("anna", "essay", 2.0, r"gr\xfcn " + "\0 [red]")]
 
 
 def test_one_criterion_only(top: Path) -> None:
-    """The others are left for later; one that there is not is refused."""
+    """The others are omitted; an unknown one is refused."""
     done = review(top, "1\n1\n", "--criterion", "picture")
     assert done.stdout.endswith("2 marked, 0 left\n")
     assert [row[:2] for row in marks(top)] == [("anna", "picture"), ("emil", "picture")]
@@ -121,13 +121,13 @@ def test_without_standard_input(graded_class: Path) -> None:
     """It stops at the first question."""
     command = [sys.executable, "-m", "grader", "review", "--gradebook", str(graded_class / "book.db")]
     closed = ["sh", "-c", 'exec "$@" <&-', "sh", *command]
-    done = subprocess.run(closed, cwd=ROOT, env=ENVIRONMENT, capture_output=True, check=False, timeout=PATIENCE)
+    done = subprocess.run(closed, cwd=ROOT, env=ENVIRONMENT, capture_output=True, check=False, timeout=HANG_TIMEOUT)
     assert (done.returncode, done.stderr) == (0, b"")
     assert done.stdout.endswith(b"0 marked, 4 left\n")
 
 
-def test_two_people_at_once(top: Path) -> None:
-    """What one has decided while the other was thinking is not asked of the other."""
+def test_two_reviews_at_once(top: Path) -> None:
+    """A question that one reviewer has answered is not asked of the other."""
     command = [sys.executable, "-u", "-m", "grader", "review", "--gradebook", str(top / "book.db")]
     with subprocess.Popen(
         command, cwd=ROOT, env=ENVIRONMENT, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
@@ -137,7 +137,7 @@ def test_two_people_at_once(top: Path) -> None:
         while "in " not in (line := slow.stdout.readline()):  # the last line before the first question
             assert line
         review(top, "s\n4\n1\nq\n")
-        out, _ = slow.communicate("2\ns\n", timeout=PATIENCE)
+        out, _ = slow.communicate("2\ns\n", timeout=HANG_TIMEOUT)
     assert "Anna Ek (anna): About picture" not in out
     assert "Ben Oh (emil): About picture" in out
     assert out.endswith("1 marked, 1 left\n")
@@ -153,8 +153,8 @@ def test_two_people_at_once(top: Path) -> None:
         ("", "0 marked, 1 left\n", [1.5, None, 3.0]),
     ],
 )
-def test_a_newer_mark_is_shown_and_asked_about(typed: str, end: str, kept: list[float], top: Path) -> None:
-    """Whoever marks what another process has marked since it was shown keeps that mark or replaces it; all marks stay."""
+def test_a_newer_mark_is_confirmed(typed: str, end: str, kept: list[float], top: Path) -> None:
+    """A reviewer keeps or replaces a mark that another process added after the question; all marks are kept."""
     book = ("--gradebook", top / "book.db")
     for points in ("1.5", "-"):
         assert grader("mark", "anna", "essay", points, *book).returncode == 0
@@ -177,7 +177,7 @@ def test_a_newer_mark_is_shown_and_asked_about(typed: str, end: str, kept: list[
 
 
 def test_a_third_mark_is_shown_as_well(graded_class: Path, top: Path) -> None:
-    """Each look and write are one transaction: also a mark that comes in while the question about another stands."""
+    """Each read and write are one transaction: also a mark added during the confirmation of another."""
     del graded_class
     with Gradebook(top / "book.db") as one, Gradebook(top / "book.db") as other:
         standings = Grades(one)
@@ -196,21 +196,21 @@ def test_a_third_mark_is_shown_as_well(graded_class: Path, top: Path) -> None:
     assert [row[2] for row in marks(top)] == [1, 2, 4]
 
 
-def test_ctrl_c_keeps_what_was_given(top: Path) -> None:
+def test_ctrl_c_keeps_earlier_marks(top: Path) -> None:
     """At a terminal, in the middle of a question."""
-    ours, theirs = pty.openpty()
+    own, theirs = pty.openpty()
     command = [sys.executable, "-m", "grader", "review", "--gradebook", str(top / "book.db")]
     with subprocess.Popen(
         command, cwd=ROOT, env=ENVIRONMENT, stdin=theirs, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
         start_new_session=True,
-    ) as asked:  # fmt: skip
-        os.write(ours, b"3 good\n")
-        assert asked.stdout is not None
+    ) as process:  # fmt: skip
+        os.write(own, b"3 good\n")
+        assert process.stdout is not None
         text = b""
         while text.count(b"points, 0 to 4") < 2:
-            text += os.read(asked.stdout.fileno(), 4096)
-        asked.send_signal(2)
-        assert asked.wait(PATIENCE) == 130
-    os.close(ours)
+            text += os.read(process.stdout.fileno(), 4096)
+        process.send_signal(2)
+        assert process.wait(HANG_TIMEOUT) == 130
+    os.close(own)
     os.close(theirs)
     assert marks(top) == [("anna", "essay", 3.0, "good")]

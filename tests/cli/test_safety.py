@@ -1,4 +1,4 @@
-"""A student's files are read and never run, whatever they are called and wherever the grader is started."""
+"""A student's files are read and never run, whatever their names and wherever the grader starts."""
 
 import os
 import shutil
@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.command_line import PATIENCE
+from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
 
 REFERENCE = ROOT / "submissions" / "reference"
-# Modules that the grader, or what it is built on, loads late.
+# Modules that the grader or its dependencies import late.
 MODULES = (
     "yaml",
     "docx",
@@ -31,14 +31,14 @@ MODULES = (
 
 @pytest.fixture
 def trapped(tmp_path: Path) -> Path:
-    """A hand-in full of modules that leave a mark when they are imported, and of code that leaves one when it is run."""
+    """Return a submission full of modules and code that leave a trace when imported or run."""
     folder = tmp_path / "handed-in"
     shutil.copytree(REFERENCE, folder)
     package = folder / "roscourse_sim_ws/src/my_robot"
     mark = f"open({str(tmp_path / 'ran')!r}, 'w').close()\n"
-    for place in (folder, package):
+    for target in (folder, package):
         for name in MODULES:
-            (place / f"{name}.py").write_text(mark)
+            (target / f"{name}.py").write_text(mark)
     for path in (package / "setup.py", package / "launch/my_robot_rviz.launch.py"):
         path.write_text(mark + path.read_text())
     (folder / "more.docx").write_bytes(b"PK\x03\x04")
@@ -48,15 +48,15 @@ def trapped(tmp_path: Path) -> Path:
 
 @pytest.mark.parametrize("command", [["-m", "grader"], ["-c", "from grader.__main__ import main; main()"]])
 @pytest.mark.parametrize("start", [".", "roscourse_sim_ws/src/my_robot"])
-def test_nothing_of_a_hand_in_is_imported_or_run(trapped: Path, start: str, command: list[str]) -> None:
-    """Not even where the grader is started in the student's folder, which Python would search for modules first."""
+def test_nothing_of_a_submission_is_imported_or_run(trapped: Path, start: str, command: list[str]) -> None:
+    """Even if the grader starts in the student's folder, which Python searches for modules first."""
     done = subprocess.run(
         [sys.executable, *(["-P"] if "-c" in command else []), *command, "grade", str(trapped), "--format", "json"],
         cwd=trapped / start,
         env={**os.environ, "PYTHONDONTWRITEBYTECODE": "1"},
         capture_output=True,
         check=False,
-        timeout=PATIENCE,
+        timeout=HANG_TIMEOUT,
     )
     assert done.returncode == 1  # what setup.py does in the end cannot be determined statically
     assert done.stderr.startswith(b"grader: exit code 1: could not be decided, and needs manual grading: ")
@@ -65,7 +65,7 @@ def test_nothing_of_a_hand_in_is_imported_or_run(trapped: Path, start: str, comm
 
 
 def test_nothing_is_written(trapped: Path) -> None:
-    """The hand-in is as it was before, and no temporary file is left."""
+    """The submission is unchanged, and no temporary file remains."""
     before = sorted(trapped.rglob("*"))
     temporary = trapped.parent / "temporary"
     temporary.mkdir()
@@ -77,7 +77,7 @@ def test_nothing_is_written(trapped: Path) -> None:
             env={**os.environ, "TMPDIR": str(temporary)},
             capture_output=True,
             check=False,
-            timeout=PATIENCE,
+            timeout=HANG_TIMEOUT,
         )
     assert sorted(trapped.rglob("*")) == before
     assert list(temporary.iterdir()) == []

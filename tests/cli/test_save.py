@@ -1,4 +1,4 @@
-"""grader grade --save: as many reports as are wanted from one run, each whole or not there at all."""
+"""grader grade --save: any number of reports from one run, each written completely or not at all."""
 
 import os
 import shutil
@@ -21,12 +21,12 @@ def saved(*texts: str) -> subprocess.CompletedProcess[bytes]:
 
 
 def test_every_format_can_be_saved_at_once(tmp_path: Path) -> None:
-    """Each file is what that format prints, under an ending of its own; nothing else is left in the folder."""
+    """Each file equals the output of that format and has its own ending; nothing else is in the folder."""
     names = {kind: f"report.{kind.ending}" for kind in Format}
     assert len(set(names.values())) == len(Format)
     done = saved(*(f"{kind}={tmp_path / name}" for kind, name in names.items()))
     assert (done.returncode, done.stderr) == (1, b"")
-    assert sorted(each.name for each in tmp_path.iterdir()) == sorted(names.values())
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(names.values())
     for kind, name in names.items():
         assert (tmp_path / name).read_bytes() == run(("grade", MISTAKEN, "--format", kind), **CLASSROOM50).stdout
 
@@ -34,7 +34,7 @@ def test_every_format_can_be_saved_at_once(tmp_path: Path) -> None:
 @pytest.mark.parametrize("other", ["{0}/a", "{0}/./a", "{0}/b/../a", "{0}/link"])
 @pytest.mark.parametrize("kind", ["json", "junit"])
 def test_one_file_holds_one_report(tmp_path: Path, kind: str, other: str) -> None:
-    """Two for the same file are refused, however it is called, and nothing is written."""
+    """Two reports for the same file are refused under any name, and nothing is written."""
     (tmp_path / "b").mkdir()
     (tmp_path / "link").symlink_to("a")
     done = saved(f"json={tmp_path}/a", f"{kind}={other.format(tmp_path)}")
@@ -44,8 +44,8 @@ def test_one_file_holds_one_report(tmp_path: Path, kind: str, other: str) -> Non
 
 
 @pytest.mark.parametrize("text", ["html=a", "json", "json=", "json=-", "=a", "JSON=a", " json=a", "json:a", ""])
-def test_what_is_no_format_and_file_is_refused(text: str) -> None:
-    """One line names the formats."""
+def test_an_invalid_option_is_refused(text: str) -> None:
+    """One line lists the formats."""
     done = saved(text)
     assert (done.returncode, done.stdout) == (2, b"")
     assert b"--save takes FORMAT=FILE with one of the formats terminal, markdown, json, junit" in done.stderr
@@ -53,8 +53,8 @@ def test_what_is_no_format_and_file_is_refused(text: str) -> None:
 
 
 @pytest.mark.parametrize("place", ["nowhere/a", "folder", "file/a"])
-def test_a_place_that_cannot_be_written(tmp_path: Path, place: str) -> None:
-    """Nothing is printed, the line says where and why, and no temporary file is left."""
+def test_an_unwritable_path(tmp_path: Path, place: str) -> None:
+    """Nothing is printed, the line says where and why, and no temporary file remains."""
     (tmp_path / "folder").mkdir()
     (tmp_path / "file").touch()
     before = sorted(tmp_path.rglob("*"))
@@ -65,8 +65,8 @@ def test_a_place_that_cannot_be_written(tmp_path: Path, place: str) -> None:
     assert sorted(tmp_path.rglob("*")) == before
 
 
-def test_a_file_is_replaced_as_a_whole(tmp_path: Path) -> None:
-    """Who has it open still reads the old one; its permissions stay, and a link to it leads to the new one."""
+def test_a_file_is_replaced_atomically(tmp_path: Path) -> None:
+    """Open handles still read the old file; permissions stay, and a symlink leads to the new one."""
     file, link = tmp_path / "a.json", tmp_path / "link.json"
     file.write_text("old")
     file.chmod(0o640)
@@ -81,7 +81,7 @@ def test_a_file_is_replaced_as_a_whole(tmp_path: Path) -> None:
 
 @pytest.fixture
 def sub(tmp_path: Path) -> Path:
-    """A submission with links that a student has made, beside what they lead to."""
+    """Return a submission with a student's symlinks beside their targets."""
     folder = tmp_path / "sub"
     folder.mkdir()
     shutil.copy(ROOT / MISTAKEN, folder)
@@ -102,8 +102,8 @@ PLANTED = ("sub/report.md", "sub/out/x", "sub/new", "sub/deep/link/x", "mine/x",
 
 @pytest.mark.parametrize("place", PLANTED)
 @pytest.mark.parametrize("graded", ["sub", "sub-too", "sub/my_robot.urdf"])
-def test_no_link_of_a_submission_is_followed(sub: Path, graded: str, place: str) -> None:
-    """Also not on the way, of a URDF on its own, or by a link of the instructor's that leads over one; nothing is written."""
+def test_no_symlink_of_a_submission_is_followed(sub: Path, graded: str, place: str) -> None:
+    """Also not within the path, for a single URDF, or through an instructor's symlink; nothing is written."""
     top = sub.parent
     before = {path: path.lstat().st_mtime_ns for path in top.rglob("*")}
     done = run(("grade", str(top / graded), "--save", f"markdown={top}/{place}"))
@@ -115,8 +115,8 @@ def test_no_link_of_a_submission_is_followed(sub: Path, graded: str, place: str)
     assert (top / "victim").read_text() == "precious"
 
 
-def test_links_of_the_instructor_are_followed(sub: Path) -> None:
-    """Those outside of the submission, and files in it that are no links."""
+def test_symlinks_of_the_instructor_are_followed(sub: Path) -> None:
+    """Symlinks outside the submission are followed, and regular files in it are written."""
     top = sub.parent
     (top / "safe").symlink_to("etc")
     (top / "latest.md").symlink_to("etc/b.md")
@@ -127,8 +127,8 @@ def test_links_of_the_instructor_are_followed(sub: Path) -> None:
 
 
 @pytest.mark.parametrize("variable", ["GITHUB_WORKSPACE", "CI_PROJECT_DIR"])
-def test_the_checkout_of_a_job_is_the_students(sub: Path, variable: str) -> None:
-    """A link in it is not followed, whatever part of it is graded."""
+def test_the_checkout_of_a_job_is_untrusted(sub: Path, variable: str) -> None:
+    """A symlink in it is not followed, whatever part of it is graded."""
     top = sub.parent
     graded = str(sub / "deep")
     shutil.copy(ROOT / MISTAKEN, graded)
@@ -139,8 +139,8 @@ def test_the_checkout_of_a_job_is_the_students(sub: Path, variable: str) -> None
     assert (bundle.returncode, list((top / "etc").iterdir())) == (2, [])
 
 
-def test_a_summary_is_not_written_through_a_link(sub: Path) -> None:
-    """The report is given all the same."""
+def test_a_summary_is_not_written_through_a_symlink(sub: Path) -> None:
+    """The report is printed all the same."""
     summary = {"GITHUB_ACTIONS": "true", "GITHUB_STEP_SUMMARY": str(sub / "report.md")}
     done = run(("grade", str(sub)), **summary)
     assert done.returncode == 1
@@ -148,8 +148,8 @@ def test_a_summary_is_not_written_through_a_link(sub: Path) -> None:
     assert (sub.parent / "victim").read_text() == "precious"
 
 
-def test_no_temporary_file_can_be_foretold(sub: Path) -> None:
-    """What is written first has a name that is another each time, and is never there before."""
+def test_temporary_names_are_unpredictable(sub: Path) -> None:
+    """The temporary file has a new random name every time."""
     names, opened = [], os.open
 
     def watched(path: Path, flags: int, mode: int) -> int:
@@ -174,8 +174,8 @@ def test_no_temporary_file_can_be_foretold(sub: Path) -> None:
 
 
 @pytest.mark.parametrize("why", ["rubric", "hash", "path", "size", "threshold", "another save"])
-def test_a_run_that_is_refused_leaves_no_forged_report(sub: Path, why: str) -> None:
-    """A file that was there before is gone, inside the submission and outside."""
+def test_a_refused_run_leaves_no_forged_report(sub: Path, why: str) -> None:
+    """An older file at the path is removed, inside and outside the submission."""
     forged = [sub / "results.json", sub.parent / "result.json"]
     for file in forged:
         file.write_text('{"score": 100}')
@@ -195,7 +195,7 @@ def test_a_run_that_is_refused_leaves_no_forged_report(sub: Path, why: str) -> N
 
 
 def test_what_is_graded_is_never_removed(sub: Path) -> None:
-    """Neither a URDF, nor the rubric, nor any robot: it may be what is graded."""
+    """Neither a URDF, nor the rubric, nor any robot is removed, because it may be the graded file."""
     robot, rubric = sub / "my_robot.urdf", sub.parent / "lab.toml"
     rubric.write_bytes((ROOT / "rubrics" / "lab6.toml").read_bytes())
     (sub.parent / "hard.json").hardlink_to(robot)
@@ -209,7 +209,7 @@ def test_what_is_graded_is_never_removed(sub: Path) -> None:
 
 
 def test_a_device_is_written_to(tmp_path: Path) -> None:
-    """What is no regular file is not replaced, and what cannot take the report is told."""
+    """A special file is not replaced, and one that cannot be written is reported."""
     assert saved("json=/dev/null").returncode == 1
     assert not os.path.isfile("/dev/null")
     done = saved("json=/dev/full")

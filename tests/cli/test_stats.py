@@ -1,4 +1,4 @@
-"""grader stats: a class at a glance, for a person at any terminal and for programs."""
+"""grader stats: a class at a glance, for people at any terminal and for programs."""
 
 import json
 from pathlib import Path
@@ -8,25 +8,25 @@ import jsonschema
 import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from tests.classroom.gradebooks import batch, came_out, graded_into, grader, hand_in, lab, refusal
+from tests.classroom.gradebooks import batch, graded_as, grader, lab, record_run, refusal, write_submission
 
 
 def stats(path: Path, *more: object, **variables: str) -> str:
-    """What it says of a gradebook."""
+    """Return the output for a gradebook."""
     done = grader("stats", "--gradebook", path, *more, **variables)
     assert (done.returncode, done.stderr) == (0, "")
     return done.stdout
 
 
 def as_json(path: Path) -> dict[str, Any]:
-    """The same as JSON, which the schema knows."""
+    """Return the same as JSON, valid under its schema."""
     data = json.loads(stats(path, "--format", "json"))
     jsonschema.validate(data, json.loads(grader("schema", "class").stdout))
     return dict(data)
 
 
 def test_at_a_glance(top: Path) -> None:
-    """Marks, criteria, failures, and who needs a look."""
+    """Marks, criteria, failures, and who needs attention."""
     for key in ("anna", "emil"):
         grader("mark", key, "essay", "1.5", "--gradebook", top / "book.db")
     text = stats(top / "book.db")
@@ -43,16 +43,18 @@ def test_at_a_glance(top: Path) -> None:
 
 
 def test_as_json(top: Path) -> None:
-    """Batch, stats and export say the same."""
+    """Batch, stats and export give the same."""
     done = batch(top, "--format", "json")
-    told = json.loads(done.stdout)
-    jsonschema.validate(told, json.loads(grader("schema", "class").stdout))
-    run = told.pop("run")
+    reported = json.loads(done.stdout)
+    jsonschema.validate(reported, json.loads(grader("schema", "class").stdout))
+    run = reported.pop("run")
     assert (run["total"], run["graded"] + run["unchanged"], run["errored"]) == (4, 4, 0)
     assert (
-        told == as_json(top / "book.db") == json.loads(grader("export", "json", "--gradebook", top / "book.db").stdout)
+        reported
+        == as_json(top / "book.db")
+        == json.loads(grader("export", "json", "--gradebook", top / "book.db").stdout)
     )
-    assert told["needs_a_look"] == 2
+    assert reported["needs_a_look"] == 2
 
 
 @pytest.mark.parametrize(
@@ -60,7 +62,7 @@ def test_as_json(top: Path) -> None:
     [{"COLUMNS": "40"}, {"COLUMNS": "1"}, {"COLUMNS": "9999"}, {"NO_COLOR": "1"}, {"PYTHONIOENCODING": "ascii"}],
 )
 def test_any_terminal(variables: dict[str, str], graded_class: Path) -> None:
-    """No line is longer than asked for, and a pipe gets no colour."""
+    """No line is longer than the width, and a pipe gets no colour."""
     text = stats(graded_class / "book.db", **variables)
     width = min(500, max(40, int(variables.get("COLUMNS", "80"))))
     assert max(map(len, text.splitlines())) <= width
@@ -69,7 +71,7 @@ def test_any_terminal(variables: dict[str, str], graded_class: Path) -> None:
 
 
 def test_an_empty_gradebook(tmp_path: Path) -> None:
-    """One that nothing was graded into is told of in a line."""
+    """A gradebook without results is reported in a line."""
     book = tmp_path / "book.db"
     Gradebook(book, create=True).close()
     why = f"nothing has been graded into {book} yet: run `grader batch PATH --gradebook {book}`"
@@ -78,10 +80,10 @@ def test_an_empty_gradebook(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("signs", [{}, {"anna": "pps?f"}, {"anna": "?!p!?"}])
 def test_few_or_none(signs: dict[str, str], tmp_path: Path) -> None:
-    """A run without hand-ins, of one student, and one in which nobody could be graded."""
+    """A run without submissions, of one student, and with only unreadable submissions."""
     rubric = lab()
     with Gradebook(tmp_path / "book.db", create=True) as book:
-        graded_into(book, rubric, [came_out(rubric, key, each) for key, each in signs.items()])
+        record_run(book, rubric, [graded_as(rubric, key, row) for key, row in signs.items()])
     text = stats(tmp_path / "book.db")
     data = as_json(tmp_path / "book.db")
     assert len(data["students"]) == len(signs)
@@ -91,31 +93,31 @@ def test_few_or_none(signs: dict[str, str], tmp_path: Path) -> None:
 
 
 def test_almost_all_is_not_all(tmp_path: Path) -> None:
-    """A mean just below full marks is not rounded up to them, nor is a share up to all or down to nothing."""
+    """A mean just below full marks is not rounded up to them, nor is a share to 100 % or 0 %."""
     rubric = lab()
     with Gradebook(tmp_path / "book.db", create=True) as book:
-        found = [came_out(rubric, f"s{number}", "ppppp" if number else "ppppf") for number in range(300)]
-        graded_into(book, rubric, found)
+        found = [graded_as(rubric, f"s{number}", "ppppp" if number else "ppppf") for number in range(300)]
+        record_run(book, rubric, found)
     text = stats(tmp_path / "book.db")
     assert "Grades out of 11: mean 10.9, standard deviation 0.1" in text
     assert "picture         1     299  300    99%" in text
     assert "essay           4     300  300   100%" in text
 
 
-def test_who_is_left_behind_by_a_new_rubric(tmp_path: Path) -> None:
-    """What does not count is said."""
+def test_older_rubrics_are_reported(tmp_path: Path) -> None:
+    """Grades that do not count are mentioned."""
     old, new = lab(), lab(loads="1")
     with Gradebook(tmp_path / "book.db", create=True) as book:
-        graded_into(book, old, [came_out(old, key, "ppppp") for key in ("anna", "ben")])
-        graded_into(book, new, [came_out(new, "anna", "ppppp")])
+        record_run(book, old, [graded_as(old, key, "ppppp") for key in ("anna", "ben")])
+        record_run(book, new, [graded_as(new, "anna", "ppppp")])
     text = stats(tmp_path / "book.db")
     assert "2 graded\n1 graded by an earlier rubric only: not in these statistics\n" in text
     assert "  ben: graded with an earlier version of the rubric\n" in text
 
 
-def test_names_are_harmless(top: Path) -> None:
-    """Nothing that students call themselves or their files colours, turns or ends the terminal's text."""
-    hand_in(top / "class" / "x[red]\x1b[31m\u202ey")
+def test_names_are_escaped(top: Path) -> None:
+    """Names of students and files cannot colour, reverse or end the terminal's text."""
+    write_submission(top / "class" / "x[red]\x1b[31m\u202ey")
     (top / "class" / "[bold]\x1b]0;z\x07.zip").write_bytes(b"no zip")
     (top / "roster.csv").write_bytes("id,name\nanna,\u202eA\x1b[31mn[red]\n".encode())
     done = batch(top)

@@ -1,4 +1,4 @@
-"""grader grade --watch: what is graded again and when, what is said first, and how it ends."""
+"""grader grade --watch: which changes are graded, the first lines, and the end."""
 
 import os
 import shutil
@@ -17,7 +17,7 @@ import pytest
 from grader.errors import InputError
 from grader.files.folder import is_looked_at, read_folder
 from grader.usecases.file_events import Watched, _filter, _target, changes
-from tests.command_line import PATIENCE
+from tests.command_line import HANG_TIMEOUT
 from tests.golden.cases import ROOT, run
 
 watchfiles = pytest.importorskip("watchfiles")
@@ -31,8 +31,8 @@ FLAWLESS_END = "down to the ground, z = 0 of\n          base_footprint\n"
 FOLDER_END = "Task3_Step3.png (320 x 240\n    pixels, 584 bytes)\n"
 
 
-class Reader:
-    """What a pipe has brought so far; waiting for words begins where the words before ended."""
+class PipeReader:
+    """The output of a pipe so far; waiting for words continues after the previous words."""
 
     def __init__(self, pipe: IO[bytes]) -> None:
         self._pipe, self._text, self._read, self._is_over = pipe, "", 0, False
@@ -51,18 +51,18 @@ class Reader:
             self._news.notify_all()
 
     def until(self, words: str) -> str:
-        """Everything up to these words, which have to come."""
+        """Return everything up to these words, which must come."""
         with self._news:
-            self._news.wait_for(lambda: self._is_over or words in self._text[self._read :], PATIENCE)
+            self._news.wait_for(lambda: self._is_over or words in self._text[self._read :], HANG_TIMEOUT)
             found = self._text.find(words, self._read)
             assert found >= 0, f"{words!r} is not in {self._text[self._read :]!r}"
             start, self._read = self._read, found + len(words)
             return self._text[start : self._read]
 
     def rest(self) -> str:
-        """Everything that is still to come, up to the end."""
+        """Return everything up to the end."""
         with self._news:
-            assert self._news.wait_for(lambda: self._is_over, PATIENCE)
+            assert self._news.wait_for(lambda: self._is_over, HANG_TIMEOUT)
             return self._text[self._read :]
 
 
@@ -74,12 +74,12 @@ class Watch:
         environment = {**os.environ, "COLUMNS": "80", "PYTHONIOENCODING": "utf-8"}
         self.process = subprocess.Popen(command, cwd=ROOT, env=environment, stdout=stdout, stderr=subprocess.PIPE)
         assert self.process.stderr is not None
-        self.err = Reader(self.process.stderr)
-        self._out = Reader(self.process.stdout) if self.process.stdout is not None else None
+        self.err = PipeReader(self.process.stderr)
+        self._out = PipeReader(self.process.stdout) if self.process.stdout is not None else None
 
     @property
-    def out(self) -> Reader:
-        """What it prints, where no test reads that itself."""
+    def out(self) -> PipeReader:
+        """Discard its output if no test reads it."""
         assert self._out is not None
         return self._out
 
@@ -91,26 +91,26 @@ class Watch:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.process.kill()
-        self.process.wait(PATIENCE)
+        self.process.wait(HANG_TIMEOUT)
         for reader in filter(None, (self._out, self.err)):
-            reader.thread.join(PATIENCE)
+            reader.thread.join(HANG_TIMEOUT)
 
     def interrupt(self) -> int:
-        """Press Ctrl-C: the exit code."""
+        """Press Ctrl-C and return the exit code."""
         self.process.send_signal(signal.SIGINT)
-        return self.process.wait(PATIENCE)
+        return self.process.wait(HANG_TIMEOUT)
 
 
 @pytest.fixture
 def robot(tmp_path: Path) -> Path:
-    """A URDF with one mistake, in a folder of its own."""
+    """Write a URDF with one mistake in a folder of its own."""
     (tmp_path / "work").mkdir()
     shutil.copy(SHORT, tmp_path / "work" / "my_robot.urdf")
     return tmp_path / "work" / "my_robot.urdf"
 
 
 def put(data: Path | str | bytes, target: Path) -> None:
-    """Replace a file as many editors do: by another one that takes its name, so that nobody can read half of it."""
+    """Replace a file atomically, as many editors do, so that nobody reads half of it."""
     beside = target.with_name(f".{target.name}.tmp")
     if isinstance(data, Path):
         shutil.copy(data, beside)
@@ -119,7 +119,7 @@ def put(data: Path | str | bytes, target: Path) -> None:
     beside.replace(target)
 
 
-def test_each_round_says_first_what_has_changed(robot: Path) -> None:
+def test_each_round_starts_with_the_changes(robot: Path) -> None:
     """The first report is that of grade; then a blank line, the changes, and the whole report."""
     with Watch(robot) as watch:
         assert watch.out.until(END).encode() == run(("grade", str(robot))).stdout
@@ -135,8 +135,8 @@ def test_each_round_says_first_what_has_changed(robot: Path) -> None:
         )
 
 
-def test_a_file_that_is_written_over(robot: Path) -> None:
-    """Whatever is seen on the way, the last report is on the whole file."""
+def test_a_file_written_in_place(robot: Path) -> None:
+    """Whatever is graded meanwhile, the last report is on the whole file."""
     with Watch(robot) as watch:
         watch.out.until(END)
         robot.write_bytes(URDF.read_bytes())
@@ -145,7 +145,7 @@ def test_a_file_that_is_written_over(robot: Path) -> None:
 
 @pytest.mark.parametrize(("source", "code"), [(SHORT, 1), (URDF, 0)])
 def test_ctrl_c_ends_it_with_the_last_exit_code(robot: Path, source: Path, code: int) -> None:
-    """Quietly: that of the last grading, not of the first."""
+    """It ends quietly with the exit code of the last grading, not of the first."""
     with Watch(robot) as watch:
         watch.out.until(END)
         put(URDF, robot)
@@ -156,8 +156,8 @@ def test_ctrl_c_ends_it_with_the_last_exit_code(robot: Path, source: Path, code:
         assert watch.err.rest() == ""
 
 
-def test_what_cannot_be_read_is_waited_out(robot: Path) -> None:
-    """A file that is gone, too large, or there again, also with its folder: a line each, and the comparison goes on."""
+def test_unreadable_states_are_waited_out(robot: Path) -> None:
+    """A file that is removed, too large, or back, also with its folder: one line each, and the comparison continues."""
     with Watch(robot) as watch:
         watch.out.until(END)
         robot.unlink()
@@ -173,8 +173,8 @@ def test_what_cannot_be_read_is_waited_out(robot: Path) -> None:
         assert watch.interrupt() == 2
 
 
-def test_it_starts_before_there_is_anything(tmp_path: Path) -> None:
-    """Neither the file nor its folder has to be there."""
+def test_it_starts_before_the_file_exists(tmp_path: Path) -> None:
+    """Neither the file nor its folder has to exist."""
     robot = tmp_path / "later" / "my_robot.urdf"
     with Watch(robot) as watch:
         watch.err.until("does not exist: waiting until it does\n")
@@ -184,7 +184,7 @@ def test_it_starts_before_there_is_anything(tmp_path: Path) -> None:
 
 
 def test_a_folder_with_saved_reports_in_it(tmp_path: Path) -> None:
-    """Whatever is graded counts; what the grader writes itself does not, or there would be no end to it."""
+    """Whatever is graded counts; the grader's own output does not, to avoid endless rounds."""
     folder = tmp_path / "lab6"
     shutil.copytree(REFERENCE, folder)
     urdf = folder / URDF.relative_to(REFERENCE)
@@ -195,18 +195,18 @@ def test_a_folder_with_saved_reports_in_it(tmp_path: Path) -> None:
         watch.out.until(FOLDER_END)
         for source, news, end in ((SHORT, "now failed", END), (URDF, "now passed", FOLDER_END)) * 3:
             put(source, urdf)
-            assert f"{news}: lidar-frame" in (said := watch.out.until(end))
-            assert "nothing has changed" not in said
+            assert f"{news}: lidar-frame" in (output := watch.out.until(end))
+            assert "nothing has changed" not in output
             assert '"lidar-frame"' in (folder / "report.json").read_text()
         launch = urdf.parent.parent / "launch"
         launch.rename(launch.with_name("nothing"))
-        said = watch.out.until("now failed: ")
-        assert "nothing has changed" not in said
+        output = watch.out.until("now failed: ")
+        assert "nothing has changed" not in output
         assert "launch" in watch.out.until("\n")
 
 
-def test_a_folder_in_the_place_of_another(tmp_path: Path) -> None:
-    """A hand-in that is unpacked once more is watched from then on."""
+def test_a_replaced_folder(tmp_path: Path) -> None:
+    """A submission that is unpacked again is watched from then on."""
     folder = tmp_path / "lab6"
     for name, source in (("lab6", SHORT), ("other", URDF)):
         (tmp_path / name).mkdir()
@@ -222,7 +222,7 @@ def test_a_folder_in_the_place_of_another(tmp_path: Path) -> None:
 
 
 def test_a_rubric_in_a_file_is_watched(robot: Path, tmp_path: Path) -> None:
-    """Its mistakes are told line by line and waited out; the URDF is graded by what it says now."""
+    """Its mistakes are reported line by line and waited out; the URDF is graded by the current rubric."""
     rubric = tmp_path / "rules" / "lab.toml"
     rubric.parent.mkdir()
     text = (ROOT / "rubrics" / "lab6.toml").read_text()
@@ -234,26 +234,26 @@ def test_a_rubric_in_a_file_is_watched(robot: Path, tmp_path: Path) -> None:
         put("id = [", rubric)
         watch.err.until("not readable as TOML")
         put(text.replace('id = "lidar-frame"', 'id = "lidar-place"'), rubric)
-        said = watch.out.until("64 / 70 points")
-        assert "now failed: lidar-place\nremoved: lidar-frame\n" in said
+        output = watch.out.until("64 / 70 points")
+        assert "now failed: lidar-place\nremoved: lidar-frame\n" in output
 
 
 def test_closed_standard_output(robot: Path) -> None:
-    """One line and exit code 2, as anywhere else: when there is something to print again."""
-    ours, theirs = os.pipe()
+    """One line and exit code 2 at the next output, as anywhere else."""
+    rendered, theirs = os.pipe()
     with Watch(robot, stdout=theirs) as watch:
         os.close(theirs)
         text = b""
         while not text.endswith(END.encode()):
-            text += os.read(ours, 65536)
-        os.close(ours)
+            text += os.read(rendered, 65536)
+        os.close(rendered)
         put(URDF, robot)
-        assert watch.process.wait(PATIENCE) == 2
+        assert watch.process.wait(HANG_TIMEOUT) == 2
         assert watch.err.rest() == "grader: cannot write the report: standard output: Broken pipe\n"
 
 
 def refuse(words: str, *arguments: object) -> None:
-    """Nothing is watched: one line that holds the words, exit code 2."""
+    """Assert one line that contains the words, and exit code 2; nothing is watched."""
     done = run(("grade", "--watch", *map(str, arguments)))
     assert (done.returncode, done.stdout) == (2, b"")
     message = done.stderr.decode()
@@ -261,8 +261,8 @@ def refuse(words: str, *arguments: object) -> None:
     assert words in message
 
 
-def test_what_cannot_be_watched_is_refused(robot: Path, tmp_path: Path) -> None:
-    """Standard input, reports for programs, and what no change of a file would mend."""
+def test_invalid_combinations_are_refused(robot: Path, tmp_path: Path) -> None:
+    """Standard input, reports for programs, and errors that no change of a file would fix."""
     refuse("--watch takes a file or folder", "-")
     refuse("--watch takes a file or folder", "")
     refuse("use --save json=FILE instead of --format", robot, "--format", "json")
@@ -273,29 +273,29 @@ def test_what_cannot_be_watched_is_refused(robot: Path, tmp_path: Path) -> None:
 
 
 def test_a_report_that_cannot_be_saved_ends_it(robot: Path, tmp_path: Path) -> None:
-    """As it ends a single run."""
+    """It ends the watch as it ends a single run."""
     done = run(("grade", "--watch", str(robot), "--save", f"json={tmp_path / 'nowhere' / 'a.json'}"))
     assert (done.returncode, done.stdout) == (2, b"")
     assert done.stderr.splitlines()[-1].startswith(b"grader: cannot write")
 
 
 def test_without_the_extra(robot: Path) -> None:
-    """The command to type is said."""
+    """The message says which command to type."""
     code = "import sys; sys.modules['watchfiles'] = None; from grader.__main__ import main; main()"
     command = [sys.executable, "-P", "-c", code, "grade", "--watch", str(robot)]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, check=False, timeout=PATIENCE)
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, check=False, timeout=HANG_TIMEOUT)
     assert (done.returncode, done.stdout) == (2, b"")
     assert done.stderr == b"grader: --watch needs watchfiles: pip install 'urdf-grader[watch]'\n"
 
 
 def counts(path: Path, changed: Path, *own: Path, rubric: Path | None = None) -> bool:
-    """Whether a change there is one of what is graded at the path."""
+    """Return whether a change of this path concerns the graded path."""
     watched = Watched(path, rubric, frozenset(map(os.path.realpath, own)))
     return _filter(_target(path), watched)(watchfiles.Change.modified, str(changed))
 
 
 def test_which_changes_count_in_a_folder(tmp_path: Path) -> None:
-    """All but what the grader does not look at either, what it writes itself, and the rubric, which is looked at anyway."""
+    """All but ignored files, the grader's own output, and the rubric, which is watched anyway."""
     (tmp_path / "env").mkdir()
     (tmp_path / "env" / "pyvenv.cfg").touch()
     for name in ("my_robot.urdf", "a/b/c.txt", "new folder", "a/b~", "building/x", "env", "a/env/x", "report.txt"):
@@ -321,7 +321,7 @@ def test_which_changes_count_in_a_folder(tmp_path: Path) -> None:
 
 
 def test_which_changes_count_for_a_file(tmp_path: Path) -> None:
-    """Those of that file only, and of the one that it leads to."""
+    """Only changes of that file and of its symlink's target."""
     for name in ("a", "b"):
         (tmp_path / name).mkdir()
     (tmp_path / "b" / "real.urdf").touch()
@@ -334,8 +334,8 @@ def test_which_changes_count_for_a_file(tmp_path: Path) -> None:
     assert not counts(path, tmp_path / "b" / "link.urdf")
 
 
-def test_a_name_that_is_no_text_is_a_change_like_any_other(tmp_path: Path) -> None:
-    """And the next one is heard all the same."""
+def test_an_undecodable_name_is_a_change(tmp_path: Path) -> None:
+    """And later changes are noticed."""
     heard = filter(None, changes(Watched(tmp_path)))
     next(heard)
     Path(os.fsdecode(os.fsencode(tmp_path) + b"/\xff.txt")).touch()
@@ -344,8 +344,8 @@ def test_a_name_that_is_no_text_is_a_change_like_any_other(tmp_path: Path) -> No
     next(heard)
 
 
-def test_what_no_event_has_told_is_seen_all_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A folder is graded once more a little later, a file whenever it is another one; neither is news without a reason."""
+def test_changes_without_events_are_noticed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A folder is graded again a little later, a file whenever it changed; neither prints anything without a reason."""
 
     def deaf(*_paths: str, **_options: object) -> Iterator[set[object]]:
         while True:
@@ -364,8 +364,8 @@ def test_what_no_event_has_told_is_seen_all_the_same(tmp_path: Path, monkeypatch
         assert next(file)
 
 
-def test_nothing_is_listened_to_where_nothing_can_be(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A system that has no more watches to give is named, and the way around it."""
+def test_no_events_available(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """If the system has no more watches, the message names the limit and the alternative."""
 
     def refused(*_paths: str, **_options: object) -> Iterator[set[object]]:
         raise RuntimeError("OS file watch limit reached.")
@@ -376,7 +376,7 @@ def test_nothing_is_listened_to_where_nothing_can_be(tmp_path: Path, monkeypatch
 
 
 @pytest.mark.parametrize("name", sorted({path.name for path in (ROOT / "submissions").iterdir()})[:20])
-def test_what_a_folder_holds_is_looked_at(name: str) -> None:
-    """Every file that is taken in counts when it changes."""
+def test_all_graded_files_are_watched(name: str) -> None:
+    """Every file that is graded counts when it changes."""
     folder = ROOT / "submissions" / name
     assert all(is_looked_at(folder, path) for path in read_folder(folder).files)

@@ -1,4 +1,4 @@
-"""The size of a picture is read from the header of every supported format, and a damaged header has none."""
+"""The size of a picture is read from the header of every supported format; a damaged header has none."""
 
 import struct
 
@@ -28,7 +28,7 @@ HEADERS = {
 
 @pytest.mark.parametrize("name", HEADERS)
 def test_the_size_is_in_the_header(name: str) -> None:
-    """Width and height are those that a viewer shows; a header that is cut short has none."""
+    """Width and height equal those of a viewer; a truncated header has none."""
     header, size = HEADERS[name]
     assert image_size(header) == size
     assert image_size(header[:9]) is None
@@ -36,6 +36,6 @@ def test_the_size_is_in_the_header(name: str) -> None:
 
 @given(start=st.sampled_from([header[:4] for header, _ in HEADERS.values()]), rest=st.binary(max_size=100))
 def test_a_damaged_header_is_no_error(start: bytes, rest: bytes) -> None:
-    """Any bytes after a signature have a positive size or none."""
+    """Any bytes after a signature give a positive size or none."""
     size = image_size(start + rest)
     assert size is None or min(size) > 0

@@ -1,11 +1,11 @@
-"""Which task and step a name speaks of, however it is spelt."""
+"""Labels: the task and step that a name refers to, in any spelling."""
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.documents.labels import matches, read_label
-from tests.patience import processor_time
+from tests.processor_time import processor_time
 
 
 @pytest.mark.parametrize(
@@ -49,7 +49,7 @@ def test_labels(text: str, task: int | None, steps: set[int]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("wanted", "found", "known", "is_it"),
+    ("expected", "found", "known", "is_it"),
     [
         ("task 1 step 8", "Task1_Step8.png", None, True),
         ("task 1 step 8", "T1S8", None, True),
@@ -75,15 +75,15 @@ def test_labels(text: str, task: int | None, steps: set[int]) -> None:
         ("camera", "", None, False),
     ],
 )
-def test_meaning(wanted: str, found: str, known: int | None, is_it: bool) -> None:
-    """A name speaks of what is wanted if task, steps and words agree."""
-    assert matches(read_label(wanted), read_label(found), known) is is_it
+def test_meaning(expected: str, found: str, known: int | None, is_it: bool) -> None:
+    """A name matches if task, steps and words agree."""
+    assert matches(read_label(expected), read_label(found), known) is is_it
 
 
 @given(st.text(max_size=60), st.text(max_size=60), st.none() | st.integers())
-def test_any_text(wanted: str, found: str, known: int | None) -> None:
+def test_any_text(expected: str, found: str, known: int | None) -> None:
     """Any two texts can be compared."""
-    assert matches(read_label(wanted), read_label(found), known) in (True, False)
+    assert matches(read_label(expected), read_label(found), known) in (True, False)
 
 
 @given(
@@ -92,7 +92,7 @@ def test_any_text(wanted: str, found: str, known: int | None) -> None:
     st.sampled_from(["task{}_step{}", "T{}S{}", "Task {} - Question {}", "{0}/task{0}/step{1}"]),
 )
 def test_numbers_are_found_in_every_spelling(task: int, step: int, spelling: str) -> None:
-    """Whatever the numbers are."""
+    """In every spelling the numbers are found."""
     found = read_label(spelling.format(task, step))
     assert (found.task, set(found.steps)) == (task, {step})
 

@@ -1,4 +1,4 @@
-"""Archives made for tests: zips and tars with whatever members are wanted."""
+"""Build archives for tests: zips and tars with any members."""
 
 import io
 import stat
@@ -17,8 +17,8 @@ FILES: Mapping[str, bytes | None] = {
 }
 
 
-class Link(NamedTuple):
-    """A link as a member of an archive, to a path from its own folder or, if it is hard, from the top."""
+class LinkMember(NamedTuple):
+    """A link as a member of an archive, to a path relative to its folder or, if it is hard, to the root."""
 
     name: str
     target: str
@@ -26,9 +26,9 @@ class Link(NamedTuple):
 
 
 def make_zip(
-    files: Mapping[str, bytes | None] = FILES, links: Iterable[Link] = (), compression: int = zipfile.ZIP_DEFLATED
+    files: Mapping[str, bytes | None] = FILES, links: Iterable[LinkMember] = (), compression: int = zipfile.ZIP_DEFLATED
 ) -> bytes:
-    """A zip with these files; a folder is a name that ends in a slash."""
+    """Make a zip with these files; a name that ends in a slash is a folder."""
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w", compression) as archive:
         for name, content in files.items():
@@ -42,7 +42,7 @@ def make_zip(
 
 
 def make_named_zip(names: Mapping[bytes, bytes], flags: int = 0) -> bytes:
-    """A zip whose members have names of these bytes, which are not declared as UTF-8 unless `flags` do it."""
+    """Make a zip whose members have names of these bytes, declared as UTF-8 only by `flags`."""
     stand_ins = {f"{index:06}".ljust(len(name), "_"): name for index, name in enumerate(names)}
     data = make_zip({name: names[real] for name, real in stand_ins.items()}, compression=zipfile.ZIP_STORED)
     for stand_in, name in stand_ins.items():
@@ -51,7 +51,7 @@ def make_named_zip(names: Mapping[bytes, bytes], flags: int = 0) -> bytes:
 
 
 def set_flags(data: bytes, flags: int) -> bytes:
-    """A zip with flags set in every header, local and central."""
+    """Return a zip with flags set in every header, local and central."""
     made = bytearray(data)
     for signature, offset in ((b"PK\x03\x04", 6), (b"PK\x01\x02", 8)):
         start = -1
@@ -63,12 +63,12 @@ def set_flags(data: bytes, flags: int) -> bytes:
 
 def make_tar(
     files: Mapping[str, bytes | None] = FILES,
-    links: Iterable[Link] = (),
+    links: Iterable[LinkMember] = (),
     kind: str = "",
     style: int = tarfile.PAX_FORMAT,
     change: Callable[[tarfile.TarInfo], None] = lambda _: None,
 ) -> bytes:
-    """A tar with these files, compressed as `kind` (gz, bz2, xz) says; `change` is made to every entry."""
+    """Make a tar with these files, compressed by `kind` (gz, bz2, xz); `change` is applied to every entry."""
     data = io.BytesIO()
     mode = f"w:{kind}" if kind else "w"
     with tarfile.open(fileobj=data, mode=mode, format=style) as archive:  # type: ignore[call-overload]
@@ -87,7 +87,7 @@ def make_tar(
 
 
 def twice(name: str, first: bytes, second: bytes) -> bytes:
-    """A zip with two members of the same name."""
+    """Make a zip with two members of the same name."""
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w") as archive, warnings.catch_warnings():
         warnings.simplefilter("ignore")

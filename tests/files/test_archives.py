@@ -30,14 +30,14 @@ from tests.files.archives import (
     FILES,
     MAKERS,
     ROBOT,
-    Link,
+    LinkMember,
     make_named_zip,
     make_tar,
     make_zip,
     set_flags,
     twice,
 )
-from tests.patience import processor_time
+from tests.processor_time import processor_time
 
 URDF = "my_robot/urdf/my_robot.urdf"
 EVERY = list(MAKERS)
@@ -45,24 +45,24 @@ EVERY = list(MAKERS)
 
 @pytest.fixture(autouse=True)
 def temporary(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """A folder for temporary files, which is empty whenever one looks."""
+    """Yield a folder for temporary files, which must be empty at the end."""
     place = tmp_path_factory.mktemp("temporary")
     monkeypatch.setattr(tempfile, "tempdir", str(place))
-    gc.freeze()  # what the tests before have left need not be looked through for each of these
+    gc.freeze()  # objects of earlier tests need not be scanned for each of these
     yield place
     gc.collect()
     assert list(place.iterdir()) == []
 
 
 def tree_of(data: bytes, name: str = "lab6.zip") -> Tree:
-    """The tree of an archive, without what is in the archives in it."""
+    """Return the file tree of an archive, without the contents of nested archives."""
     kind = archive_kind(data[:512])
     assert kind is not None
     return read_archive(io.BytesIO(data), kind, name)
 
 
 def opened(path: Path, data: bytes) -> Tree:
-    """The tree of an archive that is written to a file."""
+    """Return the file tree of an archive that is written to a file."""
     path.write_bytes(data)
     tree = open_tree(path)
     assert tree is not None
@@ -70,12 +70,12 @@ def opened(path: Path, data: bytes) -> Tree:
 
 
 def text(tree: Tree, path: str = URDF) -> bytes:
-    """What is in a file of a tree."""
+    """Return the content of a file in a file tree."""
     return tree.files[path].read(1000)
 
 
 def refusal(data: bytes, name: str = "lab6.zip") -> str:
-    """Why an archive is refused: one line."""
+    """Return the one line with which an archive is refused."""
     with pytest.raises(InputError) as caught:
         tree_of(data, name)
     assert "\n" not in str(caught.value)
@@ -83,7 +83,7 @@ def refusal(data: bytes, name: str = "lab6.zip") -> str:
 
 
 def read_all(tree: Tree) -> None:
-    """Read every file of a tree; what cannot be read has to be an InputError."""
+    """Read every file of a file tree; unreadable ones must raise InputError."""
     for file in tree.files.values():
         for first in (True, False):
             try:
@@ -93,8 +93,8 @@ def read_all(tree: Tree) -> None:
 
 
 @pytest.mark.parametrize("ending", EVERY)
-def test_every_kind(ending: str, tmp_path: Path) -> None:
-    """Files, sizes and folders are the same whatever they are packed in; an empty folder is kept."""
+def test_every_kind_of_archive(ending: str, tmp_path: Path) -> None:
+    """Files, sizes and folders are the same in every kind; an empty folder is kept."""
     tree = opened(tmp_path / f"lab6{ending}", MAKERS[ending]())
     assert list(tree.files) == ["my_robot/package.xml", URDF]
     assert tree.folders == {"my_robot", "my_robot/urdf", "my_robot/meshes"}
@@ -105,8 +105,8 @@ def test_every_kind(ending: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("ending", EVERY)
-def test_parts_of_a_file(ending: str) -> None:
-    """A file is read as far as is asked for, any number of times, and in any order."""
+def test_partial_reads(ending: str) -> None:
+    """A file is read up to the requested size, any number of times, and in any order."""
     tree = tree_of(MAKERS[ending]({"a": b"0123456789", "b": b"b"}))
     assert tree.files["a"].read(4, first=True) == b"0123"
     assert tree.files["b"].read(1) == b"b"
@@ -116,7 +116,7 @@ def test_parts_of_a_file(ending: str) -> None:
 
 
 def test_only_a_urdfs_limit_can_be_raised(tmp_path: Path) -> None:
-    """The advice to raise the limit is given where it helps."""
+    """The advice to raise the limit is given only if it helps."""
     (tmp_path / "a.urdf").write_bytes(b"12345")
     (tmp_path / "a.rviz").write_bytes(b"12345")
     for tree in (read_folder(tmp_path), tree_of(make_zip({"a.urdf": b"12345", "a.rviz": b"12345"}))):
@@ -127,8 +127,8 @@ def test_only_a_urdfs_limit_can_be_raised(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("ending", EVERY)
-def test_a_part_of_a_tree_keeps_its_archive_open(ending: str) -> None:
-    """A package's tree is read when the whole one is gone."""
+def test_a_subtree_keeps_its_archive_open(ending: str) -> None:
+    """A package's file tree can be read after the whole one is deleted."""
     part = tree_of(MAKERS[ending]()).below("my_robot")
     gc.collect()
     assert part.files["urdf/my_robot.urdf"].read(1000) == ROBOT
@@ -137,7 +137,7 @@ def test_a_part_of_a_tree_keeps_its_archive_open(ending: str) -> None:
 
 
 def test_an_archive_is_closed_with_its_tree() -> None:
-    """A file outlives its tree as an object, but not what it would read."""
+    """A file outlives its file tree as an object, but its content cannot be read."""
     data = io.BytesIO(make_zip())
     tree = read_archive(data, "zip", "a.zip")
     file = tree.files[URDF]
@@ -158,8 +158,8 @@ def test_a_refused_archive_is_closed() -> None:
 
 
 @pytest.mark.parametrize("ending", EVERY)
-def test_litter(ending: str) -> None:
-    """What macOS, Windows, editors and builds leave is not looked at; URDFs that a build has made are named."""
+def test_litter_is_ignored(ending: str) -> None:
+    """Files of macOS, Windows, editors and builds are ignored; URDFs made by a build are named."""
     tree = tree_of(MAKERS[ending]({
         "__MACOSX/my_robot/._package.xml": b"", "my_robot/.DS_Store": b"", "Thumbs.db": b"", ".git/config": b"",
         "my_robot/.vscode/settings.json": b"", "my_robot/a.urdf": b"", "node_modules/b/b.urdf": b"",
@@ -172,7 +172,7 @@ def test_litter(ending: str) -> None:
 
 
 def test_windows_separators() -> None:
-    """A zip that an old Windows program has made has backslashes in its names."""
+    """Zips of old Windows programs have backslashes in their names."""
     tree = tree_of(make_named_zip({b"my_robot\\urdf\\my_robot.urdf": ROBOT, b"my_robot\\meshes\\": b""}))
     assert list(tree.files) == [URDF]
     assert tree.folders == {"my_robot", "my_robot/urdf", "my_robot/meshes"}
@@ -197,14 +197,14 @@ def test_names_in_zips(name: bytes, flags: int, expected: str) -> None:
     assert text(tree, expected) == ROBOT
 
 
-def test_names_that_are_declared_as_utf8_and_are_not() -> None:
-    """Python refuses such a zip as a whole, in one line."""
+def test_names_wrongly_declared_as_utf8() -> None:
+    """Python refuses such a zip as a whole, which gives one line."""
     assert "cannot be read as an archive" in refusal(make_named_zip({"ö.urdf".encode("cp1252"): ROBOT}, 0x800))
 
 
 @pytest.mark.parametrize("style", [tarfile.GNU_FORMAT, tarfile.PAX_FORMAT, tarfile.USTAR_FORMAT])
 def test_names_in_tars(style: int) -> None:
-    """A name in Latin-1 is shown with a mark in place of what is no UTF-8."""
+    """A Latin-1 name is shown with replacement characters."""
     name = "Übung/ö.urdf".encode("latin-1").decode("utf-8", "surrogateescape")
     tree = tree_of(make_tar({name: ROBOT, "ä/" + "b" * 90: b"b"}, style=style))
     assert list(tree.files) == ["ä/" + "b" * 90, "\ufffdbung/\ufffd.urdf"]
@@ -212,7 +212,7 @@ def test_names_in_tars(style: int) -> None:
 
 
 def test_duplicate_members() -> None:
-    """The last of several members of one name counts, as for unzip and tar."""
+    """Of several members with one name the last counts, as for unzip and tar."""
     assert text(tree_of(twice("a.urdf", b"old", b"new")), "a.urdf") == b"new"
 
 
@@ -228,17 +228,17 @@ def test_names_that_lead_out(ending: str, name: str) -> None:
 
 
 def test_harmless_dots() -> None:
-    """Dots that lead nowhere, and slashes too many, do not count."""
+    """Dots that lead nowhere, and repeated slashes, are ignored."""
     tree = tree_of(make_tar({"./a.urdf": b"a", "x/./y//b.urdf": b"b", "./": None, "...": b"c", "x/..y": b"d"}))
     assert list(tree.files) == ["...", "a.urdf", "x/y/b.urdf"] or list(tree.files) == ["a.urdf", "x/y/b.urdf"]
 
 
 @pytest.mark.parametrize("ending", EVERY)
-def test_links_inside(ending: str) -> None:
-    """A link to a file or folder of the archive is followed, over several steps, and through other links."""
+def test_symlinks_inside(ending: str) -> None:
+    """A symlink to a file or folder of the archive is followed, over several steps, and through other symlinks."""
     links = [
-        Link("one.urdf", URDF), Link("my_robot/two.urdf", "urdf/my_robot.urdf"), Link("a/b/three.urdf", "../../one.urdf"),
-        Link("a/folder", "../my_robot/urdf"), Link("four.urdf", "a/folder/./my_robot.urdf"), Link("again", "a/folder"),
+        LinkMember("one.urdf", URDF), LinkMember("my_robot/two.urdf", "urdf/my_robot.urdf"), LinkMember("a/b/three.urdf", "../../one.urdf"),
+        LinkMember("a/folder", "../my_robot/urdf"), LinkMember("four.urdf", "a/folder/./my_robot.urdf"), LinkMember("again", "a/folder"),
     ]  # fmt: skip
     tree = tree_of(MAKERS[ending](FILES, links))
     assert tree.ignored == ()
@@ -260,19 +260,19 @@ def test_links_inside(ending: str) -> None:
 @pytest.mark.parametrize(
     "links",
     [
-        [Link("bad", "/etc/passwd")],
-        [Link("bad", "../other")],
-        [Link("a/bad", "../../" + URDF)],
-        [Link("bad", "nothing.urdf")],
-        [Link("bad", "bad")],
-        [Link("bad", "")],
-        [Link("bad", "my_robot/.git/config")],
-        [Link("bad", "x" * 5000)],
-        [Link("bad", "a/" * 1500)],
+        [LinkMember("bad", "/etc/passwd")],
+        [LinkMember("bad", "../other")],
+        [LinkMember("a/bad", "../../" + URDF)],
+        [LinkMember("bad", "nothing.urdf")],
+        [LinkMember("bad", "bad")],
+        [LinkMember("bad", "")],
+        [LinkMember("bad", "my_robot/.git/config")],
+        [LinkMember("bad", "x" * 5000)],
+        [LinkMember("bad", "a/" * 1500)],
     ],
 )
-def test_links_that_lead_out(ending: str, links: list[Link]) -> None:
-    """A link out of the archive, or to nothing in it, is ignored and named; nothing else is lost."""
+def test_symlinks_that_lead_out(ending: str, links: list[LinkMember]) -> None:
+    """A symlink out of the archive, or to nothing in it, is ignored and named; nothing else is lost."""
     tree = tree_of(MAKERS[ending](FILES, links))
     assert list(tree.files) == ["my_robot/package.xml", URDF]
     assert tuple(map(str, tree.ignored)) == (
@@ -281,41 +281,43 @@ def test_links_that_lead_out(ending: str, links: list[Link]) -> None:
 
 
 @pytest.mark.parametrize("ending", EVERY)
-def test_circles_of_links(ending: str) -> None:
-    """Links in a circle end, as does a link to a folder around it."""
+def test_symlink_cycles(ending: str) -> None:
+    """Cycles of symlinks end, as does a symlink to a parent folder."""
     links = [
-        Link("a", "b"),
-        Link("b", "a"),
-        Link("my_robot/urdf/up", ".."),
-        Link("my_robot/here", "."),
-        Link("x", "my_robot"),
+        LinkMember("a", "b"),
+        LinkMember("b", "a"),
+        LinkMember("my_robot/urdf/up", ".."),
+        LinkMember("my_robot/here", "."),
+        LinkMember("x", "my_robot"),
     ]
-    links += [Link(f"chain{n}", f"chain{n + 1}") for n in range(100)]
+    links += [LinkMember(f"chain{n}", f"chain{n + 1}") for n in range(100)]
     tree = tree_of(MAKERS[ending](FILES, links))
     assert list(tree.files) == ["my_robot/package.xml", URDF, "x/package.xml", "x/urdf/my_robot.urdf"]
     assert len(tree.ignored) == 2 + 100
 
 
 def test_hard_links() -> None:
-    """A hard link in a tar names its file from the top; one that leads out is ignored."""
+    """A hard link in a tar names its file from the root; one that leads out is ignored."""
     links = [
-        Link("my_robot/copy.urdf", URDF, is_hard=True),
-        Link("bad", "../etc/passwd", is_hard=True),
-        Link("worse", "/etc/passwd", is_hard=True),
+        LinkMember("my_robot/copy.urdf", URDF, is_hard=True),
+        LinkMember("bad", "../etc/passwd", is_hard=True),
+        LinkMember("worse", "/etc/passwd", is_hard=True),
     ]
     tree = tree_of(make_tar(FILES, links))
     assert text(tree, "my_robot/copy.urdf") == ROBOT
     assert [line.split()[0] for line in map(str, tree.ignored)] == ["bad", "worse"]
 
 
-def test_links_take_no_time() -> None:
-    """Thousands of links, each to a folder of thousands of files, are refused; long ways through links end."""
+def test_many_symlinks() -> None:
+    """Thousands of symlinks to folders of thousands of files are refused; long chains of symlinks end."""
     files: dict[str, bytes | None] = {f"a/{n}": b"" for n in range(5000)}
     with processor_time(4):
-        assert "contains more than 50000 files" in refusal(make_tar(files, [Link(f"b{n}", "a") for n in range(5000)]))
-        tree = tree_of(make_tar({"a/x": b""}, [Link(f"b{n}", "a/../" * 700 + "a") for n in range(3000)]))
+        assert "contains more than 50000 files" in refusal(
+            make_tar(files, [LinkMember(f"b{n}", "a") for n in range(5000)])
+        )
+        tree = tree_of(make_tar({"a/x": b""}, [LinkMember(f"b{n}", "a/../" * 700 + "a") for n in range(3000)]))
     assert next(iter(tree.files)) == "a/x"
-    chain = [Link(f"l{n}", f"l{n + 1}/l{n + 1}") for n in range(60)]
+    chain = [LinkMember(f"l{n}", f"l{n + 1}/l{n + 1}") for n in range(60)]
     with processor_time(1):
         assert len(tree_of(make_tar({"a": b""}, chain)).ignored) == 60
 
@@ -333,7 +335,7 @@ def test_devices_in_tars(kind: bytes) -> None:
 
 
 def test_devices_in_zips() -> None:
-    """A zip may say of a member that it is a device; it stays out."""
+    """A member that a zip declares as a device is ignored."""
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w") as archive:
         for name, mode in (("fifo", 0o010644), ("device", 0o020644), ("plain", 0o100644), ("none", 0), ("bits", 0o644)):
@@ -346,8 +348,8 @@ def test_devices_in_zips() -> None:
 
 
 def test_encrypted_members() -> None:
-    """What needs a password is ignored and named, even if it is a link."""
-    data = set_flags(make_zip({"a.urdf": ROBOT}, [Link("l", "a.urdf")]), 0x1)
+    """A member that needs a password is ignored and named, even if it is a symlink."""
+    data = set_flags(make_zip({"a.urdf": ROBOT}, [LinkMember("l", "a.urdf")]), 0x1)
     tree = tree_of(data)
     assert tree.files == {}
     assert tuple(map(str, tree.ignored)) == (
@@ -357,8 +359,8 @@ def test_encrypted_members() -> None:
 
 
 @pytest.mark.parametrize("method", [zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA, 9, 93, 98, 12345])
-def test_compressions_that_are_not_read(method: int) -> None:
-    """Members of a zip that are not deflated are ignored and named: some of them unpack without a bound."""
+def test_unsupported_compressions(method: int) -> None:
+    """Zip members that are not deflated are ignored and named: some methods unpack without a bound."""
     known = method in (zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA)
     data = make_zip({"a.urdf": ROBOT}, compression=method if known else zipfile.ZIP_STORED)
     if not known:
@@ -381,8 +383,8 @@ def test_other_archives(start: bytes, kind: str, tmp_path: Path) -> None:
         open_tree(path)
 
 
-def test_what_is_no_archive(tmp_path: Path) -> None:
-    """A file is an archive by what is in it; one that only has the name is refused, others are single files."""
+def test_files_that_are_no_archive(tmp_path: Path) -> None:
+    """The content decides; a file with only the name of an archive is refused, others are single files."""
     for name in ("a.zip", "a.tar", "a.TAR.GZ", "a.tgz", "a.rar", "a.7z"):
         (tmp_path / name).write_bytes(b"something else")
         with pytest.raises(InputError, match="is not a readable archive"):
@@ -397,7 +399,7 @@ def test_what_is_no_archive(tmp_path: Path) -> None:
 
 
 def test_paths_that_cannot_be_opened(tmp_path: Path) -> None:
-    """What is not there, is no file or has an impossible name is one line."""
+    """A path that is missing, is no file or has an impossible name gives one line."""
     os.mkfifo(tmp_path / "fifo")
     (tmp_path / "loop").symlink_to("loop")
     for path, words in (
@@ -413,7 +415,7 @@ def test_paths_that_cannot_be_opened(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("ending", EVERY)
 def test_truncated_archives(ending: str) -> None:
-    """Whatever is cut off, there is one line, or a tree whose files can be read or say why not."""
+    """A truncated archive gives one line, or a file tree whose files can be read or say why not."""
     data = MAKERS[ending]({"a.urdf": ROBOT * 40, "b.urdf": os.urandom(700)})
     for length in range(1, len(data), 7):
         if archive_kind(data[:512][:length]) is None:
@@ -432,8 +434,8 @@ def test_truncated_archives(ending: str) -> None:
     st.lists(st.tuples(st.integers(0, 5000), st.integers(0, 2), st.binary(min_size=1, max_size=4)), max_size=6),
 )
 def test_corrupted_archives(ending: str, changes: list[tuple[int, int, bytes]]) -> None:
-    """Bytes are changed, cut out and put in: only InputErrors come of it."""
-    data = MAKERS[ending](FILES, [Link("link", URDF)])
+    """Changed, removed and inserted bytes cause only InputErrors."""
+    data = MAKERS[ending](FILES, [LinkMember("link", URDF)])
     for place, how, put in changes:
         at = len(data) - place % (len(data) + 1) if how == 1 else place % (len(data) + 1)
         data = data[:at] + (put if how else b"") + data[at + len(put) :]
@@ -451,7 +453,7 @@ def test_corrupted_archives(ending: str, changes: list[tuple[int, int, bytes]]) 
 @settings(max_examples=100)
 @given(st.sampled_from(["zip", "tar", "gz", "bz2", "xz"]), st.binary(max_size=1200))
 def test_any_bytes_as_an_archive(kind: str, data: bytes) -> None:
-    """Anything at all is refused in one line, or is a tree."""
+    """Any bytes are refused in one line or are a file tree."""
     try:
         read_all(read_archive(io.BytesIO(data), kind, "a"))
     except InputError as error:
@@ -467,8 +469,8 @@ def test_a_member_without_a_name() -> None:
 
 
 @pytest.mark.parametrize("ending", [".zip", ".tar.gz", ".tar.bz2", ".tar.xz"])
-def test_bombs_by_ratio(ending: str) -> None:
-    """What unpacks to hundreds of times its own size is refused, and quickly."""
+def test_zip_bombs_by_ratio(ending: str) -> None:
+    """An archive that unpacks to hundreds of times its size is refused quickly."""
     data = MAKERS[ending]({"a.urdf": bytes(60_000_000)})
     assert len(data) < 100_000
     with processor_time(2):
@@ -478,7 +480,7 @@ def test_bombs_by_ratio(ending: str) -> None:
 
 @pytest.mark.parametrize("ending", EVERY)
 def test_limits_of_size(ending: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The size of an archive and of what is in it are limited."""
+    """The size of an archive and of its content is limited."""
     data = MAKERS[ending]({"a": os.urandom(3000), "b": os.urandom(3000)})
     monkeypatch.setattr(limits, "MAX_ARCHIVE_SIZE", 5000)
     assert "lab6.zip is larger than 5000 bytes, the limit for an archive" in refusal(data)
@@ -489,7 +491,7 @@ def test_limits_of_size(ending: str, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_bomb_of_overlapping_members() -> None:
-    """Many members that share the same bytes are refused by their number, their sizes or when they are read."""
+    """Members that share the same bytes are refused by their number, their sizes, or when they are read."""
     body = zlib.compress(bytes(1_000_000), 9)[2:-4]
     local = (
         struct.pack("<4s5H3I2H", b"PK\3\4", 20, 0, 8, 0, 0, zlib.crc32(bytes(1_000_000)), len(body), 1_000_000, 1, 0)
@@ -530,8 +532,8 @@ def test_a_bomb_of_overlapping_members() -> None:
 
 
 @pytest.mark.parametrize("claimed", [10, 5_000_000])
-def test_lying_sizes(claimed: int) -> None:
-    """A member of a zip that says a wrong size is never unpacked further than that, and is no error of ours."""
+def test_wrong_sizes(claimed: int) -> None:
+    """A zip member with a wrong size is never unpacked beyond it, and causes no internal error."""
     real = bytes(1_000_000)
     data = make_zip({"a.urdf": real}).replace(struct.pack("<I", len(real)), struct.pack("<I", claimed))
     tree = tree_of(data)
@@ -540,15 +542,15 @@ def test_lying_sizes(claimed: int) -> None:
         tree.files["a.urdf"].read(20_000_000)
 
 
-def test_a_table_of_contents_that_is_too_long() -> None:
-    """A zip that announces gigabytes of names is refused before they are read."""
+def test_a_central_directory_that_is_too_long() -> None:
+    """A zip that declares gigabytes of names is refused before they are read."""
     data = bytes(17 * 1024 * 1024)
     end = struct.pack("<4s4H2IH", b"PK\5\6", 0, 0, 1, 1, 17 * 1024 * 1024, 0, 0)
     assert "its central directory is too long" in refusal(b"PK\3\4" + data[4:] + end)
 
 
 def test_a_large_file_that_is_not_compressed() -> None:
-    """The limit for the table of contents is none for the files."""
+    """The limit of the central directory does not apply to files."""
     data = make_zip({"a.pdf": bytes(17 * 1024 * 1024)}, compression=zipfile.ZIP_STORED)
     tree = tree_of(data)
     assert len(tree.files["a.pdf"].read(32 * 1024 * 1024)) == 17 * 1024 * 1024
@@ -567,14 +569,14 @@ def test_too_many_members(ending: str, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_too_many_folders() -> None:
-    """Folders count as well, those that only the names of files tell of included."""
+    """Folders count as well, including those that only exist in the names of files."""
     names: dict[str, bytes | None] = {f"{n}/" + "a/" * 600 + "x": b"" for n in range(100)}
     with processor_time(2):
         assert "contains more than 50000 files" in refusal(make_tar(names))
 
 
 def header(name: bytes, size: bytes, kind: bytes = b"0") -> bytes:
-    """A header of a tar, made by hand."""
+    """Return a handmade tar header."""
     start = name.ljust(100, b"\0") + b"0000644\0" * 3 + size.ljust(12, b"\0") + b"0" * 11 + b"\0"
     rest = (kind + b"\0" * 100 + b"ustar\x0000").ljust(512 - 156, b"\0")
     total = sum(start) + sum(rest) + 8 * 32
@@ -586,7 +588,7 @@ def header(name: bytes, size: bytes, kind: bytes = b"0") -> bytes:
     [b"\xff" * 12, b"\x80" + b"\xff" * 11, b"\xff" * 8 + b"\0\0\2\0", b"77777777777", b"-1", b"\x80" + b"\x7f" * 11],
 )
 def test_sizes_in_tars(size: bytes) -> None:
-    """Sizes below zero and beyond the end lead to one line, and not round in circles."""
+    """Negative sizes and sizes beyond the end give one line, not an endless loop."""
     data = header(b"a.urdf", b"00000000001") + b"a".ljust(512, b"\0") + header(b"b.urdf", size) + bytes(2048)
     with processor_time(2):
         try:
@@ -596,7 +598,7 @@ def test_sizes_in_tars(size: bytes) -> None:
 
 
 def test_long_names_in_tars() -> None:
-    """A name of a hundred thousand characters is ignored; names of names end."""
+    """A name of a hundred thousand characters is ignored; chains of long names end."""
     tree = tree_of(make_tar({"a" * 100_000: b"", "b.urdf": ROBOT}))
     assert list(tree.files) == ["b.urdf"]
     assert tuple(map(str, tree.ignored)) == (f"{'a' * 40}... has a name that is too long, and was not read",)
@@ -606,7 +608,7 @@ def test_long_names_in_tars() -> None:
 
 
 def test_sparse_files_in_tars() -> None:
-    """A sparse file that claims a terabyte is ignored by name."""
+    """A sparse file that claims a terabyte is ignored and named."""
     head = bytearray(header(b"a.urdf", b"00000000000", b"S"))
     head[386 : 386 + 24] = b"00000000000\x0000000000000\0"
     head[483:495] = b"\x80" + (2**40).to_bytes(11, "big")
@@ -622,7 +624,7 @@ def test_sparse_files_in_tars() -> None:
 
 @pytest.mark.parametrize("pack", [gzip.compress, bz2.compress, lzma.compress])
 def test_compressed_bombs(pack: Callable[[bytes], bytes]) -> None:
-    """A compressed file is unpacked to a limit only, whether a tar is in it or not."""
+    """A compressed file is unpacked only up to a limit, whether it contains a tar or not."""
     data = pack(bytes(40_000_000))
     with processor_time(3):
         assert "would unpack to more than 33554432 bytes" in refusal(data * 3)
@@ -638,7 +640,7 @@ def test_a_large_tar_leaves_no_file(temporary: Path) -> None:
 
 
 def nested(levels: int, inside: bytes) -> bytes:
-    """A zip in a zip in a zip."""
+    """Make nested zips."""
     for _ in range(levels):
         inside = make_zip({"inner/inner.zip": inside})
     return inside
@@ -646,7 +648,7 @@ def nested(levels: int, inside: bytes) -> bytes:
 
 @pytest.mark.parametrize("levels", [1, 2, 3])
 def test_nested_archives(levels: int, tmp_path: Path) -> None:
-    """An archive in an archive is opened, its name being that of a folder."""
+    """A nested archive is opened as a folder of its name."""
     tree = opened(tmp_path / "lab6.zip", nested(levels, make_zip()))
     path = "inner/inner.zip/" * levels + URDF
     gc.collect()
@@ -663,7 +665,7 @@ def test_archives_nested_too_deep(tmp_path: Path) -> None:
 
 
 def test_an_archive_beside_a_package(tmp_path: Path) -> None:
-    """Archives stay closed if a package and a URDF are beside them."""
+    """Archives beside a package and a URDF are not opened."""
     (tmp_path / "lab6.zip").write_bytes(make_zip())
     (tmp_path / "notes.txt").write_bytes(b"")
     alone = open_tree(tmp_path)
@@ -682,7 +684,7 @@ def test_an_archive_beside_a_package(tmp_path: Path) -> None:
 
 
 def test_an_archive_that_cannot_be_opened(tmp_path: Path) -> None:
-    """It is named, and kept in mind: what is missing may be in it."""
+    """It is named and recorded, because it may contain what is missing."""
     (tmp_path / "lab6.rar").write_bytes(b"Rar!\x1a\x07")
     (tmp_path / "notes.txt").write_bytes(b"")
     tree = open_tree(tmp_path)
@@ -691,8 +693,8 @@ def test_an_archive_that_cannot_be_opened(tmp_path: Path) -> None:
     assert "rar archive" in str(tree.ignored[0])
 
 
-def test_bad_archives_in_a_folder(tmp_path: Path) -> None:
-    """An archive that cannot be opened is named, and the others are opened all the same."""
+def test_damaged_archives_in_a_folder(tmp_path: Path) -> None:
+    """An archive that cannot be opened is named, and the others are opened."""
     (tmp_path / "a.zip").write_bytes(b"nothing")
     (tmp_path / "b.rar").write_bytes(b"Rar!\x1a\7\0")
     (tmp_path / "c.zip").write_bytes(make_zip()[:60])
@@ -707,7 +709,7 @@ def test_bad_archives_in_a_folder(tmp_path: Path) -> None:
 
 
 def test_many_archives(tmp_path: Path) -> None:
-    """Only so many archives are opened, those in archives counted, and together they unpack to so much."""
+    """The number of opened archives, nested ones included, and their total size are limited."""
     (tmp_path / "lab6.zip").write_bytes(
         make_zip({f"{n:02}.zip": make_zip({"a.zip": make_zip({"b.txt": b""})}) for n in range(15)})
     )
@@ -718,7 +720,7 @@ def test_many_archives(tmp_path: Path) -> None:
 
 
 def test_archives_share_one_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Many small bombs are one large one."""
+    """Many small zip bombs are treated like a large one."""
     monkeypatch.setattr(limits, "MAX_UNPACKED_SIZE", 70_000_000)
     inner = make_tar({"a.bin": bytes(30_000_000)}, kind="gz")
     (tmp_path / "lab6.zip").write_bytes(
@@ -733,7 +735,7 @@ def test_archives_share_one_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 @pytest.fixture
 def home(tmp_path: Path) -> Path:
-    """A folder with a package, and a secret beside it."""
+    """Make a folder with a package, and a secret beside it."""
     (tmp_path / "secret.urdf").write_bytes(b"secret")
     (tmp_path / "lab6/my_robot/urdf").mkdir(parents=True)
     (tmp_path / "lab6" / URDF).write_bytes(ROBOT)
@@ -750,8 +752,8 @@ def test_a_folder(home: Path) -> None:
     assert (tree.files[URDF].name, tree.files[URDF].suffix) == ("my_robot.urdf", ".urdf")
 
 
-def test_links_in_folders(home: Path) -> None:
-    """Links inside are followed and the real paths stay; links out, to nothing and to themselves are ignored and named."""
+def test_symlinks_in_folders(home: Path) -> None:
+    """Symlinks inside are followed with the real paths; symlinks out, broken ones and loops are ignored and named."""
     for name, target in (
         ("a_link.urdf", URDF), ("a_folder", "my_robot"), ("my_robot/urdf/up", ".."), ("my_robot/top", ".."),
         ("bad_1", "../secret.urdf"), ("bad_2", "/etc"), ("bad_3", "nothing"), ("bad_4", "bad_4"), ("bad_5", "../lab6/../secret.urdf"),
@@ -764,8 +766,8 @@ def test_links_in_folders(home: Path) -> None:
     assert [line.split()[0] for line in map(str, tree.ignored)] == ["bad_1", "bad_2", "bad_3", "bad_4", "bad_5"]
 
 
-def test_circles_of_links_in_folders(tmp_path: Path) -> None:
-    """Folders that link to each other, all of them to all, end."""
+def test_symlink_cycles_in_folders(tmp_path: Path) -> None:
+    """Folders that all link to each other end."""
     for n in range(30):
         (tmp_path / f"d{n}").mkdir()
         (tmp_path / f"d{n}/a.urdf").write_bytes(b"")
@@ -777,7 +779,7 @@ def test_circles_of_links_in_folders(tmp_path: Path) -> None:
     assert len(tree.files) <= 60
 
 
-def test_what_is_no_file(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_special_files(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """FIFOs and sockets are ignored and named, and never opened."""
     os.mkfifo(home / "fifo")
     (home / "link").symlink_to("fifo")
@@ -792,7 +794,7 @@ def test_what_is_no_file(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_litter_in_folders(home: Path) -> None:
-    """Builds, tools, virtual environments and hidden files are ignored; URDFs that a build has copied are named."""
+    """Builds, tools, virtual environments and hidden files are ignored; URDFs copied by a build are named."""
     for path in (".git/config", "build/my_robot/b.urdf", "install/my_robot/share/my_robot/urdf/my_robot.urdf", "install/x.txt",
                  "log/latest/c.urdf", "my_robot/.hidden.urdf", "my_robot/__pycache__/a.pyc", "mine/pyvenv.cfg", "mine/lib/d.urdf",
                  "venv/pyvenv.cfg", "venv/e.urdf", "node_modules/f/f.urdf", ".DS_Store", "Thumbs.db", "my_robot/build/deep/g.urdf"):  # fmt: skip
@@ -806,14 +808,14 @@ def test_litter_in_folders(home: Path) -> None:
     )  # fmt: skip
 
 
-def test_a_build_folder_that_is_a_link(home: Path) -> None:
-    """What a link named install leads to is not even listed."""
+def test_a_symlinked_build_folder(home: Path) -> None:
+    """The target of a symlink named install is not even listed."""
     (home / "install").symlink_to("..")
     assert read_folder(home).generated == ()
 
 
 def test_folders_that_cannot_be_opened(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A folder without permission is named, and the others are read; the folder itself is refused."""
+    """A folder without permission is named, and the others are read; for the root folder the submission is refused."""
     scandir = os.scandir
 
     def refuse(path: "str | os.PathLike[str]") -> "os._ScandirIterator[str]":
@@ -832,7 +834,7 @@ def test_folders_that_cannot_be_opened(home: Path, monkeypatch: pytest.MonkeyPat
 
 
 def test_names_in_folders(home: Path) -> None:
-    """Names that are no UTF-8 or not printable are shown, and their files read."""
+    """Names that are undecodable or not printable are escaped, and their files read."""
     (home / os.fsdecode(b"\xfcbung")).mkdir()
     (home / os.fsdecode(b"\xfcbung/\xf6.urdf")).write_bytes(ROBOT)
     (home / "a\nb\x1b.urdf").write_bytes(ROBOT)
@@ -843,7 +845,7 @@ def test_names_in_folders(home: Path) -> None:
 
 @pytest.mark.parametrize("name", ["a", "build"])
 def test_deep_folders(name: str, tmp_path: Path) -> None:
-    """Folders nested deeper than a path may be long are read as far as that goes."""
+    """Folders nested deeper than a path may be long are read as far as possible."""
     handle = os.open(tmp_path, os.O_RDONLY)
     try:
         for _ in range(2200):
@@ -863,7 +865,7 @@ def test_deep_folders(name: str, tmp_path: Path) -> None:
 
 
 def remove_deep(folder: Path, name: str) -> None:
-    """Remove folders that are nested too deeply for pytest: the upper half is put aside, level by level."""
+    """Remove folders nested too deeply for pytest: the upper half is moved aside, level by level."""
     while (folder / name / name).is_dir():
         (folder / name / name).rename(folder / "aside")
         (folder / name).rmdir()
@@ -883,8 +885,8 @@ def test_too_many_files_in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPa
         read_folder(tmp_path)
 
 
-def test_a_file_that_is_gone(home: Path) -> None:
-    """A file that has been removed or replaced since is one line."""
+def test_a_removed_file(home: Path) -> None:
+    """A file that was removed or replaced meanwhile gives one line."""
     file: File = read_folder(home).files[URDF]
     (home / URDF).unlink()
     with pytest.raises(InputError, match=r"cannot read .*my_robot.urdf: No such file"):
@@ -894,8 +896,8 @@ def test_a_file_that_is_gone(home: Path) -> None:
         file.read(100)
 
 
-def test_the_folder_and_its_zip_are_the_same(home: Path) -> None:
-    """Whether it is packed or not makes no difference."""
+def test_a_folder_and_its_zip_are_equal(home: Path) -> None:
+    """The file trees are the same."""
     packed = tree_of(make_zip({URDF: ROBOT, "my_robot/meshes/": None}))
     plain = read_folder(home)
     assert list(packed.files.values()) == list(plain.files.values())

@@ -1,4 +1,4 @@
-"""Golden cases: a command line, and beside it what it must print, byte for byte."""
+"""Golden cases: a command line, and the exact output that it must print."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -8,12 +8,12 @@ from grader.report.formats import Format
 from tests.command_line import ROOT, run
 
 __all__ = ["CLASSROOM50", "GOLDEN", "ROOT", "Golden", "run"]
-HERE = Path(__file__).parent
+FOLDER = Path(__file__).parent
 
 
 @dataclass(frozen=True, slots=True)
 class Golden:
-    """One command with its exit code; standard output is kept in the file of its name. `variables` are set around it."""
+    """A command with its exit code; standard output is in the file of its name. `variables` are set around it."""
 
     name: str
     arguments: tuple[str, ...]
@@ -22,12 +22,12 @@ class Golden:
 
     @property
     def file(self) -> Path:
-        """Where the expected output stands, under the ending that such files have."""
-        asked = self.arguments[self.arguments.index("--format") + 1] if "--format" in self.arguments else "terminal"
-        return HERE / f"{self.name}.{Format(asked).ending.rpartition('.')[2]}"
+        """Return the file of the expected output, with the ending of its format."""
+        requested = self.arguments[self.arguments.index("--format") + 1] if "--format" in self.arguments else "terminal"
+        return FOLDER / f"{self.name}.{Format(requested).ending.rpartition('.')[2]}"
 
 
-# What the runner of Classroom 50 sets around an autograder.
+# The variables that the runner of Classroom 50 sets for an autograder.
 CLASSROOM50 = {
     "CLASSROOM": "robotics",
     "ASSIGNMENT": "lab6",
@@ -41,10 +41,16 @@ CLASSROOM50 = {
 
 
 def _in_every_format(name: str, path: str, exit_code: int) -> tuple[Golden, ...]:
-    """A case for each format that is made for a platform."""
+    """Return a case for each format of a platform."""
     formats = ("markdown", "junit", "sarif", "github", "gradescope", "classroom50", "codeclimate")
-    around = {"CI_PROJECT_DIR": str(ROOT), **CLASSROOM50}  # paths are ours, whatever repository this one stands in
-    return tuple(Golden(f"{name}-{each}", ("grade", path, "--format", each), exit_code, around) for each in formats)
+    around = {
+        "CI_PROJECT_DIR": str(ROOT),
+        **CLASSROOM50,
+    }  # paths relative to this project, whatever repository contains it
+    return tuple(
+        Golden(f"{name}-{file_format}", ("grade", path, "--format", file_format), exit_code, around)
+        for file_format in formats
+    )
 
 
 GOLDEN = (

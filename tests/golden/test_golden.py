@@ -7,14 +7,14 @@ from tests.golden.cases import GOLDEN, Golden
 
 
 @pytest.mark.parametrize("case", GOLDEN, ids=lambda case: case.name)
-def test_a_command_prints_what_it_always_printed(case: Golden) -> None:
-    """Output and exit code are those that were approved; standard error stays empty."""
+def test_output_is_unchanged(case: Golden) -> None:
+    """Output and exit code are the approved ones; standard error is empty."""
     done = run_process(case.arguments, variables=case.variables)
     assert done.stdout.decode() == case.file.read_text(encoding="utf-8")
     assert (done.returncode, done.stderr) == (case.exit_code, b"")
 
 
-def test_the_same_run_gives_the_same_bytes() -> None:
+def test_output_is_deterministic() -> None:
     """Hash seeds, time zones and locales change nothing."""
     arguments = ("grade", "submissions/several-mistakes/my_robot.urdf", "--format", "json")
     one = run_process(arguments, variables={"PYTHONHASHSEED": "1", "TZ": "UTC", "LANG": "C"})

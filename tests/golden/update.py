@@ -1,4 +1,7 @@
-"""Write what the golden commands print now: `python tests/golden/update.py`. Read the diff before you commit it."""
+"""Write the current output of the golden commands: `python tests/golden/update.py`.
+
+Read the diff before you commit it.
+"""
 
 import sys
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""A grade run: who fails, who is skipped and because of what, what a person has to decide, and what all of it is worth."""
+"""A grade run: which criteria fail, are skipped because of others or need manual grading, and the points."""
 
 from collections.abc import Callable, Sequence
 from decimal import Decimal
@@ -41,12 +41,12 @@ def fails_(robot: Configuration) -> Outcome:
 
 
 def pends(robot: Configuration) -> Outcome:
-    """A check that a person has to decide."""
+    """A check that needs manual grading."""
     raise UnknownShape(Mesh("part.stl"))
 
 
 def breaks(robot: Configuration) -> Outcome:
-    """A check with a fault of ours."""
+    """A check with an error of the grader."""
     raise ZeroDivisionError("a secret detail")
 
 
@@ -69,29 +69,29 @@ def ask(
     part: str = "a",
     **arguments: Any,
 ) -> Criterion:
-    """A criterion in one line."""
+    """Return a criterion."""
     return Criterion(name, name.title(), part, Decimal(points), describe(check), arguments, tuple(requires))
 
 
 def run(*criteria: Criterion, on: Scene | None = None, parts: Sequence[str] = ()) -> Report:
-    """The report on a robot under a rubric with these criteria, in parts a and b."""
+    """Return the report on a robot under a rubric with these criteria, in parts a and b."""
     rubric = Rubric("r", "R", (Part("a", "A"), Part("b", "B")), criteria, "robot.urdf", "", b"", Path("r.toml"))
     robot = on if on is not None else scene(BASE)
     return grade(rubric, read_submission(robot.text.encode(), identity="me", path=PATH), parts)
 
 
 def statuses(report: Report) -> list[str]:
-    """How each criterion ended, in order."""
+    """Return the status of each criterion, in order."""
     return [result.outcome.status for result in report.results]
 
 
 def causes(report: Report) -> list[str | None]:
-    """What each criterion's skip is due to."""
+    """Return the cause of each criterion's skip."""
     return [result.because for result in report.results]
 
 
 def sums(report: Report) -> list[object]:
-    """The points earned, those that could be earned, and those that a person has to give."""
+    """Return the points earned, the maximum, and the pending points."""
     return [report.score, report.max_score, report.pending]
 
 
@@ -99,7 +99,7 @@ def sums(report: Report) -> list[object]:
 
 
 def test_a_failed_requirement_skips() -> None:
-    """A criterion is not decided where one that it requires failed; the skip names it."""
+    """A criterion is skipped if one that it requires failed; the skip names it."""
     report = run(ask("one", fails_), ask("two", requires=["one"]))
     assert statuses(report) == ["failed", "skipped"]
     assert causes(report) == [None, "one"]
@@ -107,7 +107,7 @@ def test_a_failed_requirement_skips() -> None:
 
 
 def test_a_skip_names_the_root_cause() -> None:
-    """Down a chain of requirements every skip names the criterion that failed, not another skip."""
+    """In a chain of requirements every skip names the criterion that failed, not another skip."""
     report = run(
         ask("one", fails_),
         ask("two", requires=["one"]),
@@ -119,33 +119,33 @@ def test_a_skip_names_the_root_cause() -> None:
     assert report.results[3].outcome.message == "skipped because one failed"
 
 
-def test_the_first_requirement_that_is_not_met_is_named() -> None:
+def test_the_first_unmet_requirement_is_named() -> None:
     """Of several failures the first of the list counts."""
     report = run(ask("one", fails_), ask("two", fails_), ask("three"), ask("four", requires=["three", "two", "one"]))
     assert causes(report)[3] == "two"
 
 
 def test_a_passed_requirement_does_not_skip() -> None:
-    """Where all that is required passed, a criterion is decided on its own."""
+    """If all required criteria passed, a criterion is graded."""
     report = run(ask("one"), ask("two"), ask("three", fails_, requires=["one", "two"]), ask("four", requires=["one"]))
     assert statuses(report) == ["passed", "passed", "failed", "passed"]
     assert causes(report) == [None] * 4
 
 
 def test_a_pending_requirement_does_not_skip() -> None:
-    """What a person still has to look at may turn out well: what requires it is decided."""
+    """A pending criterion may still pass, so criteria that require it are graded."""
     assert statuses(run(ask("one", pends), ask("two", requires=["one"]))) == ["pending", "passed"]
 
 
 def test_a_requirement_in_another_part_does_not_skip() -> None:
-    """A part that is not graded says nothing about the one that is."""
+    """A part that is not graded does not affect others."""
     criteria = (ask("one", fails_), ask("two", part="b", requires=["one"]))
     assert statuses(run(*criteria)) == ["failed", "skipped"]
     assert statuses(run(*criteria, parts=["b"])) == ["passed"]
 
 
-def test_a_check_is_not_run_for_a_skip() -> None:
-    """What is skipped is not even asked: a fault in it stays out of the report."""
+def test_a_skipped_check_is_not_run() -> None:
+    """An error in a check that is skipped does not occur."""
     report = run(
         ask("one", fails_), ask("two", breaks, requires=["one"]), ask("three", misses, what="x", requires=["one"])
     )
@@ -156,7 +156,7 @@ def test_a_check_is_not_run_for_a_skip() -> None:
 
 
 def test_the_first_criterion_that_misses_a_thing_fails() -> None:
-    """Those behind it that miss the same are skipped because of it, and say so."""
+    """Later criteria that miss the same thing are skipped because of it, and say so."""
     report = run(
         ask("one", misses, what="x"), ask("two"), ask("three", misses, what="x"), ask("four", misses, what="x")
     )
@@ -167,20 +167,20 @@ def test_the_first_criterion_that_misses_a_thing_fails() -> None:
 
 
 def test_each_thing_that_is_missing_fails_once() -> None:
-    """Two different things are two failures: one defect does not hide another."""
+    """Two different missing things are two failures: one defect does not hide another."""
     report = run(*(ask(f"{name}{index}", misses, what=name) for index in (1, 2) for name in "xy"))
     assert statuses(report) == ["failed", "failed", "skipped", "skipped"]
     assert causes(report) == [None, None, "x1", "y1"]
 
 
-def test_a_skip_for_a_missing_thing_is_handed_on() -> None:
-    """What requires a skipped criterion is skipped because of the one that failed."""
+def test_a_skip_for_a_missing_thing_is_transitive() -> None:
+    """A criterion that requires a skipped one is skipped because of the one that failed."""
     report = run(ask("one", misses, what="x"), ask("two", misses, what="x"), ask("three", requires=["two"]))
     assert causes(report) == [None, "one", "one"]
 
 
 def test_a_missing_link_fails_once_and_hides_nothing_else() -> None:
-    """A lidar that was forgotten fails its shape, skips the rest of it, and says nothing about the wheel."""
+    """A missing lidar fails its shape, skips its other criteria, and does not affect the wheel."""
     report = run(
         ask("lidar-shape", shows_cylinder, link="lidar", radius=0.1, length=0.05, tolerance=0.002),
         ask("lidar-held", held_by, link="lidar", parent="base", joint_type="fixed"),
@@ -196,7 +196,7 @@ def test_a_missing_link_fails_once_and_hides_nothing_else() -> None:
 
 
 def test_a_fixed_wheel_fails_once() -> None:
-    """A wheel that cannot turn loses its joint, not also its direction and its axis."""
+    """A wheel that cannot turn fails its joint, not also its direction and its axis."""
     report = run(
         ask("continuous", held_by, link="wheel", parent="base", joint_type="continuous"),
         ask("placed", centre_at, link="wheel", relative_to="base", xyz=(-0.15, 0.225, 0.0), tolerance=0.002),
@@ -209,7 +209,7 @@ def test_a_fixed_wheel_fails_once() -> None:
 
 
 def test_a_zero_axis_fails_once() -> None:
-    """The first criterion that needs the pose behind the joint fails, with the place of the axis."""
+    """The first criterion that needs the pose below the joint fails, at the axis."""
     report = run(
         ask("continuous", held_by, link="wheel", parent="base", joint_type="continuous"),
         ask("placed", centre_at, link="wheel", relative_to="base", xyz=(-0.15, 0.225, 0.0), tolerance=0.002),
@@ -217,11 +217,11 @@ def test_a_zero_axis_fails_once() -> None:
         on=rolling(axis="0 0 0"),
     )
     assert statuses(report) == ["passed", "failed", "skipped"]
-    assert report.results[1].outcome.location == rolling(axis="0 0 0").place('xyz="0 0 0"')
+    assert report.results[1].outcome.location == rolling(axis="0 0 0").location_of('xyz="0 0 0"')
 
 
 def test_a_missing_joint_fails_once() -> None:
-    """A link that no joint joins to the base misses its connection, once."""
+    """A link without a joint to the base misses its connection, once."""
     report = run(
         ask("fixed", held_by, link="lidar", parent="base", joint_type="fixed"),
         ask("frame", frame_at, link="lidar", relative_to="base", xyz=(0.0, 0.0, 0.0), tolerance=0.002),
@@ -230,36 +230,36 @@ def test_a_missing_joint_fails_once() -> None:
         on=scene(BASE, LIDAR),
     )
     assert statuses(report) == ["failed", "skipped", "skipped", "passed"]
-    assert report.results[0].outcome.location == scene(BASE, LIDAR).place('<link name="lidar"')
+    assert report.results[0].outcome.location == scene(BASE, LIDAR).location_of('<link name="lidar"')
 
 
-def test_the_place_of_what_is_missing_is_kept() -> None:
-    """A failure for a missing shape points to the shape that is there instead."""
+def test_the_location_of_a_missing_thing_is_kept() -> None:
+    """A failure for a missing shape points to the existing shape."""
     robot = scene(BASE, LIDAR, MOUNT)
     report = run(ask("box", shows_box, link="lidar", size=(1.0, 1.0, 1.0), tolerance=0.1), on=robot)
-    assert report.results[0].outcome.location == robot.place("<cylinder")
+    assert report.results[0].outcome.location == robot.location_of("<cylinder")
 
 
 # --- Unreadable files -------------------------------------------------------------------------------------------------
 
 
 def test_of_an_unreadable_file_only_the_file_fails() -> None:
-    """Where there is no robot, the check of the file fails and all that asks of the robot is skipped because of it."""
+    """Without a robot, the check of the file fails and all checks of the robot are skipped because of it."""
     report = run(ask("loads", urdf_loads), ask("one"), ask("two", breaks), ask("three", misses, what="x"), on=NOT_XML)
     assert statuses(report) == ["failed", "skipped", "skipped", "skipped"]
     assert causes(report) == [None, "loads", "loads", "loads"]
     assert sums(report) == [0, 4, 0]
 
 
-def test_a_check_of_the_file_is_asked_of_an_unreadable_one_too() -> None:
-    """What is asked of the file and not of the robot is decided all the same."""
+def test_a_check_of_the_file_also_runs_on_an_unreadable_one() -> None:
+    """Checks of the file do not need a robot."""
     report = run(ask("loads", urdf_loads), ask("file", of_file), ask("robot"), on=NOT_XML)
     assert statuses(report) == ["failed", "passed", "skipped"]
     assert causes(report) == [None, None, "loads"]
 
 
 def test_without_a_check_of_the_file_the_first_criterion_fails() -> None:
-    """Where no criterion asks whether the file loads, the first says that there is no robot to look at."""
+    """If no criterion checks whether the file loads, the first one says that there is no robot."""
     report = run(ask("one"), ask("two", breaks), on=NOT_XML)
     assert statuses(report) == ["failed", "skipped"]
     assert causes(report) == [None, "one"]
@@ -268,8 +268,8 @@ def test_without_a_check_of_the_file_the_first_criterion_fails() -> None:
     assert statuses(report) == ["failed"]
 
 
-def test_a_file_that_ros_rejects_is_graded_for_what_is_in_it() -> None:
-    """A robot that does not load still has a box of the right size: only what is wrong is lost."""
+def test_a_rejected_file_is_graded() -> None:
+    """A robot that does not load still has a box of the correct size: only mistakes lose points."""
     robot = scene(BASE, LIDAR)
     assert robot.reading.verdict == "rejected"
     report = run(
@@ -281,11 +281,11 @@ def test_a_file_that_ros_rejects_is_graded_for_what_is_in_it() -> None:
     assert statuses(report) == ["failed", "passed", "passed"]
 
 
-# --- Faults of ours ---------------------------------------------------------------------------------------------------
+# --- Errors of the grader -----------------------------------------------------------------------------------------------
 
 
-def test_a_check_that_raises_is_our_fault() -> None:
-    """It is errored, not failed; the traceback is kept for us, and the message does not trouble the student with it."""
+def test_an_exception_in_a_check_is_an_error_of_the_grader() -> None:
+    """The criterion is errored, not failed; the traceback is kept, and the message is short."""
     result = run(ask("one", breaks)).results[0]
     assert result.outcome.status == "errored"
     assert "ZeroDivisionError" in result.outcome.message
@@ -295,16 +295,16 @@ def test_a_check_that_raises_is_our_fault() -> None:
     assert result.traceback.endswith("ZeroDivisionError: a secret detail\n")
 
 
-def test_a_fault_of_ours_costs_nothing_else() -> None:
-    """Criteria before and behind it are decided as ever."""
+def test_an_errored_criterion_affects_no_other() -> None:
+    """Earlier and later criteria are graded as usual."""
     report = run(ask("one"), ask("two", breaks), ask("three"), ask("four", fails_), ask("five", pends))
     assert statuses(report) == ["passed", "errored", "passed", "failed", "pending"]
     assert [bool(result.traceback) for result in report.results] == [False, True, False, False, False]
     assert sums(report) == [2, 5, 1]
 
 
-def test_what_requires_a_fault_of_ours_does_not_blame_the_student() -> None:
-    """A skip that is due to our fault names the criterion, and does not say that the student failed it."""
+def test_a_skip_after_an_error_does_not_blame_the_student() -> None:
+    """It names the errored criterion, and does not say that the student failed it."""
     report = run(ask("one", breaks), ask("two", requires=["one"]))
     result = report.results[1]
     assert result.outcome.status != "failed"
@@ -316,7 +316,7 @@ def test_what_requires_a_fault_of_ours_does_not_blame_the_student() -> None:
     [KeyError("x"), LookupError("x"), ValueError("x"), RecursionError("x"), AssertionError("x"), MemoryError("x")],
 )
 def test_every_exception_of_a_check_is_caught(error: Exception) -> None:
-    """Whatever a check raises but what it is meant to raise, the run goes on."""
+    """Whatever a check raises unexpectedly, the run continues."""
 
     def raises(robot: Configuration) -> Outcome:
         raise error
@@ -325,7 +325,7 @@ def test_every_exception_of_a_check_is_caught(error: Exception) -> None:
 
 
 def test_an_interrupt_is_not_caught() -> None:
-    """A person who stops the program is not a fault in a check."""
+    """An interrupt by the user is not an error of a check."""
 
     def interrupted(robot: Configuration) -> Outcome:
         raise KeyboardInterrupt
@@ -338,7 +338,7 @@ def test_an_interrupt_is_not_caught() -> None:
 
 
 def test_what_depends_on_a_mesh_is_pending() -> None:
-    """Each criterion that needs the size of a mesh is left to a person, one by one; the others are decided."""
+    """Each criterion that needs the size of a mesh is pending; the others are graded."""
     robot = scene(BASE, WHEEL, joint("j", "continuous", "base", "wheel")).with_shape(mesh())
     report = run(
         ask("base", bottom_at_height, link="base", relative_to="base", height=0.0, tolerance=0.002, points="2.5"),
@@ -365,7 +365,7 @@ def test_all_parts_are_graded_unless_some_are_named() -> None:
 
 
 def test_only_named_parts_are_graded() -> None:
-    """Points of the others are neither earned nor missed."""
+    """Points of other parts are neither earned nor lost."""
     criteria = (ask("one", part="b"), ask("two", fails_, part="a"), ask("three", part="b", points="2"))
     report = run(*criteria, parts=["b"])
     assert report.parts == ("b",)
@@ -375,14 +375,14 @@ def test_only_named_parts_are_graded() -> None:
 
 
 def test_a_part_without_criteria_is_worth_nothing() -> None:
-    """There is nothing to decide in it."""
+    """Its maximum is 0."""
     report = run(ask("one"), parts=["b"])
     assert report.results == ()
     assert sums(report) == [0, 0, 0]
 
 
-def test_an_unknown_part_is_told() -> None:
-    """A part that is not there is wrong usage, also beside one that is."""
+def test_an_unknown_part_is_reported() -> None:
+    """An unknown part is wrong usage, also beside a known one."""
     with pytest.raises(InputError, match="no part 'c'"):
         run(ask("one"), parts=["c"])
     with pytest.raises(InputError, match="no part 'c'"):
@@ -429,7 +429,7 @@ def test_sums_are_exact() -> None:
         max_size=12,
     )
 )
-def test_the_sums_are_those_of_the_rows(rows: list[tuple[Callable[..., Outcome], int, str]]) -> None:
+def test_sums_equal_those_of_the_rows(rows: list[tuple[Callable[..., Outcome], int, str]]) -> None:
     """For any mix of outcomes the sums are exact, part by part and together."""
     criteria = [
         ask(f"c{index}", check, points=f"{points // 100}.{points % 100:02d}", part=part)
@@ -444,7 +444,7 @@ def test_the_sums_are_those_of_the_rows(rows: list[tuple[Callable[..., Outcome],
 
 
 def test_the_same_submission_gets_the_same_report() -> None:
-    """Nothing but the submission and the rubric decides."""
+    """The report depends only on the submission and the rubric."""
     criteria = (
         ask("loads", urdf_loads),
         ask("box", shows_box, link="base", size=(0.6, 0.4, 0.1), tolerance=0.002),
@@ -455,5 +455,5 @@ def test_the_same_submission_gets_the_same_report() -> None:
 
 
 def plain(result: Result) -> tuple[str, Outcome, str | None, str]:
-    """All that a result says."""
+    """Return all fields of a result."""
     return (result.criterion.id, result.outcome, result.because, result.traceback)

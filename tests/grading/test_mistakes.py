@@ -46,7 +46,7 @@ REFERENCE = (LAB6.path.parent / LAB6.reference / LAB6.urdf).read_text()
         ("joint-names", "base_lidar_joint", "j", "the joint of 'lidar' should be named 'base_lidar_joint'"),
     ],
 )  # fmt: skip
-def test_what_differs_between_students_is_left_out(criterion: str, old: str, new: str, mistake: str) -> None:
+def test_differences_between_students_are_removed(criterion: str, old: str, new: str, mistake: str) -> None:
     """A mistake holds no joint names, line numbers, explanations of the reader or suggestions."""
     assert old in REFERENCE
     assert mistakes(REFERENCE.replace(old, new))[criterion] == mistake

@@ -1,4 +1,4 @@
-"""Whole submissions, graded by the rubric of lab 6: what one defect costs, why the rest is skipped, which problems are listed."""
+"""Whole submissions under the rubric of lab 6: lost criteria, skipped criteria and problems for each defect."""
 
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
@@ -10,7 +10,7 @@ from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.grading.rubric import load_rubric
 from grader.submission.submission import read_submission
-from tests.checks.submitted import ANSWERS, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, URDF, WEBCAM, Submitted, png
+from tests.checks.submissions import ANSWERS, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, URDF, WEBCAM, Submitted, png
 
 LAB = load_rubric("lab6")
 PENDING = ("evidence-webcam", "answer-floating-link", "answer-launch-nodes")
@@ -25,7 +25,7 @@ CMAKE = (
     .with_files({"my_robot/CMakeLists.txt": "install(DIRECTORY urdf DESTINATION share/my_robot)\n"})
 )
 
-# What is done to the reference: the submission, what it loses with the failed criterion first, what is pending besides.
+# Changes of the reference: the submission, the lost criteria with the failed one first, and additional pending criteria.
 DEFECTS: Mapping[str, tuple[Submitted, Sequence[str], Sequence[str]]] = {
     "nothing": (REFERENCE, (), ()),
     "no answers and no pictures": (REFERENCE.without(ANSWERS, WEBCAM, "Task1_Step8.png"), (), ()),
@@ -208,23 +208,25 @@ every_defect = pytest.mark.parametrize(("submitted", "lost", "pending"), DEFECTS
 
 
 def graded(submitted: Submitted, parts: Sequence[str] = ()) -> Report:
-    """The report on a submission."""
+    """Return the report on a submission."""
     return grade(LAB, submitted.submission, parts)
 
 
 def with_status(report: Report, *statuses: str) -> set[str]:
-    """The criteria that have one of these statuses."""
+    """Return the criteria with one of these statuses."""
     return {result.criterion.id for result in report.results if result.outcome.status in statuses}
 
 
 def points(*criteria: str) -> Decimal:
-    """What some criteria are worth."""
+    """Return the points of some criteria."""
     return sum((criterion.points for criterion in LAB.criteria if criterion.id in criteria), Decimal(0))
 
 
 @every_defect
-def test_a_defect_costs_what_it_should(submitted: Submitted, lost: Sequence[str], pending: Sequence[str]) -> None:
-    """Exactly the criteria are lost that the defect is about, exactly those are pending that nobody but a person can tell."""
+def test_a_defect_loses_the_expected_criteria(
+    submitted: Submitted, lost: Sequence[str], pending: Sequence[str]
+) -> None:
+    """Exactly the criteria about the defect fail, and exactly those that need manual grading are pending."""
     report = graded(submitted)
     assert with_status(report, "failed", "skipped") == set(lost)
     assert with_status(report, "pending") == {*PENDING, *pending}
@@ -234,8 +236,8 @@ def test_a_defect_costs_what_it_should(submitted: Submitted, lost: Sequence[str]
 
 
 @every_defect
-def test_a_defect_is_told_once(submitted: Submitted, lost: Sequence[str], pending: Sequence[str]) -> None:
-    """What is only a consequence is skipped, and names the criterion that has failed."""
+def test_a_defect_is_reported_once(submitted: Submitted, lost: Sequence[str], pending: Sequence[str]) -> None:
+    """Consequences are skipped, and name the criterion that failed."""
     report = graded(submitted)
     failed = with_status(report, "failed")
     most = 2 if {"urdf-loads", "package-found"} <= set(lost) else 1
@@ -247,7 +249,7 @@ def test_a_defect_is_told_once(submitted: Submitted, lost: Sequence[str], pendin
             assert result.outcome.message == f"skipped because {result.because} failed"
 
 
-def test_two_defects_are_both_told() -> None:
+def test_two_defects_are_both_reported() -> None:
     """One defect never hides another one."""
     two = REFERENCE.replacing(SETUP, "import os\n", "").replacing(
         RVIZ, "Fixed Frame: base_footprint", "Fixed Frame: map"
@@ -329,14 +331,14 @@ def test_two_defects_are_both_told() -> None:
     ids=lambda value: value if isinstance(value, str) and value[:3] in ("PKG", "LCH", "RVZ") else "",
 )
 def test_problems_of_the_packages_files_are_listed(submitted: Submitted, code: str, path: str, message: str) -> None:
-    """What is wrong with a file of the package is listed with its code and place, one defect once."""
+    """Each problem of a file of the package is listed once, with its code and location."""
     (problem,) = graded(submitted).problems
     assert (problem.code, problem.location.path, problem.message) == (code, path, message)
     assert graded(submitted, ["task1"]).problems == ()
 
 
-def test_evidence_is_shown_beside_the_mark() -> None:
-    """The pictures that the lab asks for are listed with what asks for them, the others on their own."""
+def test_evidence_is_shown_with_its_criterion() -> None:
+    """Pictures that the lab asks for are listed with their criterion, others on their own."""
     report = graded(REFERENCE.with_files({"holiday.png": png()}))
     found = {exhibits.evidence.id: [exhibit.path for exhibit in exhibits.files] for exhibits in report.exhibits}
     assert found == {
@@ -350,7 +352,7 @@ def test_evidence_is_shown_beside_the_mark() -> None:
 
 
 def test_a_single_urdf_is_graded_on_its_own_part() -> None:
-    """A URDF on its own is graded on what needs no more, and it is told what is left out."""
+    """A single URDF is graded on the parts that need nothing else; the report names the other parts."""
     single = read_submission(REFERENCE.data(URDF), identity="one", path="my_robot.urdf")
     report = grade(LAB, single)
     assert report.parts == ("task1",)
@@ -363,7 +365,7 @@ def test_a_single_urdf_is_graded_on_its_own_part() -> None:
 
 @pytest.mark.parametrize("part", ["task2", "task3", "questions"])
 def test_a_single_urdf_has_no_package(part: str) -> None:
-    """To ask for a part that needs more than a URDF is wrong usage."""
+    """Selecting a part that needs more than a URDF is wrong usage."""
     single = read_submission(REFERENCE.data(URDF), identity="one", path="my_robot.urdf")
     message = f"{part} needs more than a URDF: give the folder or archive that was submitted"
     with pytest.raises(InputError, match=message):
@@ -373,7 +375,7 @@ def test_a_single_urdf_has_no_package(part: str) -> None:
 
 
 def test_parts_of_a_submission_may_be_chosen() -> None:
-    """A submission is graded on the parts that are named, and on nothing else."""
+    """A submission is graded on the named parts only."""
     report = graded(PICTURES, ["task3"])
     assert (report.parts, report.max_score, report.pending) == (("task3",), Decimal(2), Decimal(2))
     assert (report.problems, report.notes) == ((), ())

@@ -1,4 +1,4 @@
-"""A record keeps all of a report."""
+"""A record keeps everything in a report."""
 
 import json
 
@@ -11,7 +11,7 @@ from tests.samples import SAMPLES
 
 @pytest.mark.parametrize("name", SAMPLES)
 def test_a_record_gives_the_same_report(name: str) -> None:
-    """What is made from a record is the report that it was made of, byte for byte, and makes the same record again."""
+    """A report made from a record equals the original byte for byte, and gives the same record again."""
     report = SAMPLES[name].grade()
     record = to_record(report)
     again = from_record(record, report.rubric)
@@ -24,8 +24,8 @@ REFERENCE = SAMPLES["reference"].grade()
 
 
 @pytest.mark.parametrize("name", [name for name in SAMPLES if SAMPLES[name].rubric is REFERENCE.rubric])
-def test_a_template_keeps_out_what_is_the_same(name: str) -> None:
-    """A record beside a template gives the same report, and is no longer than the one without."""
+def test_a_template_removes_repetition(name: str) -> None:
+    """A record with a template gives the same report, and is no longer than one without."""
     template = Template.of(REFERENCE)
     report = SAMPLES[name].grade()
     record = to_record(report, template)

@@ -1,4 +1,4 @@
-"""A rubric is loaded strictly: every mistake at once, each with its line; points are exact."""
+"""Rubrics are loaded strictly: all mistakes are reported at once, each with its line; points are exact."""
 
 import os
 from decimal import Decimal
@@ -28,14 +28,14 @@ check = "urdf_loads"
 
 
 def write(folder: Path, text: str | bytes) -> str:
-    """The path of a rubric with this content."""
+    """Return the path of a rubric with this content."""
     path = folder / "rubric.toml"
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
     return str(path)
 
 
 def complaints(folder: Path, text: str | bytes) -> list[str]:
-    """What is wrong with a rubric, each complaint without the file's name."""
+    """Return the mistakes of a rubric, without the file's name."""
     path = write(folder, text)
     with pytest.raises(RubricError) as caught:
         load_rubric(path)
@@ -45,7 +45,7 @@ def complaints(folder: Path, text: str | bytes) -> list[str]:
 
 
 def announced(text: str) -> list[str]:
-    """The complaints that a text announces in comments, each behind `!!` in the line that it is expected for."""
+    """Return the complaints that a text announces in comments, each after `!!` on its expected line."""
     found = enumerate(text.split("\n"), 1)
     return [
         f"{number}: {text.strip()}" for number, line in found for text in line.partition("# !!")[2].split("!!") if text
@@ -53,15 +53,15 @@ def announced(text: str) -> list[str]:
 
 
 def loaded(folder: Path, text: str) -> Rubric:
-    """The rubric in a text that has no mistake."""
+    """Return the rubric in a text without mistakes."""
     return load_rubric(write(folder, text))
 
 
 # --- What a good rubric is --------------------------------------------------------------------------------------------
 
 
-def test_a_rubric_keeps_what_is_written(tmp_path: Path) -> None:
-    """Every key is there with its value, criteria in the order of the file, arguments in the types of the check."""
+def test_a_rubric_keeps_its_values(tmp_path: Path) -> None:
+    """Every key has its value, criteria are in the order of the file, arguments have the types of the check."""
     text = """
 id = "lab0"
 title = "Lab 0"
@@ -112,15 +112,15 @@ feedback = "Look at its size."
     assert [type(number) for number in box.arguments["size"]] == [float] * 3
 
 
-def test_what_may_be_left_out_has_a_default(tmp_path: Path) -> None:
-    """A rubric needs ids, titles, points and checks; the rest has a default."""
+def test_optional_keys_have_defaults(tmp_path: Path) -> None:
+    """A rubric needs ids, titles, points and checks; everything else has a default."""
     rubric = loaded(tmp_path, GOOD)
     assert (rubric.urdf, rubric.reference) == ("robot.urdf", "")
     assert rubric.part("a") == Part("a", "Part A", "urdf")
 
 
 def test_the_digest_is_of_the_bytes(tmp_path: Path) -> None:
-    """Two files with the same meaning but other bytes are not the same rubric."""
+    """Two files with the same meaning but different bytes are different rubrics."""
     one, other = loaded(tmp_path, GOOD), loaded(tmp_path, GOOD + "# a comment\n")
     assert one.sha256 != other.sha256
     assert one.criteria == other.criteria
@@ -128,7 +128,7 @@ def test_the_digest_is_of_the_bytes(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", sorted(shipped_rubrics()))
 def test_shipped_rubrics_load(name: str) -> None:
-    """Every rubric that comes with the grader loads by its id, which is the name of its file."""
+    """Every shipped rubric loads by its id, which is the name of its file."""
     rubric = load_rubric(name)
     assert rubric.id == name
     assert rubric.points > 0
@@ -136,7 +136,7 @@ def test_shipped_rubrics_load(name: str) -> None:
 
 
 def test_a_part_is_found_by_its_id(tmp_path: Path) -> None:
-    """A part that is not there is answered with the one that may be meant, or with all that there are."""
+    """For an unknown part the error suggests a similar one or lists all."""
     rubric = loaded(tmp_path, GOOD.replace('"a"', '"task1"'))
     assert rubric.part("task1").title == "Part A"
     with pytest.raises(InputError, match="the rubric lab0 has no part 'task2'; did you mean 'task1'"):
@@ -148,8 +148,8 @@ def test_a_part_is_found_by_its_id(tmp_path: Path) -> None:
 def test_an_id_is_one_word_and_a_title_one_line(tmp_path: Path) -> None:
     """An id with spaces or control characters is refused; a title may be broken in the file, and is one line in reports."""
     for bad in ("a b", "a\\u001b", "a\\nb"):
-        (told,) = complaints(tmp_path, GOOD.replace('id = "loads"', f'id = "{bad}"'))
-        assert "id must be one printable word" in told
+        (reported,) = complaints(tmp_path, GOOD.replace('id = "loads"', f'id = "{bad}"'))
+        assert "id must be one printable word" in reported
     rubric = loaded(tmp_path, GOOD.replace('title = "Part A"', 'title = """Part\n  A"""'))
     assert rubric.parts[0].title == "Part A"
 
@@ -221,8 +221,8 @@ pints = 3  # !! a criterion has no key 'pints'; did you mean 'points'?
 """
 
 
-def test_every_mistake_is_told_at_once(tmp_path: Path) -> None:
-    """A rubric full of mistakes is told all of them, in the order of the file, each with its line."""
+def test_every_mistake_is_reported_at_once(tmp_path: Path) -> None:
+    """All mistakes are reported in the order of the file, each with its line."""
     found = complaints(tmp_path, EVERY_KIND_OF_MISTAKE)
     assert found == announced(EVERY_KIND_OF_MISTAKE)
     assert len(found) >= 25
@@ -259,14 +259,14 @@ def test_every_mistake_is_told_at_once(tmp_path: Path) -> None:
         GOOD.replace('title = "Part A"', 'title = "A"\npoints = "1"  # !! points must be a number, not \'1\''),
     ],
 )
-def test_a_value_of_the_wrong_type_is_told(tmp_path: Path, text: str) -> None:
-    """Whatever a key holds instead of what it should, the complaint says both, in the line of the key."""
+def test_a_value_of_the_wrong_type_is_reported(tmp_path: Path, text: str) -> None:
+    """The complaint names the actual and the expected type, on the line of the key."""
     assert complaints(tmp_path, text) == announced(text)
 
 
 @pytest.mark.parametrize(("line", "where"), [(0, "1: this rubric"), (3, "3: this part"), (6, "5: this criterion")])
 def test_ids_and_titles_are_needed(tmp_path: Path, line: int, where: str) -> None:
-    """What is missing at the top is told for the first line, the rest for the header of its table."""
+    """Mistakes at the top level are reported for the first line, others for the header of their table."""
     lines = GOOD.split("\n")
     without_id = "\n".join(lines[:line] + lines[line + 1 :])
     header = where if line != 6 else where.replace("5", "6")
@@ -278,7 +278,7 @@ def test_ids_and_titles_are_needed(tmp_path: Path, line: int, where: str) -> Non
 
 @pytest.mark.parametrize("key", ["part", "points", "check"])
 def test_part_points_and_check_are_needed(tmp_path: Path, key: str) -> None:
-    """A criterion that leaves one of them out is told so."""
+    """A criterion without one of them is reported."""
     kept = [line for line in GOOD.split("\n") if not line.startswith(f"{key} =")]
     assert complaints(tmp_path, "\n".join(kept)) == [f"6: this criterion has no {key}"]
 
@@ -301,7 +301,7 @@ def test_a_rubric_has_parts_and_criteria(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("text", ["", "\n\n", "# only a comment\n"])
 def test_an_empty_file_misses_everything(tmp_path: Path, text: str) -> None:
-    """A file without content is a rubric without anything, and is told so."""
+    """An empty file is a rubric without anything, and is reported as that."""
     assert complaints(tmp_path, text) == [
         "1: this rubric has no id",
         "1: this rubric has no title",
@@ -314,7 +314,7 @@ def test_an_empty_file_misses_everything(tmp_path: Path, text: str) -> None:
 
 
 def checked(check: str, given: str) -> str:
-    """A rubric with one check and its arguments, in line 12."""
+    """Return a rubric with one check and its arguments, on line 12."""
     return GOOD.replace("urdf_loads", check) + given
 
 
@@ -342,8 +342,8 @@ COLOUR = 'link = "a", colour = [0, 1, 0], tolerance = 0'
         ("joints_named", 'parent = "a", joints = ["j"]', "joints of joints_named must be a table of strings, not ['j']"),
     ],
 )  # fmt: skip
-def test_an_argument_that_a_check_does_not_take_is_told(tmp_path: Path, check: str, given: str, complaint: str) -> None:
-    """The arguments of a check are held against its signature: unknown ones, missing ones, those of another type."""
+def test_wrong_arguments_are_reported(tmp_path: Path, check: str, given: str, complaint: str) -> None:
+    """Arguments are compared with the check's signature: unknown ones, missing ones, those of another type."""
     assert complaints(tmp_path, checked(check, f"with = {{ {given} }}\n")) == [f"12: {complaint}"]
 
 
@@ -359,8 +359,8 @@ def test_an_argument_that_a_check_does_not_take_is_told(tmp_path: Path, check: s
         ("shows_sphere", SPHERE.replace('"a"', f'["{"a" * 999}"]'), "link"),
     ],
 )
-def test_an_argument_of_another_type_is_told(tmp_path: Path, check: str, given: str, name: str) -> None:
-    """Nothing is taken for something else: no true for a number, no number for a text, no list for a table's value."""
+def test_an_argument_of_another_type_is_reported(tmp_path: Path, check: str, given: str, name: str) -> None:
+    """Nothing is converted: no true for a number, no number for a text, no list for a table's value."""
     (found,) = complaints(tmp_path, checked(check, f"with = {{ {given} }}\n"))
     assert found.startswith(f"12: {name} of {check} must be ")
     assert len(found) < 150
@@ -375,7 +375,7 @@ def test_an_argument_of_another_type_is_told(tmp_path: Path, check: str, given: 
     ],
     ids=["exponent", "digits", "digits-in-a-list"],
 )
-def test_an_argument_beyond_all_bounds_is_refused(tmp_path: Path, check: str, given: str, name: str) -> None:
+def test_a_number_that_overflows_is_refused(tmp_path: Path, check: str, given: str, name: str) -> None:
     """A number that is no float is a mistake in the rubric: not infinity, and not a crash."""
     (found,) = complaints(tmp_path, checked(check, f"with = {{ {given} }}\n"))
     assert found.startswith(f"12: {name} of {check} must be ")
@@ -383,18 +383,18 @@ def test_an_argument_beyond_all_bounds_is_refused(tmp_path: Path, check: str, gi
 
 @pytest.mark.parametrize("colour", ["[0]", "[0, 1]", "[0, 1, 0, 1, 1]"])
 def test_a_colour_has_three_or_four_channels(tmp_path: Path, colour: str) -> None:
-    """Another count can never be compared with what a link shows, so it is told when the rubric is loaded."""
+    """Another count can never match a link, so it is reported when the rubric is loaded."""
     (found,) = complaints(tmp_path, checked("shows_colour", f"with = {{ {COLOUR.replace('[0, 1, 0]', colour)} }}\n"))
     assert found.startswith("12: ")
 
 
-def test_no_names_are_no_question(tmp_path: Path) -> None:
-    """An empty table of joints would pass every robot; it is refused as an empty list is."""
+def test_an_empty_table_of_names_is_refused(tmp_path: Path) -> None:
+    """An empty table of joints would pass every robot; it is refused like an empty list."""
     assert complaints(tmp_path, checked("joints_named", 'with = { parent = "a", joints = {} }\n'))
 
 
-def test_a_misspelt_argument_is_told_twice(tmp_path: Path) -> None:
-    """It is unknown, with the one that may be meant, and that one is missing."""
+def test_a_misspelt_argument_is_reported_twice(tmp_path: Path) -> None:
+    """It is unknown, with a suggestion, and the suggested one is missing."""
     given = f"with = {{ {BOX.replace('link', 'lnk')} }}\n"
     assert complaints(tmp_path, checked("shows_box", given)) == [
         "12: the check shows_box takes no 'lnk'; did you mean 'link'?",
@@ -402,8 +402,8 @@ def test_a_misspelt_argument_is_told_twice(tmp_path: Path) -> None:
     ]
 
 
-def test_all_arguments_are_told_if_none_is_given(tmp_path: Path) -> None:
-    """Without a table each argument that is needed is told for the criterion; those with a default are not."""
+def test_all_arguments_are_reported_if_none_is_given(tmp_path: Path) -> None:
+    """Without a table each required argument is reported for the criterion; those with a default are not."""
     assert complaints(tmp_path, checked("rolls_forward", "")) == [
         "6: the check rolls_forward needs link: a string",
         "6: the check rolls_forward needs base: a string",
@@ -411,8 +411,8 @@ def test_all_arguments_are_told_if_none_is_given(tmp_path: Path) -> None:
     ]
 
 
-def test_a_missing_argument_is_told_where_the_table_is(tmp_path: Path) -> None:
-    """Where a table of arguments stands in lines of its own, its header is the place for what is missing in it."""
+def test_a_missing_argument_is_reported_at_the_table(tmp_path: Path) -> None:
+    """If the arguments have a table of their own, its header is the location of missing ones."""
     text = checked("shows_box", '\n# the arguments\n[criterion.with]\nlink = "base"\nsize = [1, 2]\n')
     assert complaints(tmp_path, text) == [
         "14: the check shows_box needs tolerance: a number",
@@ -421,7 +421,7 @@ def test_a_missing_argument_is_told_where_the_table_is(tmp_path: Path) -> None:
 
 
 def test_arguments_become_what_the_check_takes(tmp_path: Path) -> None:
-    """Whole numbers are numbers too; lists become tuples where the check has one; defaults stay with the check."""
+    """Integers are accepted as floats; lists become tuples if the check has one; defaults stay with the check."""
     given = 'with = { link = "w", base = "b", forward = [1, 0, 0], tolerance = 1 }'
     (criterion,) = loaded(tmp_path, checked("rolls_forward", given)).criteria
     assert criterion.arguments == {"link": "w", "base": "b", "forward": (1.0, 0.0, 0.0), "tolerance": 1.0}
@@ -433,14 +433,14 @@ def test_arguments_become_what_the_check_takes(tmp_path: Path) -> None:
 
 
 def row(name: str, *, requires: str = "[]", part: str = "a", points: str = "1") -> str:
-    """A criterion in seven lines; what it requires is in the last."""
+    """Return a criterion in seven lines; its requirement is on the last."""
     return (
         f'[[criterion]]\nid = "{name}"\npart = "{part}"\ntitle = "T"\npoints = {points}\ncheck = "urdf_loads"\n'
         f"requires = {requires}\n"
     )
 
 
-def test_only_what_stands_above_can_be_required(tmp_path: Path) -> None:
+def test_only_earlier_criteria_can_be_required(tmp_path: Path) -> None:
     """File order is run order: a cycle cannot be written."""
     rubric = loaded(tmp_path, GOOD + row("b", requires='["loads"]') + row("c", requires='["b", "loads"]'))
     assert [criterion.requires for criterion in rubric.criteria] == [(), ("loads",), ("b", "loads")]
@@ -450,13 +450,13 @@ def test_only_what_stands_above_can_be_required(tmp_path: Path) -> None:
 
 
 def test_a_criterion_cannot_require_itself(tmp_path: Path) -> None:
-    """It does not stand above itself."""
+    """It does not precede itself."""
     (found,) = complaints(tmp_path, GOOD + row("b", requires='["b"]'))
     assert found.startswith("18: requires itself")
 
 
-def test_each_unknown_requirement_is_told(tmp_path: Path) -> None:
-    """Every name that does not exist is told, with the one that may be meant."""
+def test_each_unknown_requirement_is_reported(tmp_path: Path) -> None:
+    """Every unknown name is reported with a suggestion."""
     assert complaints(tmp_path, GOOD + row("b", requires='["load", "zzz", "loads"]')) == [
         "18: requires 'load', which does not exist; did you mean 'loads'?",
         "18: requires 'zzz', which does not exist",
@@ -467,11 +467,11 @@ def test_each_unknown_requirement_is_told(tmp_path: Path) -> None:
 
 
 def worth(*points: str, total: str = "", part: str = "") -> str:
-    """A rubric with criteria of these points, and what the rubric and its part declare."""
+    """Return a rubric with criteria of these points, and the declared totals."""
     declared = f"points = {total}\n" if total else ""
     own = f"points = {part}\n" if part else ""
     head = f'id = "r"\ntitle = "R"\n{declared}[[part]]\nid = "a"\ntitle = "A"\n{own}'
-    return head + "".join(row(f"c{index}", points=each) for index, each in enumerate(points))
+    return head + "".join(row(f"c{index}", points=value) for index, value in enumerate(points))
 
 
 @pytest.mark.parametrize(
@@ -491,7 +491,7 @@ def worth(*points: str, total: str = "", part: str = "") -> str:
     ],
 )
 def test_points_are_exact(tmp_path: Path, points: tuple[str, ...], total: str) -> None:
-    """Points add up as they do on paper, not as floats do."""
+    """Points add up as on paper, not as floats do."""
     rubric = loaded(tmp_path, worth(*points, total=total, part=total))
     assert rubric.points == Decimal(total)
     assert [criterion.points for criterion in rubric.criteria] == [Decimal(value) for value in points]
@@ -509,8 +509,8 @@ def test_any_points_in_hundredths_add_up(tmp_path_factory: pytest.TempPathFactor
     assert len(complaints(folder, worth(*points, total=wrong, part=wrong))) == 2
 
 
-def test_totals_that_do_not_add_up_are_told(tmp_path: Path) -> None:
-    """What the rubric and each part declare is compared with the sums."""
+def test_wrong_totals_are_reported(tmp_path: Path) -> None:
+    """The totals that the rubric and each part declare are compared with the sums."""
     assert complaints(tmp_path, worth("0.1", "0.2", total="0.3001", part="1")) == [
         "3: the rubric declares 0.3001 points, but its criteria add up to 0.3",
         "7: part 'a' declares 1 points, but its criteria add up to 0.3",
@@ -527,7 +527,7 @@ def test_points_have_four_decimals_at_most(tmp_path: Path) -> None:
 
 
 def test_a_late_policy_is_read(tmp_path: Path) -> None:
-    """What is not given is nothing; the time that it is due at keeps its offset."""
+    """Missing values have their defaults; the deadline keeps its offset."""
     policy = "[late]\ndue = 2026-11-20T23:59:00+01:00\npercent_per_day = 10.5\n"
     late = loaded(tmp_path, worth("1") + policy).late
     assert late is not None
@@ -567,8 +567,8 @@ def test_a_part_is_worth_its_own_criteria(tmp_path: Path) -> None:
     ]
 
 
-def test_totals_are_not_told_while_points_cannot_be_read(tmp_path: Path) -> None:
-    """One mistake in a criterion's points does not make the totals wrong, too."""
+def test_totals_are_not_reported_with_invalid_points(tmp_path: Path) -> None:
+    """A mistake in a criterion's points does not also make the totals wrong."""
     assert complaints(tmp_path, worth("1", '"2"', total="3", part="3")) == ["19: points must be a number, not '2'"]
 
 
@@ -577,8 +577,8 @@ def test_totals_are_not_told_while_points_cannot_be_read(tmp_path: Path) -> None
     ["1e9999999", "9e999999", "1" + "0" * 5000, "0x" + "f" * 5000, "1e-9999999", "1e9999999999999999999"],
     ids=["exponent", "sum", "digits", "hexadecimal", "small", "no-decimal"],
 )
-def test_numbers_beyond_all_bounds_are_no_crash(tmp_path: Path, points: str) -> None:
-    """Points that no computer adds up are loaded or told as a mistake in the rubric."""
+def test_huge_numbers_cause_no_crash(tmp_path: Path, points: str) -> None:
+    """Huge points are loaded or reported as a mistake in the rubric."""
     try:
         assert loaded(tmp_path, worth(points, points)).points >= 0
     except RubricError as error:
@@ -604,7 +604,7 @@ def test_numbers_beyond_all_bounds_are_no_crash(tmp_path: Path, points: str) -> 
         ("id = yes\n", "line 1, column 6"),
     ],
 )
-def test_broken_toml_is_told_with_its_place(tmp_path: Path, text: str, where: str) -> None:
+def test_invalid_toml_is_reported_with_its_location(tmp_path: Path, text: str, where: str) -> None:
     """Text that is no TOML is refused in one line that says where."""
     (found,) = complaints(tmp_path, text)
     assert found.startswith(" not readable as TOML: ")
@@ -613,8 +613,8 @@ def test_broken_toml_is_told_with_its_place(tmp_path: Path, text: str, where: st
 
 
 @pytest.mark.parametrize("data", [b'id = "caf\xe9"\n', "id = 1".encode("utf-16"), b"\xff\xfe\x00", b"\x80"])
-def test_what_is_not_utf_8_is_refused(tmp_path: Path, data: bytes) -> None:
-    """TOML is UTF-8; another encoding is named as that, not as broken TOML."""
+def test_other_encodings_are_refused(tmp_path: Path, data: bytes) -> None:
+    """TOML is UTF-8; another encoding is named as that, not as invalid TOML."""
     assert complaints(tmp_path, data) == [" this is not UTF-8 text"]
 
 
@@ -630,20 +630,20 @@ def test_what_is_not_utf_8_is_refused(tmp_path: Path, data: bytes) -> None:
     ],
     ids=["open", "arrays", "inline-tables", "header", "dotted", "only-text"],
 )
-def test_deep_nesting_is_no_crash(tmp_path: Path, text: str) -> None:
-    """Brackets without end are a mistake in the rubric, which is told in words."""
+def test_deep_nesting_causes_no_crash(tmp_path: Path, text: str) -> None:
+    """Endless brackets are a mistake in the rubric, which is reported."""
     assert complaints(tmp_path, GOOD + text)
 
 
-def test_line_ends_of_windows_are_line_ends(tmp_path: Path) -> None:
+def test_windows_line_endings(tmp_path: Path) -> None:
     """A rubric written on Windows loads, and its mistakes have the same lines."""
     windows = GOOD.replace("\n", "\r\n")
     assert loaded(tmp_path, windows).criteria == loaded(tmp_path, GOOD).criteria
     assert complaints(tmp_path, EVERY_KIND_OF_MISTAKE.replace("\n", "\r\n")) == announced(EVERY_KIND_OF_MISTAKE)
 
 
-def test_a_file_that_is_not_there_is_told(tmp_path: Path) -> None:
-    """A path that leads nowhere is unreadable input, not a broken rubric."""
+def test_a_missing_file_is_reported(tmp_path: Path) -> None:
+    """A missing path is unreadable input, not a broken rubric."""
     with pytest.raises(InputError, match=r"cannot read .*nothing\.toml: No such file or directory"):
         load_rubric(str(tmp_path / "nothing.toml"))
 
@@ -664,7 +664,7 @@ def test_a_pipe_is_no_rubric(tmp_path: Path) -> None:
         load_rubric(str(tmp_path / "pipe.toml"))
 
 
-def test_a_file_without_end_is_refused(tmp_path: Path) -> None:
+def test_an_endless_file_is_refused(tmp_path: Path) -> None:
     """No more than a limit is read."""
     with pytest.raises(InputError, match="larger than"):
         load_rubric(write(tmp_path, GOOD + "#" * (1 << 21)))
@@ -673,8 +673,8 @@ def test_a_file_without_end_is_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "guess"), [("lab", "lab6"), ("lab66", "lab6"), ("LAB6", "lab6"), ("l6", None), ("zzz", None)]
 )
-def test_an_unknown_id_is_told_with_what_there_is(name: str, guess: str | None) -> None:
-    """A name that is no rubric is answered with the one that may be meant, and with the command that lists all."""
+def test_an_unknown_id_is_reported_with_a_suggestion(name: str, guess: str | None) -> None:
+    """The error suggests a similar id and names the command that lists all."""
     with pytest.raises(RubricError) as caught:
         load_rubric(name)
     (line,) = caught.value.complaints
@@ -684,7 +684,7 @@ def test_an_unknown_id_is_told_with_what_there_is(name: str, guess: str | None) 
 
 
 def test_a_file_is_found_by_its_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A path with a folder or an ending is a path; a bare word is an id, whatever files there are."""
+    """A name with a folder or an ending is a path; a bare word is an id, whatever files exist."""
     monkeypatch.chdir(tmp_path)
     Path("lab6").write_text(GOOD)
     Path("mine").write_text(GOOD)
@@ -725,8 +725,8 @@ def test_a_path_is_shown_without_control_characters(tmp_path: Path) -> None:
         ("[ 'extra' . deep ] # and more", "extra"),
     ],
 )
-def test_an_unknown_key_of_a_rubric_is_told_in_its_line(tmp_path: Path, line: str, key: str) -> None:
-    """However an unknown key is written, the complaint has the line that it is written in."""
+def test_an_unknown_key_of_a_rubric_has_its_line(tmp_path: Path, line: str, key: str) -> None:
+    """However an unknown key is written, the complaint has its line."""
     if line.startswith("["):
         text, number = GOOD + line + "\n", 12
     else:
@@ -739,19 +739,19 @@ def test_an_unknown_key_of_a_rubric_is_told_in_its_line(tmp_path: Path, line: st
     "line",
     ["hint.text = 1", "hint.text.more = 1", '"hint" = 1', "'hint'.x = 1", "hint = { a = 1 }", "[criterion.hint.deep]"],
 )
-def test_an_unknown_key_of_a_criterion_is_told_in_its_line(tmp_path: Path, line: str) -> None:
+def test_an_unknown_key_of_a_criterion_has_its_line(tmp_path: Path, line: str) -> None:
     """Dotted and quoted keys and tables have a line, too."""
     (found,) = complaints(tmp_path, GOOD + line + "\n")
     assert found.startswith("12: a criterion has no key 'hint';")
 
 
-def test_a_table_in_a_criterion_does_not_move_those_behind_it(tmp_path: Path) -> None:
+def test_a_table_in_a_criterion_does_not_move_later_ones(tmp_path: Path) -> None:
     """Arrays of tables below a criterion belong to it: the next criterion keeps its lines."""
     text = GOOD + "[[criterion.hint]]\nx = 1\n[[criterion.hint]]\nx = 1\n" + row("b", points="-1")
     assert [line.partition(":")[0] for line in complaints(tmp_path, text)] == ["12", "20"]
 
 
-BEHIND_TEXTS = r'''feedback = """
+AFTER_TEXTS = r'''feedback = """
 [[criterion]]
 id = "not a key"
 # no comment \
@@ -772,9 +772,9 @@ requires = [ # [ ] "
 '''
 
 
-def test_lines_are_right_behind_text_of_many_lines(tmp_path: Path) -> None:
-    """Multi-line strings, comments and arrays of many lines do not move what comes behind them."""
-    assert complaints(tmp_path, GOOD + BEHIND_TEXTS) == [
+def test_lines_after_multi_line_values(tmp_path: Path) -> None:
+    """Multi-line strings, comments and arrays do not move later lines."""
+    assert complaints(tmp_path, GOOD + AFTER_TEXTS) == [
         "22: title must be a non-empty string, not ''",
         "24: requires 'lods', which does not exist; did you mean 'loads'?",
         "28: points must be a number from 0 to 1000000, not -1",
@@ -782,8 +782,8 @@ def test_lines_are_right_behind_text_of_many_lines(tmp_path: Path) -> None:
     ]
 
 
-def test_lines_are_right_behind_quotes_at_the_end_of_a_text(tmp_path: Path) -> None:
-    """A text between triple quotes may itself end in quotes, and brackets may follow."""
+def test_lines_after_quotes_at_the_end_of_a_string(tmp_path: Path) -> None:
+    """A triple-quoted string may end in quotes, and brackets may follow."""
     text = GOOD + 'feedback = """He said "yes"""" # ["\nrequires = ["""a"""", "[b"]\npints = 1\n'
     assert [line.partition(":")[0] for line in complaints(tmp_path, text)] == ["13", "13", "14"]
     text = GOOD + "feedback = '''It's 'fine'''' # ['\nrequires = ['''a'''', '[b']\npints = 1\n"
@@ -791,7 +791,7 @@ def test_lines_are_right_behind_quotes_at_the_end_of_a_text(tmp_path: Path) -> N
 
 
 def test_lines_in_tables_of_arguments(tmp_path: Path) -> None:
-    """An argument in a table of its own has its own line; one in braces has the line of the braces."""
+    """An argument in a table of its own has its own line; one in an inline table has the line of that table."""
     names = GOOD.replace("urdf_loads", "joints_named")
     tables = '[criterion.with]\nparent = 3\n\n[criterion.with.joints]\n# a joint\nj = "lidar"\nk = 4\n'
     assert complaints(tmp_path, names + tables) == [

@@ -1,4 +1,4 @@
-"""The line that is found for a key of a TOML file is the line that it is written in."""
+"""The line found for a key of a TOML file is the line that it is written on."""
 
 import tomllib
 from collections.abc import Iterator
@@ -12,7 +12,7 @@ from grader.grading.toml_lines import Path, key_lines, line_of
 
 
 def test_tables_and_keys_have_lines() -> None:
-    """Headers, keys in them, arrays of tables and their tables are found, counted from 1 and from 0."""
+    """Headers, their keys, and arrays of tables are found; lines count from 1, indices from 0."""
     text = """
 id = "r"
 
@@ -69,8 +69,8 @@ x = 1
         ((), 1),
     ],
 )
-def test_what_is_not_written_has_the_line_of_what_is_around_it(path: Path, line: int) -> None:
-    """A missing key is looked for in its table, and in the file's first line at last."""
+def test_a_missing_key_has_the_line_of_its_table(path: Path, line: int) -> None:
+    """A missing key has the line of its table, or the first line of the file."""
     assert line_of(key_lines("[[part]]\nid = 1\nwith = { deep = [] }\n[[part]]\n"), path) == line
 
 
@@ -95,7 +95,7 @@ def test_what_is_not_written_has_the_line_of_what_is_around_it(path: Path, line:
         "\"it's\" # it's",
     ],
 )
-def test_what_stands_behind_a_value_has_its_line(value: str) -> None:
+def test_keys_after_a_value_have_their_lines(value: str) -> None:
     """However a value is written, the next key and the next table have their own lines."""
     text = f"x = {value}\ny = 1\n\n[z]\nw = {value}\nv = 1\n"
     assert tomllib.loads(text)["z"]["v"] == 1
@@ -109,7 +109,7 @@ def test_what_stands_behind_a_value_has_its_line(value: str) -> None:
     ['"""a""""', '"""a"""""', "'''a''''", "'''a'''''", '["""a"""", "["]', "['''a'''', '[']"],
 )
 def test_a_text_may_end_in_quotes(value: str) -> None:
-    """One or two quotes before the three that close a text belong to it."""
+    """One or two quotes before the closing three belong to the string."""
     text = f"x = {value} # \" '\ny = 1\n"
     assert set(tomllib.loads(text)) == {"x", "y"}
     assert key_lines(text)["y",] == 2
@@ -137,7 +137,7 @@ def test_a_text_may_end_in_quotes(value: str) -> None:
     ],
 )
 def test_a_key_may_be_quoted(key: str, name: str) -> None:
-    """A key in quotes is the text that they hold, in a line of its own and in a header."""
+    """A quoted key is the text in the quotes, on a line of its own and in a header."""
     text = f"\n{key} = 1\n\n[t . {key}] # ]\nx = 1\n[[ u ]]\n{key} = 2\n"
     assert tomllib.loads(text) == {name: 1, "t": {name: {"x": 1}}, "u": [{name: 2}]}
     lines = key_lines(text)
@@ -145,8 +145,8 @@ def test_a_key_may_be_quoted(key: str, name: str) -> None:
     assert (lines["u", 0], lines["u", 0, name]) == (6, 7)
 
 
-def test_tables_above_have_the_line_of_the_first_below_them() -> None:
-    """A table that is only written as the way to another one stands where that is written first."""
+def test_implicit_tables_have_the_line_of_the_first_below_them() -> None:
+    """A table that is only part of a longer header has the line of the first such header."""
     text = "a.b.c = 1\na.d = 2\n[x.y]\nz.w = 1\n[x.v]\n[[l]]\nm.n = 1\n"
     lines = key_lines(text)
     assert (line_of(lines, ("a",)), line_of(lines, ("a", "b")), line_of(lines, ("a", "d"))) == (1, 1, 2)
@@ -154,8 +154,8 @@ def test_tables_above_have_the_line_of_the_first_below_them() -> None:
     assert (line_of(lines, ("l",)), line_of(lines, ("l", 0, "m"))) == (6, 7)
 
 
-def test_arrays_of_tables_in_arrays_of_tables_are_counted_on_their_own() -> None:
-    """An inner array begins anew in every outer table, and the outer one goes on behind it."""
+def test_nested_arrays_of_tables_are_counted_separately() -> None:
+    """An inner array restarts in every outer table, and the outer one continues after it."""
     text = "[[a]]\n[[a.b]]\nx = 1\n[[a.b]]\ny = 1\n[a.b.c]\nz = 1\n[[a]]\n[[a.b]]\nw = 1\n[d]\n[[d.e]]\nv = 1\n"
     lines = key_lines(text)
     expected: dict[Path, int] = {
@@ -177,7 +177,7 @@ def test_arrays_of_tables_in_arrays_of_tables_are_counted_on_their_own() -> None
 
 
 def test_an_empty_text_has_a_first_line() -> None:
-    """Where nothing is written, everything is missing in line 1."""
+    """Everything that is missing in an empty file has line 1."""
     for text in ("", "\n", "# x", "\n\n# [a]\n"):
         assert key_lines(text) == {(): 1}
 
@@ -195,19 +195,19 @@ _others = st.sampled_from(
 
 
 def basic(text: str) -> str:
-    """A text between double quotes, in one line."""
+    """Return a basic string on one line."""
     escapes = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r", "\t": "\\t"}
     return '"' + "".join(escapes.get(character, character) for character in text) + '"'
 
 
 def many_lines(text: str) -> str:
-    """A text between three double quotes, line ends as they are; quotes are written out where they may be."""
+    """Return a multi-line basic string with its line endings; quotes are unescaped where possible."""
     safe = text.replace("\\", "\\\\").replace("\r", "\\r")
     return '"""' + safe.replace('"""', '""\\"') + ('"""' if not safe.endswith('"') else '\\n"""')
 
 
 def literal(text: str) -> str:
-    """A text between single quotes, or between three where it has many lines; what cannot be in it is left out."""
+    """Return a literal string, multi-line if needed; characters that it cannot contain are removed."""
     plain = text.replace("'", "").replace("\r", "")
     return f"'''\n{plain}'''" if "\n" in plain else f"'{plain}'"
 
@@ -219,7 +219,7 @@ _gaps = st.sampled_from([" ", "", "\n", " # ] '\n", '\n\n\t# """\n', "\t"])
 
 @st.composite
 def arrays(draw: st.DrawFn, inner: st.SearchStrategy[str]) -> str:
-    """An array over one or many lines, with comments in it."""
+    """Return an array over one or many lines, with comments in it."""
     items = draw(st.lists(inner, max_size=3))
     inside = "".join(draw(_gaps) + item + draw(_gaps) + "," for item in items)
     return "[" + inside + draw(_gaps) + "]"
@@ -227,7 +227,7 @@ def arrays(draw: st.DrawFn, inner: st.SearchStrategy[str]) -> str:
 
 @st.composite
 def inline_tables(draw: st.DrawFn, inner: st.SearchStrategy[str]) -> str:
-    """A table between braces; its keys are all different."""
+    """Return an inline table with unique keys."""
     values = draw(st.lists(inner, max_size=3))
     return "{" + ", ".join(f" k{index} = {value}" for index, value in enumerate(values)) + " }"
 
@@ -237,7 +237,7 @@ _values = st.recursive(_simple, lambda inner: st.one_of(arrays(inner), inline_ta
 
 @st.composite
 def documents(draw: st.DrawFn) -> tuple[str, dict[Path, int]]:
-    """A TOML text of tables, arrays of tables and keys, with the line that each of them is written in."""
+    """Return a TOML text of tables, arrays of tables and keys, with the line of each."""
     text = ""
     written: dict[Path, int] = {}
     counts: dict[str, int] = {}
@@ -251,7 +251,7 @@ def documents(draw: st.DrawFn) -> tuple[str, dict[Path, int]]:
         text += line + draw(_comments) + "\n"
 
     def key() -> tuple[str, str]:
-        """A new name, and one of the ways to write it."""
+        """Return a new name, and one way to write it."""
         name = f"{next(names)}x{draw(_bare)}"  # the number and its x are no other name's
         return draw(st.sampled_from([name, f'"{name}"', f"'{name}'", f' "{name}" '])), name
 
@@ -289,14 +289,14 @@ def documents(draw: st.DrawFn) -> tuple[str, dict[Path, int]]:
 
 
 def value_at(data: Any, path: Path) -> Any:
-    """What a parsed document holds at a path."""
+    """Return the value of a parsed document at a path."""
     for step in path:
         data = data[step]
     return data
 
 
 def paths_of(data: Any, path: Path = ()) -> Iterator[Path]:
-    """Every path into a parsed document."""
+    """Yield every path into a parsed document."""
     yield path
     if isinstance(data, dict):
         for key, value in data.items():
@@ -308,8 +308,8 @@ def paths_of(data: Any, path: Path = ()) -> Iterator[Path]:
 
 @settings(deadline=None, max_examples=300)
 @given(documents(), st.booleans())
-def test_every_key_is_found_in_its_line(document: tuple[str, dict[Path, int]], windows: bool) -> None:
-    """Whatever values, comments and blank lines stand around it, a key's line is the one that it was written in."""
+def test_every_key_has_its_line(document: tuple[str, dict[Path, int]], windows: bool) -> None:
+    """Whatever values, comments and blank lines surround it, a key has the line that it was written on."""
     text, written = document
     data = tomllib.loads(text)
     for path in written:
@@ -321,7 +321,7 @@ def test_every_key_is_found_in_its_line(document: tuple[str, dict[Path, int]], w
 @settings(deadline=None, max_examples=100)
 @given(documents())
 def test_every_path_has_a_line_inside_the_text(document: tuple[str, dict[Path, int]]) -> None:
-    """What is inside a value has the line of its key, so no path that a parser finds is without a line."""
+    """A nested value has at least the line of its key, so every path has a line."""
     text, written = document
     lines = key_lines(text)
     for path in paths_of(tomllib.loads(text)):

@@ -23,12 +23,12 @@ _LINK = re.compile(rb"""\s*link\s(?:.*?[\s"'])??name\s*=\s*(["'])(.*?)\1""", re.
 _CHILD = re.compile(rb"""\s*child\s(?:.*?[\s"'])??link\s*=\s*(["'])(.*?)\1""", re.DOTALL)
 _PRINTED = re.compile(rb"( *)child\(\d+\):  (.*)\n")
 _INDENT = 4
-_OUT_OF_TIME = (-signal.SIGXCPU, -signal.SIGKILL)  # how the system ends what has used up its processor time
+_OUT_OF_TIME = (-signal.SIGXCPU, -signal.SIGKILL)  # the signal for a process that has used up its processor time
 
 
 @dataclass(frozen=True, slots=True)
 class OracleVerdict:
-    """What `check_urdf` said of one file, how it ended, and the errors that it printed."""
+    """The verdict of `check_urdf` on a file, how it ended, and the errors that it printed."""
 
     verdict: Literal["clean", "degraded", "rejected"]
     ending: Literal["finished", "hung", "aborted"]
@@ -37,7 +37,7 @@ class OracleVerdict:
 
 @cache
 def check_urdf_path() -> Path | None:
-    """The path of the program; None if the distribution is not installed or holds none for this platform."""
+    """Return the path of the program; None if it is not installed or not available for this platform."""
     try:
         path = Path(str(distribution("cmeel-urdfdom").locate_file("cmeel.prefix/bin/check_urdf")))
     except PackageNotFoundError:
@@ -46,9 +46,9 @@ def check_urdf_path() -> Path | None:
 
 
 def check_urdf(text: bytes, seconds: int = 2) -> OracleVerdict:
-    """Run `check_urdf` on a file with this content: it hangs if it takes more than so many seconds of processor time.
+    """Run `check_urdf` on a file with this content; it hangs if it takes more than so many seconds of processor time.
 
-    Skips the test that asks if the program is not installed.
+    Skips the calling test if the program is not installed.
     """
     binary = check_urdf_path()
     if binary is None:
@@ -77,7 +77,7 @@ def check_urdf(text: bytes, seconds: int = 2) -> OracleVerdict:
         return OracleVerdict("rejected", "aborted", stderr)
     if code > 0:
         return OracleVerdict("rejected", "finished", stderr)
-    return OracleVerdict("degraded" if stderr or _left_out(text, printed) else "clean", "finished", stderr)
+    return OracleVerdict("degraded" if stderr or _omitted(text, printed) else "clean", "finished", stderr)
 
 
 def _children(process: subprocess.Popen[bytes]) -> Iterator[tuple[int, bytes]]:
@@ -87,8 +87,8 @@ def _children(process: subprocess.Popen[bytes]) -> Iterator[tuple[int, bytes]]:
             yield len(found[1]) // _INDENT, found[2]
 
 
-def _left_out(text: bytes, printed: set[bytes]) -> set[bytes]:
+def _omitted(text: bytes, printed: set[bytes]) -> set[bytes]:
     tags = [match[1] or b"" for match in _MARKUP.finditer(text)]
-    links, children = ({found[2] for tag in tags if (found := each.match(tag))} for each in (_LINK, _CHILD))
-    # How a name with an entity or a line end is printed is for the oracle to say.
+    links, children = ({found[2] for tag in tags if (found := pattern.match(tag))} for pattern in (_LINK, _CHILD))
+    # The oracle decides how a name with an entity or a line ending is printed.
     return {name for name in (links & children) - printed if not re.search(rb"[&\r\n]", name)}

@@ -12,7 +12,7 @@ from tests.oracles.example_robots import MISSING, URDFS, each_robot
 
 @each_robot
 def test_verdict_is_that_of_ros(path: Path) -> None:
-    """`check_urdf` and the reader agree; every problem that is found has its place in the file."""
+    """`check_urdf` and the reader agree; every problem has its location in the file."""
     data = path.read_bytes()
     read = read_urdf(data, path.name)
     oracle = check_urdf(data, seconds=20)
@@ -37,8 +37,8 @@ def test_every_link_of_a_robot_that_loads_has_a_pose(path: Path) -> None:
 
 
 @pytest.mark.skipif(not URDFS, reason=MISSING)
-def test_there_are_robots_enough() -> None:
-    """The data holds fifty robots at the least, of which nearly all load."""
+def test_there_are_enough_robots() -> None:
+    """The data contains at least fifty robots, most of which load."""
     assert len(URDFS) >= 50
     verdicts = [read_urdf(path.read_bytes()).verdict for path in URDFS]
     assert verdicts.count("rejected") <= 0.1 * len(verdicts)

@@ -24,7 +24,7 @@ _ANGLE, _CIRCLE = 1, 2  # how many numbers pinocchio keeps for a joint of one ax
 
 
 def assert_same_poses(model: Any, configuration: Configuration, positions: Mapping[str, float]) -> None:
-    """Every link is where pinocchio's frame of its name is, to 1e-9; the positions are given to pinocchio."""
+    """Assert that every link has the pose of pinocchio's frame of its name, to 1e-9, at these positions."""
     state = pin.neutral(model)
     for name, joint in joints_of(model).items():
         position = positions.get(name, 0.0)
@@ -41,17 +41,17 @@ def assert_same_poses(model: Any, configuration: Configuration, positions: Mappi
 
 
 def joints_of(model: Any) -> dict[str, Any]:
-    """The joints that move, by name: pinocchio's first one is the universe, and it merges fixed ones."""
+    """Return the joints that move, by name: pinocchio's first one is the universe, and it merges fixed ones."""
     return dict(list(zip(model.names, model.joints, strict=True))[1:])
 
 
 def random_positions(model: Any, random: Random) -> dict[str, float]:
-    """A position for every joint that moves, those that mimic another included."""
+    """Return a position for every joint that moves, mimic joints included."""
     return {name: random.uniform(-3.0, 3.0) for name in joints_of(model)}
 
 
 def followed(robot: Robot, positions: Mapping[str, float]) -> dict[str, float]:
-    """The positions of all joints where mimics follow; a missing joint is at 0, and no robot here mimics a mimic."""
+    """Return the positions of all joints with mimics applied; a missing joint is at 0, and no robot here mimics a mimic."""
     rules = {joint.name: joint.mimic for joint in robot.joints if joint.mimic is not None}
     leading = {name: position for name, position in positions.items() if name not in rules}
     following = {name: rule.multiplier * leading.get(rule.joint, 0.0) + rule.offset for name, rule in rules.items()}
@@ -60,7 +60,7 @@ def followed(robot: Robot, positions: Mapping[str, float]) -> dict[str, float]:
 
 @each_robot
 def test_real_robots(path: Path) -> None:
-    """At zero and at five random positions, mimic joints following."""
+    """At zero and at five random positions, with mimic joints following."""
     read = read_urdf(path.read_bytes(), path.name)
     try:
         model = pin.buildModelFromUrdf(str(path))
@@ -80,8 +80,8 @@ def test_real_robots(path: Path) -> None:
 
 
 @each_robot
-def test_real_robots_whose_mimics_are_moved_themselves(path: Path) -> None:
-    """Where every joint is given its own position, none follows."""
+def test_real_robots_whose_mimics_are_moved_directly(path: Path) -> None:
+    """If every joint has its own position, none follows another."""
     read = read_urdf(path.read_bytes(), path.name)
     if read.robot is None or read.verdict == "rejected":
         return
@@ -106,7 +106,7 @@ def _text(values: tuple[float, ...]) -> str:
 
 @st.composite
 def urdfs(draw: st.DrawFn) -> str:
-    """The text of a tree of 1 to 15 links."""
+    """Draw a URDF of 1 to 15 links."""
     count = draw(st.integers(1, 15))
     elements = [f'<link name="l{index}"/>' for index in range(count)]
     for child in range(1, count):
@@ -136,7 +136,7 @@ def test_random_trees(text: str, seed: int) -> None:
 @settings(max_examples=150, deadline=None)
 @given(text=urdfs(), multiplier=_length, offset=_length, position=_angle)
 def test_random_mimics(text: str, multiplier: float, offset: float, position: float) -> None:
-    """A chain of mimics is where their rules put it, the first joint in the file leading."""
+    """A chain of mimics follows its rules, led by the first joint in the file."""
     moving = re.findall(r'name="(j\d+)" type="(?:continuous|revolute|prismatic)"', text)
     positions = dict.fromkeys(moving[:1], position)
     expected = dict(positions)

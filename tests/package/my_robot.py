@@ -1,4 +1,4 @@
-"""The package that the samples of setup.py stand in: its files, and what differs for a few samples."""
+"""The package around the samples of setup.py: its files, and what differs for a few samples."""
 
 from pathlib import Path
 
@@ -8,7 +8,7 @@ SAMPLES = {
 
 _XML = "<!-- {} -->\n"
 _HASH = "# {}\n"
-# Every file's text is one of its own, so that it tells where an installed file comes from.
+# Every file has a unique text, which identifies the source of an installed file.
 FILES = {
     "README.md": _HASH,
     "config/params.yaml": _HASH,
@@ -46,7 +46,7 @@ TAKEN_AWAY = {
 
 
 def make_package(sample: str, folder: Path) -> dict[str, str]:
-    """Write the package with a sample as its setup.py; the path of each file by the file's text."""
+    """Write the package with a sample as its setup.py; return the path of each file by the file's text."""
     texts = {path: text.format(path) for path, text in FILES.items() if path not in TAKEN_AWAY.get(sample, ())}
     texts |= {path: path + "\n" for path in ADDED.get(sample, ())}
     texts |= INSTEAD.get(sample, {})

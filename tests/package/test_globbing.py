@@ -1,4 +1,4 @@
-"""What is told of a search for files from their list is what Python's own glob, pathlib and os find among real ones."""
+"""A search in a list of files finds what Python's own glob, pathlib and os find in a real folder."""
 
 import glob
 import os
@@ -20,7 +20,7 @@ from grader.static_python.functions import standard_functions
 from grader.static_python.interpreter import Interpreter
 from grader.static_python.parse import Code, parse
 from grader.static_python.values import Unknown, Value
-from tests.patience import processor_time
+from tests.processor_time import processor_time
 
 _NAMES = st.sampled_from(["a", "b", "c", "ab", ".h", ".a", "[a]", "a*", "a.urdf", "b.urdf", "A", "a b"])
 _PATHS = st.lists(_NAMES, min_size=1, max_size=4).map("/".join)
@@ -33,13 +33,13 @@ _FOLDERS = st.sampled_from([".", "a", "a/b", "./a/", "b", "[a]", "c/../a", "nowh
 
 
 def read_nothing(limit: int, *, first: bool = False) -> bytes:
-    """The bytes of every file of a made-up tree."""
+    """Return the bytes of any file of a generated file tree."""
     return b""
 
 
 @st.composite
 def trees(draw: st.DrawFn) -> Tree:
-    """A few files and folders, some of them hidden, some of them empty."""
+    """Draw a few files and folders, some of them hidden, some of them empty."""
     folders = set(draw(st.lists(_PATHS, max_size=5)))
     tree = make_tree("made", [], folders)
     files = {path for path in draw(st.lists(_PATHS, max_size=8)) if path not in tree.folders}
@@ -51,7 +51,7 @@ def trees(draw: st.DrawFn) -> Tree:
 
 @contextmanager
 def on_disk(tree: Tree) -> Iterator[str]:
-    """A temporary folder with the files and folders of a tree."""
+    """Yield a temporary folder with the files and folders of a file tree."""
     with TemporaryDirectory() as folder, warnings.catch_warnings():
         warnings.simplefilter("ignore", FutureWarning)  # of sets in brackets
         for path in sorted(tree.folders):
@@ -62,7 +62,7 @@ def on_disk(tree: Tree) -> Iterator[str]:
 
 
 def value_of(expression: str, tree: Tree, root: str = "/root", order: str = ORDERS[0]) -> Value:
-    """What an expression comes to in a file of a package with these files; a test that it is no error."""
+    """Return the value of an expression in a file of a package with these files; assert that it is no error."""
     code = parse(
         f"import os\nfrom glob import glob\nfrom pathlib import Path\nvalue = {expression}\n".encode(), "setup.py"
     )
@@ -73,7 +73,7 @@ def value_of(expression: str, tree: Tree, root: str = "/root", order: str = ORDE
 
 
 def pythons_glob(pattern: str, root: str, *, recursive: bool = True, hidden: bool = False) -> list[str]:
-    """What Python 3.12 finds; before, ** in a folder that is not there finds that folder."""
+    """Return what Python 3.12 finds; before, ** in a missing folder found that folder."""
     found = set(glob.glob(pattern, root_dir=root, recursive=recursive, include_hidden=hidden))
     return sorted(path for path in found if os.path.lexists(os.path.join(root, path)))
 
@@ -86,21 +86,21 @@ def pythons_glob(pattern: str, root: str, *, recursive: bool = True, hidden: boo
 @example(tree=make_tree("", [], ["a"]), pattern="a/", recursive=False, hidden=False)
 @example(tree=make_tree("", [], ["a/b"]), pattern="./*/../a//b", recursive=False, hidden=False)
 def test_glob_finds_what_pythons_glob_finds(tree: Tree, pattern: str, recursive: bool, hidden: bool) -> None:
-    """The same paths in the same spelling, for any pattern that stays inside of the tree."""
+    """The same paths in the same spelling, for any pattern that stays inside the file tree."""
     try:
-        told = [PackageListing(tree, order).glob(pattern, recursive=recursive, hidden=hidden) for order in ORDERS]
+        reported = [PackageListing(tree, order).glob(pattern, recursive=recursive, hidden=hidden) for order in ORDERS]
     except SearchError:
         assert ".." in pattern
         return
     with on_disk(tree) as folder:
         real = pythons_glob(pattern, folder, recursive=recursive, hidden=hidden)
-    assert [sorted(found) for found in told] == [real] * len(ORDERS)
+    assert [sorted(found) for found in reported] == [real] * len(ORDERS)
 
 
 @settings(max_examples=200)
 @given(tree=trees(), pattern=_PATTERNS, folder=_FOLDERS)
 def test_glob_in_a_folder(tree: Tree, pattern: str, folder: str) -> None:
-    """root_dir is taken as it is, even if there are brackets in its name."""
+    """root_dir is used literally, even if its name contains brackets."""
     found = value_of(f"glob({pattern!r}, root_dir={folder!r}, recursive=True)", tree)
     if isinstance(found, Unknown):
         assert ".." in pattern + folder
@@ -112,10 +112,10 @@ def test_glob_in_a_folder(tree: Tree, pattern: str, folder: str) -> None:
 @settings(max_examples=200)
 @given(tree=trees(), pattern=_PATTERNS)
 def test_glob_with_an_absolute_path(tree: Tree, pattern: str) -> None:
-    """What is looked for by its full path is found with it."""
+    """A pattern with an absolute path finds the file."""
     with on_disk(tree) as root:
         found = value_of(f"glob(os.path.join(os.getcwd(), {pattern!r}), recursive=True)", tree, root)
-        if isinstance(found, Unknown):  # Python would look through all that the machine has
+        if isinstance(found, Unknown):  # Python would search the whole machine
             assert ".." in pattern
         else:
             assert sorted(found) == pythons_glob(os.path.join(root, pattern), root)
@@ -125,7 +125,7 @@ def test_glob_with_an_absolute_path(tree: Tree, pattern: str) -> None:
 @given(tree=trees(), pattern=_PATTERNS, folder=_FOLDERS, method=st.sampled_from(["glob", "rglob"]))
 @example(tree=make_tree("", [], ["a/.h", "a/b/c"]), pattern="*", folder="a", method="rglob")
 def test_paths_find_what_pathlib_finds(tree: Tree, pattern: str, folder: str, method: str) -> None:
-    """The same paths in the same spelling, as in Python 3.12; what means different things in its versions is not told."""
+    """The same paths in the same spelling, as in Python 3.12; what differs between versions is unknown."""
     assume(sys.version_info < (3, 13) or not pattern.endswith("**"))
     found = value_of(f"[str(path) for path in Path({folder!r}).{method}({pattern!r})]", tree)
     if isinstance(found, Unknown):
@@ -143,23 +143,23 @@ def test_paths_find_what_pathlib_finds(tree: Tree, pattern: str, folder: str, me
 
 @settings(max_examples=300)
 @given(tree=trees(), parts=st.lists(_PARTS | _NAMES, min_size=1, max_size=5))
-def test_a_path_leads_where_the_system_says(tree: Tree, parts: list[str]) -> None:
-    """Dots, slashes and files that are taken for folders mean what they mean to the system."""
+def test_paths_are_resolved_like_the_system(tree: Tree, parts: list[str]) -> None:
+    """Dots, slashes and files used as folders mean what they mean to the system."""
     path = "/".join(parts).lstrip("/")
-    told = [value_of(f"os.path.{function}({path!r})", tree) for function in ("exists", "isfile", "isdir")]
+    reported = [value_of(f"os.path.{function}({path!r})", tree) for function in ("exists", "isfile", "isdir")]
     with on_disk(tree) as root:
         inside = os.path.join(root, "")
         real = [getattr(os.path, function)(inside + path if path else "") for function in ("exists", "isfile", "isdir")]
-    if any(isinstance(each, Unknown) for each in told):
+    if any(isinstance(path, Unknown) for path in reported):
         assert not path or ".." in parts or any(part.startswith(".") for part in parts)
     else:
-        assert told == real
+        assert reported == real
 
 
 @settings(max_examples=100)
 @given(tree=trees(), folder=_FOLDERS)
-def test_folders_hold_what_they_hold(tree: Tree, folder: str) -> None:
-    """os.listdir, os.walk and iterdir name what is there; without a folder there is an error, or nothing to walk through."""
+def test_listing_folders(tree: Tree, folder: str) -> None:
+    """os.listdir, os.walk and iterdir name the entries; a missing folder is an error, or has nothing to walk through."""
     expressions = (
         f"os.listdir({folder!r})",
         f"[str(path) for path in Path({folder!r}).iterdir()]",
@@ -167,28 +167,28 @@ def test_folders_hold_what_they_hold(tree: Tree, folder: str) -> None:
         f"[os.path.join(path, name) for path, names, _ in os.walk({folder!r}) for name in names]",
     )
     with on_disk(tree) as root:
-        there = os.path.join(root, folder)
-        is_folder = os.path.isdir(there)
-        names = os.listdir(there) if is_folder else []
-        walked = list(os.walk(there))
+        second = os.path.join(root, folder)
+        is_folder = os.path.isdir(second)
+        names = os.listdir(second) if is_folder else []
+        walked = list(os.walk(second))
     for order in ORDERS:
-        told = [value_of(expression, tree, order=order) for expression in expressions]
+        reported = [value_of(expression, tree, order=order) for expression in expressions]
         if is_folder:
-            assert sorted(told[0]) == sorted(names)
-            assert sorted(told[1]) == sorted(str(Path(folder) / name) for name in names)
+            assert sorted(reported[0]) == sorted(names)
+            assert sorted(reported[1]) == sorted(str(Path(folder) / name) for name in names)
         else:
-            assert not isinstance(told[0], list)
-            assert not isinstance(told[1], list)
-        for found, index in ((told[2], 2), (told[3], 1)):
+            assert not isinstance(reported[0], list)
+            assert not isinstance(reported[1], list)
+        for found, index in ((reported[2], 2), (reported[3], 1)):
             real = [os.path.join(step[0], name) for step in walked for name in step[index]]
-            assert sorted(os.path.normpath(each) for each in found) == sorted(
-                os.path.relpath(each, root) for each in real
+            assert sorted(os.path.normpath(path) for path in found) == sorted(
+                os.path.relpath(path, root) for path in real
             )
 
 
 @pytest.mark.parametrize("pattern", ["/etc/*", "../*", "a/../../*", "*/" * 100, "*" * 5000, "**/../" * 20 + "*"])
-def test_what_leads_out_of_the_tree_is_not_told(pattern: str) -> None:
-    """A pattern that leads elsewhere, or that nobody writes, is unknown."""
+def test_patterns_that_lead_out_are_unknown(pattern: str) -> None:
+    """A pattern that leads out of the file tree, or that nobody writes, is unknown."""
     with pytest.raises(SearchError):
         PackageListing(make_tree("", [], ["a/b/c", "a/d", "b/c"])).glob(pattern, recursive=True)
 
@@ -205,7 +205,7 @@ def test_what_leads_out_of_the_tree_is_not_told(pattern: str) -> None:
     ],
 )
 def test_many_searches_through_many_files_end_soon(expression: str) -> None:
-    """A submission of thousands of files, searched again and again, is evaluated only so far."""
+    """The evaluation of a submission of thousands of files with repeated searches is bounded."""
     files = [File(f"f{n % 10}/{'g/' * (n % 20)}h{n}", 0, read_nothing) for n in range(4000)]
     tree = make_tree("", files, [])
     with processor_time(1.5):

@@ -1,70 +1,70 @@
-"""What the reader tells of launch files: of every style that tutorials and students write, and of hostile ones."""
+"""Launch files of every style that tutorials and students use, and hostile ones."""
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grader.package.launch.model import Launch
-from tests.package.launching import FOLDER, INNER, SAMPLES, Told, in_short, read, told
-from tests.patience import processor_time
+from tests.package.launch_samples import FOLDER, INNER, SAMPLES, LaunchSummary, read, summarize, summarize_sample
+from tests.processor_time import processor_time
 
 NO_FILE = (
     "wrong: rviz2 is started without -d and a file, so it opens its own default instead of the lab's configuration"
 )
-TOLD = {
-    "add_action.launch.py": Told(
+EXPECTED = {
+    "add_action.launch.py": LaunchSummary(
         nodes="joint_state_publisher_gui rviz2",
         rviz=("10: my_robot/rviz/my_robot.rviz",),
         forgotten="joint_state_publisher",
     ),
-    "anchors.launch.yaml": Told(
+    "anchors.launch.yaml": LaunchSummary(
         nodes="joint_state_publisher_gui rviz2 joint_state_publisher joint_state_publisher rviz2",
         rviz=("7: my_robot/rviz/my_robot.rviz", "15: my_robot/rviz/my_robot.rviz"),
     ),
-    "argument_never_declared.launch.py": Told(
+    "argument_never_declared.launch.py": LaunchSummary(
         nodes="joint_state_publisher_gui? rviz2",
         rviz=(f"12: {NO_FILE}",),
         faults=("8: the launch argument 'gui' is used, but DeclareLaunchArgument does not declare it before",),
     ),
-    "argument_used_before_declared.launch.py": Told(
+    "argument_used_before_declared.launch.py": LaunchSummary(
         nodes="robot_state_publisher",
         urdf=("10: unknown: the launch argument 'model' is not declared",),
         faults=("10: the launch argument 'model' is used, but DeclareLaunchArgument does not declare it before",),
     ),
-    "argument_without_default.launch.py": Told(
+    "argument_without_default.launch.py": LaunchSummary(
         nodes="robot_state_publisher",
         urdf=("11: unknown: the launch argument 'model' has no default",),
     ),
-    "arguments_of_arguments.launch.py": Told(
+    "arguments_of_arguments.launch.py": LaunchSummary(
         nodes="robot_state_publisher",
         urdf=("15: my_robot/urdf/my_robot.urdf",),
     ),
-    "bracket_missing.launch.py": Told(
+    "bracket_missing.launch.py": LaunchSummary(
         syntax="8: Python cannot read the file",
     ),
-    "command_without_quotes.launch.xml": Told(
+    "command_without_quotes.launch.xml": LaunchSummary(
         nodes="robot_state_publisher",
         urdf=("3: my_robot/urdf/my_robot.urdf",),
         faults=("3: $(command ...) needs quotes around its command: $(command 'xacro ...')",),
     ),
-    "condition_on_the_environment.launch.py": Told(
+    "condition_on_the_environment.launch.py": LaunchSummary(
         nodes="joint_state_publisher rviz2?",
         rviz=("10: /opt/a.rviz",),
     ),
-    "conditions.launch.py": Told(
+    "conditions.launch.py": LaunchSummary(
         nodes="a/equals a/not_equals! a/expression a/no_expression! a/environment? a/compared a/denied! a/calculated? a/one a/wrong?",
         faults=("24: a condition is 'gui', expected true or false",),
     ),
-    "conditions.launch.xml": Told(
+    "conditions.launch.xml": LaunchSummary(
         nodes="a/equal a/unequal! a/calculated a/denied! a/environment? joint_state_publisher_gui/chosen a/none a/still_none",
     ),
-    "description_in_the_file.launch.py": Told(
+    "description_in_the_file.launch.py": LaunchSummary(
         nodes="robot_state_publisher",
     ),
-    "description_of_another_module.launch.py": Told(
+    "description_of_another_module.launch.py": LaunchSummary(
         unknown=("1: the value of my_robot.launching.generate_launch_description is known only at run time",),
     ),
-    "environment_variables.launch.py": Told(
+    "environment_variables.launch.py": LaunchSummary(
         nodes="rviz2 rviz2 rviz2 rviz2",
         rviz=(
             "11: /<home>/ros2_ws/my_robot.rviz",
@@ -73,97 +73,97 @@ TOLD = {
             "14: unknown: this operation is not supported",
         ),
     ),
-    "event_handlers.launch.py": Told(
+    "event_handlers.launch.py": LaunchSummary(
         nodes="joint_state_publisher rviz2 turtlesim/turtlesim_node?",
         rviz=("10: /opt/a.rviz",),
     ),
-    "execute_process.launch.py": Told(
+    "execute_process.launch.py": LaunchSummary(
         nodes="rviz2 robot_state_publisher joint_state_publisher",
         urdf=("9: /opt/my_robot.urdf",),
         rviz=("8: my_robot/rviz/my_robot.rviz",),
     ),
-    "file_content.launch.xml": Told(
+    "file_content.launch.xml": LaunchSummary(
         nodes="robot_state_publisher",
         urdf=("3: my_robot/urdf/my_robot.urdf",),
     ),
-    "find_package_share_find.launch.py": Told(
+    "find_package_share_find.launch.py": LaunchSummary(
         nodes="robot_state_publisher rviz2",
         urdf=("17: my_robot/urdf/my_robot.urdf",),
         rviz=("19: my_robot/rviz/my_robot.rviz",),
     ),
-    "group_and_timer.launch.py": Told(
+    "group_and_timer.launch.py": LaunchSummary(
         nodes="joint_state_publisher robot_state_publisher! rviz2",
         rviz=("9: /tmp/one.rviz",),
     ),
-    "helper_functions.launch.py": Told(
+    "helper_functions.launch.py": LaunchSummary(
         nodes="robot_state_publisher joint_state_publisher rviz2",
         urdf=("15: my_robot/urdf/my_robot.urdf",),
         rviz=("20: my_robot/rviz/my_robot.rviz",),
     ),
-    "helper_of_another_module.launch.py": Told(
+    "helper_of_another_module.launch.py": LaunchSummary(
         nodes="joint_state_publisher",
         unknown=("9: what make_rviz starts is known only at run time",),
     ),
-    "include.launch.xml": Told(
+    "include.launch.xml": LaunchSummary(
         nodes="rviz2 joint_state_publisher_gui joint_state_publisher",
         rviz=("7: my_robot/rviz/my_robot.rviz",),
         include=("2: my_robot/launch/inner.launch.py",),
     ),
-    "include.launch.yaml": Told(
+    "include.launch.yaml": LaunchSummary(
         nodes="rviz2 joint_state_publisher_gui joint_state_publisher",
         rviz=("10: /opt/a.rviz",),
         include=("3: my_robot/launch/inner.launch.py", "7: my_robot/launch/broken.launch.py"),
         faults=("1: Python cannot read the file",),
     ),
-    "include_foreign.launch.py": Told(
+    "include_foreign.launch.py": LaunchSummary(
         include=("10: ros_gz_sim/launch/gz_sim.launch.py",),
         unknown=("10: it includes share/ros_gz_sim/launch/gz_sim.launch.py, which the submission does not install",),
     ),
-    "include_of_itself.launch.py": Told(
+    "include_of_itself.launch.py": LaunchSummary(
         nodes="rviz2",
         rviz=(f"8: {NO_FILE}",),
         include=("9: my_robot/launch/include_of_itself.launch.py",),
         faults=("9: it includes itself",),
     ),
-    "include_own.launch.py": Told(
+    "include_own.launch.py": LaunchSummary(
         nodes="rviz2 joint_state_publisher_gui! joint_state_publisher",
         rviz=("18: my_robot/rviz/my_robot.rviz",),
         include=("14: my_robot/launch/inner.launch.py",),
     ),
-    "include_own_under_a_condition.launch.py": Told(
+    "include_own_under_a_condition.launch.py": LaunchSummary(
         nodes="joint_state_publisher_gui? joint_state_publisher?",
         include=("12: my_robot/launch/inner.launch.py", "15: my_robot/launch/broken.launch.py"),
         unknown=("1: Python cannot read the file",),
     ),
-    "include_urdf_launch.launch.py": Told(
+    "include_urdf_launch.launch.py": LaunchSummary(
         nodes="robot_state_publisher joint_state_publisher_gui rviz2",
         urdf=("14: my_robot/urdf/my_robot.urdf",),
         rviz=("14: my_robot/rviz/my_robot.rviz",),
     ),
-    "include_with_a_dict.launch.py": Told(
+    "include_with_a_dict.launch.py": LaunchSummary(
         nodes="joint_state_publisher_gui joint_state_publisher",
         include=("10: my_robot/launch/inner.launch.py",),
         faults=("10: launch_arguments is given a dict: add .items() to it",),
     ),
-    "list_in_the_list.launch.py": Told(
+    "list_in_the_list.launch.py": LaunchSummary(
         nodes="rviz2 joint_state_publisher",
         rviz=(f"6: {NO_FILE}",),
         faults=("7: expected an action, found a list of actions: write * before it",),
     ),
-    "list_returned.launch.py": Told(
+    "list_returned.launch.py": LaunchSummary(
         nodes="rviz2",
         rviz=(f"5: {NO_FILE}",),
         faults=("4: generate_launch_description does not return a LaunchDescription([...])",),
     ),
-    "loop_over_nodes.launch.py": Told(
+    "loop_over_nodes.launch.py": LaunchSummary(
         nodes="joint_state_publisher rviz2 turtlesim/turtle_a_node turtlesim/turtle_b_node",
         rviz=(f"10: {NO_FILE}",),
     ),
-    "main_guard.launch.py": Told(
+    "main_guard.launch.py": LaunchSummary(
         nodes="rviz2",
         rviz=("6: /opt/a.rviz",),
     ),
-    "misspelt_substitution.launch.xml": Told(
+    "misspelt_substitution.launch.xml": LaunchSummary(
         nodes="rviz2 rviz2 rviz2",
         rviz=(
             "2: unknown: the result of find-package-share is known only at run time",
@@ -175,62 +175,62 @@ TOLD = {
             "3: the bracket of $(find-pkg-share is not closed",
         ),
     ),
-    "name_not_imported.launch.py": Told(
+    "name_not_imported.launch.py": LaunchSummary(
         nodes="rviz2",
         rviz=(f"5: {NO_FILE}",),
         faults=("5: the name 'Node' is not defined or imported",),
     ),
-    "next_to_the_file.launch.py": Told(
+    "next_to_the_file.launch.py": LaunchSummary(
         nodes="robot_state_publisher rviz2",
         urdf=("15: my_robot/launch/../urdf/my_robot.urdf",),
         rviz=("16: my_robot/rviz/my_robot.rviz",),
     ),
-    "no_launch.launch.xml": Told(
+    "no_launch.launch.xml": LaunchSummary(
         syntax="1: the root of the file is not <launch>; ros2 launch starts nothing",
     ),
-    "no_launch_key.launch.yaml": Told(
+    "no_launch_key.launch.yaml": LaunchSummary(
         syntax="1: the file is not a list of actions below launch:; ros2 launch starts nothing",
     ),
-    "no_list_at_all.launch.py": Told(
+    "no_list_at_all.launch.py": LaunchSummary(
         nodes="joint_state_publisher rviz2",
         rviz=(f"6: {NO_FILE}",),
         faults=("8: LaunchDescription takes one list: put [ ] around the actions",),
     ),
-    "no_lists_for_parameters.launch.py": Told(
+    "no_lists_for_parameters.launch.py": LaunchSummary(
         nodes="robot_state_publisher",
         urdf=("9: /opt/a.urdf",),
         faults=("8: parameters has to be a list: put [ ] around it",),
     ),
-    "no_such_function.launch.py": Told(
+    "no_such_function.launch.py": LaunchSummary(
         faults=("1: the file does not define the function generate_launch_description, which ros2 launch calls",),
     ),
-    "no_value.launch.xml": Told(
+    "no_value.launch.xml": LaunchSummary(
         nodes="robot_state_publisher robot_state_publisher",
         urdf=("2: unknown: this parameter has no value", "5: unknown: its parameters are known only at run time"),
         faults=("3: <param> has no attribute 'textfile' in ROS 2; write 'value'",),
         unknown=("8: what <node_container> starts is known only at run time",),
     ),
-    "nodes_in_a_container.launch.py": Told(
+    "nodes_in_a_container.launch.py": LaunchSummary(
         unknown=("8: the nodes of a container are not supported",),
     ),
-    "not_closed.launch.xml": Told(
+    "not_closed.launch.xml": LaunchSummary(
         syntax="3: not readable as XML",
     ),
-    "not_indented.launch.yaml": Told(
+    "not_indented.launch.yaml": LaunchSummary(
         faults=(
             "2: expected one action below one key, found node, pkg, exec. Is it indented far enough?",
             "2: a node has no executable: add executable=...",
         ),
         unknown=("2: a node without a package is a program of the machine",),
     ),
-    "not_yaml.launch.yaml": Told(
+    "not_yaml.launch.yaml": LaunchSummary(
         syntax="3: not readable as YAML",
     ),
-    "nothing_returned.launch.py": Told(
+    "nothing_returned.launch.py": LaunchSummary(
         faults=("5: generate_launch_description does not return its LaunchDescription",),
         forgotten="rviz2",
     ),
-    "old_names_of_arguments.launch.py": Told(
+    "old_names_of_arguments.launch.py": LaunchSummary(
         nodes="rviz2 joint_state_publisher",
         rviz=(f"7: {NO_FILE}",),
         faults=(
@@ -239,56 +239,56 @@ TOLD = {
             "8: Node has no argument 'paramters'; did you mean 'parameters'?",
         ),
     ),
-    "opaque_function.launch.py": Told(
+    "opaque_function.launch.py": LaunchSummary(
         nodes="robot_state_publisher rviz2",
         urdf=("12: my_robot/urdf/my_robot.urdf",),
         rviz=("17: my_robot/rviz/my_robot.rviz",),
     ),
-    "opaque_function_that_decides.launch.py": Told(
+    "opaque_function_that_decides.launch.py": LaunchSummary(
         nodes="robot_state_publisher",
         urdf=("8: x.urdf",),
         unknown=("9: a condition is known only at run time",),
         forgotten="joint_state_publisher_gui",
     ),
-    "open_read.launch.py": Told(
+    "open_read.launch.py": LaunchSummary(
         nodes="robot_state_publisher",
         urdf=("6: my_robot/urdf/my_robot.urdf",),
     ),
-    "parameters_from_yaml.launch.py": Told(
+    "parameters_from_yaml.launch.py": LaunchSummary(
         nodes="robot_state_publisher rviz2",
         urdf=("11: unknown: its parameters are known only at run time",),
         rviz=(f"12: {NO_FILE}",),
     ),
-    "path_instead_of_contents.launch.py": Told(
+    "path_instead_of_contents.launch.py": LaunchSummary(
         nodes="robot_state_publisher",
         urdf=("9: wrong: robot_description is given the path of the URDF, not its contents: read the file first",),
     ),
-    "path_join_substitution.launch.py": Told(
+    "path_join_substitution.launch.py": LaunchSummary(
         nodes="robot_state_publisher rviz2",
         urdf=("8: my_robot/urdf/my_robot.urdf.xacro",),
         rviz=("18: my_robot/rviz/my_robot.rviz",),
     ),
-    "paths_of_one_machine.launch.py": Told(
+    "paths_of_one_machine.launch.py": LaunchSummary(
         nodes="robot_state_publisher rviz2",
         urdf=("6: src/my_robot/urdf/my_robot.urdf",),
         rviz=("11: /home/me/ros2_ws/src/my_robot/rviz/my_robot.rviz",),
     ),
-    "program_chosen_at_run_time.launch.py": Told(
+    "program_chosen_at_run_time.launch.py": LaunchSummary(
         unknown=(
             "9: the result of choice is known only at run time",
             "10: a node without a package is a program of the machine",
         ),
     ),
-    "publisher_without_robot.launch.py": Told(
+    "publisher_without_robot.launch.py": LaunchSummary(
         nodes="robot_state_publisher",
         urdf=("7: wrong: robot_state_publisher is started without robot_description: it has no robot to publish",),
     ),
-    "quotes.launch.xml": Told(
+    "quotes.launch.xml": LaunchSummary(
         nodes="robot_state_publisher rviz2 rviz2 rviz2",
         urdf=("5: my_robot/urdf/my_robot.urdf",),
         rviz=("7: my_robot/rviz/my(robot).rviz", "8: my_robot/launch/../rviz/a file.rviz", "9: $(find-pkg-share"),
     ),
-    "quotes_around_a_substitution.launch.xml": Told(
+    "quotes_around_a_substitution.launch.xml": LaunchSummary(
         nodes="rviz2",
         rviz=("2: my_robot/rviz/my_robot.rviz",),
         faults=(
@@ -300,11 +300,11 @@ TOLD = {
             "4: a node without a package is a program of the machine",
         ),
     ),
-    "read_text.launch.py": Told(
+    "read_text.launch.py": LaunchSummary(
         nodes="robot_state_publisher",
         urdf=("12: my_robot/urdf/my_robot.urdf",),
     ),
-    "ros1.launch.xml": Told(
+    "ros1.launch.xml": LaunchSummary(
         nodes="robot_state_publisher rviz2",
         urdf=("4: wrong: robot_state_publisher is started without robot_description: it has no robot to publish",),
         rviz=("5: my_robot/rviz/my_robot.rviz",),
@@ -320,10 +320,10 @@ TOLD = {
             "5: <node> has no attribute 'type' in ROS 2; write 'exec'",
         ),
     ),
-    "ros2_launch_once_more.launch.py": Told(
+    "ros2_launch_once_more.launch.py": LaunchSummary(
         unknown=("6: it starts another ros2 launch",),
     ),
-    "rviz_option_in_one_text.launch.py": Told(
+    "rviz_option_in_one_text.launch.py": LaunchSummary(
         nodes="rviz2 rviz2 rviz2",
         rviz=(
             "9: wrong: '-d' and the path have to be two items of arguments: ['-d', path]",
@@ -331,7 +331,7 @@ TOLD = {
             f"11: {NO_FILE}",
         ),
     ),
-    "set_launch_configuration.launch.py": Told(
+    "set_launch_configuration.launch.py": LaunchSummary(
         nodes="rviz2 rviz2 rviz2",
         rviz=(
             "13: /opt/one.rviz.bak",
@@ -339,38 +339,38 @@ TOLD = {
             "17: unknown: the launch argument 'rviz' is set under a condition",
         ),
     ),
-    "share_directory.launch.py": Told(
+    "share_directory.launch.py": LaunchSummary(
         nodes="robot_state_publisher joint_state_publisher_gui rviz2",
         urdf=("11: my_robot/urdf/my_robot.urdf",),
         rviz=("23: my_robot/rviz/my_robot.rviz",),
     ),
-    "share_path.launch.py": Told(
+    "share_path.launch.py": LaunchSummary(
         nodes="joint_state_publisher! joint_state_publisher_gui robot_state_publisher rviz2",
         urdf=("22: my_robot/urdf/my_robot.urdf",),
         rviz=("39: my_robot/rviz/my_robot.rviz",),
     ),
-    "slash_operator.launch.py": Told(
+    "slash_operator.launch.py": LaunchSummary(
         nodes="robot_state_publisher rviz2",
         urdf=("12: my_robot/urdf/my_robot.urdf",),
         rviz=("13: my_robot/rviz/my_robot.rviz",),
     ),
-    "space_missing_in_command.launch.py": Told(
+    "space_missing_in_command.launch.py": LaunchSummary(
         nodes="robot_state_publisher",
         urdf=("11: my_robot/urdf/my_robot.urdf",),
         faults=("11: a space is missing between xacro and the path: write 'xacro '",),
     ),
-    "star_import.launch.py": Told(
+    "star_import.launch.py": LaunchSummary(
         nodes="rviz2",
         rviz=(
             "6: wrong: rviz2 is started without -d and a file, so it opens its own default instead of the lab's configuration",
         ),
     ),
-    "substitution_lists.launch.py": Told(
+    "substitution_lists.launch.py": LaunchSummary(
         nodes="robot_state_publisher rviz2",
         urdf=("10: my_robot/urdf/my_robot.urdf",),
         rviz=("12: my_robot/rviz/my_robot.rviz",),
     ),
-    "substitutions_taken_for_texts.launch.py": Told(
+    "substitutions_taken_for_texts.launch.py": LaunchSummary(
         nodes="robot_state_publisher robot_state_publisher rviz2",
         urdf=("16: /opt/a.urdf", "18: /opt/a.urdf"),
         rviz=("19: my_robot/a.rviz",),
@@ -380,14 +380,14 @@ TOLD = {
             "19: os.path.join takes strings, not substitutions: use PathJoinSubstitution([...])",
         ),
     ),
-    "two_keys.launch.yaml": Told(
+    "two_keys.launch.yaml": LaunchSummary(
         syntax="1: the file is not a list of actions below launch:; ros2 launch starts nothing",
     ),
-    "urdf_as_argument.launch.py": Told(
+    "urdf_as_argument.launch.py": LaunchSummary(
         nodes="robot_state_publisher",
         urdf=("11: my_robot/urdf/my_robot.urdf",),
     ),
-    "values_that_are_no_texts.launch.yaml": Told(
+    "values_that_are_no_texts.launch.yaml": LaunchSummary(
         nodes="rviz2",
         rviz=("9: /opt/a.rviz",),
         faults=(
@@ -396,31 +396,31 @@ TOLD = {
             "9: if of node must be a string, but YAML reads true as another type: put quotes around it",
         ),
     ),
-    "whole.launch.xml": Told(
+    "whole.launch.xml": LaunchSummary(
         nodes="robot_state_publisher joint_state_publisher_gui joint_state_publisher! rviz2",
         urdf=("8: my_robot/urdf/my_robot.urdf",),
         rviz=("15: my_robot/rviz/my_robot.rviz",),
     ),
-    "whole.launch.yaml": Told(
+    "whole.launch.yaml": LaunchSummary(
         nodes="robot_state_publisher joint_state_publisher joint_state_publisher_gui! rviz2",
         urdf=("16: my_robot/urdf/my_robot.urdf",),
         rviz=("28: my_robot/rviz/my_robot.rviz",),
     ),
-    "xacro_file_read_as_it_is.launch.py": Told(
+    "xacro_file_read_as_it_is.launch.py": LaunchSummary(
         nodes="robot_state_publisher",
         urdf=(
             "9: unknown: my_robot.urdf.xacro is read without xacro; if it uses xacro, write Command(['xacro ', ...])",
         ),
     ),
-    "xacro_parse.launch.py": Told(
+    "xacro_parse.launch.py": LaunchSummary(
         nodes="robot_state_publisher",
         urdf=("11: my_robot/urdf/my_robot.urdf.xacro",),
     ),
-    "xacro_process_file.launch.py": Told(
+    "xacro_process_file.launch.py": LaunchSummary(
         nodes="robot_state_publisher",
         urdf=("11: my_robot/urdf/my_robot.urdf.xacro",),
     ),
-    "xacro_with_options.launch.py": Told(
+    "xacro_with_options.launch.py": LaunchSummary(
         nodes="robot_state_publisher robot_state_publisher robot_state_publisher robot_state_publisher",
         urdf=(
             "9: /opt/a.urdf.xacro",
@@ -433,14 +433,14 @@ TOLD = {
 
 
 @pytest.mark.parametrize("sample", SAMPLES)
-def test_what_is_told(sample: str) -> None:
-    """Nodes, files, faults, and what known only at run time are found, each with its line."""
-    assert told(sample) == TOLD[sample]
+def test_samples(sample: str) -> None:
+    """Nodes, files, faults and values known only at run time are found, each with its line."""
+    assert summarize_sample(sample) == EXPECTED[sample]
 
 
 def test_every_expectation_has_its_sample() -> None:
-    """The table names samples that are there."""
-    assert TOLD.keys() == SAMPLES.keys()
+    """The table names existing samples."""
+    assert EXPECTED.keys() == SAMPLES.keys()
 
 
 PYTHON = """\
@@ -460,21 +460,21 @@ RVIZ = "Node(package='rviz2', executable='rviz2', arguments=['-d', {}])"
 
 
 def python(actions: str, before: str = "", inside: str = "pass") -> bytes:
-    """A launch file in Python."""
+    """Return a launch file in Python."""
     return PYTHON.format(before=before, inside=inside, actions=actions).encode()
 
 
 def doubling(last: str, name: str = "x", levels: int = 60) -> str:
-    """Lists of lists, each with the next twice: few lines that make more than any machine holds."""
+    """Return nested lists, each containing the next twice: few lines that make more than any machine holds."""
     lines = [f"{name}0 = {last}", *(f"{name}{n} = [{name}{n - 1}, {name}{n - 1}]" for n in range(1, levels))]
     return "\n".join(lines)
 
 
 def chained(levels: int = 60) -> str:
-    """Launch arguments, each with the one before it twice."""
-    each = "DeclareLaunchArgument('a{}', default_value=[LaunchConfiguration('a{}'), LaunchConfiguration('a{}')])"
+    """Return launch arguments, each with the one before it twice."""
+    declaration = "DeclareLaunchArgument('a{}', default_value=[LaunchConfiguration('a{}'), LaunchConfiguration('a{}')])"
     return "DeclareLaunchArgument('a0', default_value='ab'), " + ", ".join(
-        each.format(n, n - 1, n - 1) for n in range(1, levels)
+        declaration.format(n, n - 1, n - 1) for n in range(1, levels)
     )
 
 
@@ -577,26 +577,26 @@ HOSTILE_YAML = {
 
 
 def hostile() -> list[tuple[str, bytes]]:
-    """Every hostile file, by the name that it has as a launch file."""
+    """Return every hostile file with its name as a launch file."""
     kinds = {".launch.py": HOSTILE_PYTHON, ".launch.xml": HOSTILE_XML, ".launch.yaml": HOSTILE_YAML}
     return [(name + ending, data) for ending, samples in kinds.items() for name, data in samples.items()]
 
 
 def is_well_formed(launch: Launch) -> bool:
-    """Whether what is told is bounded, with places in the file."""
-    told = [*launch.nodes, *launch.forgotten]
+    """Return whether the results are bounded and have locations in the file."""
+    nodes = [*launch.nodes, *launch.forgotten]
     faults = [*launch.faults, *launch.unknown, *filter(None, [launch.syntax])]
-    places = [each.location for part in (told, launch.references, faults) for each in part]
-    return len(places) < 20_000 and all(each.line > 0 and each.column > 0 for each in places)
+    locations = [item.location for part in (nodes, launch.references, faults) for item in part]
+    return len(locations) < 20_000 and all(at_location.line > 0 and at_location.column > 0 for at_location in locations)
 
 
-@pytest.mark.parametrize(("name", "data"), [pytest.param(*each, id=each[0]) for each in hostile()])
+@pytest.mark.parametrize(("name", "data"), [pytest.param(*name, id=name[0]) for name in hostile()])
 def test_hostile_files(name: str, data: bytes) -> None:
-    """Nothing raises or takes long, whatever a launch file is made of."""
+    """Whatever a launch file contains, nothing raises or takes long."""
     with processor_time(2):
         launch = read(data, name)
         assert is_well_formed(launch)
-        in_short(launch)
+        summarize(launch)
 
 
 TWO = """\
@@ -609,7 +609,7 @@ TWO = """\
 
 
 def test_two_files_that_include_each_other() -> None:
-    """A circle of files ends, and is a fault."""
+    """A cycle of included files ends, and is a fault."""
     others = {f"{FOLDER}/{one}.launch.xml": TWO.format(two, two).encode() for one, two in ("ab", "ba")}
     launch = read(others[f"{FOLDER}/a.launch.xml"], "a.launch.xml", others)
     assert {fault.message for fault in launch.faults} == {"it includes itself"}
@@ -617,16 +617,16 @@ def test_two_files_that_include_each_other() -> None:
 
 
 def test_many_includes() -> None:
-    """Files that include the next one twice are evaluated to some bound, and that is said."""
+    """Files that include the next one twice are evaluated up to a bound, which is reported."""
     others = {f"{FOLDER}/f{n}.launch.xml": TWO.format(f"f{n + 1}", f"f{n + 1}").encode() for n in range(40)}
     with processor_time(2):
         launch = read(others[f"{FOLDER}/f0.launch.xml"], "f0.launch.xml", others)
-    assert "it includes more than 10 launch files" in {each.message for each in launch.unknown}
+    assert "it includes more than 10 launch files" in {unknown.message for unknown in launch.unknown}
     assert len(launch.nodes) < 50
 
 
-def test_arguments_are_shared_with_what_follows_an_include() -> None:
-    """What an include is given stays set behind it, as ROS 2 has it; what a group sets ends with the group."""
+def test_arguments_of_an_include_stay_set() -> None:
+    """The arguments of an include stay set after it, as in ROS 2; those of a group end with the group."""
     text = """\
 <launch>
   <arg name="config" default="/opt/own.rviz"/>
@@ -638,7 +638,7 @@ def test_arguments_are_shared_with_what_follows_an_include() -> None:
 </launch>
 """
     launch = read(text.encode(), "x.launch.xml")
-    assert [each.path for each in launch.named("rviz")] == ["/opt/given.rviz", "/opt/own.rviz"]
+    assert [node.path for node in launch.named("rviz")] == ["/opt/given.rviz", "/opt/own.rviz"]
 
 
 PIECES = st.sampled_from(
@@ -655,10 +655,10 @@ PIECES = st.sampled_from(
     ),
 )
 def test_changed_files(sample: str, changes: list[tuple[int, int, bytes]]) -> None:
-    """A sample with something cut out of it and something put in its place is evaluated without an exception."""
+    """A sample with some text removed and other text inserted is evaluated without an exception."""
     data = SAMPLES[sample].read_bytes()
-    for place, length, piece in changes:
-        at = place % (len(data) + 1)
+    for at_location, length, piece in changes:
+        at = at_location % (len(data) + 1)
         data = data[:at] + piece + data[at + length :]
     with processor_time(2):
         assert is_well_formed(read(data, sample, {**INNER, f"{FOLDER}/{sample}": data}))
@@ -670,6 +670,6 @@ def test_changed_files(sample: str, changes: list[tuple[int, int, bytes]]) -> No
     st.sampled_from([".py", ".xml", ".yaml", ""]),
 )
 def test_random_files(data: bytes, ending: str) -> None:
-    """Anything at all is evaluated without an exception."""
+    """Any bytes are evaluated without an exception."""
     with processor_time(2):
         assert is_well_formed(read(data, f"x.launch{ending}"))

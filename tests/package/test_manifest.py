@@ -1,11 +1,11 @@
-"""What is told of package.xml: the package's name, its build type, what is missing, and where."""
+"""Reading package.xml: the package's name, its build type, what is missing, and where."""
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from grader.package.manifest import Manifest, read_manifest
-from tests.patience import processor_time
+from tests.processor_time import processor_time
 
 # As ros2 pkg create writes it, filled in.
 COMPLETE = """\
@@ -28,17 +28,20 @@ COMPLETE = """\
 
 
 def read(text: str) -> Manifest:
-    """A package.xml with this text."""
+    """Return a package.xml with this text."""
     return read_manifest(text.encode(), "my_robot/package.xml")
 
 
-def said(found: Manifest) -> list[str]:
-    """Its problems, each with its line and column."""
-    return [f"{each.location.line}:{each.location.column} {each.kind.code} {each.message}" for each in found.problems]
+def problems_of(found: Manifest) -> list[str]:
+    """Return its problems, each with its line and column."""
+    return [
+        f"{problem.location.line}:{problem.location.column} {problem.kind.code} {problem.message}"
+        for problem in found.problems
+    ]
 
 
 def test_a_complete_file() -> None:
-    """Name and build type have their places, and there is nothing to say."""
+    """Name and build type have their locations, and there are no problems."""
     found = read(COMPLETE)
     assert (found.name, found.build_type, found.problems) == ("my_robot", "ament_python", ())
     assert (found.name_location.line, found.name_location.column) == (4, 3)
@@ -63,10 +66,10 @@ def test_a_complete_file() -> None:
         ("<name>my_robot</name>", "<!-- <name>old</name> --><name>my_robot</name>", []),
     ],
 )
-def test_what_is_missing(old: str, new: str, expected: list[str]) -> None:
-    """What every package needs is missed at the place where it should stand."""
+def test_missing_elements(old: str, new: str, expected: list[str]) -> None:
+    """Each required element that is missing is reported at its expected location."""
     assert old in COMPLETE
-    assert said(read(COMPLETE.replace(old, new))) == expected
+    assert problems_of(read(COMPLETE.replace(old, new))) == expected
 
 
 @pytest.mark.parametrize(
@@ -81,9 +84,9 @@ def test_what_is_missing(old: str, new: str, expected: list[str]) -> None:
     ],
 )
 def test_unreadable_files(text: str, line: int, words: str) -> None:
-    """A file that is no package.xml says so once; no name is known then."""
+    """A file that is no package.xml is reported once; the name is then unknown."""
     found = read(text)
-    assert [(each.kind.code, each.location.line) for each in found.problems] == [("PKG001", line)]
+    assert [(problem.kind.code, problem.location.line) for problem in found.problems] == [("PKG001", line)]
     assert words in found.problems[0].message
     assert found.name is None
     assert found.build_type == ""
@@ -99,13 +102,13 @@ def test_unreadable_files(text: str, line: int, words: str) -> None:
     ],
 )  # fmt: skip
 def test_build_type(export: str, kind: str) -> None:
-    """The build type is that of <export>; without one colcon takes catkin."""
+    """The build type is that of <export>; default: colcon's catkin."""
     start, _, _ = COMPLETE.partition("  <export>")
     assert read(f"{start}{export}</package>").build_type == kind
 
 
 def test_entities_are_not_resolved() -> None:
-    """A DOCTYPE opens no file and makes nothing grow, and hides no place."""
+    """A DOCTYPE opens no file, expands nothing, and hides no location."""
     text = '<!DOCTYPE p [<!ENTITY e "my"><!ENTITY f SYSTEM "file:///etc/passwd">]>\n<package>&e;&e;&f;\n<name>a&f;</name></package>'
     found = read(text)
     assert found.name == "a"
@@ -129,7 +132,7 @@ def test_encodings(encoding: str) -> None:
      "<package>" + "<name>a</name>" * 15_000 + "</package>", "<!--" * 60_000, "<package>" + "<![CDATA[" * 20_000],
 )  # fmt: skip
 def test_hostile_files(text: str) -> None:
-    """Depth, length and number take no more time than they have to."""
+    """Depth, length and number take linear time."""
     with processor_time(2):
         assert isinstance(read(text).problems, tuple)
 
@@ -141,7 +144,7 @@ def test_hostile_files(text: str) -> None:
     st.binary(max_size=6) | st.sampled_from([b"<", b"&a;", b"<!--", b"]]>"]),
 )
 def test_changed_files(start: int, length: int, put: bytes) -> None:
-    """A file with something cut out of it or put into it is read without an error."""
+    """A file with text removed or inserted is read without an error."""
     data = COMPLETE.encode()
     found = read_manifest(data[:start] + put + data[start + length :], "package.xml")
     assert all(problem.location.line > 0 and "\n" not in problem.message for problem in found.problems)
@@ -150,5 +153,5 @@ def test_changed_files(start: int, length: int, put: bytes) -> None:
 @settings(max_examples=100)
 @given(st.binary(max_size=80) | st.text("<>&;!-[]?/= \"'package\n", max_size=60).map(str.encode))
 def test_any_bytes(data: bytes) -> None:
-    """Anything at all is read without an error."""
+    """Any bytes are read without an error."""
     assert isinstance(read_manifest(data, "package.xml"), Manifest)

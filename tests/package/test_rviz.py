@@ -1,4 +1,4 @@
-"""What is told of RViz files: the fixed frame, the displays that are on, and what is wrong."""
+"""Reading RViz files: the fixed frame, the enabled displays, and problems."""
 
 import pytest
 from hypothesis import given, settings
@@ -6,9 +6,9 @@ from hypothesis import strategies as st
 
 from grader.package.rviz import RvizFile, read_rviz, switched_on
 from grader.package.yaml_nodes import Node, read_yaml
-from tests.patience import processor_time
+from tests.processor_time import processor_time
 
-# As RViz of ROS 2 Jazzy saves it, without the parts that nothing is asked about.
+# As RViz of ROS 2 Jazzy saves it, without irrelevant parts.
 SAVED = """\
 Panels:
   - Class: rviz_common/Displays
@@ -68,24 +68,24 @@ Window Geometry:
 
 
 def read(text: str) -> RvizFile:
-    """An RViz file with this text."""
+    """Return an RViz file with this text."""
     return read_rviz(text.encode(), "rviz/a.rviz")
 
 
 def displays(*entries: str) -> RvizFile:
-    """An RViz file with these displays, each a flow mapping."""
+    """Return an RViz file with these displays, each a flow mapping."""
     listed = "".join(f"    - {{{entry}}}\n" for entry in entries)
     return read(f"Visualization Manager:\n  Displays:\n{listed}  Global Options: {{Fixed Frame: base_link}}\n")
 
 
 def test_a_saved_file() -> None:
-    """Everything that is asked about is found, groups taken apart."""
+    """All relevant settings are found, with groups flattened."""
     found = read(SAVED)
     assert found.fault is None
     assert found.fixed_frame == "base_footprint"
     assert SAVED.splitlines()[found.frame_location.line - 1] == "    Fixed Frame: base_footprint"
     assert found.frame_location.column == 18
-    assert [(each.package, each.kind, each.name, each.enabled) for each in found.displays] == [
+    assert [(display.package, display.kind, display.name, display.enabled) for display in found.displays] == [
         ("rviz_default_plugins", "Grid", "Grid", True),
         ("rviz_default_plugins", "RobotModel", "My robot: the model", True),
         ("rviz_default_plugins", "TF", "TF", False),
@@ -95,18 +95,21 @@ def test_a_saved_file() -> None:
         ("rviz_default_plugins", "LaserScan", "Scan", False),
     ]
     lines = SAVED.splitlines()
-    assert all(lines[each.location.line - 1].endswith(f"Class: {each.package}/{each.kind}") for each in found.displays)
-    assert len({each.location for each in found.displays}) == 7
+    assert all(
+        lines[display.location.line - 1].endswith(f"Class: {display.package}/{display.kind}")
+        for display in found.displays
+    )
+    assert len({display.location for display in found.displays}) == 7
     topic = found.displays[1].node.get("Description Topic", "Value")
     assert topic is not None
     assert topic.text == "/robot_description"
 
 
-def test_what_is_worth_saying() -> None:
-    """A TF display that is off is as good as none; a class of ROS 1 is named at its place."""
+def test_problems() -> None:
+    """A TF display that is disabled counts as missing; a ROS 1 class is reported at its location."""
     assert [problem.kind.code for problem in read(SAVED).problems] == ["RVZ003"]
     old = displays("Class: rviz/RobotModel, Enabled: true", "Class: rviz/TF, Enabled: true, Name: TF")
-    assert [(each.kind.code, each.location.line) for each in old.problems] == [("RVZ002", 3), ("RVZ002", 4)]
+    assert [(problem.kind.code, problem.location.line) for problem in old.problems] == [("RVZ002", 3), ("RVZ002", 4)]
     assert "in ROS 2 it is rviz_default_plugins/RobotModel" in old.problems[0].message
     assert displays("Class: rviz_default_plugins/TF, Enabled: true").problems == ()
 
@@ -123,7 +126,7 @@ def test_what_is_worth_saying() -> None:
     ],
 )
 def test_faults(text: str, line: int, words: str) -> None:
-    """A file that is none of RViz's says so once, and tells nothing else."""
+    """A file that is no RViz file is reported once, and gives nothing else."""
     found = read(text)
     assert [problem.kind.code for problem in found.problems] == ["RVZ001"]
     assert found.fault is not None
@@ -145,11 +148,11 @@ def test_faults(text: str, line: int, words: str) -> None:
     ],
 )
 def test_odd_shapes(text: str) -> None:
-    """Lists where RViz has mappings, and the other way round, hold nothing."""
+    """Lists in place of mappings, and the other way round, contain nothing."""
     found = read(text)
     assert found.fault is None
     assert found.fixed_frame is None
-    assert all(each.kind == each.package == "" and not each.enabled for each in found.displays)
+    assert all(display.kind == display.package == "" and not display.enabled for display in found.displays)
 
 
 @pytest.mark.parametrize(
@@ -159,13 +162,13 @@ def test_odd_shapes(text: str) -> None:
      ("Name: a", False), ("Enabled: false, Value: true", False), ("Enabled: true, Value: false", True)],
 )  # fmt: skip
 def test_enabled(settings: str, is_on: bool) -> None:
-    """Whether a display is on is told as RViz tells it."""
-    assert [each.enabled for each in displays(f"Class: a/B, {settings}").displays] == [is_on]
+    """A display is enabled exactly if RViz enables it."""
+    assert [display.enabled for display in displays(f"Class: a/B, {settings}").displays] == [is_on]
 
 
 def test_switched_on() -> None:
-    """What is not there is as by default; a list is no setting."""
-    assert [switched_on(None, default=each) for each in (True, False)] == [True, False]
+    """A missing value is the default; a list is no setting."""
+    assert [switched_on(None, default=value) for value in (True, False)] == [True, False]
     assert [switched_on(node(text), default=False) for text in ("[a]", "no", "off", "0", "0.0")] == [
         False,
         True,
@@ -176,18 +179,18 @@ def test_switched_on() -> None:
 
 
 def node(text: str) -> Node:
-    """A value of YAML."""
+    """Return a value of YAML."""
     return read_yaml(text.encode(), "a")
 
 
 def test_class_without_a_package() -> None:
-    """A class is told apart at its last slash."""
+    """A class is split at its last slash."""
     found = displays("Class: RobotModel", "Class: a/b/C", "Class: ''").displays
-    assert [(each.package, each.kind) for each in found] == [("", "RobotModel"), ("a/b", "C"), ("", "")]
+    assert [(display.package, display.kind) for display in found] == [("", "RobotModel"), ("a/b", "C"), ("", "")]
 
 
 def test_the_last_of_equal_keys_counts() -> None:
-    """As RViz puts each into its place."""
+    """As in RViz, a later key replaces an earlier one."""
     assert displays("Class: a/B, Enabled: false, Class: c/D, Enabled: true").displays[0].kind == "D"
 
 
@@ -201,8 +204,8 @@ def test_the_last_of_equal_keys_counts() -> None:
         "Visualization Manager: &a {Displays: [*a, *a], Global Options: *a}",
     ],
 )
-def test_groups_without_end(text: str) -> None:
-    """Groups in themselves, and thousands of displays, are looked at up to a bound."""
+def test_endless_groups(text: str) -> None:
+    """Groups in themselves, and thousands of displays, are read up to a bound."""
     with processor_time(2):
         found = read(text)
         assert len(found.displays) <= 500
@@ -219,7 +222,7 @@ LINES = st.sampled_from(SAVED.splitlines(keepends=True))
     )
 )
 def test_any_text(pieces: list[str]) -> None:
-    """Anything at all is read without an error."""
+    """Any text is read without an error."""
     found = read_rviz("".join(pieces).encode("utf-8", "surrogatepass"), "a.rviz")
     assert isinstance(found.problems, tuple)
     assert (found.fault is None) or not found.displays
@@ -228,7 +231,7 @@ def test_any_text(pieces: list[str]) -> None:
 @settings(max_examples=150)
 @given(st.integers(0, len(SAVED)), st.integers(0, 30), st.binary(max_size=6))
 def test_changed_files(start: int, length: int, put: bytes) -> None:
-    """A saved file with something cut out of it or put into it is read without an error."""
+    """A saved file with text removed or inserted is read without an error."""
     data = SAVED.encode()
     found = read_rviz(data[:start] + put + data[start + length :], "a.rviz")
     assert all(problem.location.line > 0 for problem in found.problems)

@@ -1,4 +1,4 @@
-"""What is told of a setup.py without a run is what setuptools installs when the file is run."""
+"""The static evaluation of a setup.py gives the files that setuptools installs when it is run."""
 
 import os
 import subprocess
@@ -12,10 +12,10 @@ from grader.files.folder import read_folder
 from grader.files.ignore_rules import ignored_part
 from grader.package.setup_py import Setup, read_setup
 from grader.static_python.parse import parse
-from tests.command_line import PATIENCE
+from tests.command_line import HANG_TIMEOUT
 from tests.package.my_robot import SAMPLES, make_package
 
-# The samples of which not everything can be told, and why; no other may have anything unknown.
+# The samples with unknown values, and the reason; no other sample may have any.
 UNKNOWN = {
     "comprehension_first_of_a_listing": "the order in which folders are listed",
     "data_files_in_setup_cfg": "data_files is set in setup.cfg",
@@ -37,25 +37,25 @@ UNKNOWN = {
     "walk_that_is_steered": "list of folders is changed",
     "working_folder_is_left": "a change of the working folder",
 }
-# What install_data says where there are no data files; `setup.py install` does not call it then.
+# The message of install_data without data files; `setup.py install` does not call it then.
 _NOTHING = "TypeError: 'NoneType' object is not iterable"
 
 
-class Run(NamedTuple):
-    """What came of running a setup.py: where each installed file comes from, or the text of the error."""
+class BuildRun(NamedTuple):
+    """The result of running a setup.py: the source of each installed file, or the text of the error."""
 
     installed: dict[str, str]
     error: str
-    told: Setup
+    reported: Setup
 
 
-def run(sample: str, folder: Path) -> Run:
-    """Install a sample's data files as setuptools does, and tell from the same files what it would install."""
+def run(sample: str, folder: Path) -> BuildRun:
+    """Install a sample's data files with setuptools, and return the statically determined files for the same sample."""
     package, root = folder / "my_robot", folder / "root"
     sources = make_package(sample, package)
-    told = read_setup(parse((package / "setup.py").read_bytes(), "setup.py"), read_folder(package))
+    reported = read_setup(parse((package / "setup.py").read_bytes(), "setup.py"), read_folder(package))
     environment = {name: value for name, value in os.environ.items() if not name.startswith(("MY_", "SETUPTOOLS_"))}
-    # Below a root: of a file that goes to an absolute path nothing is written elsewhere.
+    # Below a root, so that a file with an absolute path is written nowhere else.
     install = ["--quiet", "install_data", "--root", str(root), "--install-dir", str(root / "prefix")]
     done = subprocess.run(
         [sys.executable, "-B", "-W", "ignore", "setup.py", *install],
@@ -64,7 +64,7 @@ def run(sample: str, folder: Path) -> Run:
         capture_output=True,
         text=True,
         check=False,
-        timeout=PATIENCE,
+        timeout=HANG_TIMEOUT,
     )
     installed = {
         os.path.relpath(path, root / "prefix")
@@ -74,33 +74,33 @@ def run(sample: str, folder: Path) -> Run:
         if path.is_file()
     }
     texts = {target: path.read_text(encoding="utf-8") for target, path in installed.items()}
-    return Run(
+    return BuildRun(
         {target: sources[text] for target, text in texts.items() if not ignored_part(sources[text])},
         f"status {done.returncode}: {done.stderr}" if done.returncode and _NOTHING not in done.stderr else "",
-        told,
+        reported,
     )
 
 
 @pytest.mark.parametrize("sample", SAMPLES)
-def test_setuptools_installs_what_is_told(sample: str, tmp_path: Path) -> None:
-    """Files and their places are the same; a run that fails is foretold; what is unknown is unknown for its reason."""
-    installed, error, told = run(sample, tmp_path)
-    foretold = [*filter(None, [told.fault]), *told.faults, *told.stops]
-    reason = "; ".join(unknown.reason for unknown in told.unknown)
+def test_setuptools_installs_the_determined_files(sample: str, tmp_path: Path) -> None:
+    """Files and locations are the same; a run that fails is predicted; unknown values have their reason."""
+    installed, error, reported = run(sample, tmp_path)
+    foretold = [*filter(None, [reported.fault]), *reported.faults, *reported.stops]
+    reason = "; ".join(unknown.reason for unknown in reported.unknown)
     if sample in UNKNOWN:
         assert UNKNOWN[sample] in reason
         assert not foretold
-        assert told.installed().items() <= installed.items()
+        assert reported.installed().items() <= installed.items()
     elif error:
         assert foretold, error
     else:
         assert not foretold
         assert not reason
-        assert told.installed() == installed
+        assert reported.installed() == installed
 
 
 def test_setuptools_runs(tmp_path: Path) -> None:
-    """The comparison is one: setuptools installs the files that a plain setup.py lists."""
+    """The comparison is valid: setuptools installs the files that a plain setup.py lists."""
     done = run("literal_lists", tmp_path)
     assert not done.error
     assert sorted(done.installed.values()) == [

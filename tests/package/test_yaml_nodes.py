@@ -1,4 +1,4 @@
-"""YAML is read as PyYAML reads it, with the place of every value, and no text makes it raise or grow."""
+"""YAML is read as PyYAML reads it, with the location of every value; no text makes it raise or grow."""
 
 from contextlib import suppress
 from itertools import islice
@@ -10,7 +10,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from grader.package.yaml_nodes import Node, YamlFault, read_yaml
-from tests.patience import processor_time
+from tests.processor_time import processor_time
 
 TEXTS = st.text(st.characters(blacklist_categories=["Cs"]), max_size=12) | st.sampled_from(
     [
@@ -42,23 +42,23 @@ VALUES = st.recursive(
 
 
 def plain(node: Node) -> Any:
-    """A node's values without their places."""
+    """Return a node's values without their locations."""
     if isinstance(node.value, dict):
-        return {key: plain(each) for key, each in node.value.items()}
-    return [plain(each) for each in node.value] if isinstance(node.value, list) else node.value
+        return {key: plain(item) for key, item in node.value.items()}
+    return [plain(item) for item in node.value] if isinstance(node.value, list) else node.value
 
 
 @settings(max_examples=300)
 @given(VALUES, st.booleans() | st.none(), st.sampled_from([None, "'", '"', "|", ">"]), st.booleans())
 def test_agreement_with_pyyaml(value: Any, flow: bool | None, style: str | None, marked: bool) -> None:
-    """Structure and texts of any document are those that PyYAML finds."""
+    """Structure and strings of any document equal those of PyYAML."""
     text = yaml.dump(value, Dumper=NoAliases, default_flow_style=flow, default_style=style, explicit_start=marked,
                      allow_unicode=True)  # fmt: skip
     assert plain(read_yaml(text.encode(), "a.yaml")) == yaml.load(text, Loader=yaml.BaseLoader)
 
 
 class NoAliases(yaml.SafeDumper):
-    """Writes equal values once more instead of an alias."""
+    """A dumper that writes equal values again instead of an alias."""
 
     def ignore_aliases(self, _: Any) -> bool:
         return True
@@ -76,7 +76,7 @@ class NoAliases(yaml.SafeDumper):
 @example("\ufeffa: b".encode())
 @example("a: b".encode("utf-16"))
 def test_any_text(data: bytes) -> None:
-    """A text is read or is a fault with a place, whatever it is; what PyYAML reads without aliases is read the same."""
+    """Any text is read or is a fault with a location; a text without aliases is read like PyYAML does."""
     try:
         found = read_yaml(data, "a.yaml")
     except YamlFault as fault:
@@ -93,19 +93,19 @@ def test_any_text(data: bytes) -> None:
     assert plain(found) == ({} if expected is None else expected)
 
 
-def test_places() -> None:
-    """Every value knows its line and column, in characters."""
+def test_locations() -> None:
+    """Every value has its line and column, in characters."""
     root = read_yaml("# café\nä: é\nlist:\n  - one\n  - {two: 2, drei: 'ü'}\n\"é\": |\n  text\n".encode(), "a.yaml")
     found = {key: root.get(*key.split("/")) for key in ("ä", "list", "é")}
     items = found["list"].items if found["list"] is not None else []
     nodes = [*found.values(), *items, items[1].get("two"), items[1].get("drei")]
-    places = [(each.location.line, each.location.column) for each in nodes if each is not None]
-    assert places == [(2, 4), (4, 3), (6, 6), (4, 5), (5, 5), (5, 11), (5, 20)]
-    assert all(each is not None and each.location.path == "a.yaml" for each in nodes)
+    locations = [(node.location.line, node.location.column) for node in nodes if node is not None]
+    assert locations == [(2, 4), (4, 3), (6, 6), (4, 5), (5, 5), (5, 11), (5, 20)]
+    assert all(node is not None and node.location.path == "a.yaml" for node in nodes)
 
 
-def test_places_behind_a_byte_order_mark_and_with_windows_ends() -> None:
-    """Neither a byte-order mark nor CRLF moves what follows."""
+def test_locations_after_a_byte_order_mark_and_with_crlf() -> None:
+    """Neither a byte-order mark nor CRLF moves later locations."""
     root = read_yaml(b"\xef\xbb\xbfa: b\r\nc:\r\n  d: e\r\n", "a.yaml")
     one, two = root.get("a"), root.get("c", "d")
     assert one is not None
@@ -128,53 +128,53 @@ def test_places_behind_a_byte_order_mark_and_with_windows_ends() -> None:
     ],
 )
 def test_faults(text: str, words: str, line: int, column: int) -> None:
-    """What is no YAML is a fault with its place."""
+    """Text that is no YAML is a fault with its location."""
     with pytest.raises(YamlFault, match=words) as caught:
         read_yaml(text.encode(), "a.yaml")
     assert (caught.value.location.line, caught.value.location.column) == (line, column)
 
 
-def test_quotes_are_told() -> None:
-    """A text in quotes is told from a plain one."""
+def test_quoted_strings_are_distinguished() -> None:
+    """A quoted string differs from a plain one."""
     root = read_yaml(b"a: 'true'\nb: true\nc: \"1\"\nd: |\n  1\n", "a.yaml")
-    assert {key: each.quoted for key, each in plain_items(root)} == {"a": True, "b": False, "c": True, "d": False}
+    assert {key: item.quoted for key, item in plain_items(root)} == {"a": True, "b": False, "c": True, "d": False}
 
 
 def plain_items(node: Node) -> list[tuple[str, Node]]:
-    """The entries of a mapping."""
+    """Return the entries of a mapping."""
     return list(node.value.items()) if isinstance(node.value, dict) else []
 
 
 def test_an_empty_text_is_an_empty_mapping() -> None:
-    """Nothing, comments alone and an empty document hold nothing."""
+    """Empty text, comments alone and an empty document contain nothing."""
     assert [plain(read_yaml(text, "")) for text in (b"", b"# a\n", b"---\n...\n", b"---\n")] == [{}, {}, "", ""]
 
 
 def test_first_document_only() -> None:
-    """What follows the first document is not read, not even where it is no YAML."""
+    """Text after the first document is not read, even if it is no YAML."""
     assert plain(read_yaml(b"a: b\n---\nc: [d\n", "")) == {"a": "b"}
     assert plain(read_yaml(b"--- a\n--- b\n", "")) == "a"
 
 
 def test_the_last_of_equal_keys_counts() -> None:
-    """As for PyYAML."""
+    """As in PyYAML."""
     assert plain(read_yaml(b"a: 1\nb: 2\na: 3\n", "")) == {"a": "3", "b": "2"}
 
 
-def test_keys_that_are_no_texts_are_kept_apart() -> None:
+def test_keys_that_are_no_strings_are_kept_separately() -> None:
     """A list as a key hides nothing."""
     assert list(plain(read_yaml(b"? [a, b]\n: c\n? [d]\n: e\nf: g\n", "")).values()) == ["c", "e", "g"]
 
 
 def test_aliases_are_shared() -> None:
-    """An alias is the very value that it names; the last anchor of a name before it counts."""
+    """An alias is the same object as its value; the last anchor of a name before it counts."""
     root = read_yaml(b"a: &x {b: c}\nd: *x\ne: &x f\ng: *x\n? &k key\n: *k\n", "")
     assert root.get("a") is root.get("d")
     assert plain(root) == {"a": {"b": "c"}, "d": {"b": "c"}, "e": "f", "g": "f", "key": "key"}
 
 
 def test_recursion_through_anchors_is_harmless() -> None:
-    """A list or mapping may hold itself."""
+    """A list or mapping may contain itself."""
     listed = read_yaml(b"&a [*a, b]", "")
     assert listed.items[0] is listed
     table = read_yaml(b"&a {b: *a, c: d}", "")
@@ -183,7 +183,7 @@ def test_recursion_through_anchors_is_harmless() -> None:
 
 
 def test_billion_laughs() -> None:
-    """Aliases of aliases take no time and no room."""
+    """Aliases of aliases take no time and no memory."""
     lines = ["a0: &a0 [ha, ha]"] + [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 9)}]" for n in range(1, 60)]
     with processor_time(0.5):
         root = read_yaml("\n".join(lines).encode(), "")
@@ -203,7 +203,7 @@ def test_billion_laughs() -> None:
     ],
 )
 def test_bounds(text: str, words: str) -> None:
-    """A file beyond all measure is a fault."""
+    """A file above the limits is a fault."""
     with processor_time(2), pytest.raises(YamlFault, match=words):
         read_yaml(text.encode(), "")
 
@@ -212,6 +212,6 @@ def test_bounds(text: str, words: str) -> None:
     "text", ["a" * 500_000, "a: '" + "b" * 500_000, "# " + "a" * 500_000, "a: |\n " + " " * 500_000]
 )
 def test_long_lines(text: str) -> None:
-    """A long line takes no longer than it has to."""
+    """A long line takes linear time."""
     with processor_time(1), suppress(YamlFault):
         read_yaml(text.encode(), "")

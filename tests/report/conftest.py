@@ -1,4 +1,4 @@
-"""Reports are rendered as by the platforms that they are made for."""
+"""Fixtures for reports in the environments of their platforms."""
 
 import pytest
 
@@ -7,6 +7,6 @@ from tests.golden.cases import CLASSROOM50
 
 @pytest.fixture(autouse=True)
 def classroom50(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Say whose result it is, as the runner of Classroom 50 does."""
+    """Set the identity of the submission, as the runner of Classroom 50 does."""
     for name, value in CLASSROOM50.items():
         monkeypatch.setenv(name, value)

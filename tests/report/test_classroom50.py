@@ -1,4 +1,4 @@
-"""Classroom 50's result.json: valid, in whole numbers, and only where it is known whose result it is."""
+"""Classroom 50's result.json: valid, in whole numbers, and only with a known identity."""
 
 import os
 from decimal import Decimal
@@ -19,13 +19,13 @@ MISTAKEN = "submissions/several-mistakes/my_robot.urdf"
 
 
 def result_of(report: Report) -> Any:
-    """The data of a report: whole numbers, none of them a truth value, no score above its maximum, and sums that are right."""
+    """Return the data of a report: whole numbers, no booleans, no score above its maximum, and correct sums."""
     data = READ(render_classroom50(report, identity_from(os.environ)))
-    for each in (data, *data["tests"]):
-        assert {type(each["score"]), type(each["max-score"])} == {int}
-        assert 0 <= each["score"] <= each["max-score"]
+    for scored in (data, *data["tests"]):
+        assert {type(scored["score"]), type(scored["max-score"])} == {int}
+        assert 0 <= scored["score"] <= scored["max-score"]
     for key in ("score", "max-score"):
-        assert sum(each[key] for each in data["tests"]) == data[key]
+        assert sum(test[key] for test in data["tests"]) == data[key]
     scale = Decimal(data["max-score"]) / report.max_score
     assert data["score"] == report.score * scale
     return data
@@ -33,7 +33,7 @@ def result_of(report: Report) -> Any:
 
 @pytest.mark.parametrize("name", SAMPLES)
 def test_every_criterion_is_a_test(name: str) -> None:
-    """Whole points stay as they are, and what waits for a person has not passed yet."""
+    """Whole points are unchanged, and a pending criterion has not passed."""
     report = SAMPLES[name].grade()
     data = result_of(report)
     assert (data["score"], data["max-score"]) == (report.score, report.max_score)
@@ -43,10 +43,10 @@ def test_every_criterion_is_a_test(name: str) -> None:
         assert (test["score"], test["max-score"]) == (result.points, result.criterion.points)
 
 
-def test_fractions_are_made_whole(tmp_path: Path) -> None:
-    """Eighths are given in thousandths; what was skipped has not passed, though it is worth nothing."""
+def test_fractions_become_whole(tmp_path: Path) -> None:
+    """Eighths are given in thousandths; a skipped criterion has not passed, even without points."""
     data = result_of(half_points(tmp_path))
-    assert [(each["score"], each["max-score"], each["passed"]) for each in data["tests"]] == [
+    assert [(test["score"], test["max-score"], test["passed"]) for test in data["tests"]] == [
         (0, 500, False),
         (250, 250, True),
         (0, 0, False),
@@ -55,20 +55,20 @@ def test_fractions_are_made_whole(tmp_path: Path) -> None:
     ]
 
 
-def test_what_a_person_has_decided_counts() -> None:
-    """All points by hand have passed, whatever the check has found; half of them have not."""
+def test_manual_marks_count() -> None:
+    """With full points a test has passed, whatever the check found; with half of them it has not."""
     report = marked()
     data = result_of(report)
-    told = {
+    reported = {
         result.outcome.status: test["passed"]
         for test, result in zip(data["tests"], report.results, strict=True)
         if result.manual_mark is not None
     }
-    assert told == {"failed": True, "passed": False, "pending": False}
+    assert reported == {"failed": True, "passed": False, "pending": False}
 
 
-def test_the_identity_is_the_runners() -> None:
-    """Each field is the variable's; without a link to review, the commit's."""
+def test_the_identity_is_that_of_the_runner() -> None:
+    """Each field is the variable's; without a link for review, the commit's."""
     data = result_of(SAMPLES["reference"].grade())
     assert (data["classroom"], data["assignment"], data["owner"]) == ("robotics", "lab6", "alice")
     assert data["submission"] == CLASSROOM50["SUBMISSION_TAG"]
@@ -98,10 +98,10 @@ def test_the_identity_is_the_runners() -> None:
 def test_without_an_identity_nothing_is_graded(
     tmp_path: Path, changed: dict[str, str], words: str, saved: bool
 ) -> None:
-    """One line says what is missing or odd, before anything is written."""
+    """One line names the missing or invalid variable before anything is written."""
     file = tmp_path / "result.json"
-    wanted = ("--save", f"classroom50={file}") if saved else ("--format", "classroom50")
-    done = run(("grade", MISTAKEN, *wanted), **{**CLASSROOM50, **changed})
+    expected = ("--save", f"classroom50={file}") if saved else ("--format", "classroom50")
+    done = run(("grade", MISTAKEN, *expected), **{**CLASSROOM50, **changed})
     assert (done.returncode, done.stdout) == (2, b"")
     assert words in done.stderr.decode()
     assert done.stderr.count(b"\n") == 1

@@ -1,4 +1,4 @@
-"""GitLab's Code Quality report: valid, one issue for each finding, each of them told apart."""
+"""GitLab's Code Quality report: valid, with one issue for each finding and unique fingerprints."""
 
 from typing import Any
 
@@ -16,29 +16,29 @@ SEVERITIES = {"error": "major", "warning": "minor", "note": "info"}
 
 
 def issues(report: Report, base: Base = Base("lab/")) -> Any:  # noqa: B008  immutable
-    """The issues of a report, whose fingerprints all differ."""
+    """Return the issues of a report, whose fingerprints all differ."""
     found = READ(render_codeclimate(report, base))
-    assert len({each["fingerprint"] for each in found}) == len(found)
+    assert len({issue["fingerprint"] for issue in found}) == len(found)
     return found
 
 
 @pytest.mark.parametrize("name", SAMPLES)
 def test_every_finding_is_an_issue(name: str) -> None:
-    """Its rule, its severity, its words and its line in the repository are those of the finding."""
+    """Its rule, severity, text and line in the repository are those of the finding."""
     report = SAMPLES[name].grade()
     found = findings(report, Base("lab/"))
-    for issue, each in zip(issues(report), found, strict=True):
-        assert (issue["check_name"], issue["severity"]) == (each.rule, SEVERITIES[each.level])
-        assert each.text.replace("\n", " ") in issue["description"]
+    for issue, finding in zip(issues(report), found, strict=True):
+        assert (issue["check_name"], issue["severity"]) == (finding.rule, SEVERITIES[finding.level])
+        assert finding.text.replace("\n", " ") in issue["description"]
         assert issue["location"]["path"].startswith("lab")
-        if each.location is not None:
-            assert issue["location"] == {"path": each.location.path, "lines": {"begin": each.location.line}}
-        if each.lost:
-            assert f"({each.lost} point{'' if each.lost == 1 else 's'} lost)" in issue["description"]
+        if finding.location is not None:
+            assert issue["location"] == {"path": finding.location.path, "lines": {"begin": finding.location.line}}
+        if finding.lost:
+            assert f"({finding.lost} point{'' if finding.lost == 1 else 's'} lost)" in issue["description"]
 
 
-def test_nothing_to_mend_is_an_empty_list() -> None:
-    """GitLab wants a list even then."""
+def test_a_report_without_findings_is_an_empty_list() -> None:
+    """GitLab needs a list even then."""
     assert render_codeclimate(SAMPLES["reference"].grade(), Base()) == "[]\n"
 
 
@@ -46,7 +46,7 @@ def test_nothing_to_mend_is_an_empty_list() -> None:
 @pytest.mark.parametrize(
     "name", ["several-mistakes", "pictures-only", "no-package-xml", "empty-urdf", "setup-as-created"]
 )
-def test_what_has_no_place_of_its_own_is_at_the_whole(name: str, base: Base) -> None:
-    """At the URDF, at the package or at the folder: never without a path, never at one that leads out of the repository."""
+def test_findings_without_a_location_have_a_path(name: str, base: Base) -> None:
+    """The path is the URDF, the package or the folder: never empty, and never outside the repository."""
     for issue in issues(SAMPLES[name].grade(), base):
         assert issue["location"]["path"].startswith(base.archive or base.folder.rstrip("/"))

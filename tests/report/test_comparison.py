@@ -1,4 +1,4 @@
-"""What is said first when a submission is graded again: the score, and what has become of which criteria."""
+"""The summary of changes when a submission is graded again: the score, and the criteria that changed."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -15,21 +15,25 @@ SHORT = SAMPLES["lidar-offset-in-visual"].grade()  # 64 of 70: lidar-frame fails
 Change = Callable[[Result], Result]
 
 
-def turned(status: Status, message: str = "so it is") -> Change:
-    """A change that gives a criterion another status."""
+def with_status(status: Status, message: str = "so it is") -> Change:
+    """Return a change that gives a criterion another status."""
     return lambda result: result._replace(outcome=result.outcome._replace(status=status, message=message))
 
 
 def changed(report: Report, **changes: Change) -> Report:
-    """A report with other results for some criteria, which are named with underscores."""
+    """Return a report with other results for some criteria; underscores in keywords stand for hyphens."""
     known = {name.replace("_", "-"): change for name, change in changes.items()}
-    results = [known[each.criterion.id](each) if each.criterion.id in known else each for each in report.results]
+    results = [
+        known[result.criterion.id](result) if result.criterion.id in known else result for result in report.results
+    ]
     return replace(report, results=tuple(results))
 
 
-def test_the_score_and_who_passes_and_fails() -> None:
-    """What passes now comes before what fails now, each with what it brings or costs."""
-    after = changed(SHORT, lidar_frame=turned("passed"), base_green=turned("failed"), base_box=turned("failed"))
+def test_score_passes_and_failures() -> None:
+    """New passes precede new failures, each with its points."""
+    after = changed(
+        SHORT, lidar_frame=with_status("passed"), base_green=with_status("failed"), base_box=with_status("failed")
+    )
     assert comparison_lines(SHORT, after) == [
         "64 -> 62 of 70 points (-2)",
         "now passed: lidar-frame (+6)",
@@ -38,8 +42,8 @@ def test_the_score_and_who_passes_and_fails() -> None:
 
 
 def test_an_equal_score_hides_no_change() -> None:
-    """One criterion won and one lost for as many points."""
-    after = changed(SHORT, lidar_frame=turned("passed"), base_green=turned("failed"))
+    """One criterion passes and one fails, for the same points."""
+    after = changed(SHORT, lidar_frame=with_status("passed"), base_green=with_status("failed"))
     assert comparison_lines(SHORT, after) == [
         "64 of 70 points, as before",
         "now passed: lidar-frame (+6)",
@@ -51,32 +55,34 @@ def test_an_equal_score_hides_no_change() -> None:
     ("status", "words"),
     [("skipped", "now skipped"), ("pending", "now needs manual grading"), ("errored", "now errored")],
 )
-def test_every_status_has_its_words(status: Status, words: str) -> None:
-    """Points are named only where they change."""
-    after = changed(SHORT, lidar_frame=turned(status))
+def test_every_status_is_described(status: Status, words: str) -> None:
+    """Points are named only if they change."""
+    after = changed(SHORT, lidar_frame=with_status(status))
     assert comparison_lines(SHORT, after) == ["64 of 70 points, as before", f"{words}: lidar-frame"]
 
 
-def test_a_failure_that_is_another_one() -> None:
-    """Nearer, but not there yet: the points are the same, and the message is not. What passes has nothing to say."""
-    after = changed(SHORT, lidar_frame=turned("failed", "it is 2 mm off"), base_box=turned("passed", "it is 1 m wide"))
+def test_another_failure_of_the_same_criterion() -> None:
+    """The points are the same, and the message is not. A pass has no message."""
+    after = changed(
+        SHORT, lidar_frame=with_status("failed", "it is 2 mm off"), base_box=with_status("passed", "it is 1 m wide")
+    )
     assert comparison_lines(SHORT, after) == ["64 of 70 points, as before", "with another message: lidar-frame"]
 
 
-def test_only_the_rest_has_changed() -> None:
-    """Notes, problems and places are no business of the criteria."""
+def test_other_changes() -> None:
+    """Notes, problems and locations do not belong to the criteria."""
     after = replace(SHORT, notes=("something else",))
     assert comparison_lines(SHORT, after) == ["64 of 70 points, as before; only other parts of the report changed"]
 
 
-def test_nothing_has_changed() -> None:
+def test_no_changes() -> None:
     """One line with the score."""
     assert unchanged_line(SHORT) == "nothing has changed: 64 of 70 points"
 
 
 def test_many_are_counted() -> None:
     """Of many criteria the first eight are named."""
-    after = replace(SHORT, results=tuple(turned("skipped")(each) for each in SHORT.results))
+    after = replace(SHORT, results=tuple(with_status("skipped")(result) for result in SHORT.results))
     score, line = comparison_lines(SHORT, after)
     assert score == "64 -> 0 of 70 points (-64)"
     assert line.startswith("now skipped: urdf-loads (-3), base-box (-2), ")
@@ -85,7 +91,7 @@ def test_many_are_counted() -> None:
 
 
 def test_another_rubric() -> None:
-    """Criteria that come, go, or are worth something else; both maxima are named."""
+    """Added and removed criteria, and other points; both maxima are named."""
     first, second, *others = SHORT.results
     dearer = second._replace(criterion=replace(second.criterion, points=Decimal("2.5")))
     new = first._replace(criterion=replace(first.criterion, id="new\x1b", points=Decimal(1)))
@@ -95,8 +101,8 @@ def test_another_rubric() -> None:
         f"with other points: {second.criterion.id} (+0.5)",
         f"removed: {first.criterion.id} (-3)",
     ]
-    failing = next(each for each in SHORT.results if each.outcome.status == "failed")
-    cheaper = {"lidar_frame": lambda each: each._replace(criterion=replace(failing.criterion, points=Decimal(5)))}
+    failing = next(result for result in SHORT.results if result.outcome.status == "failed")
+    cheaper = {"lidar_frame": lambda item: item._replace(criterion=replace(failing.criterion, points=Decimal(5)))}
     assert comparison_lines(SHORT, changed(SHORT, **cheaper)) == [
         "64 of 70 -> 64 of 69 points",
         "with other points: lidar-frame",

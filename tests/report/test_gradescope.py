@@ -1,4 +1,4 @@
-"""Gradescope's results.json: valid, exact, and nothing that a person still decides has points in it."""
+"""Gradescope's results.json: valid, exact, and without points for pending criteria."""
 
 from decimal import Decimal
 from pathlib import Path
@@ -16,10 +16,10 @@ READ = read_by_schema("gradescope")
 
 
 def results(report: Report) -> Any:
-    """The data of a report; each of its scores is an exact decimal, and their sum is the score."""
+    """Return the data of a report; each score is an exact decimal, and their sum is the score."""
     data = READ(render_gradescope(report))
-    assert _sum(each.get("score", 0) for each in data["tests"]) == _exact(data["score"]) == report.score
-    most = _sum(each.get("max_score", 0) for each in data["tests"])
+    assert _sum(test.get("score", 0) for test in data["tests"]) == _exact(data["score"]) == report.score
+    most = _sum(test.get("max_score", 0) for test in data["tests"])
     assert most + _exact(data["extra_data"]["pending"]) == report.max_score
     return data
 
@@ -34,7 +34,7 @@ def _sum(numbers: Any) -> Decimal:
 
 @pytest.mark.parametrize("name", SAMPLES)
 def test_every_criterion_is_a_test(name: str) -> None:
-    """In the rubric's order, with its number; pending ones have no score, so that none is taken for lost."""
+    """In the rubric's order, with its number; pending ones have no score, so that they do not look failed."""
     report = SAMPLES[name].grade()
     data = results(report)
     for test, result in zip(data["tests"], report.results, strict=True):
@@ -59,9 +59,9 @@ def test_one_part_alone_keeps_its_numbers() -> None:
 
 
 def test_points_are_exact(tmp_path: Path) -> None:
-    """Halves, quarters and eighths add up; a test that is worth nothing has a score of 0."""
+    """Halves, quarters and eighths add up; a test without points has a score of 0."""
     data = results(half_points(tmp_path))
-    assert [(each["score"], each["max_score"], each["status"]) for each in data["tests"]] == [
+    assert [(test["score"], test["max_score"], test["status"]) for test in data["tests"]] == [
         (0, 0.5, "failed"),
         (0.25, 0.25, "passed"),
         (0, 0, "failed"),
@@ -70,28 +70,28 @@ def test_points_are_exact(tmp_path: Path) -> None:
     ]
 
 
-def test_what_a_person_has_decided_has_its_points() -> None:
-    """It is pending no more, and passed only with all its points."""
+def test_manual_marks_have_their_points() -> None:
+    """A marked criterion is not pending, and passed only with full points."""
     report = marked()
     data = results(report)
-    by_hand = {
+    manual = {
         result.outcome.status: (test["score"], test["status"])
         for test, result in zip(data["tests"], report.results, strict=True)
         if result.manual_mark is not None
     }
-    assert {status: decided for status, (_, decided) in by_hand.items()} == {
+    assert {status: decided for status, (_, decided) in manual.items()} == {
         "failed": "passed",
         "passed": "failed",
         "pending": "failed",
     }
 
 
-def test_the_output_is_markdown_that_stands_for_itself() -> None:
-    """The whole submission above, each criterion beside its test; every piece is rendered alone."""
+def test_each_output_is_complete_markdown() -> None:
+    """The submission's output is first, and each test has its own; every one is rendered alone."""
     data = results(SAMPLES["several-mistakes"].grade())
     assert read_as_github(data["output"]).findtext("h1") == "42 / 70 points: IRP Lab 6: a wheeled base"
     by_id = {test["tags"][0]: read_as_github(test["output"]) for test in data["tests"]}
-    assert [each.tag for each in by_id["base-green"]] == ["p", "p", "p", "pre", "p"]
+    assert [element.tag for element in by_id["base-green"]] == ["p", "p", "p", "pre", "p"]
     assert by_id["base-green"].findtext("pre/code") == '6 | <color rgba="0 1 0 1" />\n  |        --------------\n'
     assert data["visibility"] == "visible"
     assert data["stdout_visibility"] == "hidden"

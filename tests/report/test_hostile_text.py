@@ -1,4 +1,4 @@
-"""Whatever a student writes, each format stays what it is: no command, no markup, no link, no escape comes through."""
+"""Whatever a student writes, each format keeps its structure: no command, markup, link or escape comes through."""
 
 import io
 import os
@@ -21,9 +21,9 @@ from grader.grading.report import Report
 from grader.report.formats import Format, render
 from grader.report.locations import Base
 from grader.submission.submission import read_submission
-from tests.report.hostile import BREAKING, PIECES, SLOTS, TEXT, UNASKED, hand_in, name_of
+from tests.report.hostile import BREAKING, PIECES, SLOTS, TEXT, UNASKED, name_of, write_submission
 from tests.report.readers import reader
-from tests.report.recast import recast
+from tests.report.rewording import recast
 from tests.report.workflow_commands import commands
 from tests.robot.edge_cases import EDGE_CASES
 from tests.samples import LAB6, SAMPLES, opened
@@ -36,44 +36,44 @@ FENCES = {"answer": "`" * 300 + "\n![x](http://e.org/y.png)\n# h\n", "file": "`"
 
 
 def is_harmless(text: str, kind: Format | None = None) -> None:
-    """UTF-8, all of it visible, and of GitHub's commands none but annotations, which only their own format holds."""
+    """Assert that a text is visible UTF-8 without GitHub commands, except annotations in their own format."""
     text.encode()
-    unseen = {each for each in text if not each.isprintable()} - {"\n"}
+    unseen = {character for character in text if not character.isprintable()} - {"\n"}
     assert unseen <= ({"\u2060"} if kind is Format.MARKDOWN else set())  # it keeps mentions from being found
     found = commands(text) if kind is not Format.MARKDOWN else []
     assert kind is Format.GITHUB or not found
-    assert {each.name for each in found} <= ANNOTATIONS
-    for each in found:
-        keys = [key for key, _ in each.properties]
+    assert {command.name for command in found} <= ANNOTATIONS
+    for command in found:
+        keys = [key for key, _ in command.properties]
         assert set(keys) <= PROPERTIES
         assert len(set(keys)) == len(keys)
 
 
-def pieces(report: Report, base: Base) -> dict[Format, Any]:
-    """What every format is made of where all words are harmless."""
+def harmless_structures(report: Report, base: Base) -> dict[Format, Any]:
+    """Return the structure of every format for harmless text."""
     twin = recast(report, lambda: "words")
     return {kind: reader(kind).structure(render(twin, kind, base)) for kind in Format}
 
 
-def holds(report: Report, base: Base, wanted: Mapping[Format, Any] | None = None) -> None:
-    """Every format is valid, harmless, and made of the same pieces as with harmless words."""
-    wanted = pieces(report, base) if wanted is None else wanted
+def assert_harmless(report: Report, base: Base, expected: Mapping[Format, Any] | None = None) -> None:
+    """Assert that every format is valid, harmless, and has the same structure as with harmless text."""
+    expected = harmless_structures(report, base) if expected is None else expected
     for kind in Format:
         text = render(report, kind, base)
         is_harmless(text, kind)
         assert kind is Format.GITHUB or not commands(text)
         reader(kind).parse(text)
-        assert reader(kind).structure(text) == wanted[kind], kind
+        assert reader(kind).structure(text) == expected[kind], kind
 
 
 def written(texts: Mapping[str, str]) -> Report:
-    """The report on a hand-in with these texts, from files on disk."""
+    """Return the report on a submission with these texts, from files on disk."""
     with tempfile.TemporaryDirectory() as folder:
-        place = Path(os.fsdecode(os.path.join(os.fsencode(folder), name_of(texts.get("note", "x")))))
-        hand_in(place, texts)
-        report = grade(LAB6, opened(place))
-        assert not report.counts("errored"), [each.traceback for each in report.results if each.traceback]
-        holds(report, Base(f"{place.name}/"))
+        target = Path(os.fsdecode(os.path.join(os.fsencode(folder), name_of(texts.get("note", "x")))))
+        write_submission(target, texts)
+        report = grade(LAB6, opened(target))
+        assert not report.counts("errored"), [result.traceback for result in report.results if result.traceback]
+        assert_harmless(report, Base(f"{target.name}/"))
         return report
 
 
@@ -82,35 +82,35 @@ def written(texts: Mapping[str, str]) -> Report:
 @example(EVERYWHERE)
 @example(FENCES)
 @settings(max_examples=100)
-def test_of_a_hand_in_only_words_come_through(texts: Mapping[str, str]) -> None:
-    """Names of robots, links, joints, materials, files and folders, comments, answers, values and strings in Python."""
+def test_text_of_a_submission_stays_text(texts: Mapping[str, str]) -> None:
+    """Names of robots, links, joints, materials, files and folders, comments, answers, values and Python strings."""
     written(texts)
 
 
 @given(st.dictionaries(st.sampled_from(UNASKED), TEXT, min_size=1))
 @settings(max_examples=40)
-def test_words_that_nobody_asks_for_cost_nothing(texts: Mapping[str, str]) -> None:
+def test_irrelevant_text_does_not_affect_the_score(texts: Mapping[str, str]) -> None:
     """The score is that of the reference, whatever its robot, a colour, or a file beside it is called."""
     assert written(texts).score == 90
 
 
-def test_of_a_broken_file_only_words_come_through() -> None:
-    """Whatever ROS 2 makes of a URDF: some of those that its reader is held against."""
+def test_text_of_a_broken_file_stays_text() -> None:
+    """Some of the URDFs on which the reader is compared with ROS 2."""
     for case in EDGE_CASES[::40]:
         if len(case.text) < 20_000:
-            holds(grade(LAB6, read_submission(case.text, identity=case.name, path="a.urdf")), Base())
+            assert_harmless(grade(LAB6, read_submission(case.text, identity=case.name, path="a.urdf")), Base())
 
 
 @cache
 def report_of(name: str) -> Report:
-    """A sample's report."""
+    """Return a sample's report."""
     return SAMPLES[name].grade()
 
 
 @cache
-def pieces_of(name: str, base: Base) -> dict[Format, Any]:
-    """What a sample's report is made of."""
-    return pieces(report_of(name), base)
+def structures_of(name: str, base: Base) -> dict[Format, Any]:
+    """Return the structure of a sample's report in every format."""
+    return harmless_structures(report_of(name), base)
 
 
 @pytest.mark.parametrize("base", [Base(), Base("a b/"), Base(archive="a.zip")], ids=["folder", "below", "archive"])
@@ -118,14 +118,14 @@ def pieces_of(name: str, base: Base) -> dict[Format, Any]:
 @given(words=st.lists(TEXT, min_size=1, max_size=9))
 @example(["`" * 90 + "![x](y)"])
 @settings(max_examples=15)
-def test_of_a_report_only_words_come_through(name: str, base: Base, words: list[str]) -> None:
-    """Also what no file system and no XML can carry: NUL, halves of surrogate pairs, in every message, name and path."""
+def test_text_of_a_report_stays_text(name: str, base: Base, words: list[str]) -> None:
+    """Also text that no file system and no XML can hold: NUL and lone surrogates, in every message, name and path."""
     following = cycle(words)
-    holds(recast(report_of(name), lambda: next(following)), base, pieces_of(name, base))
+    assert_harmless(recast(report_of(name), lambda: next(following)), base, structures_of(name, base))
 
 
 def cli(*arguments: str, **variables: str) -> tuple[int, str, str]:
-    """Run a command in this process: its exit code, and what it has written to standard output and error."""
+    """Run a command in this process; return its exit code, standard output and standard error."""
     out, err = (io.TextIOWrapper(io.BytesIO(), "utf-8", "backslashreplace", newline="\n") for _ in range(2))
     with patch.dict(os.environ, variables), redirect_stdout(out), redirect_stderr(err):
         code = run(arguments)
@@ -141,32 +141,32 @@ def cli(*arguments: str, **variables: str) -> tuple[int, str, str]:
 @given(TEXTS)
 @example(EVERYWHERE)
 @settings(max_examples=60)
-def test_what_is_printed_in_a_job_is_harmless(texts: Mapping[str, str]) -> None:
-    """Reports, warnings and inspections hold no command; standard error holds annotations, and the summary is Markdown."""
+def test_output_in_a_job_is_harmless(texts: Mapping[str, str]) -> None:
+    """Reports, warnings and inspections contain no command; standard error has annotations, and the summary is Markdown."""
     with tempfile.TemporaryDirectory() as folder:
-        place = Path(os.fsdecode(os.path.join(os.fsencode(folder), name_of(texts.get("note", "x")))))
-        hand_in(place, texts)
+        target = Path(os.fsdecode(os.path.join(os.fsencode(folder), name_of(texts.get("note", "x")))))
+        write_submission(target, texts)
         summary = Path(folder) / "summary"
         job = {"GITHUB_ACTIONS": "true", "GITHUB_WORKSPACE": folder, "GITHUB_STEP_SUMMARY": str(summary)}
-        code, out, err = cli("grade", str(place), **job)
+        code, out, err = cli("grade", str(target), **job)
         assert code in (0, 1)
         is_harmless(out)
         is_harmless(err, Format.GITHUB)
         assert len(commands(err)) == err.count("\n")
         is_harmless(summary.read_text(encoding="utf-8"), Format.MARKDOWN)
         for command in ("grade", "inspect"):
-            _, out, err = cli(command, str(place))
+            _, out, err = cli(command, str(target))
             is_harmless(out)
             is_harmless(err)
-        _, out, err = cli("inspect", str(place), "--format", "json")
+        _, out, err = cli("inspect", str(target), "--format", "json")
         is_harmless(out)
 
 
 @given(TEXT)
 @example("##[error]x\n::error::y")
 @settings(max_examples=60)
-def test_a_path_that_is_not_there_is_told_harmlessly(text: str) -> None:
-    """The reason why nothing was graded names it, on standard error and in the summary."""
+def test_a_missing_path_is_escaped(text: str) -> None:
+    """The message on standard error and in the summary names the path."""
     with tempfile.TemporaryDirectory() as folder:
         summary = Path(folder) / "summary"
         name = os.fsdecode(name_of(text))
@@ -174,5 +174,5 @@ def test_a_path_that_is_not_there_is_told_harmlessly(text: str) -> None:
         code, out, err = cli("grade", f"{folder}/{name}", **job)
         assert (code, out) == (2, "")
         is_harmless(err, Format.GITHUB)
-        assert [each.get("title") for each in commands(err)] == ["Nothing was graded"]
+        assert [command.get("title") for command in commands(err)] == ["Nothing was graded"]
         is_harmless(summary.read_text(encoding="utf-8"), Format.MARKDOWN)

@@ -26,14 +26,14 @@ RUBRIC = load_rubric("lab6")
 
 
 def valid(text: str, schema: dict[str, Any]) -> Any:
-    """The data of a JSON text, which must be valid and hold no NaN."""
+    """Return the data of a JSON text, which must be valid and without NaN."""
     data = json.loads(text, parse_constant=pytest.fail)
     jsonschema.Draft202012Validator(schema).validate(data)
     return data
 
 
 def inspected(data: bytes) -> str:
-    """The inspection of a file's bytes as JSON."""
+    """Return the inspection of a file's bytes as JSON."""
     reading = read_urdf(data, "a.urdf")
     robot = Configuration(reading.robot) if reading.robot is not None else None
     return inspection_json(Inspection("a.urdf", reading, robot, main_root(robot) if robot else None))
@@ -42,8 +42,8 @@ def inspected(data: bytes) -> str:
 @pytest.mark.parametrize(
     "schema", [REPORT_SCHEMA, INSPECT_SCHEMA, rubric_schema()], ids=["report", "inspect", "rubric"]
 )
-def test_a_schema_is_one(schema: dict[str, Any]) -> None:
-    """What is printed as a schema is a JSON Schema."""
+def test_schemas_are_json_schemas(schema: dict[str, Any]) -> None:
+    """Every printed schema is a JSON Schema."""
     jsonschema.Draft202012Validator.check_schema(schema)
 
 
@@ -63,7 +63,9 @@ def test_reports_are_valid(name: str) -> None:
 @pytest.mark.slow
 def test_reports_and_inspections_of_every_edge_case_are_valid() -> None:
     """Whatever the file: no exception, no NaN, no invalid Unicode."""
-    report_schema, inspect_schema = (jsonschema.Draft202012Validator(each) for each in (REPORT_SCHEMA, INSPECT_SCHEMA))
+    report_schema, inspect_schema = (
+        jsonschema.Draft202012Validator(schema) for schema in (REPORT_SCHEMA, INSPECT_SCHEMA)
+    )
     for case in EDGE_CASES:
         if len(case.text) > 20_000:
             continue
@@ -94,7 +96,7 @@ def test_points_are_exact() -> None:
 
 
 def test_measured_values_have_no_minus_zero_and_no_nan() -> None:
-    """What no machine agrees on is rounded away; what is no number is null."""
+    """Digits that differ between machines are rounded away; values that are not finite are null."""
     assert str(rounded(-0.0)) == "0.0"
     assert rounded((1e-9, float("nan"), float("inf"), 0.1 + 0.2)) == [0.0, None, None, 0.3]
     assert rounded(None) is None
@@ -103,7 +105,7 @@ def test_measured_values_have_no_minus_zero_and_no_nan() -> None:
 
 @given(st.lists(st.tuples(st.text(), st.text() | st.none() | st.lists(st.text())), min_size=1))
 def test_lines_are_only_layout(values: list[tuple[str, Any]]) -> None:
-    """A list of objects has a line for each, whatever its texts hold, and reads back as it was."""
+    """A list of objects has a line for each, whatever its strings contain, and reads back unchanged."""
     rows = [{"id": name, "x": value} for name, value in values]
     text = to_json({"rows": rows})
     assert json.loads(text) == {"rows": rows}
@@ -111,7 +113,7 @@ def test_lines_are_only_layout(values: list[tuple[str, Any]]) -> None:
 
 
 @given(st.text(max_size=30))
-def test_a_students_text_reaches_the_report_as_text(name: str) -> None:
+def test_a_students_text_is_data(name: str) -> None:
     """Quotes, control characters, lone surrogates: the JSON is valid UTF-8 and valid JSON."""
     escaped = name.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
     data = f'<robot name="{escaped}"><link name="{escaped}"/><link name="b"/></robot>'.encode("utf-8", "surrogatepass")

@@ -20,21 +20,21 @@ LAB = Base("lab/")
 
 
 def read_back(report: Report, base: Base = LAB) -> Any:
-    """A report as junitparser reads it, after the schemas have had a look."""
+    """Return a report as junitparser reads it, after validation."""
     text = render_junit(report, base)
     read_junit(text)
     return JUnitXml.fromstring(text.encode())
 
 
 def cases(report: Report, base: Base = LAB) -> list[tuple[Result, Any]]:
-    """Each criterion's result beside its test case."""
+    """Return each criterion's result with its test case."""
     found = [case for suite in read_back(report, base) for case in suite]
     return list(zip(report.results, found, strict=True))
 
 
 @pytest.mark.parametrize("name", SAMPLES)
 def test_every_criterion_is_a_test_case(name: str) -> None:
-    """Its kind, its points, its file and line are those of the report, and every count is right."""
+    """Kind, points, file and line are those of the report, and every count is correct."""
     report = SAMPLES[name].grade()
     xml = read_back(report)
     assert (xml.tests, xml.failures, xml.errors) == (
@@ -45,8 +45,8 @@ def test_every_criterion_is_a_test_case(name: str) -> None:
     assert sum(suite.skipped for suite in xml) == report.counts("skipped", "pending")
     assert [suite.name for suite in xml] == [report.rubric.part(part).title for part in report.parts]
     for part, suite in zip(report.parts, xml, strict=True):
-        own = [each for each in report.results if each.criterion.part == part]
-        assert (suite.tests, suite.failures) == (len(own), sum(each.outcome.status == "failed" for each in own))
+        own = [result for result in report.results if result.criterion.part == part]
+        assert (suite.tests, suite.failures) == (len(own), sum(result.outcome.status == "failed" for result in own))
     for result, case in cases(report):
         _is_equal(result, case)
 
@@ -55,10 +55,10 @@ def _is_equal(result: Result, case: Any) -> None:
     criterion, outcome = result.criterion, result.outcome
     assert case.name == f"{criterion.title} ({criterion.id})"
     assert case.classname == f"lab6.{criterion.part}"
-    points = {each.name: each.value for each in case.properties()}["points"]
+    points = {entry.name: entry.value for entry in case.properties()}["points"]
     assert tuple(map(Decimal, points.split("/"))) == (result.points, criterion.points)
-    wanted = KINDS[outcome.status]
-    assert [type(each) for each in case.result] == ([wanted] if wanted else [])
+    expected = KINDS[outcome.status]
+    assert [type(result) for result in case.result] == ([expected] if expected else [])
     for found in case.result:
         assert found.type == outcome.status
         assert found.text.startswith(found.message + "\n")
@@ -67,11 +67,11 @@ def _is_equal(result: Result, case: Any) -> None:
     assert case._elem.get("line") == (str(where.line) if where is not None else None)
 
 
-def test_the_whole_submission_is_in_the_properties() -> None:
-    """Score, what waits, and where all this comes from; strings, and exact."""
+def test_the_submission_is_in_the_properties() -> None:
+    """Score, pending points, versions and paths are exact strings."""
     report = SAMPLES["reference"].grade()
     (first, *others) = read_back(report)
-    assert {each.name: each.value for each in first.properties()} == {
+    assert {entry.name: entry.value for entry in first.properties()} == {
         "score": "90",
         "max_score": "100",
         "pending": "10",
@@ -85,28 +85,28 @@ def test_the_whole_submission_is_in_the_properties() -> None:
 
 
 def test_a_file_in_an_archive_has_no_line_in_the_repository() -> None:
-    """Readers would look for it beside the archive."""
+    """Readers would look for the file beside the archive."""
     for _, case in cases(SAMPLES["several-mistakes"].grade(), Base(archive="lab6.zip")):
         assert case._elem.get("file") is None
 
 
-def test_what_a_person_has_decided_counts() -> None:
-    """Full points by hand are no failure, whatever the check has found; fewer are one."""
+def test_manual_marks_count() -> None:
+    """Full points are no failure, whatever the check found; fewer are one."""
     found = [(result, case.result) for result, case in cases(marked()) if result.manual_mark is not None]
-    assert sorted((result.outcome.status, [type(each) for each in told]) for result, told in found) == [
+    assert sorted((result.outcome.status, [type(item) for item in reported]) for result, reported in found) == [
         ("failed", []),
         ("passed", [Failure]),
         ("pending", [Failure]),
     ]
-    assert {each.type for _, told in found for each in told} == {"manual mark"}
+    assert {item.type for _, reported in found for item in reported} == {"manual mark"}
 
 
-def test_a_fault_of_ours_is_an_error_and_points_are_exact(tmp_path: Path) -> None:
-    """Half and quarter points stand as they are."""
+def test_an_error_of_the_grader_is_an_error(tmp_path: Path) -> None:
+    """Half and quarter points are exact."""
     report = half_points(tmp_path)
     shown = [next(iter(case.properties())).value for _, case in cases(report)]
     assert shown == ["0/0.5", "0.25/0.25", "0/0", "0/0", "0/0.125"]
-    assert [type(each).__name__ for _, case in cases(report) for each in case.result] == [
+    assert [type(result).__name__ for _, case in cases(report) for result in case.result] == [
         "Failure",
         "Failure",
         "Skipped",

@@ -1,4 +1,4 @@
-"""Every format tells the same: what one of them has no room for is excused in its row of READERS, and nothing else is."""
+"""Every format contains the same facts, except those that its row of READERS excuses."""
 
 import os
 import re
@@ -17,7 +17,7 @@ from tests.samples import SAMPLES
 
 
 class Fact(NamedTuple):
-    """One thing that a format has to tell, in one of several spellings; of a criterion or problem with its id or code."""
+    """A fact that a format must contain, in one of several spellings; for a criterion or problem with its id or code."""
 
     kind: str
     spellings: tuple[str, ...]
@@ -25,23 +25,23 @@ class Fact(NamedTuple):
 
 
 def facts(report: Report) -> Iterator[Fact]:
-    """All that a report tells."""
+    """Yield all facts of a report."""
     for result in report.results:
         yield from _of_criterion(result, report)
     for problem in other_problems(report):
         message, line = printable(problem.message), problem.location.line
-        places = f"{problem.location.path}:{line}", f"line {line}: {message}"
-        for spellings in ((problem.code,), (message,), places):
+        paths = f"{problem.location.path}:{line}", f"line {line}: {message}"
+        for spellings in ((problem.code,), (message,), paths):
             yield Fact("problem", spellings, problem.code)
     submission = report.submission
-    yield from (Fact("note", (each,)) for each in report.notes)
-    yield from (Fact("aside", (words,)) for each in submission.other_candidates for words in each)
-    yield from (Fact("aside", (each,)) for each in submission.ignored)
+    yield from (Fact("note", (note,)) for note in report.notes)
+    yield from (Fact("aside", (words,)) for candidate in submission.other_candidates for words in candidate)
+    yield from (Fact("aside", (path,)) for path in submission.ignored)
     if submission.package is not None and any(report.rubric.part(part).needs == "package" for part in report.parts):
         yield Fact("package", (submission.package.folder or submission.package.name,))
-    score, most, waits = map(format_points, (report.score, report.max_score, report.pending))
+    score, most, is_pending = map(format_points, (report.score, report.max_score, report.pending))
     if report.pending:
-        yield Fact("waits", (f"{waits} points need", f'"pending":{waits},'))
+        yield Fact("waits", (f"{is_pending} points need", f'"pending":{is_pending},'))
     keys = ('"max_score":', '"max-score":', '"maxScore":')
     yield Fact(
         "score",
@@ -71,32 +71,37 @@ def _of_criterion(result: Result, report: Report) -> Iterator[Fact]:
 
 
 def _plain(text: str) -> str:
-    """A text without white space and capitals, which are layout, and without what stops mentions and ends sentences."""
+    """Return a text without white space, capitals, and characters that prevent mentions or end sentences."""
     return re.sub(r"[\s\u2060]+|\.$", "", text).casefold()
 
 
 def missing_from(kind: Format, report: Report) -> Iterator[Fact]:
-    """What a format leaves out. Of more than ten annotations of a type GitHub shows none: the last one names the others."""
+    """Yield the facts that a format omits.
+
+    GitHub shows at most ten annotations of a type; the last one names the others.
+    """
     with patch.dict(os.environ, {"COLUMNS": "500"}):
         text = render(report, kind)
     shown = _plain(READERS[kind].text(text))
-    told = read_commands(text) if kind is Format.GITHUB else []
-    named = {name for each in told for name in each.data.partition("See the report for: ")[2].split(", ")} - {""}
+    reported = read_commands(text) if kind is Format.GITHUB else []
+    named = {name for command in reported for name in command.data.partition("See the report for: ")[2].split(", ")} - {
+        ""
+    }
     for fact in facts(report):
-        if fact.rule not in named and not any(_plain(each) in shown for each in fact.spellings):
+        if fact.rule not in named and not any(_plain(spelling) in shown for spelling in fact.spellings):
             yield fact
 
 
 @pytest.mark.parametrize("name", SAMPLES)
-def test_all_formats_tell_the_same(name: str) -> None:
-    """Of each criterion its title, its message, its place and its feedback; of the submission all that is said of it."""
+def test_all_formats_contain_the_same_facts(name: str) -> None:
+    """For each criterion its title, message, location and feedback; for the submission all of its facts."""
     report = SAMPLES[name].grade()
-    left_out = {(kind.value, fact) for kind in READERS for fact in missing_from(kind, report)}
-    assert not {(kind, fact) for kind, fact in left_out if fact.kind not in READERS[Format(kind)].excused}
+    omitted = {(kind.value, fact) for kind in READERS for fact in missing_from(kind, report)}
+    assert not {(kind, fact) for kind, fact in omitted if fact.kind not in READERS[Format(kind)].excused}
 
 
 def test_every_excuse_is_needed() -> None:
-    """What a format tells after all is excused no longer."""
+    """A format that contains a fact needs no excuse for it."""
     reports = [sample.grade() for sample in SAMPLES.values()]
     for kind, read in READERS.items():
         assert set(read.excused) == {fact.kind for report in reports for fact in missing_from(kind, report)}

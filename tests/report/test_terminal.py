@@ -1,4 +1,4 @@
-"""Reports in the terminal: readable at any width, plain in a pipe, and never commanded by a student's text."""
+"""Reports in the terminal: readable at any width, plain in a pipe, and never controlled by a student's text."""
 
 from io import StringIO
 from pathlib import Path
@@ -29,7 +29,7 @@ HOSTILE = (
 
 
 def printed(data: bytes, width: int = 80, *, terminal: bool = False) -> str:
-    """A report and an inspection of a file's bytes, as a console of this width gets them."""
+    """Return a report and an inspection of a file's bytes for a console of this width."""
     out = StringIO()
     console = Console(file=out, width=width, force_terminal=terminal, color_system="standard" if terminal else None)
     submission = read_submission(data, identity="a", path="a.urdf")
@@ -40,8 +40,8 @@ def printed(data: bytes, width: int = 80, *, terminal: bool = False) -> str:
     return out.getvalue()
 
 
-def test_hostile_text_is_spelt_out() -> None:
-    """Escapes, hyperlinks, right-to-left marks and rich markup come out as what they are: characters."""
+def test_hostile_text_is_escaped() -> None:
+    """Escapes, hyperlinks, bidirectional marks and rich markup are printed as characters."""
     text = printed(HOSTILE)
     assert not any(ord(character) < 0x20 and character != "\n" for character in text)
     assert not set(text) & {"\x7f", "\x9b", "\u202e"}
@@ -54,7 +54,7 @@ def test_hostile_text_is_spelt_out() -> None:
 
 @given(st.text(max_size=40))
 def test_printable_text_is_printable(text: str) -> None:
-    """No control, format or undecodable character is left, and visible text is left alone."""
+    """No control, format or undecodable character remains, and visible text is unchanged."""
     shown = printable(text)
     assert shown.isprintable()
     shown.encode()
@@ -75,7 +75,7 @@ def test_no_line_is_wider_than_the_terminal(name: str, width: int) -> None:
 
 
 def test_the_score_comes_first() -> None:
-    """The first line says the points."""
+    """The first line has the points."""
     report = SAMPLES["several-mistakes"].grade()
     out = StringIO()
     render_terminal(report, Console(file=out, width=80))
@@ -93,8 +93,8 @@ def test_the_score_comes_first() -> None:
         ('<a b="unfinished', 4, 'b="unfinished'),
     ],
 )
-def test_what_is_meant_is_underlined(line: str, column: int, underlined: str) -> None:
-    """The marks stand under the attribute or tag, from its first character to its last."""
+def test_the_location_is_underlined(line: str, column: int, underlined: str) -> None:
+    """The marks are below the attribute or tag, from its first character to its last."""
     out = StringIO()
     show_excerpt(Console(file=out, width=80), Source("a.urdf", f"\n{line}\n"), Location("a.urdf", 2, column), 4)
     text, marks = out.getvalue().splitlines()
@@ -102,8 +102,8 @@ def test_what_is_meant_is_underlined(line: str, column: int, underlined: str) ->
     assert text[start:end] == underlined
 
 
-def test_a_very_long_line_is_cut_around_what_is_meant() -> None:
-    """What is underlined is in view, even far to the right."""
+def test_a_long_line_is_cut_around_the_location() -> None:
+    """The underlined text is in view, even far to the right."""
     out = StringIO()
     line = "<a>" * 500 + '<b c="d"/>'
     show_excerpt(Console(file=out, width=60), Source("a.urdf", line), Location("a.urdf", 1, 1504), 4)
@@ -114,8 +114,8 @@ def test_a_very_long_line_is_cut_around_what_is_meant() -> None:
     assert text[start:end] == 'c="d"'
 
 
-def test_a_tree_of_thousands_is_listed_to_a_limit() -> None:
-    """A deep chain is drawn without recursion and without indenting out of sight; the rest is counted."""
+def test_a_tree_of_thousands_of_links_is_limited() -> None:
+    """A deep chain is drawn without recursion and with limited indentation; the rest is counted."""
     links = "".join(
         f'<link name="l{i}"/><joint name="j{i}" type="fixed"><parent link="l{i - 1}"/><child link="l{i}"/></joint>'
         for i in range(1, 3000)

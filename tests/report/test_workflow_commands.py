@@ -1,4 +1,4 @@
-"""The reader of workflow commands finds what a runner finds: the other tests rely on it."""
+"""The reader of workflow commands finds what a runner finds, because other tests rely on it."""
 
 import pytest
 
@@ -25,7 +25,7 @@ from tests.report.workflow_commands import Command, commands
     ],
 )
 def test_a_command_is_found(line: str, command: Command) -> None:
-    """In both forms, with space before it, in upper and lower case, and unescaped as the runner does it."""
+    """In both forms, with leading space, in any case, and unescaped as by the runner."""
     for end in ("\n", "\r", "\r\n"):
         assert commands(f"before{end}{line}{end}after{end}") == [command]
 
@@ -44,6 +44,6 @@ def test_a_command_is_found(line: str, command: Command) -> None:
         "::",
     ],
 )
-def test_any_other_line_is_none(line: str) -> None:
-    """Neither what stands in the middle of a line nor a name that nobody registered."""
+def test_other_lines_are_no_command(line: str) -> None:
+    """Neither text in the middle of a line nor an unknown name is a command."""
     assert commands(line) == []

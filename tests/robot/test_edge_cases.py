@@ -41,5 +41,5 @@ def test_names_are_unique() -> None:
 
 
 def test_texts_are_unique() -> None:
-    """No two cases hold the same file."""
+    """No two cases contain the same file."""
     assert len({case.text for case in EDGE_CASES}) == len(EDGE_CASES)

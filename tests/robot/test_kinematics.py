@@ -1,4 +1,4 @@
-"""Where links are: each kind of joint, mimics, forests, defects that stay where they are, loops, size."""
+"""Poses of links: each kind of joint, mimics, several roots, limited effects of defects, loops, size."""
 
 import sys
 from collections.abc import Sequence
@@ -18,7 +18,7 @@ from grader.robot.kinematics import Configuration
 from grader.robot.model import Joint, Link, Mimic, Origin, Robot
 from grader.robot.reader import read_urdf
 from grader.robot.transforms import IDENTITY, Transform, Vector, dot, minus, rotation_about, rotation_from_rpy, unit
-from tests.patience import processor_time
+from tests.processor_time import processor_time
 
 Z: Vector = (0.0, 0.0, 1.0)
 
@@ -31,31 +31,31 @@ scales = st.floats(-150, 150).map(lambda exponent: 10.0**exponent)
 
 
 def joint(ends: str, kind: str = "fixed", **more: Any) -> Joint:
-    """A joint between two links of one letter each, called by these letters."""
+    """Return a joint between two links of one letter each, named by these letters."""
     return Joint(ends, kind, ends[0], ends[1], **more)
 
 
 def robot(*joints: Joint, alone: str = "") -> Robot:
-    """A robot of these joints, with the links that they name in this order, and others."""
-    names = dict.fromkeys([*(end for each in joints for end in (each.parent, each.child)), *alone])
+    """Return a robot of these joints, with the links that they name in this order, and others."""
+    names = dict.fromkeys([*(end for joint in joints for end in (joint.parent, joint.child)), *alone])
     return Robot("r", tuple(Link(name) for name in names if name), joints)
 
 
 def at(*xyz: float) -> Origin:
-    """An origin without a turn."""
+    """Return an origin without a rotation."""
     x, y, z = xyz
     return Origin((x, y, z))
 
 
 def transform(origin: Origin) -> Transform:
-    """T_parent_child of an origin."""
+    """Return T_parent_child of an origin."""
     return Transform(rotation_from_rpy(origin.rpy), origin.xyz)
 
 
-def motion(each: Joint, position: float) -> Transform:
-    """What a joint of one axis, or none, adds to its origin."""
-    x, y, z = unit(each.axis or Z) or Z
-    match each.type:
+def motion(joint: Joint, position: float) -> Transform:
+    """Return the motion that a joint of one axis, or none, adds to its origin."""
+    x, y, z = unit(joint.axis or Z) or Z
+    match joint.type:
         case "continuous":
             return Transform(rotation_about((x, y, z), position))
         case "prismatic":
@@ -64,7 +64,7 @@ def motion(each: Joint, position: float) -> Transform:
 
 
 def near(one: Transform, other: Transform, within: float = 1e-9) -> bool:
-    """Whether two poses are the same but for rounding."""
+    """Return whether two poses are equal up to rounding."""
     return bool(np.allclose(np.array(one), np.array(other), rtol=0, atol=within))
 
 
@@ -95,8 +95,8 @@ def test_a_sliding_joint_slides_by_metres(axis: Vector, scale: float, way: float
 
 
 @given(normal=axes, x=lengths, y=lengths, angle=angles)
-def test_a_planar_joint_moves_across_its_normal(normal: Vector, x: float, y: float, angle: float) -> None:
-    """It slides in the plane across the normal, x and y at right angles, and turns about the normal."""
+def test_a_planar_joint_moves_perpendicular_to_its_normal(normal: Vector, x: float, y: float, angle: float) -> None:
+    """It slides in the plane of its normal, x and y at right angles, and turns about the normal."""
     direction = unit(normal)
     assert direction is not None
     moving = robot(joint("ab", "planar", axis=normal))
@@ -113,7 +113,7 @@ def test_a_planar_joint_moves_across_its_normal(normal: Vector, x: float, y: flo
 
 
 @given(x=lengths, y=lengths, angle=angles, length=st.floats(1e-3, 1e3))
-def test_a_planar_joint_across_z_slides_in_x_and_y(x: float, y: float, angle: float, length: float) -> None:
+def test_a_planar_joint_with_normal_z_slides_in_x_and_y(x: float, y: float, angle: float, length: float) -> None:
     """With the z axis as its normal, x and y are the frame's."""
     pose = Configuration(robot(joint("ab", "planar", axis=(0.0, 0.0, length))), {"ab": (x, y, angle)}).pose("b")
     assert near(pose, Transform(rotation_from_rpy((0.0, 0.0, angle)), (x, y, 0.0)))
@@ -121,7 +121,7 @@ def test_a_planar_joint_across_z_slides_in_x_and_y(x: float, y: float, angle: fl
 
 @given(normal=axes)
 def test_a_planar_joint_has_a_right_handed_plane(normal: Vector) -> None:
-    """x, y and the normal are right-handed, for every normal but the opposite of z too."""
+    """x, y and the normal are right-handed, for every normal, also for the opposite of z."""
     direction = unit(normal)
     assert direction is not None
     moving = robot(joint("ab", "planar", axis=normal))
@@ -139,7 +139,7 @@ def test_a_floating_joint_takes_a_whole_pose(xyz: Vector, rpy: Vector, origin: O
 
 
 @pytest.mark.parametrize("kind", ["fixed", *DEGREES_OF_FREEDOM, "Fixed", ""])
-def test_every_joint_rests_at_its_origin(kind: str) -> None:
+def test_every_joint_at_zero_is_at_its_origin(kind: str) -> None:
     """At 0 a joint of any type, known or not, adds nothing."""
     origin = Origin((1.0, 2.0, 3.0), (0.1, 0.2, 0.3))
     assert Configuration(robot(joint("ab", kind, origin=origin, axis=Z))).pose("b") == transform(origin)
@@ -160,7 +160,7 @@ def test_every_joint_rests_at_its_origin(kind: str) -> None:
     ],
 )
 def test_positions_of_the_wrong_shape_are_refused(kind: str, position: Position) -> None:
-    """A position has as many numbers as the joint's type moves in; the message names the joint."""
+    """A position has as many numbers as the joint's type has degrees of freedom; the message names the joint."""
     with pytest.raises(ValueError, match="joint 'ab'"):
         Configuration(robot(joint("ab", kind)), {"ab": position})
     with pytest.raises(ValueError, match="joint 'ab'"):
@@ -168,13 +168,13 @@ def test_positions_of_the_wrong_shape_are_refused(kind: str, position: Position)
 
 
 def test_positions_of_unknown_joints_are_refused() -> None:
-    """The error names the joints that there are."""
+    """The error lists the existing joints."""
     with pytest.raises(MissingElement, match=r"'ba'.*'ab'"):
         Configuration(robot(joint("ab")), {"ba": 1.0})
 
 
 def test_moved_changes_one_joint() -> None:
-    """The other positions stay, and so does the configuration that is asked."""
+    """The other positions stay, and so does the original configuration."""
     still = Configuration(robot(joint("ab", "prismatic"), joint("bc", "prismatic")), {"ab": 1.0})
     moved = still.moved("bc", 2.0)
     assert moved.pose("c").translation == (3.0, 0.0, 0.0)
@@ -184,12 +184,12 @@ def test_moved_changes_one_joint() -> None:
         still.moved("cd", 1.0)
 
 
-@given(origin=origins, angle=angles, asked=st.booleans())
-def test_moved_is_a_new_configuration(origin: Origin, angle: float, asked: bool) -> None:
-    """Poses that were asked for before do not stick."""
+@given(origin=origins, angle=angles, requested=st.booleans())
+def test_moved_is_a_new_configuration(origin: Origin, angle: float, requested: bool) -> None:
+    """Poses computed before are not reused."""
     turning = robot(joint("ab", "continuous", origin=origin, axis=Z), joint("bc", origin=origin))
     still = Configuration(turning)
-    if asked:
+    if requested:
         still.pose("c", relative_to="b")
     assert still.moved("ab", angle).pose("c") == Configuration(turning, {"ab": angle}).pose("c")
 
@@ -212,47 +212,47 @@ def test_mimics_follow_through_a_chain(multiplier: float, offset: float, second:
     assert Configuration(following).pose("c").translation[0] == pytest.approx(offset, abs=1e-12)
 
 
-def test_a_mimic_that_is_moved_itself_does_not_follow() -> None:
-    """Its own position counts, and those that mimic it follow it."""
+def test_a_mimic_that_is_moved_directly_does_not_follow() -> None:
+    """Its own position counts, and joints that mimic it follow it."""
     following = robot(
         joint("ab", "prismatic"),
         joint("ac", "prismatic", mimic=Mimic("ab", 2.0)),
         joint("ad", "prismatic", mimic=Mimic("ac", 3.0)),
     )
     configuration = Configuration(following, {"ab": 1.0, "ac": 5.0})
-    assert [configuration.pose(each).translation[0] for each in "bcd"] == [1.0, 5.0, 15.0]
+    assert [configuration.pose(name).translation[0] for name in "bcd"] == [1.0, 5.0, 15.0]
     assert Configuration(following, {"ab": 1.0}).moved("ac", 0.0).pose("d").translation[0] == 0.0
 
 
 @pytest.mark.parametrize("length", [1, 2, 3, 500])
-def test_mimics_in_a_circle_stand_still(length: int) -> None:
+def test_cyclic_mimics_stay_at_zero(length: int) -> None:
     """Joints that mimic each other stay at 0, and so does a joint that mimics them."""
     circle = [
         Joint(f"j{index}", "prismatic", "a", f"b{index}", mimic=Mimic(f"j{(index + 1) % length}", 2.0, 1.0))
         for index in range(length)
     ]
-    names = ("a", *(each.child for each in circle))
+    names = ("a", *(joint.child for joint in circle))
     configuration = Configuration(Robot("r", tuple(map(Link, names)), tuple(circle)))
-    assert all(configuration.pose(each.child) == IDENTITY for each in circle)
+    assert all(configuration.pose(joint.child) == IDENTITY for joint in circle)
 
 
-def test_a_circle_of_mimics_is_opened_by_a_position() -> None:
+def test_a_cycle_of_mimics_is_opened_by_a_position() -> None:
     """If one of them is moved, the others follow."""
     circle = robot(
         joint("ab", "prismatic", mimic=Mimic("ac", 2.0)), joint("ac", "prismatic", mimic=Mimic("ab", 3.0, 1.0))
     )
     configuration = Configuration(circle, {"ab": 1.0})
-    assert [configuration.pose(each).translation[0] for each in "bc"] == [1.0, 4.0]
+    assert [configuration.pose(name).translation[0] for name in "bc"] == [1.0, 4.0]
 
 
 def test_a_mimic_of_a_missing_joint_is_at_its_offset() -> None:
-    """Nothing moves it; the offset is all that is left."""
+    """Nothing moves it; only the offset remains."""
     configuration = Configuration(robot(joint("ab", "prismatic", mimic=Mimic("nothing", 2.0, 0.5))))
     assert configuration.pose("b").translation == (0.5, 0.0, 0.0)
 
 
 def test_a_mimic_of_a_joint_with_more_numbers() -> None:
-    """A planar or floating joint has no single position to follow: the offset is left."""
+    """A planar or floating joint has no single position to follow: only the offset remains."""
     following = robot(joint("ab", "planar", axis=Z), joint("ac", "prismatic", mimic=Mimic("ab", 2.0, 0.5)))
     assert Configuration(following, {"ab": (1.0, 2.0, 3.0)}).pose("c").translation == (0.5, 0.0, 0.0)
 
@@ -262,7 +262,7 @@ def test_a_mimic_of_a_joint_with_more_numbers() -> None:
 
 @st.composite
 def trees(draw: st.DrawFn) -> Robot:
-    """Robots of 1 to 15 links under one root, joints of all single-axis types in random order."""
+    """Draw robots of 1 to 15 links under one root, joints of all single-axis types in random order."""
     count = draw(st.integers(1, 15))
     joints = [
         Joint(
@@ -281,21 +281,21 @@ def trees(draw: st.DrawFn) -> Robot:
 
 @given(tree=trees(), draw=st.data())
 def test_poses_are_products_along_the_tree(tree: Robot, draw: st.DataObject) -> None:
-    """A child's pose is its parent's, the joint's origin and the joint's motion, in whichever order one asks."""
-    positions = {each.name: draw.draw(angles) for each in tree.joints if each.type != "fixed"}
+    """A child's pose is its parent's times the joint's origin times the joint's motion, in any order of the queries."""
+    positions = {joint.name: draw.draw(angles) for joint in tree.joints if joint.type != "fixed"}
     configuration = Configuration(tree, positions)
     assert configuration.roots == ("l0",)
     assert configuration.pose("l0") == IDENTITY
-    for each in draw.draw(st.permutations(tree.joints)):
-        assert each.origin is not None
-        step = transform(each.origin) @ motion(each, positions.get(each.name, 0.0))
-        expected = configuration.pose(each.parent) @ step
-        assert near(configuration.pose(each.child), expected, within=1e-8)
-        assert configuration.root_of(each.child) == "l0"
+    for joint in draw.draw(st.permutations(tree.joints)):
+        assert joint.origin is not None
+        step = transform(joint.origin) @ motion(joint, positions.get(joint.name, 0.0))
+        expected = configuration.pose(joint.parent) @ step
+        assert near(configuration.pose(joint.child), expected, within=1e-8)
+        assert configuration.root_of(joint.child) == "l0"
 
 
 @given(tree=trees(), draw=st.data())
-def test_relative_poses_fit_together(tree: Robot, draw: st.DataObject) -> None:
+def test_relative_poses_are_consistent(tree: Robot, draw: st.DataObject) -> None:
     """T_b_c is the inverse of T_a_b times T_a_c, T_b_a undoes T_a_b, and a link in its own frame is at the identity."""
     links = st.sampled_from([link.name for link in tree.links])
     configuration = Configuration(tree)
@@ -308,19 +308,19 @@ def test_relative_poses_fit_together(tree: Robot, draw: st.DataObject) -> None:
 
 
 @given(tree=trees(), draw=st.data())
-def test_ways_between_links(tree: Robot, draw: st.DataObject) -> None:
-    """The way leads up to where the two branches part and down again; no joint twice; backwards it is the same way."""
+def test_paths_between_links(tree: Robot, draw: st.DataObject) -> None:
+    """The path leads up to the common ancestor and down again; no joint twice; backwards it is the same path."""
     links = st.sampled_from([link.name for link in tree.links])
     configuration = Configuration(tree)
     one, other = draw.draw(links), draw.draw(links)
     way = configuration.between(one, other)
     assert len(set(way)) == len(way)
     assert configuration.between(other, one) == way[::-1]
-    here = one
+    current = one
     for step in way:
-        assert here in (step.parent, step.child)
-        here = step.child if here == step.parent else step.parent
-    assert here == other
+        assert current in (step.parent, step.child)
+        current = step.child if current == step.parent else step.parent
+    assert current == other
 
 
 @given(tree=trees(), draw=st.data())
@@ -331,15 +331,15 @@ def test_chains_lead_down(tree: Robot, draw: st.DataObject) -> None:
     link, above = draw.draw(links), draw.draw(links)
     chain = configuration.chain(link)
     assert chain is not None
-    passed = ["l0", *(each.child for each in chain)]
-    assert [each.parent for each in chain] == passed[:-1]
+    passed = ["l0", *(joint.child for joint in chain)]
+    assert [joint.parent for joint in chain] == passed[:-1]
     assert passed[-1] == link
     part = configuration.chain(link, above=above)
     assert part == (chain[passed.index(above) :] if above in passed else None)
 
 
-def test_asking_for_what_is_not_there() -> None:
-    """Unknown links and joints raise MissingElement, which names what there is, or the one that was meant."""
+def test_missing_links_and_joints() -> None:
+    """Unknown links and joints raise MissingElement, which lists existing ones or a suggestion."""
     configuration = Configuration(robot(joint("ab")))
     for ask in (
         lambda: configuration.pose("x"),
@@ -358,7 +358,7 @@ def test_asking_for_what_is_not_there() -> None:
 
 
 def test_axes_are_unit() -> None:
-    """The axis of a joint in its child's frame, of length 1; a zero or unreadable one has no direction."""
+    """The axis of a joint in its child's frame has length 1; a zero or unreadable one has no direction."""
     named = robot(
         joint("ab", "continuous", axis=(0.0, -3.0, 4.0)),
         joint("ac", "continuous", axis=(0.0, 0.0, 0.0)),
@@ -375,7 +375,7 @@ def test_axes_are_unit() -> None:
 # --- Defects, each of which stays where it is -------------------------------------------------------------------------
 
 
-def test_a_forest_is_solved_tree_by_tree() -> None:
+def test_several_roots_are_solved_separately() -> None:
     """Each root's tree has its poses; between two trees there is no pose, and the message names both links."""
     forest = robot(joint("ab", origin=at(1, 0, 0)), joint("cd", origin=at(0, 1, 0)), alone="e")
     configuration = Configuration(forest)
@@ -392,7 +392,7 @@ def test_a_forest_is_solved_tree_by_tree() -> None:
 
 
 def test_an_unreadable_origin_begins_a_frame_group() -> None:
-    """Behind it poses are known relative to each other; the other links do not notice."""
+    """Below it poses are known relative to each other; other links are not affected."""
     broken = robot(
         joint("ab", origin=at(1, 0, 0)),
         joint("bc", origin=None),
@@ -407,7 +407,7 @@ def test_an_unreadable_origin_begins_a_frame_group() -> None:
         with pytest.raises(MissingElement, match=r"is undefined: the joint's origin cannot be read .joint 'bc'"):
             configuration.pose(one, relative_to=other)
     assert configuration.root_of("e") == "a"
-    assert [each.name for each in configuration.between("e", "a")] == ["ce", "bc", "ab"]
+    assert [joint.name for joint in configuration.between("e", "a")] == ["ce", "bc", "ab"]
 
 
 def test_two_frame_groups_name_a_joint_between_them() -> None:
@@ -436,14 +436,14 @@ def test_a_zero_axis_hides_what_is_below_it(kind: str, position: float | None) -
 
 
 @pytest.mark.parametrize("kind", ["fixed", "floating", "unknown"])
-def test_a_zero_axis_does_not_matter_where_none_is_used(kind: str) -> None:
+def test_a_zero_axis_does_not_matter_if_none_is_used(kind: str) -> None:
     """Fixed and floating joints have no axis."""
     assert Configuration(robot(joint("ab", kind, axis=(0.0, 0.0, 0.0)))).pose("b") == IDENTITY
 
 
 @pytest.mark.parametrize("names", [("j1", "j2"), ("j2", "j1"), ("J2", "j1"), ("a", "é")])
 def test_of_two_parent_joints_the_last_by_name_counts(names: tuple[str, str]) -> None:
-    """Whatever the order in the file, the joint whose name sorts last decides, as in urdfdom's map of joints."""
+    """Whatever the order in the file, the joint whose name sorts last counts, as in urdfdom's map of joints."""
     joints = [Joint(name, "fixed", "a", "b", at(index, 0, 0)) for index, name in enumerate(names)]
     for order in (joints, joints[::-1]):
         configuration = Configuration(robot(*order))
@@ -453,7 +453,7 @@ def test_of_two_parent_joints_the_last_by_name_counts(names: tuple[str, str]) ->
 
 @pytest.mark.parametrize("ring", ["a", "ab", "abcdefgh"])
 def test_links_on_a_loop_have_no_pose(ring: str) -> None:
-    """Loops, and what hangs on them, raise MissingElement and never run for ever; a tree beside is not touched."""
+    """Loops, and links below them, raise MissingElement and terminate; other trees are not affected."""
     loop = [joint(f"{one}{other}") for one, other in zip(ring, ring[1:] + ring[0], strict=True)]
     configuration = Configuration(robot(*loop, joint(f"{ring[0]}y"), joint("yz"), joint("uv", origin=at(1, 0, 0))))
     for link in (*ring, "y", "z"):
@@ -471,7 +471,7 @@ def test_links_on_a_loop_have_no_pose(ring: str) -> None:
     assert configuration.roots == ("u",)
 
 
-def test_a_joint_to_nowhere_is_no_parent_joint() -> None:
+def test_a_joint_without_links_is_no_parent_joint() -> None:
     """A joint whose parent or child does not exist, or is not given, is ignored."""
     robot_with_gaps = Robot(
         "r",
@@ -487,7 +487,7 @@ def test_a_joint_to_nowhere_is_no_parent_joint() -> None:
 
 
 def chain_of(count: int) -> bytes:
-    """A URDF of so many links, one below the other, each 1 mm along x of the last and turned a little."""
+    """Return a URDF of so many links in a chain, each 1 mm along x of the last and turned a little."""
     links = "".join(f'<link name="l{index}"/>\n' for index in range(count))
     joints = "".join(
         f'<joint name="j{index}" type="continuous"><parent link="l{index}"/><child link="l{index + 1}"/>'
@@ -498,7 +498,7 @@ def chain_of(count: int) -> bytes:
 
 
 def seconds_for(count: int) -> float:
-    """The processor time that reading and solving a chain takes, the best of three."""
+    """Return the processor time for reading and solving a chain, the best of three."""
     data = chain_of(count)
     times = []
     for _ in range(3):
@@ -513,7 +513,7 @@ def seconds_for(count: int) -> float:
 
 
 def test_a_chain_of_20000_links() -> None:
-    """It is read and solved in less than 5 s, and without recursion, of which Python has far less."""
+    """It is read and solved in less than 5 s, and without recursion, whose depth Python limits."""
     assert sys.getrecursionlimit() < 20_000
     data = chain_of(20_000)
     with processor_time(5.0):
@@ -529,12 +529,12 @@ def test_a_chain_of_20000_links() -> None:
 
 
 def test_time_grows_with_the_number_of_links() -> None:
-    """A link of a chain of 10,000 takes less than four times as long as one of 1,000."""
+    """A link in a chain of 10,000 takes less than four times as long as one in a chain of 1,000."""
     assert seconds_for(10_000) / 10 < 4 * seconds_for(1_000)
 
 
 def ask_all(links: int, joints: list[Joint]) -> None:
-    """Ask for the pose of every link; it may be refused."""
+    """Compute the pose of every link, ignoring missing ones."""
     configuration = Configuration(Robot("r", tuple(Link(f"l{index}") for index in range(links)), tuple(joints)))
     for index in range(links):
         with suppress(MissingElement):
@@ -542,7 +542,7 @@ def ask_all(links: int, joints: list[Joint]) -> None:
 
 
 def test_links_on_a_long_loop_are_refused_in_linear_time() -> None:
-    """Asking for each of 6,000 links on a loop does not walk the loop 6,000 times."""
+    """Computing the poses of 6,000 links on a loop does not walk the loop 6,000 times."""
     count = 6000
     joints = [Joint(f"j{index}", "fixed", f"l{index}", f"l{(index + 1) % count}") for index in range(count)]
     with processor_time(1.0):
@@ -550,7 +550,7 @@ def test_links_on_a_long_loop_are_refused_in_linear_time() -> None:
 
 
 def test_links_below_a_defect_are_refused_in_linear_time() -> None:
-    """Asking for each of 6,000 links below a zero axis does not walk up to it 6,000 times."""
+    """Computing the poses of 6,000 links below a zero axis does not walk up to it 6,000 times."""
     count = 6000
     joints = [Joint(f"j{index}", "fixed", f"l{index}", f"l{index + 1}") for index in range(1, count - 1)]
     joints.append(Joint("j0", "continuous", "l0", "l1", axis=(0.0, 0.0, 0.0)))
@@ -559,7 +559,7 @@ def test_links_below_a_defect_are_refused_in_linear_time() -> None:
 
 
 def assert_finite_or_missing(configuration: Configuration) -> None:
-    """Every pose, from the root and between any two links, is finite or refused."""
+    """Assert that every pose, from the root and between any two links, is finite or missing."""
     names: Sequence[str] = [link.name for link in configuration.robot.links]
     for link in names:
         for relative_to in (None, *names):
@@ -567,7 +567,7 @@ def assert_finite_or_missing(configuration: Configuration) -> None:
                 pose = configuration.pose(link, relative_to=relative_to)
             except MissingElement:
                 continue
-            assert all(isfinite(each) for each in (*pose.rotation, *pose.translation)), (link, relative_to)
+            assert all(isfinite(number) for number in (*pose.rotation, *pose.translation)), (link, relative_to)
 
 
 huge = st.sampled_from((1.7e308, -1.7e308, 1e308, 1e300, 1e154, 1.0, 0.0, -1e-300)) | st.floats(
@@ -587,7 +587,7 @@ huge_vectors = st.tuples(huge, huge, huge)
 def test_huge_numbers_never_give_nan(
     xyz: list[Vector], rpy: list[Vector], axis: Vector, kind: str, position: float
 ) -> None:
-    """A pose is finite or refused; the link beside the huge ones keeps its own."""
+    """A pose is finite or missing; the link beside the huge ones keeps its own."""
     extreme = robot(
         joint("ab", origin=Origin(xyz[0], rpy[0])),
         joint("bc", kind, origin=Origin(xyz[1], rpy[1]), axis=axis),
@@ -601,7 +601,7 @@ def test_huge_numbers_never_give_nan(
 
 @given(multipliers=st.lists(huge, min_size=2, max_size=2), offsets=st.lists(huge, min_size=2, max_size=2), start=huge)
 def test_huge_mimics_never_give_nan(multipliers: list[float], offsets: list[float], start: float) -> None:
-    """Where following a mimic overflows, the pose is refused like any other that is not defined."""
+    """If a mimic overflows, the pose is missing like any other undefined pose."""
     following = robot(
         joint("ab", "continuous", axis=Z),
         joint("ac", "continuous", axis=Z, mimic=Mimic("ab", multipliers[0], offsets[0])),
@@ -614,15 +614,15 @@ def test_huge_mimics_never_give_nan(multipliers: list[float], offsets: list[floa
 
 @pytest.mark.parametrize("position", [inf, -inf, float("nan")])
 @pytest.mark.parametrize("kind", ["continuous", "prismatic"])
-def test_positions_that_are_no_numbers(kind: str, position: float) -> None:
-    """An infinite or undefined position is refused, at once or when the pose is asked for."""
+def test_positions_that_are_not_finite(kind: str, position: float) -> None:
+    """An infinite or undefined position is refused, at once or when the pose is computed."""
     moving = robot(joint("ab", kind, axis=Z))
     with pytest.raises((ValueError, MissingElement)):
         Configuration(moving, {"ab": position}).pose("b")
 
 
-def test_a_wheel_by_hand() -> None:
-    """A wheel turned a quarter about x: its z axis is the base's y, and a point on its rim goes round it."""
+def test_a_wheel_in_a_known_position() -> None:
+    """A wheel turned a quarter about x: its z axis is the base's y, and a point on its edge circles it."""
     wheel = robot(joint("bw", "continuous", origin=Origin((0.0, 0.2, 0.0), (-pi / 2, 0.0, 0.0)), axis=Z))
     rim = (0.1, 0.0, 0.0)
     pose = Configuration(wheel, {"bw": 0.3}).pose("w")

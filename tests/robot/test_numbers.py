@@ -8,14 +8,14 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from grader.robot.numbers import NumberError, is_version_one, number, numbers, rgba, vector
-from tests.patience import processor_time
+from tests.processor_time import processor_time
 
 _SPACE = " \t\n\v\f\r"
 _DIGITS = "0123456789"
 
 
 def expected_number(text: str) -> float | None:
-    r"""A number by the rule: `[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?` in ASCII, white space before, none after."""
+    r"""Return a number by the rule: `[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?` in ASCII, white space before, none after."""
     rest = text.lstrip(_SPACE)
     sign = -1 if rest[:1] == "-" else 1
     rest = rest[1:] if rest[:1] in ("+", "-") else rest
@@ -52,14 +52,14 @@ def expected_number(text: str) -> float | None:
 
 
 def expected_numbers(text: str) -> list[float] | None:
-    """A list by the rule: split at U+0020 only, empty pieces ignored, every piece a number."""
+    """Split at U+0020 only, ignoring empty pieces; every piece is a number."""
     values = [expected_number(piece) for piece in text.split(" ") if piece]
     known = [value for value in values if value is not None]
     return known if len(known) == len(values) else None
 
 
 def read(text: str) -> float | None:
-    """What `number` makes of a text."""
+    """Return the result of `number` for a text."""
     try:
         return number(text)
     except NumberError:
@@ -67,7 +67,7 @@ def read(text: str) -> float | None:
 
 
 def read_vector(text: str) -> tuple[float, float, float] | None:
-    """What `vector` makes of a text."""
+    """Return the result of `vector` for a text."""
     try:
         return vector(text)
     except NumberError:
@@ -107,7 +107,7 @@ _likely = st.builds(
 @example(text="0e999999999")
 @example(text="-0")
 def test_number_follows_the_rule(text: str) -> None:
-    """The same texts are numbers, with the same value to the last bit; for the others the reason is a NumberError."""
+    """The same texts are numbers, with exactly the same value; for others the reason is a NumberError."""
     expected, actual = expected_number(text), read(text)
     assert repr(actual) == repr(expected)
 
@@ -138,7 +138,7 @@ def test_vector_follows_the_rule(text: str) -> None:
 @settings(max_examples=500)
 @given(text=st.lists(_likely | _relevant, max_size=5).map(" ".join))
 def test_lists_of_any_length(text: str) -> None:
-    """`numbers` takes any count; `rgba` only channels in 0..1, and knows a wrong count from a wrong number."""
+    """`numbers` accepts any count; `rgba` only channels in 0..1, and distinguishes a wrong count from a wrong number."""
     expected = expected_numbers(text)
     try:
         assert repr(numbers(text)) == repr(expected)
@@ -156,7 +156,7 @@ def test_lists_of_any_length(text: str) -> None:
 
 @given(text=st.text(max_size=30) | _relevant)
 def test_only_number_errors_are_raised(text: str) -> None:
-    """Any text at all is a number, or refused with a reason of one line that can be printed."""
+    """Any text is a number, or refused with a printable reason of one line."""
     for function in (number, vector, rgba, numbers):
         try:
             function(text)
@@ -193,7 +193,7 @@ def test_reasons(text: str, reason: str) -> None:
         number(text)
 
 
-def test_a_space_after_a_number_is_called_a_space() -> None:
+def test_a_space_after_a_number_is_reported_as_a_space() -> None:
     """`radius="1 "` contains no tab and no line break, and the message mentions none."""
     with pytest.raises(NumberError) as caught:
         number("1 ")
@@ -202,7 +202,7 @@ def test_a_space_after_a_number_is_called_a_space() -> None:
 
 
 @pytest.mark.parametrize("count", [0, 1, 2, 4, 7])
-def test_a_wrong_count_is_named(count: int) -> None:
+def test_a_wrong_count_is_reported(count: int) -> None:
     """The message says how many numbers there are and how many are needed."""
     with pytest.raises(NumberError, match=f"^it has {count} numbers?, expected 3"):
         vector(" ".join(["1"] * count))

@@ -1,4 +1,4 @@
-"""The reader never raises, says every problem with its exact place, and is done with any file in moderate time."""
+"""The reader never raises, reports every problem at its exact location, and reads any file in linear time."""
 
 from collections.abc import Callable
 from itertools import pairwise
@@ -11,22 +11,22 @@ from grader.errors import MissingElement
 from grader.robot.catalogue import CATALOGUE
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading, read_urdf
-from tests.patience import processor_time
+from tests.processor_time import processor_time
 from tests.robot.edge_cases.case import joint, links, robot
-from tests.robot.problem_samples import SAMPLES, Sample
-from tests.robot.soup import data
+from tests.robot.problem_samples import SAMPLES, ProblemSample
+from tests.robot.random_text import data
 
 _AT_THE_TOP = ("URDF003", "URDF005", "URDF008")  # kinds that are about the beginning of the file
 _EFFECTS = {"rejects": "rejected", "drops": "degraded", "loads": "clean"}
 
 
 def codes(read: Reading) -> list[str]:
-    """The codes of all problems."""
+    """Return the codes of all problems."""
     return [problem.code for problem in read.problems]
 
 
 def message(read: Reading, code: str) -> str:
-    """The message of the only problem of this code."""
+    """Return the message of the only problem of this code."""
     (found,) = [problem.message for problem in read.problems if problem.code == code]
     return found
 
@@ -42,8 +42,8 @@ def message(read: Reading, code: str) -> str:
 @example(raw=b"<robot name='\xff'><link name='\xff'/></robot>")
 @example(raw=b"<robot name='r'><link name='a'/><\xff \xfe='1' \xfe='2'/></robot>")
 def test_nothing_is_raised(raw: bytes) -> None:
-    """Any bytes give a verdict that fits the problems; each problem has a message to print and a place in the text."""
-    read = read_urdf(raw, "soup.urdf")
+    """Any bytes give a verdict that fits the problems; each problem has a printable message and a location."""
+    read = read_urdf(raw, "random.urdf")
     effects = {problem.kind.effect for problem in read.problems}
     expected = next((verdict for effect, verdict in _EFFECTS.items() if effect in effects), "clean")
     assert read.verdict == expected
@@ -51,18 +51,18 @@ def test_nothing_is_raised(raw: bytes) -> None:
     rows = raw.decode("utf-8", "surrogateescape").split("\n")
     for problem in read.problems:
         at = problem.location
-        assert at.path == "soup.urdf"
+        assert at.path == "random.urdf"
         assert 1 <= at.line <= len(rows)
         assert 1 <= at.column <= len(rows[at.line - 1]) + 1
         assert problem.message
         assert problem.message.encode()
-    places = [(problem.location.line, problem.location.column) for problem in read.problems]
-    assert places == sorted(places)
+    locations = [(problem.location.line, problem.location.column) for problem in read.problems]
+    assert locations == sorted(locations)
 
 
 @settings(max_examples=400, deadline=None)
 @given(raw=data)
-def test_whatever_was_read_can_be_asked(raw: bytes) -> None:
+def test_every_link_has_a_pose_or_a_reason(raw: bytes) -> None:
     """Every link of a robot that was read has a pose or a reason for having none."""
     read = read_urdf(raw)
     if read.robot is None:
@@ -79,42 +79,46 @@ def test_whatever_was_read_can_be_asked(raw: bytes) -> None:
 
 
 @pytest.mark.parametrize("sample", SAMPLES, ids=lambda sample: f"{sample.code}-{sample.name}")
-def test_a_problem_is_found_where_it_is(sample: Sample) -> None:
-    """Its line and column are those of the attribute or tag that is meant, and it brings no other problems with it."""
+def test_a_problem_has_its_location(sample: ProblemSample) -> None:
+    """Its line and column are those of its attribute or tag, and there are no other problems."""
     read = read_urdf(sample.data, "sample.urdf")
-    places = [(each.location.line, each.location.column) for each in read.problems if each.code == sample.code]
-    assert sample.place in places, [(each.code, each.message, each.location) for each in read.problems]
+    locations = [
+        (problem.location.line, problem.location.column) for problem in read.problems if problem.code == sample.code
+    ]
+    assert sample.location in locations, [
+        (problem.code, problem.message, problem.location) for problem in read.problems
+    ]
     assert set(codes(read)) == {sample.code, *sample.also.split()}
 
 
 @pytest.mark.parametrize(
     "sample",
-    [each for each in SAMPLES if each.code not in _AT_THE_TOP and "<?xml" not in each.marked[:6]],
+    [sample for sample in SAMPLES if sample.code not in _AT_THE_TOP and "<?xml" not in sample.marked[:6]],
     ids=lambda sample: f"{sample.code}-{sample.name}",
 )
-def test_a_problem_stays_where_it_is_in_another_file(sample: Sample) -> None:
-    """Three lines of comment in front, with CR LF, move it by three lines and change nothing else."""
-    here = read_urdf(sample.data).problems
-    there = read_urdf(b"<!--\r\n\r\n-->\r\n" + sample.data.replace(b"\n", b"\r\n")).problems
-    assert [(each.code, each.location.line - 3, each.location.column) for each in there] == [
-        (each.code, each.location.line, each.location.column) for each in here
+def test_a_problem_moves_with_its_line(sample: ProblemSample) -> None:
+    """Three lines of comment before it, with CR LF, move it by three lines and change nothing else."""
+    first = read_urdf(sample.data).problems
+    second = read_urdf(b"<!--\r\n\r\n-->\r\n" + sample.data.replace(b"\n", b"\r\n")).problems
+    assert [(problem.code, problem.location.line - 3, problem.location.column) for problem in second] == [
+        (problem.code, problem.location.line, problem.location.column) for problem in first
     ]
 
 
 def test_every_kind_of_problem_has_a_sample() -> None:
-    """The catalogue has no kind that no file causes."""
+    """Some file causes every kind in the catalogue."""
     assert {sample.code for sample in SAMPLES} == {kind.code for kind in CATALOGUE}
 
 
-def test_places_count_characters() -> None:
-    """A column is one more than the number of characters before it, tabs and letters beyond ASCII included."""
+def test_locations_count_characters() -> None:
+    """A column is one more than the number of characters before it, including tabs and non-ASCII letters."""
     read = read_urdf("<robot name='r'>\n\t<!-- \u00fc\U0001f916 --><link name='a'/><link  name='a'/></robot>".encode())
     (problem,) = read.problems
     assert (problem.location.line, problem.location.column) == (2, 36)
 
 
-def test_the_attribute_that_is_meant_is_found_among_lookalikes() -> None:
-    """Not the one that ends in the same name, nor the text of another's value."""
+def test_the_attribute_is_found_among_similar_text() -> None:
+    """Neither an attribute that ends in the same name, nor text in another's value."""
     read = read_urdf(
         b"<robot name='r'><link my_name='name=' alt=\"name='b'\" name='a'/><link  x-name='a' name='a'/></robot>"
     )
@@ -127,15 +131,15 @@ def test_the_attribute_that_is_meant_is_found_among_lookalikes() -> None:
 
 
 def test_all_roots_are_named() -> None:
-    """ROS 2 names two; we name them all."""
+    """ROS 2 names two roots; the grader names all."""
     read = read_urdf(robot(links("a", "b", "c", "d", "e") + joint("a", "b")).encode())
     text = message(read, "URDF080")
     assert text.startswith("'c', 'd' and 'e' are not connected to the robot: no joint has them as its child")
     assert "roots are 'a', 'c', 'd', 'e'" in text
 
 
-def test_a_single_loose_link_is_named() -> None:
-    """The message is about the small part, not about the robot."""
+def test_a_single_detached_link_is_named() -> None:
+    """The message names the small part, not the robot."""
     read = read_urdf(robot(links("loose", "a", "b") + joint("a", "b")).encode())
     assert message(read, "URDF080").startswith("'loose' is not connected to the robot: no joint has it as its child")
 
@@ -150,7 +154,7 @@ def test_a_single_loose_link_is_named() -> None:
         ("xy ab ba", "URDF083", "'a' -> 'b' -> 'a'"),
     ],
 )
-def test_loops_are_spelt_link_by_link(ends: str, code: str, spelt: str) -> None:
+def test_loops_are_listed_link_by_link(ends: str, code: str, spelt: str) -> None:
     """Each link of the loop in order, back to the first, and the joints by name."""
     names = dict.fromkeys(ends.replace(" ", ""))
     pairs = ends.split()
@@ -169,7 +173,7 @@ def test_every_separate_loop_is_found() -> None:
     assert codes(read).count("URDF083") == 2
 
 
-def test_mimics_in_a_circle_are_spelt() -> None:
+def test_cyclic_mimics_are_listed() -> None:
     """The names of the joints that follow each other."""
     followers = joint("a", "b", "one", body='<mimic joint="two"/>') + joint(
         "a", "c", "two", body='<mimic joint="one"/>'
@@ -208,13 +212,13 @@ def test_mimics_in_a_circle_are_spelt() -> None:
         ),
     ],
 )
-def test_misspelt_names_are_guessed(text: str, code: str, guess: str) -> None:
-    """The message asks for the name that was likely meant."""
+def test_misspelt_names_have_suggestions(text: str, code: str, guess: str) -> None:
+    """The message suggests a similar name."""
     assert guess in message(read_urdf(text.encode()), code)
 
 
 def test_one_run_finds_all_problems() -> None:
-    """Unrelated mistakes are all reported, in file order."""
+    """Unrelated problems are all reported, in file order."""
     text = robot(
         '<material name="m"><color rgba="255 0 0 1"/></material>\n'
         '<link name="a"><visual/></link>\n'
@@ -228,7 +232,7 @@ def test_several_malformed_tags_are_found_in_one_run() -> None:
     """A broken tag does not hide the next one."""
     text = robot('\n<link name=a/>\n<link name="b", c="d"/>\n<parent="x"/>\n<link name="e"/>\n')
     read = read_urdf(text.encode())
-    assert [(each.code, each.location.line) for each in read.problems] == [
+    assert [(problem.code, problem.location.line) for problem in read.problems] == [
         ("URDF001", 2),
         ("URDF001", 3),
         ("URDF001", 4),
@@ -241,7 +245,7 @@ _LINK = '<link name="a"/>'
 _MEGABYTE = 2**20
 
 
-def test_external_entities_stay_closed() -> None:
+def test_external_entities_are_not_opened() -> None:
     """No file is read: the entity stays as it is written, and the DOCTYPE is a problem."""
     text = f'<!DOCTYPE r [<!ENTITY e SYSTEM "file:///etc/passwd">]><robot name="&e;">{_LINK}&e;</robot>'
     read = read_urdf(text.encode())
@@ -250,8 +254,8 @@ def test_external_entities_stay_closed() -> None:
     assert read.robot.name == "&e;"
 
 
-def test_entities_do_not_multiply() -> None:
-    """A billion laughs stay one."""
+def test_entities_do_not_expand() -> None:
+    """A billion laughs are not expanded."""
     entities = '<!ENTITY l0 "lol">' + "".join(f'<!ENTITY l{n} "{f"&l{n - 1};" * 10}">' for n in range(1, 10))
     text = f'<?xml version="1.0"?>\n<!DOCTYPE r [{entities}]>\n<robot name="&l9;">{_LINK}&l9;</robot>'
     with processor_time(0.5):
@@ -261,7 +265,7 @@ def test_entities_do_not_multiply() -> None:
 
 
 def repeated(pattern: str, size: int) -> str:
-    """So many characters of a pattern; a % in it is replaced by a running number."""
+    """Return so many characters of a pattern; a % in it is replaced by a running number."""
     if "%" not in pattern:
         return pattern * (size // len(pattern))
     count = size // (len(pattern) + 4)
@@ -269,7 +273,7 @@ def repeated(pattern: str, size: int) -> str:
 
 
 def _filled(frame: str) -> Callable[[int], str]:
-    """A frame whose {pattern} is repeated until the file is full."""
+    """Return a frame whose {pattern} is repeated up to the maximum file size."""
     head, _, rest = frame.partition("{")
     pattern, _, tail = rest.partition("}")
     return lambda size: head + repeated(pattern, size - len(head) - len(tail)) + tail
@@ -344,7 +348,7 @@ _FRAMES = {
 
 @pytest.mark.parametrize("frame", _FRAMES.values(), ids=_FRAMES)
 def test_a_megabyte_is_read_in_two_seconds(frame: str) -> None:
-    """Whatever a megabyte is full of, it is read in linear time."""
+    """Whatever a megabyte contains, it is read in linear time."""
     raw = _filled(frame)(_MEGABYTE).encode()
     with processor_time(2.0):
         read_urdf(raw)
@@ -393,8 +397,8 @@ def test_deep_nesting() -> None:
         "doctypes",
     ],
 )
-def test_what_is_said_is_not_much_longer_than_the_file(text: str) -> None:
-    """Names and values are cut in messages, and problems without end are not listed one by one."""
+def test_messages_are_not_much_longer_than_the_file(text: str) -> None:
+    """Names and values are cut in messages, and the number of problems is limited."""
     read = read_urdf(text.encode())
     assert all(len(problem.message) < 5000 for problem in read.problems)
     assert len(read.problems) <= 1100

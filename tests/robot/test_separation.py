@@ -1,4 +1,4 @@
-"""Gaps and depths between shapes: closed forms, laws, sampled directions and an oracle."""
+"""Distances and depths between shapes: closed forms, laws, sampled directions and an oracle."""
 
 import random
 import subprocess
@@ -15,28 +15,28 @@ from grader.robot.separation import penetration, separation
 from grader.robot.shapes import Shape, UnknownShape, extent
 from grader.robot.transforms import IDENTITY, Transform, Vector, rotation_from_rpy, unit
 
-slow = settings(deadline=None)  # the first depth of two leaning cylinders waits for numpy
+slow = settings(deadline=None)  # the first depth of two tilted cylinders imports numpy
 
-NEAR = 1e-4  # metres; what is promised
-FINE = 1e-6  # metres; what is reached where nothing round leans
+NEAR = 1e-4  # metres; the documented accuracy
+FINE = 1e-6  # metres; the accuracy without tilted round shapes
 
 CHASSIS = Box((0.6, 0.4, 0.2))
 WHEEL = Cylinder(0.1, 0.05)
 
 
 def at(x: float, y: float, z: float, rpy: Vector = (0.0, 0.0, 0.0)) -> Transform:
-    """A pose from a position in metres and fixed-axis angles in radians."""
+    """Return a pose from a position in metres and fixed-axis angles in radians."""
     return Transform(rotation_from_rpy(rpy), (x, y, z))
 
 
 def moved(pose: Transform, way: float, direction: Vector) -> Transform:
-    """A pose pushed along a direction, metres."""
+    """Return a pose moved along a direction, metres."""
     x, y, z = (start + way * along for start, along in zip(pose.translation, direction, strict=True))
     return Transform(pose.rotation, (x, y, z))
 
 
 SIDEWAYS = (pi / 2, 0.0, 0.0)
-HAND_MADE = (1.5708, 0.0, 0.0)  # a quarter turn as people write it
+HANDMADE = (1.5708, 0.0, 0.0)  # a quarter turn with the usual rounding
 
 _sizes = st.floats(-3, 1).map(lambda power: 10.0**power) | st.sampled_from((0.0, -0.2, 0.001, 0.5, 1.0))
 boxes = st.builds(Box, st.tuples(_sizes, _sizes, _sizes))
@@ -49,7 +49,7 @@ poses = st.builds(at, _places, _places, _places, st.tuples(_angles, _angles, _an
 
 
 def spread(count: int) -> list[Vector]:
-    """Unit directions all around, evenly spread by the golden angle."""
+    """Return unit directions, evenly distributed by the golden angle."""
     turn = pi * (3.0 - sqrt(5.0))
     heights = [1.0 - (2.0 * step + 1.0) / count for step in range(count)]
     flat = [rotation_from_rpy((0.0, 0.0, turn * step)) for step in range(count)]
@@ -59,8 +59,8 @@ def spread(count: int) -> list[Vector]:
 DIRECTIONS = spread(400)
 
 
-def gap_along(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, direction: Vector) -> float:
-    """How far b begins after the end of a along a direction; negative where they overlap."""
+def distance_along(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, direction: Vector) -> float:
+    """Return how far b starts beyond the end of a along a direction; negative if they overlap."""
     return extent(b, T_w_b, direction)[0] - extent(a, T_w_a, direction)[1]
 
 
@@ -91,7 +91,7 @@ def gap_along(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, direction:
         (Box((2, 2, 2)), at(0, 0, 0), Sphere(0.1), at(1.01, 1.02, 1.02), -0.07),
         (Box((2, 2, 2)), at(0, 0, 0), Sphere(0.1), at(0.7, 0.2, -0.1), -0.4),
         (Box((2, 2, 2)), at(0, 0, 0), Sphere(0.1), at(0, 0, 0), -1.1),
-        # a sphere by a cylinder: beside, above, by the rim; inside, off and on the axis
+        # a sphere by a cylinder: beside, above, at the edge; inside, off and on the axis
         (Cylinder(1, 2), at(0, 0, 0), Sphere(0.1), at(3, 4, 0.5), 3.9),
         (Cylinder(1, 2), at(0, 0, 0), Sphere(0.1), at(0.3, 0.4, -2), 0.9),
         (Cylinder(1, 2), at(0, 0, 0), Sphere(0.1), at(0, 1.3, 1.4), 0.4),
@@ -102,7 +102,7 @@ def gap_along(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, direction:
         (CHASSIS, at(0, 0, 0), WHEEL, at(0.2, 0.325, 0, SIDEWAYS), 0.1),
         (CHASSIS, at(0, 0, 0), WHEEL, at(0.2, 0.225, -0.05, SIDEWAYS), 0.0),
         (CHASSIS, at(0, 0, 0), WHEEL, at(0.2, 0.2025, -0.05, SIDEWAYS), -0.0225),
-        (CHASSIS, at(0, 0, 0), WHEEL, at(0.2, 0.2025, -0.05, HAND_MADE), -0.0225),
+        (CHASSIS, at(0, 0, 0), WHEEL, at(0.2, 0.2025, -0.05, HANDMADE), -0.0225),
         (CHASSIS, at(0, 0, 0), WHEEL, at(0.2, 0, 0, SIDEWAYS), -0.2),
         (CHASSIS, at(0, 0, 0), WHEEL, at(0, 0, 0, SIDEWAYS), -0.2),
         # a pillar by the upright edge of a box, outside and with its axis beyond the edge
@@ -112,7 +112,7 @@ def gap_along(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, direction:
         (WHEEL, at(0, 0, 0, SIDEWAYS), WHEEL, at(0.3, 0, 0, SIDEWAYS), 0.1),
         (WHEEL, at(0, 0, 0, SIDEWAYS), WHEEL, at(0.18, 0, 0, SIDEWAYS), -0.02),
         (WHEEL, at(0, 0, 0, SIDEWAYS), WHEEL, at(0, 0.35, 0, SIDEWAYS), 0.3),
-        (WHEEL, at(0, 0, 0, SIDEWAYS), Cylinder(0.01, 0.4), at(0, 0.1, 0, HAND_MADE), -0.11),
+        (WHEEL, at(0, 0, 0, SIDEWAYS), Cylinder(0.01, 0.4), at(0, 0.1, 0, HANDMADE), -0.11),
         (WHEEL, at(0, 0, 0, SIDEWAYS), Cylinder(0.01, 0.02), at(0, 0, 0, SIDEWAYS), -0.035),
         (Cylinder(0.1, 2), at(0, 0, 0), Cylinder(0.2, 2), at(0, 0.5, 0, (0, pi / 2, 0)), 0.2),
         (Cylinder(0.1, 2), at(0, 0, 0), Cylinder(0.2, 2), at(0, 0.25, 0, (0, pi / 3, 0)), -0.05),
@@ -134,13 +134,13 @@ def gap_along(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, direction:
     ],
 )
 def test_closed_forms(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, expected: float) -> None:
-    """Where the answer can be written down it is found, whichever of the two shapes comes first."""
+    """A distance with a closed form is found, in both orders of the shapes."""
     assert separation(a, T_w_a, b, T_w_b).distance == pytest.approx(expected, abs=FINE)
     assert separation(b, T_w_b, a, T_w_a).distance == pytest.approx(expected, abs=FINE)
 
 
 def test_the_direction_points_from_the_first_shape_to_the_second() -> None:
-    """The direction is given in the world, both for a gap and for a depth."""
+    """The direction is in world coordinates, for a distance and for a depth."""
     turned = (0.0, 0.0, pi / 2)
     apart = separation(CHASSIS, at(5, 5, 5, turned), Sphere(0.1), at(5, 6, 5))
     cutting = separation(CHASSIS, at(5, 5, 5, turned), Sphere(0.1), at(5, 5, 5.06))
@@ -150,21 +150,21 @@ def test_the_direction_points_from_the_first_shape_to_the_second() -> None:
 
 @slow
 @given(a=shapes, T_w_a=poses, b=shapes, T_w_b=poses)
-def test_the_distance_is_the_gap_along_the_direction(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> None:
-    """What is answered can be measured: the shapes' extents along the unit direction lie that far apart."""
+def test_the_distance_is_that_along_the_direction(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> None:
+    """The extents of the shapes along the unit direction are that far apart."""
     found = separation(a, T_w_a, b, T_w_b)
     assert hypot(*found.direction) == pytest.approx(1.0)
-    assert gap_along(a, T_w_a, b, T_w_b, found.direction) == pytest.approx(found.distance, abs=1e-9)
+    assert distance_along(a, T_w_a, b, T_w_b, found.direction) == pytest.approx(found.distance, abs=1e-9)
 
 
 @settings(slow, max_examples=200)
 @given(a=shapes, T_w_a=poses, b=shapes, T_w_b=poses)
-def test_no_other_direction_has_a_wider_gap(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> None:
+def test_no_other_direction_has_a_larger_distance(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> None:
     """Along none of 400 directions, nor along those close to the answer, are the shapes farther apart."""
     found = separation(a, T_w_a, b, T_w_b)
     near = [[0.05 * along + found.direction[i] for i, along in enumerate(way)] for way in DIRECTIONS[::8]]
     nearby = [unit((x, y, z)) or found.direction for x, y, z in near]
-    widest = max(gap_along(a, T_w_a, b, T_w_b, direction) for direction in [*DIRECTIONS, *nearby])
+    widest = max(distance_along(a, T_w_a, b, T_w_b, direction) for direction in [*DIRECTIONS, *nearby])
     assert widest <= found.distance + NEAR
 
 
@@ -172,8 +172,8 @@ def test_no_other_direction_has_a_wider_gap(a: Shape, T_w_a: Transform, b: Shape
 @given(a=shapes, T_w_a=poses, b=shapes, T_w_b=poses)
 def test_both_orders_agree(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> None:
     """The distance from b to a is the distance from a to b."""
-    there, back = separation(a, T_w_a, b, T_w_b), separation(b, T_w_b, a, T_w_a)
-    assert there.distance == pytest.approx(back.distance, abs=NEAR)
+    other, back = separation(a, T_w_a, b, T_w_b), separation(b, T_w_b, a, T_w_a)
+    assert other.distance == pytest.approx(back.distance, abs=NEAR)
 
 
 @slow
@@ -181,17 +181,15 @@ def test_both_orders_agree(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transfor
 def test_a_common_motion_changes_nothing(
     a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, T_v_w: Transform
 ) -> None:
-    """Seen from another frame the distance is the same."""
-    here, there = separation(a, T_w_a, b, T_w_b), separation(a, T_v_w @ T_w_a, b, T_v_w @ T_w_b)
-    assert there.distance == pytest.approx(here.distance, abs=NEAR)
+    """In another frame the distance is the same."""
+    current, other = separation(a, T_w_a, b, T_w_b), separation(a, T_v_w @ T_w_a, b, T_v_w @ T_w_b)
+    assert other.distance == pytest.approx(current.distance, abs=NEAR)
 
 
 @slow
 @given(a=shapes, T_w_a=poses, b=shapes, T_w_b=poses)
-def test_moving_by_the_depth_parts_the_shapes_and_no_less_does(
-    a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform
-) -> None:
-    """Pushed along the direction by minus the distance the shapes touch; a little less and they still cut."""
+def test_the_depth_is_the_smallest_separating_motion(a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> None:
+    """Moved along the direction by minus the distance the shapes touch; a little less and they still overlap."""
     found = separation(a, T_w_a, b, T_w_b)
     touching = separation(a, T_w_a, b, moved(T_w_b, -found.distance, found.direction))
     assert touching.distance == pytest.approx(0.0, abs=NEAR)
@@ -203,10 +201,10 @@ def test_moving_by_the_depth_parts_the_shapes_and_no_less_does(
 
 @slow
 @given(a=shapes, T_w_a=poses, b=shapes, T_w_b=poses, allowed=st.sampled_from((0.0, 1e-3, 0.1)))
-def test_penetration_is_the_depth_where_that_is_not_allowed(
+def test_penetration_is_the_depth_beyond_the_allowed_one(
     a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, allowed: float
 ) -> None:
-    """The answer is 0 up to the allowed depth, and the depth of the separation beyond it."""
+    """It is 0 up to the allowed depth, and the depth of the separation beyond it."""
     depth, found = penetration(a, T_w_a, b, T_w_b, allowed), separation(a, T_w_a, b, T_w_b)
     assert depth == 0.0 or depth > allowed
     assert depth == (pytest.approx(-found.distance) if depth else 0.0)
@@ -218,7 +216,7 @@ def test_penetration_is_the_depth_where_that_is_not_allowed(
     ("pose", "allowed", "expected"),
     [
         (at(0.2, 0.225, -0.05, SIDEWAYS), 0.0, 0.0),
-        (at(0.2, 0.225, -0.05, HAND_MADE), 1e-6, 0.0),
+        (at(0.2, 0.225, -0.05, HANDMADE), 1e-6, 0.0),
         (at(0.2, 0.2025, -0.05, SIDEWAYS), 0.0, 0.0225),
         (at(0.2, 0.2025, -0.05, SIDEWAYS), 0.0225, 0.0),
         (at(0.2, 0.2025, -0.05, SIDEWAYS), 0.0224, 0.0225),
@@ -227,12 +225,12 @@ def test_penetration_is_the_depth_where_that_is_not_allowed(
     ],
 )
 def test_a_wheel_by_a_chassis(pose: Transform, allowed: float, expected: float) -> None:
-    """Touching is apart, and a depth counts from where it is more than allowed."""
+    """Touching is no overlap, and a depth counts only beyond the allowed one."""
     assert penetration(CHASSIS, IDENTITY, WHEEL, pose, allowed) == pytest.approx(expected, abs=1e-9)
 
 
-def test_wheels_and_chassis_do_without_numpy() -> None:
-    """Parts that are separate, touch, or intersect squarely are judged without loading numpy."""
+def test_wheels_and_chassis_do_not_load_numpy() -> None:
+    """Parts that are separate, touch, or intersect squarely are compared without numpy."""
     program = """
 import sys
 from grader.robot.model import Box, Cylinder
@@ -247,7 +245,7 @@ assert "numpy" not in sys.modules
 
 
 def test_a_mesh_has_no_separation() -> None:
-    """A mesh, whose size is unknown, is refused by both questions."""
+    """A mesh has an unknown size, so both functions refuse it."""
     mesh: Any = Mesh("wheel.stl")
     for ask in (separation, penetration):
         with pytest.raises(UnknownShape):
@@ -267,8 +265,8 @@ _extreme_shapes = (
 @slow
 @given(a=_extreme_shapes, b=_extreme_shapes, x=_extreme, y=_extreme, z=_extreme, pose=poses)
 @example(a=Sphere(1.7e308), b=Cylinder(1.7e308, 1.7e308), x=-1.7e308, y=1.7e308, z=1.7e308, pose=at(0, 0, 0))
-def test_any_finite_input_has_an_answer(a: Shape, b: Shape, x: float, y: float, z: float, pose: Transform) -> None:
-    """Sizes and places anywhere in the range of floats give a number and a unit direction."""
+def test_any_finite_input_has_a_result(a: Shape, b: Shape, x: float, y: float, z: float, pose: Transform) -> None:
+    """Sizes and positions anywhere in the range of floats give a number and a unit direction."""
     found = separation(a, pose, b, Transform(pose.rotation, (x, y, z)))
     assert -inf <= found.distance <= inf
     assert hypot(*found.direction) == pytest.approx(1.0)
@@ -292,7 +290,7 @@ class Oracle:
         return self._coal.Sphere(shape.radius)
 
     def distance(self, a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> float:
-        """The signed distance, metres."""
+        """Return the signed distance, metres."""
         import numpy as np
 
         posed = []
@@ -304,12 +302,12 @@ class Oracle:
 
 @pytest.fixture(scope="module")
 def oracle() -> Oracle:
-    """The oracle, where it is installed."""
+    """Return the oracle, if it is installed."""
     return Oracle(pytest.importorskip("coal", reason="the oracle extra is not installed"))
 
 
 def random_shape(rng: random.Random, kind: type[Shape]) -> Shape:
-    """A shape of a kind, from 3 mm to 3 m."""
+    """Return a random shape, from 3 mm to 3 m."""
     one, two, three = (10 ** rng.uniform(-2.5, 0.5) for _ in range(3))
     if kind is Box:
         return Box((one, two, three))
@@ -317,7 +315,7 @@ def random_shape(rng: random.Random, kind: type[Shape]) -> Shape:
 
 
 def random_pose(rng: random.Random, size: float) -> Transform:
-    """A pose with its origin about `size` from the world's, one in three along the axes."""
+    """Return a random pose with its origin about `size` from the world's, one in three along the axes."""
     rpy = [rng.choice((0.0, pi / 2, 1.5708)) if rng.random() < 0.3 else rng.uniform(-4, 4) for _ in range(3)]
     x, y, z = (rng.choice((0.0, size)) if rng.random() < 0.3 else rng.gauss(0.0, size / 2) for _ in range(3))
     return at(x, y, z, (rpy[0], rpy[1], rpy[2]))
@@ -326,18 +324,18 @@ def random_pose(rng: random.Random, size: float) -> Transform:
 @pytest.mark.parametrize("second", [Box, Cylinder, Sphere])
 @pytest.mark.parametrize("first", [Box, Cylinder, Sphere])
 def test_coal_agrees(oracle: Oracle, first: type[Shape], second: type[Shape]) -> None:
-    """No distance differs from coal's, except where coal answers a depth that coal itself then refutes.
+    """No distance differs from coal's, except depths of coal that coal itself refutes.
 
-    Its expanding polytope may stop early and answer a depth that is too large: when b is moved by our smaller depth, it
-    finds nothing left to part.
+    Its expanding polytope may stop early and return a depth that is too large: if b is moved by our smaller depth,
+    coal finds no overlap.
     """
     rng = random.Random(f"{first.__name__} {second.__name__}")
     for _ in range(1500):
         a, b = random_shape(rng, first), random_shape(rng, second)
         size = hypot(*(high - low for shape in (a, b) for low, high in [extent(shape, IDENTITY, DIRECTIONS[0])]))
         pair = (a, random_pose(rng, 0.1), b, random_pose(rng, size))
-        ours, theirs = separation(*pair), oracle.distance(*pair)
-        if ours.distance != pytest.approx(theirs, abs=NEAR):
-            assert theirs < ours.distance < 0.0, pair
-            parted = moved(pair[3], NEAR - ours.distance, ours.direction)
+        own, theirs = separation(*pair), oracle.distance(*pair)
+        if own.distance != pytest.approx(theirs, abs=NEAR):
+            assert theirs < own.distance < 0.0, pair
+            parted = moved(pair[3], NEAR - own.distance, own.direction)
             assert oracle.distance(a, pair[1], b, parted) >= 0.0, pair

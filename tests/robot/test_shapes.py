@@ -1,4 +1,4 @@
-"""Support points, extents and volumes against points on the surfaces and against closed forms."""
+"""Support points, extents and volumes, compared with points on the surfaces and with closed forms."""
 
 from collections.abc import Callable
 from math import cos, hypot, pi, sin
@@ -38,7 +38,7 @@ MESH = Mesh("wheel.stl")
 
 
 def surface(shape: Shape) -> list[Vector]:
-    """Points on the surface of a shape, its corners and rims among them."""
+    """Return points on the surface of a shape, including its corners and edges."""
     steps = [-1.0, -0.5, 0.0, 0.5, 1.0]
     around = [(cos(turn * pi / 180), sin(turn * pi / 180)) for turn in range(360)]
     if isinstance(shape, Box):
@@ -53,7 +53,7 @@ def surface(shape: Shape) -> list[Vector]:
 
 
 def inside(shape: Shape, point: Vector) -> bool:
-    """Whether a shape contains a point, up to rounding."""
+    """Return whether a shape contains a point, up to rounding."""
     x, y, z = point
     if isinstance(shape, Box):
         return all(abs(at) <= abs(size) / 2 + 1e-12 for at, size in zip(point, shape.size, strict=True))
@@ -63,8 +63,8 @@ def inside(shape: Shape, point: Vector) -> bool:
 
 
 @given(shape=shapes, direction=directions)
-def test_no_point_of_the_surface_lies_beyond_the_support_point(shape: Shape, direction: Vector) -> None:
-    """The support point belongs to the shape, and nothing on its surface is farther along the direction."""
+def test_no_surface_point_is_beyond_the_support_point(shape: Shape, direction: Vector) -> None:
+    """The support point belongs to the shape, and no surface point is farther along the direction."""
     found = support(shape, direction)
     assert inside(shape, found)
     assert dot(found, direction) >= max(dot(point, direction) for point in surface(shape)) - 1e-7
@@ -98,19 +98,19 @@ def test_the_length_of_a_direction_does_not_matter(shape: Shape, direction: Vect
         (Sphere(1.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
     ],
 )
-def test_many_farthest_points_give_their_middle(shape: Shape, direction: Vector, middle: Vector) -> None:
-    """A face, an edge or a line that is farthest as a whole answers with its centre."""
+def test_several_support_points_give_their_centre(shape: Shape, direction: Vector, middle: Vector) -> None:
+    """If a face, an edge or a line is farthest as a whole, its centre is returned."""
     assert support(shape, direction) == pytest.approx(middle, abs=1e-12)
 
 
 def test_the_lowest_point_of_a_lying_cylinder_is_the_middle_of_its_contact_line() -> None:
-    """A wheel on its side touches the ground below its centre."""
+    """A wheel touches the ground below its centre."""
     assert farthest(Cylinder(0.1, 0.05), LYING, (0.0, 0.0, -1.0)) == pytest.approx((1.0, 2.0, 2.9))
 
 
 @given(shape=shapes, pose=poses, direction=directions, shift=vectors)
 def test_extents_move_with_the_shape(shape: Shape, pose: Transform, direction: Vector, shift: Vector) -> None:
-    """Moving a shape moves both ends of its extent by as much as it moved along the direction."""
+    """Moving a shape moves both ends of its extent by its motion along the direction."""
     (a, b, c), (x, y, z) = shift, pose.translation
     moved = Transform(pose.rotation, (x + a, y + b, z + c))
     low, high = extent(shape, pose, direction)
@@ -119,8 +119,8 @@ def test_extents_move_with_the_shape(shape: Shape, pose: Transform, direction: V
 
 
 @given(shape=shapes, pose=poses, direction=directions)
-def test_extents_reach_and_farthest_points_agree(shape: Shape, pose: Transform, direction: Vector) -> None:
-    """The high end is where the farthest point lies, and the low end is the high one the other way."""
+def test_extents_agree_with_support_points(shape: Shape, pose: Transform, direction: Vector) -> None:
+    """The high end is at the support point, and the low end is the high end of the opposite direction."""
     low, high = extent(shape, pose, direction)
     x, y, z = direction
     assert (-high, -low) == pytest.approx(extent(shape, pose, (-x, -y, -z)), abs=1e-12)
@@ -129,8 +129,8 @@ def test_extents_reach_and_farthest_points_agree(shape: Shape, pose: Transform, 
     assert centred_high == pytest.approx(-centred_low)
 
 
-def test_a_cylinder_leaning_by_a_nanoradian_reaches_farther_by_its_radius_times_that() -> None:
-    """Nothing cancels near the axis of a cylinder."""
+def test_a_cylinder_tilted_by_a_nanoradian() -> None:
+    """It reaches farther by its radius times the angle: nothing cancels near its axis."""
     assert half_width(Cylinder(1.0, 0.0), (1e-9, 0.0, 1.0)) == pytest.approx(1e-9, rel=1e-12)
 
 
@@ -147,7 +147,7 @@ def test_a_cylinder_leaning_by_a_nanoradian_reaches_farther_by_its_radius_times_
     ],
 )
 def test_volumes(shape: Shape, expected: float) -> None:
-    """Volumes are the textbook ones, a negative size counting like a positive one."""
+    """Volumes equal the textbook formulas; a negative size counts like a positive one."""
     assert volume(shape) == pytest.approx(expected)
 
 
@@ -167,8 +167,8 @@ def test_volumes(shape: Shape, expected: float) -> None:
         (Mesh("wheel.stl", (0.0, 0.0, 0.0)), True),
     ],
 )
-def test_what_has_no_area_is_empty(geometry: Geometry, expected: bool) -> None:
-    """Plates and discs can be seen; lines and points cannot."""
+def test_shapes_without_area_are_empty(geometry: Geometry, expected: bool) -> None:
+    """Plates and discs are visible; lines and points are not."""
     assert is_empty(geometry) is expected
 
 
@@ -183,7 +183,7 @@ def test_what_has_no_area_is_empty(geometry: Geometry, expected: bool) -> None:
     ],
 )
 def test_the_size_of_a_mesh_is_unknown(ask: Callable[[], Any]) -> None:
-    """Every question about the size of a mesh is refused, with the mesh named."""
+    """Every function of the size of a mesh raises an error that names the mesh."""
     with pytest.raises(UnknownShape, match=r"'wheel\.stl' is unknown: mesh files are not opened") as caught:
         ask()
     assert caught.value.geometry is MESH

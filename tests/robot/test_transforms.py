@@ -35,17 +35,17 @@ directions = vectors.map(unit).filter(lambda found: found is not None)
 
 
 def square(rotation: Rotation) -> Matrix:
-    """A rotation as a 3 x 3 array."""
+    """Return a rotation as a 3 x 3 array."""
     return np.array(rotation).reshape(3, 3)
 
 
 def near(one: Transform, other: Transform, within: float = 1e-12) -> bool:
-    """Whether two poses are the same but for rounding."""
+    """Return whether two poses are equal up to rounding."""
     return bool(np.allclose(np.array(one), np.array(other), rtol=0, atol=within))
 
 
 def elementary(axis: int, angle: float) -> Matrix:
-    """The turn about one coordinate axis, from its definition."""
+    """Return the rotation about one coordinate axis, from its definition."""
     turned = np.eye(3)
     first, second = (axis + 1) % 3, (axis + 2) % 3
     turned[first, first] = turned[second, second] = cos(angle)
@@ -55,7 +55,7 @@ def elementary(axis: int, angle: float) -> Matrix:
 
 @given(rpy=rpys)
 def test_rotations_are_orthonormal(rpy: Vector) -> None:
-    """The columns are unit, across each other and right-handed."""
+    """The columns are unit vectors, orthogonal and right-handed."""
     rotation = square(rotation_from_rpy(rpy))
     assert np.allclose(rotation.T @ rotation, np.eye(3), rtol=0, atol=1e-14)
     assert np.linalg.det(rotation) == pytest.approx(1.0, abs=1e-14)
@@ -80,14 +80,14 @@ def test_rpy_is_about_fixed_axes(rpy: Vector) -> None:
         ((pi / 2, 0, pi / 2), (0, 1, 0), (0, 0, 1)),
     ],
 )
-def test_quarter_turns_by_hand(rpy: Vector, point: Vector, image: Vector) -> None:
-    """Turns that can be followed with a right hand."""
+def test_known_quarter_turns(rpy: Vector, point: Vector, image: Vector) -> None:
+    """Turns that can be verified with a right hand."""
     assert Transform(rotation_from_rpy(rpy)).apply(point) == pytest.approx(image, abs=1e-15)
 
 
 @given(rpy=rpys)
-def test_rpy_comes_back(rpy: Vector) -> None:
-    """The angles that are read off a rotation give that rotation again, also near a pitch of a quarter turn."""
+def test_rpy_round_trip(rpy: Vector) -> None:
+    """The angles of a rotation give that rotation again, also near a pitch of a quarter turn."""
     pose = Transform(rotation_from_rpy(rpy))
     assert near(Transform(rotation_from_rpy(pose.rpy)), pose, within=3e-9)
     assert abs(pose.rpy[1]) <= pi / 2
@@ -97,28 +97,28 @@ def test_rpy_comes_back(rpy: Vector) -> None:
 @example(roll=0.3, yaw=1.0, off=0.0, up=True)
 @example(roll=0.3, yaw=1.0, off=1.1e-9, up=True)
 @example(roll=0.3, yaw=1.0, off=0.9e-9, up=False)
-def test_rpy_comes_back_near_gimbal_lock(roll: float, yaw: float, off: float, up: bool) -> None:
-    """Where roll and yaw turn about the same line the rotation is still met."""
+def test_rpy_round_trip_near_gimbal_lock(roll: float, yaw: float, off: float, up: bool) -> None:
+    """If roll and yaw turn about the same axis, the rotation is still the same."""
     pitch = pi / 2 + off if up else -pi / 2 + off
     pose = Transform(rotation_from_rpy((roll, pitch, yaw)))
     assert near(Transform(rotation_from_rpy(pose.rpy)), pose, within=3e-9)
 
 
 @given(rpy=st.tuples(st.floats(-3.1, 3.1), st.floats(-1.5, 1.5), st.floats(-3.1, 3.1)))
-def test_rpy_is_the_same_away_from_gimbal_lock(rpy: Vector) -> None:
-    """Angles within half a turn, pitch within a quarter, are read off as they were."""
+def test_rpy_angles_are_unique_away_from_gimbal_lock(rpy: Vector) -> None:
+    """Angles within half a turn, pitch within a quarter, are returned unchanged."""
     assert Transform(rotation_from_rpy(rpy)).rpy == pytest.approx(rpy, abs=1e-13)
 
 
 @given(rpy=st.tuples(_tiny, _tiny, _tiny))
 def test_tiny_angles_are_kept(rpy: Vector) -> None:
-    """Angles far below rounding of 1 are not lost."""
+    """Angles far below the rounding of 1 are not lost."""
     assert Transform(rotation_from_rpy(rpy)).rpy == pytest.approx(rpy, rel=1e-5, abs=1e-11)
 
 
 @given(rpy=rpys)
 def test_the_other_three_angles_are_the_same_rotation(rpy: Vector) -> None:
-    """Roll and yaw half a turn on, and pitch beyond the quarter turn."""
+    """Roll and yaw plus half a turn, and pitch beyond the quarter turn."""
     roll, pitch, yaw = rpy
     other = Transform(rotation_from_rpy((roll + pi, pi - pitch, yaw + pi)))
     assert near(other, Transform(rotation_from_rpy(rpy)), within=1e-14)
@@ -134,7 +134,7 @@ def test_an_inverse_undoes(pose: Transform) -> None:
 
 @given(one=transforms, two=transforms, three=transforms)
 def test_composition_is_that_of_matrices(one: Transform, two: Transform, three: Transform) -> None:
-    """The product is the product of the 4 x 4 matrices, is associative, and its inverse is the inverses' product."""
+    """The product equals that of 4 x 4 matrices, is associative, and its inverse is the reversed product of inverses."""
     assert np.allclose(np.array(one @ two), np.array(one) @ np.array(two), rtol=0, atol=1e-12)
     assert near((one @ two) @ three, one @ (two @ three))
     assert near((one @ two).inverse(), two.inverse() @ one.inverse())
@@ -148,15 +148,15 @@ def test_the_identity_changes_nothing(pose: Transform) -> None:
 
 
 @given(one=transforms, two=transforms, point=vectors)
-def test_points_follow(one: Transform, two: Transform, point: Vector) -> None:
-    """Applying a product is applying its factors, the right one first."""
+def test_a_product_applies_its_factors(one: Transform, two: Transform, point: Vector) -> None:
+    """The right factor is applied first."""
     assert (one @ two).apply(point) == pytest.approx(one.apply(two.apply(point)), abs=1e-12)
     assert one.inverse().apply(one.apply(point)) == pytest.approx(point, abs=1e-12)
 
 
 @given(pose=transforms, direction=vectors, point=vectors)
-def test_directions_follow_without_translation(pose: Transform, direction: Vector, point: Vector) -> None:
-    """A direction is the difference of two points; turning it back gives it again; its length stays."""
+def test_directions_are_not_translated(pose: Transform, direction: Vector, point: Vector) -> None:
+    """A direction is the difference of two points; its inverse gives it back; its length stays."""
     head = pose.apply((point[0] + direction[0], point[1] + direction[1], point[2] + direction[2]))
     assert pose.rotate(direction) == pytest.approx(minus(head, pose.apply(point)), abs=1e-12)
     assert pose.unrotate(pose.rotate(direction)) == pytest.approx(direction, abs=1e-12)
@@ -165,7 +165,7 @@ def test_directions_follow_without_translation(pose: Transform, direction: Vecto
 
 @given(axis=directions, angle=angles)
 def test_a_turn_about_an_axis(axis: Vector, angle: float) -> None:
-    """It is orthonormal, keeps its axis, turns what is across it by the angle, right-handed, and can be undone."""
+    """It is orthonormal, keeps its axis, turns orthogonal vectors by the angle, right-handed, and has an inverse."""
     rotation = rotation_about(axis, angle)
     turned = square(rotation)
     assert np.allclose(turned.T @ turned, np.eye(3), rtol=0, atol=1e-13)
@@ -209,20 +209,20 @@ _any_finite = st.floats(allow_nan=False, allow_infinity=False)
 @example(vector=(5e-324, 0.0, 0.0))
 @example(vector=(5e-324, 5e-324, -5e-324))
 def test_unit_vectors_of_any_size(vector: Vector) -> None:
-    """Every finite vector but zero has a direction, of length 1, whose signs are the vector's."""
+    """Every finite vector but zero has a direction of length 1 with the vector's signs."""
     found = unit(vector)
     if vector == (0.0, 0.0, 0.0):
         assert found is None
         return
     assert found is not None
     assert hypot(*found) == pytest.approx(1.0, abs=1e-15)
-    assert all(a * b >= 0 for a, b in zip(found, (np.sign(each) for each in vector), strict=True))
+    assert all(a * b >= 0 for a, b in zip(found, (np.sign(coordinate) for coordinate in vector), strict=True))
 
 
 @pytest.mark.parametrize(
     "vector", [(0.0, 0.0, 0.0), (-0.0, 0.0, -0.0), (nan, 0.0, 1.0), (1.0, nan, 0.0), (inf, 0.0, 0.0), (nan, inf, 1.0)]
 )
-def test_what_has_no_direction(vector: Vector) -> None:
+def test_vectors_without_a_direction(vector: Vector) -> None:
     """Zero, infinite and undefined vectors have none."""
     assert unit(vector) is None
 
@@ -231,13 +231,13 @@ def test_what_has_no_direction(vector: Vector) -> None:
 def test_the_direction_does_not_depend_on_the_length(vector: Vector, scale: float) -> None:
     """Scaling a vector leaves its direction."""
     scaled = (vector[0] * scale, vector[1] * scale, vector[2] * scale)
-    assume(all(isfinite(each) for each in scaled))
+    assume(all(isfinite(coordinate) for coordinate in scaled))
     assert unit(scaled) == pytest.approx(unit(vector), abs=1e-14)
 
 
 @given(a=vectors, b=vectors, c=vectors)
 def test_products_of_vectors(a: Vector, b: Vector, c: Vector) -> None:
-    """The vector product is across both factors and numpy's; the triple product is cyclic."""
+    """The vector product is orthogonal to both factors and equals numpy's; the triple product is cyclic."""
     assert cross(a, b) == pytest.approx(tuple(np.cross(a, b)), abs=1e-12)
     assert dot(cross(a, b), a) == pytest.approx(0.0, abs=1e-10)
     assert dot(a, cross(b, c)) == pytest.approx(dot(b, cross(c, a)), abs=1e-10)
@@ -255,7 +255,7 @@ def test_matrices_are_homogeneous(pose: Transform) -> None:
     assert np.array(pose, dtype=np.float32).dtype == np.float32
 
 
-def test_no_rotation_is_the_identity_itself() -> None:
-    """Zero angles give an exact identity, so that poses of robots without turns are exact."""
+def test_zero_angles_are_exactly_the_identity() -> None:
+    """Zero angles give an exact identity, so that poses of robots without rotations are exact."""
     assert rotation_from_rpy((0.0, 0.0, 0.0)) == IDENTITY_ROTATION
     assert rotation_from_rpy((-0.0, 0.0, -0.0)) == IDENTITY_ROTATION

@@ -1,4 +1,4 @@
-"""The parent joint of a link that has several candidates: as in ROS 2, and the most plausible one in a rejected file."""
+"""The parent joint of a link with several candidates: as in ROS 2, and the most plausible one in a rejected file."""
 
 from itertools import permutations
 
@@ -11,19 +11,19 @@ from grader.robot.tree import parent_joints
 
 
 def joint(name: str, parent: str, child: str) -> Joint:
-    """A fixed joint."""
+    """Return a fixed joint."""
     return Joint(name, "fixed", parent, child)
 
 
 def robot(*joints: Joint, rejected: bool = True) -> Robot:
-    """A robot of these joints and the links that they name; by default ROS 2 rejects it."""
-    names = dict.fromkeys(end for each in joints for end in (each.parent, each.child))
+    """Return a robot of these joints and the links that they name; default: ROS 2 rejects it."""
+    names = dict.fromkeys(end for joint in joints for end in (joint.parent, joint.child))
     return Robot("r", tuple(map(Link, names)), joints, rejected=rejected)
 
 
 def parents(*joints: Joint, rejected: bool = True) -> dict[str, str]:
-    """The name of each link's parent joint."""
-    return {link: each.name for link, each in parent_joints(robot(*joints, rejected=rejected)).items()}
+    """Return the name of each link's parent joint."""
+    return {link: joint.name for link, joint in parent_joints(robot(*joints, rejected=rejected)).items()}
 
 
 FOOT, WHEEL = joint("base_joint", "foot", "base"), joint("base_wheel_joint", "base", "wheel")
@@ -31,15 +31,15 @@ LIDAR = joint("base_lidar_joint", "base", "lidar")
 
 
 @pytest.mark.parametrize("rejected", [False, True])
-def test_a_tree_is_read_as_it_is(rejected: bool) -> None:
-    """Where each link has one joint at most there is nothing to choose, whatever the order of the joints."""
+def test_a_tree_is_unambiguous(rejected: bool) -> None:
+    """If each link has at most one joint, there is nothing to choose, whatever the order of the joints."""
     for order in permutations((FOOT, WHEEL, LIDAR)):
         expected = {"base": "base_joint", "wheel": "base_wheel_joint", "lidar": "base_lidar_joint"}
         assert parents(*order, rejected=rejected) == expected
 
 
-def test_a_swapped_joint_does_not_take_the_base() -> None:
-    """A joint that is named after its parent is the one that is swapped: its link has no parent joint, the rest stays."""
+def test_a_swapped_joint_is_no_parent_joint_of_the_base() -> None:
+    """A joint named after its parent is the swapped one: its link has no parent joint, the others keep theirs."""
     swapped = joint("wheel_joint", "wheel", "base")
     for order in permutations((FOOT, swapped, LIDAR)):
         assert parents(*order) == {"base": "base_joint", "lidar": "base_lidar_joint"}
@@ -53,15 +53,15 @@ def test_a_name_with_both_links_decides_nothing() -> None:
     assert parents(other, one) == {"base": "a_base_joint"}
 
 
-def test_a_child_that_was_copied_leaves_the_first_joint() -> None:
-    """Of a joint that was copied with its child the first is the parent joint; the copy is none."""
+def test_the_original_of_a_copied_joint_counts() -> None:
+    """Of a joint that was copied with its child the first is the parent joint."""
     left, copied = joint("left_wheel_joint", "base", "left_wheel"), joint("right_wheel_joint", "base", "left_wheel")
     assert parents(FOOT, left, copied) == {"base": "base_joint", "left_wheel": "left_wheel_joint"}
     assert parents(FOOT, left, copied, rejected=False)["left_wheel"] == "right_wheel_joint"
 
 
-def test_a_copy_before_the_original_is_recognised_by_the_parent_in_its_name() -> None:
-    """A name of the parent and another child contains only the parent, so it comes last wherever it is."""
+def test_a_copy_before_the_original_is_recognised_by_its_name() -> None:
+    """A joint whose name has only the parent and another child comes last, whatever its position."""
     right = joint("base_right_wheel_joint", "base", "right_wheel")
     copied = joint("base_left_wheel_joint", "base", "right_wheel")
     for order in ((copied, right), (right, copied)):
@@ -69,17 +69,17 @@ def test_a_copy_before_the_original_is_recognised_by_the_parent_in_its_name() ->
 
 
 def test_the_joint_that_closes_a_loop_is_ignored() -> None:
-    """A loop is opened where it is closed, by the last of its joints in the file; what hangs on it stays."""
+    """A loop is opened at the last of its joints in the file; links below it are kept."""
     ring = [joint("p", "a", "b"), joint("q", "b", "c"), joint("r", "c", "a")]
     branch = joint("s", "c", "d")
     for order in permutations(ring):
-        expected = {each.child: each.name for each in order[:2]}
+        expected = {joint.child: joint.name for joint in order[:2]}
         assert parents(*order, branch) == {**expected, "d": "s"}
         assert len(Configuration(robot(*order, branch)).roots) == 1
 
 
-def test_the_joint_that_is_named_after_its_parent_closes_the_loop() -> None:
-    """In a loop too, the joint that may be swapped is ignored wherever it is."""
+def test_the_joint_named_after_its_parent_closes_the_loop() -> None:
+    """In a loop too, the joint that may be swapped is ignored, whatever its position."""
     back = joint("wheel_mount", "wheel", "foot")
     for order in permutations((FOOT, WHEEL, back)):
         assert parents(*order) == {"base": "base_joint", "wheel": "base_wheel_joint"}
@@ -90,7 +90,7 @@ def test_a_joint_from_a_link_to_itself_is_no_parent_joint() -> None:
     assert parents(joint("self", "base", "base"), FOOT) == {"base": "base_joint"}
 
 
-def test_joints_without_ends_that_exist_hold_nothing() -> None:
+def test_joints_without_existing_links_connect_nothing() -> None:
     """A parent or child that is missing or not given connects nothing."""
     links = (Link("base"), Link("wheel"))
     for broken in (joint("j", "nowhere", "wheel"), joint("j", "base", "nowhere"), joint("j", "", "wheel")):
@@ -98,7 +98,7 @@ def test_joints_without_ends_that_exist_hold_nothing() -> None:
 
 
 def test_a_long_chain_in_any_order_is_read_at_once() -> None:
-    """Ways up are shortened when they are walked: ten thousand links take no time, top down or bottom up."""
+    """Paths to the root are shortened when they are walked: ten thousand links take no time, top down or bottom up."""
     chain = [joint(f"j{index}", f"l{index}", f"l{index + 1}") for index in range(10_000)]
     back = joint("back", "l10000", "l0")
     for order in (chain, chain[::-1]):
@@ -107,7 +107,7 @@ def test_a_long_chain_in_any_order_is_read_at_once() -> None:
 
 
 def test_plausibility_counts_only_in_a_rejected_file() -> None:
-    """The reader says which reading counts: two parents alone are loaded by ROS 2, a loop is not."""
+    """The reader says which rule applies: ROS 2 loads two parents alone but no loop."""
     parts = '<link name="{}"/>'.format
     written = '<joint name="{}" type="fixed"><parent link="{}"/><child link="{}"/></joint>'.format
 
@@ -115,7 +115,7 @@ def test_plausibility_counts_only_in_a_rejected_file() -> None:
         text = f'<robot name="r">{"".join(map(parts, ("a", "b", "c")))}{"".join(joints)}</robot>'
         found = read_urdf(text.encode(), "r.urdf").robot
         assert found is not None
-        return {link: each.name for link, each in parent_joints(found).items()}
+        return {link: joint.name for link, joint in parent_joints(found).items()}
 
     two = (written("p", "a", "b"), written("q", "a", "b"))
     assert read(*two, written("r", "b", "c")) == {"b": "q", "c": "r"}

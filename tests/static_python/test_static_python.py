@@ -12,11 +12,11 @@ from grader.files.tree import File, make_tree
 from grader.package.setup_py import Setup, read_setup
 from grader.static_python.parse import Code, parse
 from tests.package.my_robot import FILES, SAMPLES
-from tests.patience import processor_time
+from tests.processor_time import processor_time
 
 
 def read_nothing(limit: int, *, first: bool = False) -> bytes:
-    """The bytes of every file of the package."""
+    """Return the bytes of any file of the package."""
     return b""
 
 
@@ -25,13 +25,13 @@ _TEXTS = [path.read_text(encoding="utf-8") for path in SAMPLES.values()]
 
 
 def evaluated(text: str | bytes) -> Setup:
-    """What a setup.py comes to; it takes no longer than a moment."""
+    """Return the evaluation of a setup.py, which must take little time."""
     with processor_time(2):
         return read_setup(parse(text.encode() if isinstance(text, str) else text, "setup.py"), _TREE)
 
 
-def is_told(setup: Setup) -> bool:
-    """Whether there is nothing wrong in a file and nothing unknown."""
+def is_fully_known(setup: Setup) -> bool:
+    """Return whether a file has no faults and no unknown values."""
     return not (setup.fault or setup.faults or setup.stops or setup.unknown)
 
 
@@ -56,7 +56,7 @@ _OPERATORS = st.sampled_from(
 
 
 def _inner(expressions: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
-    """Expressions made of smaller ones."""
+    """Draw expressions made of smaller ones."""
     pair = st.tuples(expressions, expressions)
     named = st.tuples(_NAMES, expressions, expressions)
     return st.one_of(
@@ -91,11 +91,11 @@ _EXPRESSIONS = st.recursive(_NAMES | _LITERALS, _inner, max_leaves=6)
 
 
 def _indented(lines: list[str]) -> str:
-    return "\n".join("    " + line for each in lines for line in each.split("\n")) or "    pass"
+    return "\n".join("    " + line for text in lines for line in text.split("\n")) or "    pass"
 
 
 def _compound(statements: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
-    """Statements made of smaller ones."""
+    """Draw statements made of smaller ones."""
     body = st.lists(statements, min_size=1, max_size=3).map(_indented)
     return st.one_of(
         st.tuples(_EXPRESSIONS, body, body).map(lambda it: f"if {it[0]}:\n{it[1]}\nelse:\n{it[2]}"),
@@ -140,7 +140,7 @@ def test_any_program_is_evaluated(program: str) -> None:
 @settings(max_examples=200)
 @given(text=st.sampled_from(_TEXTS), seed=st.integers(0, 10**6), count=st.integers(1, 4), of_lines=st.booleans())
 def test_a_damaged_sample_is_evaluated(text: str, seed: int, count: int, of_lines: bool) -> None:
-    """Neither does a file whose lines or characters were lost, doubled or swapped."""
+    """A file whose lines or characters were lost, doubled or swapped is evaluated without an exception."""
     chance = random.Random(seed)
     parts = text.splitlines(keepends=True) if of_lines else list(text)
     for _ in range(count):
@@ -155,7 +155,7 @@ def test_a_damaged_sample_is_evaluated(text: str, seed: int, count: int, of_line
 @settings(max_examples=200)
 @given(data=st.binary(max_size=200) | st.text(max_size=200).map(lambda text: text.encode("utf-8", "replace")))
 def test_any_bytes_are_evaluated(data: bytes) -> None:
-    """Nor do bytes that are no program."""
+    """Bytes that are no program are evaluated without an exception."""
     evaluated(data)
 
 
@@ -168,7 +168,7 @@ _DICT = f"x = {{str(i): i for i in range(9999)}}\ndef f(**k): pass\n{_LOOP}"
 _PATH = "from pathlib import Path\nimport os\nx = Path('ab')\n"
 _SETUP = "from setuptools import setup\n"
 
-# Files that Python itself refuses, or that it would not come to an end with.
+# Files that Python itself refuses, or would never finish.
 REFUSED: dict[str, str | bytes] = {
     "brackets": "[" * 120_000,
     "brackets that close": "x = " + "[" * 60_000 + "]" * 60_000,
@@ -189,15 +189,15 @@ REFUSED: dict[str, str | bytes] = {
 
 
 @pytest.mark.parametrize("name", REFUSED)
-def test_what_python_refuses_is_a_fault(name: str) -> None:
-    """A file that Python cannot read is one that nothing else is said of."""
+def test_a_syntax_error_is_the_only_fault(name: str) -> None:
+    """A file that Python cannot read has no other fault."""
     setup = evaluated(REFUSED[name])
     assert setup.fault is not None
     assert not setup.copies
 
 
-# Files that would take Python long, or too much of its memory; each ends in `setup`, which is not reached or not told.
-TOO_MUCH = {
+# Files that would take Python too long, or too much memory; each ends in `setup`, which is not reached or unknown.
+EXPENSIVE = {
     "an endless loop that grows": "x = [1]\nwhile True: x += x\nsetup(data_files=x)",
     "a list that doubles": f"x = [1]\n{_LOOP}x += x\nsetup(data_files=x)",
     "a long text": "x = 'a' * 10**9\nsetup(data_files=[(x, [])])",
@@ -235,15 +235,15 @@ TOO_MUCH = {
 }
 
 
-@pytest.mark.parametrize("name", TOO_MUCH)
-def test_what_takes_too_much_is_not_evaluated_to_its_end(name: str) -> None:
-    """What would take long, or a lot of memory, is given up, and that is said."""
-    setup = evaluated(_SETUP + TOO_MUCH[name])
+@pytest.mark.parametrize("name", EXPENSIVE)
+def test_expensive_programs_are_stopped(name: str) -> None:
+    """A program that would take long, or much memory, is not evaluated further, which is reported."""
+    setup = evaluated(_SETUP + EXPENSIVE[name])
     assert setup.fault is None
     assert setup.unknown or setup.faults or setup.stops
 
 
-# Each of these takes its time, again and again, of what is large.
+# Each of these repeats an expensive step on a large value.
 SLOW = {
     **{f"a list: {code}": _LIST + code for code in (
         "y = x + x[:3000]", "y = [*x]", "sorted(x)", "x[:]", "list(x)", "x.copy()", "-1 in x", "len(x)", "x.index(5)", "x[0]",
@@ -266,7 +266,7 @@ SLOW = {
 
 
 @pytest.mark.parametrize("name", SLOW)
-def test_what_takes_its_time_ends_soon(name: str) -> None:
+def test_repeated_expensive_steps_are_bounded(name: str) -> None:
     """A large value is evaluated only so often."""
     evaluated(SLOW[name])
 
@@ -277,7 +277,7 @@ _IMPORTS = "import os\nfrom glob import glob\nfrom setuptools import setup\n"
 
 
 def end(data_files: str) -> str:
-    """A call of setup."""
+    """Return a call of setup."""
     return f"setup(name='my_robot', packages=['my_robot'], data_files={data_files})\n"
 
 
@@ -309,8 +309,8 @@ FAULTS = [
 
 
 @pytest.mark.parametrize(("text", "line", "column", "message"), FAULTS, ids=range(len(FAULTS)))
-def test_what_stops_python_is_a_fault_at_its_place(text: str, line: int, column: int, message: str | None) -> None:
-    """A fault has its message, and its place as an editor counts it; what only looks like a mistake has none."""
+def test_faults_have_messages_and_locations(text: str, line: int, column: int, message: str | None) -> None:
+    """A fault has its message, and its location as an editor counts it; what only looks like a mistake has none."""
     setup = evaluated(text)
     if message is None:
         assert not setup.faults
@@ -349,8 +349,8 @@ def test_what_stops_python_is_a_fault_at_its_place(text: str, line: int, column:
         "print(__name__, __file__, __doc__, len, ValueError)",
     ],
 )
-def test_what_is_no_mistake_is_no_fault(code: str) -> None:
-    """Names of comprehensions, functions and lambdas, and those that are never asked for, are fine."""
+def test_correct_names_are_no_fault(code: str) -> None:
+    """Names of comprehensions, functions and lambdas, and unused ones, are no fault."""
     setup = evaluated(_IMPORTS + code + "\n" + end("[('share/my_robot', ['package.xml'])]"))
     assert not setup.fault
     assert not setup.faults
@@ -361,22 +361,22 @@ def test_what_is_no_mistake_is_no_fault(code: str) -> None:
 @pytest.mark.parametrize(
     "start", ["", "\ufeff", "# -*- coding: utf-8 -*-\n", "#!/usr/bin/env python3\n# coding: utf8\n"]
 )
-def test_the_bytes_of_a_file(start: str, ending: str) -> None:
-    """Any ends of lines, a byte-order mark and a declared encoding are read as Python reads them."""
+def test_encodings_of_a_file(start: str, ending: str) -> None:
+    """Line endings, a byte-order mark and a declared encoding are read as Python reads them."""
     text = start + _IMPORTS + end("[('share/my_robot/ä', ['package.xml'])]")
     setup = evaluated(text.replace("\n", ending).encode())
-    assert is_told(setup)
+    assert is_fully_known(setup)
     assert setup.installed() == {"share/my_robot/ä/package.xml": "package.xml"}
 
 
 def test_a_declared_encoding_is_used() -> None:
-    """Bytes are no UTF-8 where the file says so."""
+    """Bytes that are no UTF-8 are read if the file declares their encoding."""
     text = "# coding: latin-1\n" + _IMPORTS + end("[('share/ä', ['package.xml'])]")
     assert evaluated(text.encode("latin-1")).installed() == {"share/ä/package.xml": "package.xml"}
 
 
-def test_a_miscount_of_cpython_costs_nobody_anything(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where CPython's own count of depth is off, which is no fault of the file, the file is parsed once more."""
+def test_a_wrong_depth_count_of_cpython_is_harmless(monkeypatch: pytest.MonkeyPatch) -> None:
+    """If CPython's own recursion count is off, which is no fault of the file, the file is parsed again."""
     calls: list[str] = []
     parse_once: Any = ast.parse
 
@@ -392,6 +392,6 @@ def test_a_miscount_of_cpython_costs_nobody_anything(monkeypatch: pytest.MonkeyP
 
 
 def test_folders_of_a_walk_are_a_list() -> None:
-    """The list of folders that os.walk yields has its own type; a message names it as Python does."""
+    """The list of folders from os.walk has its own type; a message names it as Python does."""
     setup = evaluated("import os\nfor _, folders, _ in os.walk('.'):\n    folders + 'a'\n")
     assert [fault.message for fault in setup.faults] == ["Python cannot add a string to a list"]

@@ -1,4 +1,4 @@
-"""An expression is evaluated without a file around it, with the functions and names of tables; nothing is run."""
+"""An expression is evaluated without a file around it, with tables of functions and names; nothing is run."""
 
 import pytest
 from hypothesis import given
@@ -11,7 +11,7 @@ from grader.static_python.values import Call, QualifiedName, Unknown, Value
 
 
 def double(_: Evaluation, call: Call) -> Value:
-    """A function of the table."""
+    """Return twice a value: a function of the table."""
     return call.args[0] + call.args[0]
 
 
@@ -50,7 +50,7 @@ UNKNOWN = [
 
 
 @pytest.mark.parametrize("text", VALUES)
-def test_the_value_is_that_of_python(text: str) -> None:
+def test_the_value_equals_pythons(text: str) -> None:
     """Arithmetic, comparisons, conditions, strings, lists, dicts, comprehensions and functions have Python's values."""
     names: dict[str, Value] = {"size": 4, "double": QualifiedName("double")}
     assert evaluate_text(text, FUNCTIONS, names) == VALUES[text]
@@ -58,7 +58,7 @@ def test_the_value_is_that_of_python(text: str) -> None:
 
 @pytest.mark.parametrize("text", UNKNOWN)
 def test_any_other_text_is_unknown(text: str) -> None:
-    """What is no expression, names something that is not there or takes too long has no value, and raises nothing."""
+    """A text that is no expression, uses unknown names or takes too long has no value, and raises nothing."""
     value = evaluate_text(text, {}, {})
     assert isinstance(value, Unknown | Call)
 

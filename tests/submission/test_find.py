@@ -1,4 +1,4 @@
-"""Which URDF and which package of a submission are graded, and why the others are not."""
+"""Selecting the URDF and the package of a submission that are graded, and the reasons against the others."""
 
 from functools import partial
 
@@ -12,14 +12,14 @@ from grader.package.package import Package
 from grader.submission.search import UrdfChoice, find_packages, find_urdf, read_packages
 from grader.submission.submission import submission_of
 from grader.submission.urdf import OtherCandidate
-from tests.patience import processor_time
+from tests.processor_time import processor_time
 
-WANTED = "urdf/my_robot.urdf"
+EXPECTED = "urdf/my_robot.urdf"
 ROBOT = b'<?xml version="1.0"?>\n<robot name="my_robot"/>\n'
 OUTSIDE = "it is outside the package that is graded"
 DEEPER = "it matches equally well, but is deeper in the folders"
 LATER = "it matches equally well, but comes later in alphabetical order"
-NOT_THERE = "it has the expected name, but is not at urdf/my_robot.urdf"
+MISSING = "it has the expected name, but is not at urdf/my_robot.urdf"
 BEGINS = "its name only starts like that of urdf/my_robot.urdf"
 OTHER_NAME = "its name differs from that of urdf/my_robot.urdf"
 NOT_NAMED = "it is not named like a URDF"
@@ -27,7 +27,7 @@ EMPTY = "it is empty"
 
 
 def tree_of(*paths: str, **contents: bytes) -> Tree:
-    """A tree of files that hold a robot; `contents` gives those of files whose names begin so."""
+    """Return a file tree of robots; `contents` gives the content of files by a prefix of their names."""
     files = [
         _file(path, next((data for name, data in contents.items() if path.split("/")[-1].startswith(name)), ROBOT))
         for path in paths
@@ -46,17 +46,17 @@ def _read(data: bytes, limit: int, *, first: bool = False) -> bytes:
 
 
 def manifest(name: str) -> bytes:
-    """A package.xml of this name."""
+    """Return a package.xml with this name."""
     return f'<package format="3"><name>{name}</name></package>'.encode()
 
 
-def why(found: UrdfChoice) -> dict[str, str]:
-    """The other candidates, and why they are not graded."""
-    return {each.path: each.reason for each in found.others}
+def rejected(found: UrdfChoice) -> dict[str, str]:
+    """Return the other candidates, and why they are not graded."""
+    return {other.path: other.reason for other in found.others}
 
 
 def test_every_tier() -> None:
-    """The rubric's path comes first, then its name, a name that begins alike, another .urdf, the content, and an empty file."""
+    """The rubric's path takes precedence, then its name, a similar name, another .urdf, the content, and an empty file."""
     paths = [
         "a/my_robot.urdf",
         "urdf/my_robot.urdf",
@@ -65,10 +65,10 @@ def test_every_tier() -> None:
         "lab6.xml",
         "e/empty.urdf",
     ]
-    found = find_urdf(tree_of(*paths, empty=b""), WANTED)
+    found = find_urdf(tree_of(*paths, empty=b""), EXPECTED)
     assert found.path == "urdf/my_robot.urdf"
-    assert why(found) == {
-        "a/my_robot.urdf": NOT_THERE,
+    assert rejected(found) == {
+        "a/my_robot.urdf": MISSING,
         "my_robot.urdf.xacro.txt": BEGINS,
         "robot.urdf": OTHER_NAME,
         "lab6.xml": NOT_NAMED,
@@ -83,13 +83,13 @@ def test_every_tier() -> None:
         "e/empty.urdf",
     ]
     for index, best in enumerate(ranked):
-        assert find_urdf(tree_of(*ranked[index:], empty=b""), WANTED).path == best
+        assert find_urdf(tree_of(*ranked[index:], empty=b""), EXPECTED).path == best
 
 
 @pytest.mark.parametrize(
     ("better", "worse", "reason"),
     [
-        ("x/y/urdf/my_robot.urdf", "my_robot.urdf", NOT_THERE),
+        ("x/y/urdf/my_robot.urdf", "my_robot.urdf", MISSING),
         ("urdf/my_robot.urdf", "x/urdf/my_robot.urdf", DEEPER),
         ("a/urdf/my_robot.urdf", "b/urdf/my_robot.urdf", LATER),
         ("urdf/my_robot.urdf", "urdf/My_Robot.urdf", BEGINS),
@@ -102,40 +102,40 @@ def test_every_tier() -> None:
     ],
 )
 def test_pairs(better: str, worse: str, reason: str) -> None:
-    """Of two files the better one is graded, whatever their order, and the other is named with the reason."""
+    """Of two files the better one is graded, whatever their order, and the other is listed with the reason."""
     for paths in ((better, worse), (worse, better)):
-        found = find_urdf(tree_of(*paths), WANTED)
+        found = find_urdf(tree_of(*paths), EXPECTED)
         assert found == UrdfChoice(better, (OtherCandidate(worse, reason),))
 
 
-def test_what_is_no_robot() -> None:
-    """A file without <robot at its beginning, of another kind, or known for something else is none."""
+def test_files_that_are_no_robot() -> None:
+    """A file without <robot at its beginning, of another kind, or with another known purpose is no robot."""
     tree = tree_of(
         "package.xml", "CMakeLists.txt", "notes.md", "robot.png", "late.xml", "other.xml", "empty.xml",
         late=b" " * 5000 + ROBOT, other=b"<robots/>", empty=b"",
     )  # fmt: skip
-    assert find_urdf(tree, WANTED) == UrdfChoice(None, ())
-    assert find_urdf(tree_of("a.xml", a=b"< robot>"), WANTED).path == "a.xml"
+    assert find_urdf(tree, EXPECTED) == UrdfChoice(None, ())
+    assert find_urdf(tree_of("a.xml", a=b"< robot>"), EXPECTED).path == "a.xml"
 
 
 def test_a_file_of_the_right_name_needs_no_content() -> None:
-    """A file at the right path is graded whatever is in it, if anything is."""
+    """A file at the expected path is graded whatever its content, unless it is empty."""
     tree = tree_of("urdf/my_robot.urdf", "other.urdf", my_robot=b"nonsense")
-    assert find_urdf(tree, WANTED).path == "urdf/my_robot.urdf"
-    assert find_urdf(tree_of("urdf/my_robot.urdf", "other.urdf", my_robot=b""), WANTED).path == "other.urdf"
+    assert find_urdf(tree, EXPECTED).path == "urdf/my_robot.urdf"
+    assert find_urdf(tree_of("urdf/my_robot.urdf", "other.urdf", my_robot=b""), EXPECTED).path == "other.urdf"
 
 
 def test_a_file_that_cannot_be_read() -> None:
-    """A file that cannot be looked into is no robot by its content."""
+    """A file whose content cannot be read is no robot by its content."""
 
     def refuse(limit: int, *, first: bool = False) -> bytes:
         raise InputError("cannot read it")
 
-    assert find_urdf(make_tree("", [File("a.xml", 10, refuse)], ()), WANTED).path is None
+    assert find_urdf(make_tree("", [File("a.xml", 10, refuse)], ()), EXPECTED).path is None
 
 
 def test_other_endings() -> None:
-    """A rubric may want a file that is no .urdf."""
+    """A rubric may expect a file that is no .urdf."""
     tree = tree_of("urdf/my_robot.urdf.xacro", "urdf/my_robot.urdf")
     assert find_urdf(tree, "urdf/my_robot.urdf.xacro").path == "urdf/my_robot.urdf.xacro"
     assert find_urdf(tree, "my_robot.urdf").path == "urdf/my_robot.urdf"
@@ -143,34 +143,34 @@ def test_other_endings() -> None:
 
 
 def test_the_package_is_preferred() -> None:
-    """Among equals that of the package is graded, however deep; a better one outside of it is graded all the same."""
+    """Among equals the one in the package is graded, however deep; a better one outside is graded all the same."""
     tree = tree_of("urdf/my_robot.urdf", "ws/src/my_robot/urdf/my_robot.urdf")
-    assert find_urdf(tree, WANTED, "ws/src/my_robot") == UrdfChoice(
+    assert find_urdf(tree, EXPECTED, "ws/src/my_robot") == UrdfChoice(
         "ws/src/my_robot/urdf/my_robot.urdf", (OtherCandidate("urdf/my_robot.urdf", OUTSIDE),)
     )
-    assert find_urdf(tree, WANTED, "").path == "urdf/my_robot.urdf"
-    assert find_urdf(tree, WANTED, "ws/src/my_rob").path == "urdf/my_robot.urdf"
+    assert find_urdf(tree, EXPECTED, "").path == "urdf/my_robot.urdf"
+    assert find_urdf(tree, EXPECTED, "ws/src/my_rob").path == "urdf/my_robot.urdf"
     assert (
-        find_urdf(tree_of("other/urdf/my_robot.urdf", "my_robot/a.urdf"), WANTED, "my_robot").path
+        find_urdf(tree_of("other/urdf/my_robot.urdf", "my_robot/a.urdf"), EXPECTED, "my_robot").path
         == "other/urdf/my_robot.urdf"
     )
 
 
-def test_products_of_a_build() -> None:
-    """What a build has made is named, twenty of them, and never graded."""
+def test_build_products() -> None:
+    """At most twenty build products are listed, and none is graded."""
     generated = [f"install/{n}.urdf" for n in range(30)]
-    found = find_urdf(make_tree("", [_file("a.urdf", ROBOT)], (), generated=generated), WANTED)
+    found = find_urdf(make_tree("", [_file("a.urdf", ROBOT)], (), generated=generated), EXPECTED)
     assert found.path == "a.urdf"
-    assert set(why(found).values()) == {"it was generated by a build, and only source files are graded"}
+    assert set(rejected(found).values()) == {"it was generated by a build, and only source files are graded"}
     assert len(found.others) == 20
-    assert find_urdf(make_tree("", (), (), generated=generated[:1]), WANTED).path is None
+    assert find_urdf(make_tree("", (), (), generated=generated[:1]), EXPECTED).path is None
 
 
 def test_many_texts() -> None:
-    """Only so many texts are looked into; a file of the right name is found all the same."""
+    """Only so many texts are examined; a file with the expected name is found all the same."""
     tree = tree_of(*(f"{n:04}.txt" for n in range(3000)), "z/robot.urdf")
     with processor_time(1):
-        found = find_urdf(tree, WANTED)
+        found = find_urdf(tree, EXPECTED)
     assert found.path == "z/robot.urdf"
     assert len(found.others) == 400
 
@@ -182,7 +182,7 @@ def test_many_texts() -> None:
 def test_the_order_of_files_does_not_matter(folder: str, names: list[str]) -> None:
     """The same files are ranked the same."""
     paths = [f"{folder}/{name}" if folder else name for name in names]
-    assert find_urdf(tree_of(*paths), WANTED) == find_urdf(tree_of(*sorted(paths)), WANTED)
+    assert find_urdf(tree_of(*paths), EXPECTED) == find_urdf(tree_of(*sorted(paths)), EXPECTED)
 
 
 @pytest.mark.parametrize(
@@ -200,7 +200,7 @@ def test_the_order_of_files_does_not_matter(folder: str, names: list[str]) -> No
     ],
 )
 def test_packages_are_found(paths: list[str], folders: list[str]) -> None:
-    """A package has a package.xml, or at least a setup.py in a folder of the right name; the nearest to the top is first."""
+    """A package has a package.xml, or at least a setup.py in a folder of the expected name; the shortest path is first."""
     assert find_packages(tree_of(*paths), "my_robot") == folders
 
 
@@ -209,8 +209,8 @@ def test_many_packages() -> None:
     assert len(find_packages(tree_of(*(f"p{n}/package.xml" for n in range(100))), "my_robot")) == 40
 
 
-def packages(wanted: str, names: dict[str, str | None]) -> tuple[Package, ...]:
-    """The packages of a tree: folders and the names in their package.xml, None for only a setup.py."""
+def packages(expected: str, names: dict[str, str | None]) -> tuple[Package, ...]:
+    """Return the packages of a file tree: folders and the names in their package.xml, None for only a setup.py."""
     files = [
         _file(
             f"{folder}/{'setup.py' if name is None else 'package.xml'}".lstrip("/"),
@@ -218,7 +218,7 @@ def packages(wanted: str, names: dict[str, str | None]) -> tuple[Package, ...]:
         )
         for folder, name in names.items()
     ]
-    return read_packages(make_tree("upload", files, ()), wanted)
+    return read_packages(make_tree("upload", files, ()), expected)
 
 
 @pytest.mark.parametrize(
@@ -237,52 +237,55 @@ def packages(wanted: str, names: dict[str, str | None]) -> tuple[Package, ...]:
     ],
 )
 def test_the_package_that_is_graded(names: dict[str, str | None], folder: str, name: str) -> None:
-    """By its name, then by that of its folder, then by a similar name, then the nearest to the top."""
+    """By its name, then by that of its folder, then by a similar name, then the shortest path."""
     first, *_ = packages("my_robot", names)
     assert (first.folder, first.name) == (folder, name)
 
 
-def test_packages_know_each_other() -> None:
+def test_all_packages_are_listed_by_name() -> None:
     """Every package is known by its name, the graded one first among equals."""
     found = packages("my_robot", {"b/my_robot": "my_robot", "a/my_robot": "my_robot", "c": "other"})
-    assert [each.folder for each in found] == ["a/my_robot", "b/my_robot", "c"]
-    assert {name: each.folder for name, each in found[1].packages.items()} == {"my_robot": "a/my_robot", "other": "c"}
+    assert [submission.folder for submission in found] == ["a/my_robot", "b/my_robot", "c"]
+    assert {name: package.folder for name, package in found[1].packages.items()} == {
+        "my_robot": "a/my_robot",
+        "other": "c",
+    }
 
 
 def test_no_package() -> None:
-    """Without a package there is none."""
+    """A submission without a package has none."""
     assert packages("my_robot", {}) == ()
 
 
 def team(first: list[str], second: list[str]) -> Tree:
-    """What a team of two has in one repository: a package my_robot for each."""
+    """Return the repository of a team of two: a package my_robot for each."""
     paths = [
         "README.md",
-        *(f"Lab6/Adams/my_robot/{each}" for each in first),
-        *(f"Lab6/Brown/my_robot/{each}" for each in second),
+        *(f"Lab6/Adams/my_robot/{path}" for path in first),
+        *(f"Lab6/Brown/my_robot/{path}" for path in second),
     ]
     return tree_of(*paths, package=manifest("my_robot"))
 
 
 def test_a_team_of_two() -> None:
-    """The first member's package and URDF are graded; the other's are named."""
+    """The first member's package and URDF are graded; the other's are listed."""
     tree = team(["package.xml", "urdf/my_robot.urdf"], ["package.xml", "urdf/my_robot.urdf"])
-    found = submission_of(tree, "team", wanted=WANTED, package="my_robot")
+    found = submission_of(tree, "team", wanted=EXPECTED, package="my_robot")
     assert found.path == "Lab6/Adams/my_robot/urdf/my_robot.urdf"
     assert found.package is not None
     assert found.package.folder == "Lab6/Adams/my_robot"
-    assert {each.path: each.reason for each in found.other_candidates} == {
+    assert {candidate.path: candidate.reason for candidate in found.other_candidates} == {
         "Lab6/Brown/my_robot/urdf/my_robot.urdf": OUTSIDE,
         "Lab6/Brown/my_robot/package.xml": LATER,
     }
 
 
 def test_a_team_is_not_mixed_up() -> None:
-    """One member's package is not graded with the other's URDF, better named as it may be."""
+    """One member's package is not graded with the other's URDF, even if that has a better name."""
     found = submission_of(
         team(["package.xml", "robot.urdf"], ["package.xml", "urdf/my_robot.urdf"]),
         "team",
-        wanted=WANTED,
+        wanted=EXPECTED,
         package="my_robot",
     )
     assert found.path == "Lab6/Brown/my_robot/urdf/my_robot.urdf"
@@ -290,25 +293,27 @@ def test_a_team_is_not_mixed_up() -> None:
     assert found.package.folder == "Lab6/Brown/my_robot"
 
 
-def test_a_package_with_the_files_of_the_lab_comes_first() -> None:
+def test_a_package_with_the_labs_files_takes_precedence() -> None:
     """Of packages of one name the one with the URDF at its path is graded, then the one with more of the usual files."""
     tree = tree_of(
         *("Lab5/my_robot/package.xml", "Lab5/my_robot/setup.py", "Lab5/my_robot/urdf/box.urdf"),
         *("Lab6/my_robot/package.xml", "Lab6/my_robot/setup.py", "Lab6/my_robot/urdf/my_robot.urdf"),
         package=manifest("my_robot"),
     )
-    found = submission_of(tree, "a", wanted=WANTED, package="my_robot")
+    found = submission_of(tree, "a", wanted=EXPECTED, package="my_robot")
     assert found.path == "Lab6/my_robot/urdf/my_robot.urdf"
     assert found.package is not None
     assert found.package.folder == "Lab6/my_robot"
     stub = team(["package.xml"], ["package.xml", "setup.py", "rviz/a.rviz"])
-    package = submission_of(stub, "a", wanted=WANTED, package="my_robot").package
+    package = submission_of(stub, "a", wanted=EXPECTED, package="my_robot").package
     assert package is not None
     assert package.folder == "Lab6/Brown/my_robot"
 
 
 def test_a_description_package() -> None:
-    """A URDF in a package of another name, beside the one that is graded, is found by its path."""
+    """A URDF in another package beside the graded one is found by its path."""
     tree = tree_of("my_robot/package.xml", "my_robot/test.urdf", "my_robot_description/package.xml", "my_robot_description/urdf/my_robot.urdf",
                    package=manifest("my_robot"))  # fmt: skip
-    assert submission_of(tree, "a", wanted=WANTED, package="my_robot").path == "my_robot_description/urdf/my_robot.urdf"
+    assert (
+        submission_of(tree, "a", wanted=EXPECTED, package="my_robot").path == "my_robot_description/urdf/my_robot.urdf"
+    )

@@ -1,4 +1,4 @@
-"""Reports that were saved beside the lab are no part of it, and lines of answers are those that editors count."""
+"""Saved reports beside the lab are ignored, and lines of answers are counted as editors do."""
 
 import shutil
 from pathlib import Path
@@ -12,25 +12,27 @@ from tests.samples import LAB6, ROOT, opened
 
 @pytest.mark.parametrize("kind", [kind for kind in Format if kind.needs != "identity"])
 def test_a_report_is_no_answer(tmp_path: Path, kind: Format) -> None:
-    """A report repeats questions and model answers, and yet what is graded is the same with it and without it."""
+    """A report repeats questions and model answers, but grading gives the same with and without it."""
     work = tmp_path / "lab"
     shutil.copytree(ROOT / "submissions" / "equivalent-answers-in-text-file", work)
     (work / "my answers.txt").unlink()
     before = grade(LAB6, opened(work))
     (work / f"a_report.{kind.ending}").write_text(render(before, kind), encoding="utf-8")
     after = grade(LAB6, opened(work))
-    assert [each.outcome for each in after.results] == [each.outcome for each in before.results]
+    assert [result.outcome for result in after.results] == [result.outcome for result in before.results]
     assert after.problems == before.problems
 
 
 @pytest.mark.parametrize("odd", ["\f", "\x85", "\u2028", "\v", "\x1c"])
 @pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
-def test_an_answer_is_in_the_line_that_an_editor_shows(tmp_path: Path, odd: str, end: str) -> None:
-    """Only line ends begin a line, whatever else Unicode takes for a break."""
+def test_an_answer_has_the_line_of_an_editor(tmp_path: Path, odd: str, end: str) -> None:
+    """Only line endings start a line, whatever other breaks Unicode has."""
     text = end.join(["# Lab 6", f"some{odd}thing", "", "## Task 1 step 15", "The tree has two roots.", ""])
     (tmp_path / "answers.md").write_bytes(text.encode())
     found = [
-        each.outcome for each in grade(LAB6, opened(tmp_path)).results if each.criterion.id == "answer-floating-link"
+        result.outcome
+        for result in grade(LAB6, opened(tmp_path)).results
+        if result.criterion.id == "answer-floating-link"
     ]
     assert found[0].location is not None
     assert (found[0].location.line, "two roots" in str(found[0].measured)) == (4, True)

@@ -1,4 +1,4 @@
-"""Plain xacro comes to what xacro itself makes of it; anything more is left to a person."""
+"""Plain xacro is expanded as xacro itself does; anything more needs manual grading."""
 
 import re
 import xml.dom.minidom
@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from grader.submission.submission import Submission, read_submission
 from grader.submission.urdf import NeedsExpansion, Read
 from grader.xacro.properties import expand
-from tests.patience import processor_time
+from tests.processor_time import processor_time
 from tests.samples import LAB6, opened
 
 START = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
@@ -20,12 +20,12 @@ NAMES = ("a", "b", "width", "wheel_radius")
 
 
 def robot(*lines: str) -> str:
-    """A robot in xacro."""
+    """Return a robot in xacro."""
     return START + "\n".join(lines) + "\n</robot>\n"
 
 
 def xacros_own(text: str) -> xml.dom.minidom.Document:
-    """What xacro itself makes of a text; only ever of ours."""
+    """Return xacro's own expansion of a text, only ever one of these tests."""
     xacro: Any = pytest.importorskip("xacro")
     document = xacro.parse(text)
     xacro.process_doc(document)
@@ -33,16 +33,16 @@ def xacros_own(text: str) -> xml.dom.minidom.Document:
 
 
 def attributes(document: xml.dom.minidom.Document) -> list[tuple[str, list[tuple[str, str]]]]:
-    """Every element with its attributes, in order."""
+    """Return every element with its attributes, in order."""
     elements = document.getElementsByTagName("*")
     return [
-        (each.tagName, sorted((n, v) for n, v in each.attributes.items() if not n.startswith("xmlns")))
-        for each in elements
+        (element.tagName, sorted((n, v) for n, v in element.attributes.items() if not n.startswith("xmlns")))
+        for element in elements
     ]
 
 
 def compare(text: str) -> None:
-    """The expanded text says the same as xacro's own, number for number."""
+    """Assert that the expanded text equals xacro's own, number for number."""
     mine = expand(text)
     assert mine is not None
     for (tag, own), (other_tag, theirs) in zip(
@@ -51,9 +51,9 @@ def compare(text: str) -> None:
         assert tag == other_tag
         for (name, value), (other_name, expected) in zip(own, theirs, strict=True):
             assert name == other_name
-            numbers, wanted = value.split(), expected.split()
-            assert len(numbers) == len(wanted)
-            for one, other in zip(numbers, wanted, strict=True):
+            numbers, required = value.split(), expected.split()
+            assert len(numbers) == len(required)
+            for one, other in zip(numbers, required, strict=True):
                 assert one == other or float(one) == pytest.approx(float(other), rel=1e-12, abs=1e-12)
 
 
@@ -82,8 +82,8 @@ def compare(text: str) -> None:
         robot("<!-- ${ not this } <xacro:include/> -->", '<origin xyz="${1} 0 0"/>'),
     ],
 )
-def test_what_xacro_makes_of_it(text: str) -> None:
-    """Properties, numbers and pi come to the same."""
+def test_expansion_equals_xacros(text: str) -> None:
+    """Properties, numbers and pi give the same."""
     compare(text)
 
 
@@ -104,7 +104,7 @@ expressions = st.recursive(
 @settings(max_examples=150, deadline=None)
 @given(st.lists(expressions, min_size=1, max_size=4))
 def test_any_numbers(values: list[str]) -> None:
-    """Whatever is worked out here, xacro works out to the same number."""
+    """A number that is evaluated here is the same in xacro."""
     properties = [f'<xacro:property name="{name}" value="{index + 1}.5"/>' for index, name in enumerate(NAMES)]
     compare(robot(*properties, *(f'<origin xyz="${{{value}}} 0 0"/>' for value in values)))
 
@@ -135,13 +135,13 @@ def test_any_numbers(values: list[str]) -> None:
         '<xacro:property name="block"><origin xyz="1 0 0"/></xacro:property>',
     ],
 )
-def test_anything_more_is_left(line: str) -> None:
-    """What runs code, includes files or takes more than numbers is not worked out."""
+def test_other_features_are_not_evaluated(line: str) -> None:
+    """Text that runs code, includes files or needs more than numbers is not evaluated."""
     assert expand(robot(line)) is None
 
 
 def test_a_chain_of_properties_takes_no_time() -> None:
-    """Each property is worked out once, however often it is used."""
+    """Each property is evaluated once, however often it is used."""
     lines = [f'<xacro:property name="p{i}" value="${{{"+".join([f"p{i - 1}"] * 9)}}}"/>' for i in range(10, 0, -1)]
     text = robot('<xacro:property name="p0" value="1"/>', *lines, '<a x="${p10}"/>')
     with processor_time(0.2):
@@ -149,14 +149,14 @@ def test_a_chain_of_properties_takes_no_time() -> None:
     compare(text)
 
 
-def test_without_its_namespace_it_is_no_xml() -> None:
+def test_an_undeclared_prefix_is_an_error() -> None:
     """xacro refuses a prefix that is not declared."""
     assert expand('<robot name="r">\n<xacro:property name="a" value="1"/></robot>') is None
 
 
 @given(st.text(alphabet="$ {}()<>xacro:propety/=\"'.+-*01\n", max_size=200))
 def test_any_text(text: str) -> None:
-    """It never fails, and every line stays where it is."""
+    """Any text is accepted, and every line keeps its number."""
     expanded = expand(text)
     assert expanded is None or expanded.count("\n") == text.count("\n")
 
@@ -166,8 +166,8 @@ PLAIN = REFERENCE.replace('rpy="-1.57 0 0"', 'rpy="${-pi/2} 0 0"')
 MACRO = REFERENCE.replace("</robot>", '<xacro:macro name="m" params="p"/>\n</robot>')
 
 
-def handed_in(folder: Path, text: str, *, name: str = "my_robot.urdf", command: bool = True) -> Submission:
-    """The reference package with another URDF, whose launch file has xacro read it, or not."""
+def package_with(folder: Path, text: str, *, name: str = "my_robot.urdf", command: bool = True) -> Submission:
+    """Return the reference package with another URDF, whose launch file runs xacro on it, or not."""
     import shutil
 
     shutil.copytree(LAB6.path.parent / LAB6.reference, folder / "my_robot")
@@ -187,7 +187,7 @@ def handed_in(folder: Path, text: str, *, name: str = "my_robot.urdf", command: 
 
 
 def state(submission: Submission) -> str:
-    """Return the state of a submission's URDF, in words."""
+    """Return the state of a submission's URDF as text."""
     match submission.urdf:
         case Read(is_expanded=is_expanded):
             return "expanded" if is_expanded else "read"
@@ -197,16 +197,16 @@ def state(submission: Submission) -> str:
 
 
 def test_xacro_that_the_launch_file_expands(tmp_path: Path) -> None:
-    """Numbers are worked out where the launch file has xacro do it; macros are left to a person; else ROS 2 gets it as it is."""
-    plain = handed_in(tmp_path / "plain", PLAIN)
+    """Numbers are evaluated if the launch file runs xacro; macros need manual grading; else ROS 2 gets the file as it is."""
+    plain = package_with(tmp_path / "plain", PLAIN)
     assert (state(plain), plain.verdict) == ("expanded", "clean")
-    assert state(handed_in(tmp_path / "macro", MACRO)) == "needs expansion"
-    as_it_is = handed_in(tmp_path / "as-it-is", PLAIN, command=False)
+    assert state(package_with(tmp_path / "macro", MACRO)) == "needs expansion"
+    as_it_is = package_with(tmp_path / "as-it-is", PLAIN, command=False)
     assert (state(as_it_is), as_it_is.verdict) == ("read", "rejected")
 
 
 def test_xacro_by_its_name() -> None:
-    """A file that is named .xacro is meant to be expanded; one named .urdf is not, if nothing says so."""
+    """A file named .xacro is meant to be expanded; one named .urdf is not, unless a launch file says so."""
     assert state(read_submission(PLAIN.encode(), identity="a", path="a.urdf.xacro")) == "expanded"
     assert state(read_submission(MACRO.encode(), identity="a", path="a.xacro")) == "needs expansion"
     assert state(read_submission(PLAIN.encode(), identity="a", path="a.urdf")) == "read"

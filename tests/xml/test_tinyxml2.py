@@ -1,4 +1,4 @@
-"""TinyXML2's dialect: never a crash, always XML that lxml reads, and the same tree where no translation is needed."""
+"""TinyXML2's dialect: never a crash, always XML that lxml reads, and the same tree if no translation is needed."""
 
 import pytest
 from hypothesis import assume, example, given, settings
@@ -8,8 +8,8 @@ from lxml import etree
 from grader.robot.reader import read_urdf
 from grader.xml.parsing import is_plain
 from grader.xml.tinyxml2.scanner import Scan, Scanner
-from tests.patience import processor_time
-from tests.robot.soup import data
+from tests.processor_time import processor_time
+from tests.robot.random_text import data
 
 _PARSER = etree.XMLParser(
     resolve_entities=False, no_network=True, load_dtd=False, remove_comments=True, remove_pis=True
@@ -17,12 +17,12 @@ _PARSER = etree.XMLParser(
 
 
 def decoded(raw: bytes) -> str:
-    """A file's text as the reader hands it over."""
+    """Return a file's text as the reader decodes it."""
     return raw.decode("utf-8", "surrogateescape")
 
 
 def assert_sound(scan: Scan, text: str) -> None:
-    """The XML parses and has an offset for each element, at its <; without XML there is a reason, or no robot."""
+    """Assert that the XML parses and has the offset of the < of each element, or that there is a reason or no robot."""
     for found in scan.differences:
         assert 0 <= found.offset <= len(text)
         assert found.message
@@ -114,12 +114,12 @@ _robots = st.builds("{}{}{}".format, _start, _elements("robot", 3), _blank)
 
 
 def tree(root: etree._Element) -> list[tuple[str, dict[str, str]]]:
-    """Tags and attributes in document order."""
+    """Return tags and attributes in document order."""
     return [(str(element.tag), {str(k): str(v) for k, v in element.attrib.items()}) for element in root.iter()]
 
 
 def assert_same_if_plain(text: str) -> None:
-    """If the text counts as plain and lxml reads it, the translation has the same tags and attributes."""
+    """Assert that the translation has the same tags and attributes if the text is plain and lxml reads it."""
     raw = text.encode()
     if is_plain(raw):
         try:
@@ -132,7 +132,7 @@ def assert_same_if_plain(text: str) -> None:
 @settings(max_examples=300, deadline=None)
 @given(text=_robots)
 def test_plain_text_means_the_same_to_lxml(text: str) -> None:
-    """Where no translation is needed, lxml reads the same tags and attributes from the text and the translation."""
+    """If no translation is needed, lxml reads the same tags and attributes from the text and the translation."""
     assume(is_plain(text.encode()))
     assert_same_if_plain(text)
 
@@ -156,7 +156,7 @@ def test_values_with_line_breaks_are_not_plain(values: list[str], quote: str, ga
 @settings(max_examples=1500, deadline=None)
 @given(raw=data)
 def test_plain_soup_means_the_same_to_lxml(raw: bytes) -> None:
-    """Even if the text makes no sense; names that XML and TinyXML2 read differently are excluded."""
+    """Also for text without meaning, except names that XML and TinyXML2 read differently."""
     assume(is_plain(raw))
     try:
         root = etree.fromstring(raw, _PARSER)
@@ -173,16 +173,16 @@ def test_plain_soup_means_the_same_to_lxml(raw: bytes) -> None:
 
 @settings(max_examples=400, deadline=None)
 @given(text=_robots)
-def test_both_ways_to_read_give_the_same_robot(text: str) -> None:
-    """An empty CDATA section sends a file through the translation: robot, problems and places stay as they are."""
+def test_both_readings_give_the_same_robot(text: str) -> None:
+    """An empty CDATA section forces the translation: robot, problems and locations stay the same."""
     head, end, tail = text.rpartition("</")
     assume(end)
     assume(tail.startswith("robot"))
     plain, other = read_urdf(text.encode()), read_urdf(f"{head}<![CDATA[]]></{tail}".encode())
     assert other.robot == plain.robot
     assert other.verdict == plain.verdict
-    assert [(each.code, each.message, each.location) for each in other.problems] == [
-        (each.code, each.message, each.location) for each in plain.problems
+    assert [(problem.code, problem.message, problem.location) for problem in other.problems] == [
+        (problem.code, problem.message, problem.location) for problem in plain.problems
     ]
 
 
@@ -206,7 +206,7 @@ def test_both_ways_to_read_give_the_same_robot(text: str) -> None:
         "<robot/>\0",
     ],
 )
-def test_what_the_two_read_apart_is_not_plain(text: str) -> None:
+def test_text_that_both_read_differently_is_not_plain(text: str) -> None:
     """Values with line breaks, CDATA, DOCTYPE, namespaces and odd declarations are not plain, or mean the same."""
     assert_same_if_plain(text)
 

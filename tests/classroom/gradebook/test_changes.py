@@ -1,4 +1,4 @@
-"""What changed between two runs or gradebooks: who, by how much, in which criteria, and why."""
+"""Changes between two runs or gradebooks: who, by how much, in which criteria, and why."""
 
 from decimal import Decimal
 from pathlib import Path
@@ -14,7 +14,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import criterion_of, mark
 from grader.errors import InputError
-from tests.classroom.gradebooks import came_out, graded_into, lab
+from tests.classroom.gradebooks import graded_as, lab, record_run
 
 LAB = lab()
 OTHER = lab(box="5")
@@ -22,34 +22,34 @@ OTHER = lab(box="5")
 
 @pytest.fixture
 def book(tmp_path: Path) -> Any:
-    """An empty gradebook."""
+    """Yield an empty gradebook."""
     with Gradebook(tmp_path / "book.db", create=True) as opened:
         yield opened
 
 
 def run(book: Gradebook, rubric: Any = LAB, digest: str = "a", **signs: str) -> int:
-    """Grade submissions that came out like this."""
-    return graded_into(book, rubric, [came_out(rubric, key, each, digest) for key, each in signs.items()])
+    """Record a run with these results."""
+    return record_run(book, rubric, [graded_as(rubric, key, row, digest) for key, row in signs.items()])
 
 
 def put(book: Gradebook, key: str, name: str, points: str | None) -> None:
-    """Mark manually."""
+    """Add a manual mark."""
     given = None if points is None else Decimal(points)
     mark(book, Grades(book).find(key), criterion_of(LAB, name), given, "me", "")
 
 
 def found(book: Gradebook, before: int | None = None, after: int | None = None) -> list[Change]:
-    """What changed between two runs."""
+    """Return the changes between two runs."""
     return changes(*last_two(book, before, after))
 
 
 def why(book: Gradebook) -> dict[str, tuple[str, ...]]:
-    """Why, for each student."""
-    return {each.key: each.why for each in found(book)}
+    """Return the reason for each student."""
+    return {change.key: change.why for change in found(book)}
 
 
 def test_nothing_changed(book: Gradebook) -> None:
-    """The same again is no change, nor is another submission with the same points."""
+    """An equal run is no change, nor is another submission with the same points."""
     run(book, anna="ppp?f", ben="pfs?f")
     run(book, anna="ppp?f")
     run(book, digest="b", ben="pfs?f")
@@ -57,7 +57,7 @@ def test_nothing_changed(book: Gradebook) -> None:
 
 
 def test_another_submission(book: Gradebook) -> None:
-    """The criteria that came out otherwise, and by how much."""
+    """The criteria with other results, and by how much."""
     run(book, anna="pfs?f", ben="ppppp")
     run(book, digest="b", anna="pppfp")
     (change,) = found(book)
@@ -71,7 +71,7 @@ def test_another_submission(book: Gradebook) -> None:
 
 
 def test_another_rubric(book: Gradebook) -> None:
-    """Points of the same criteria, criteria that are new, and those that are gone."""
+    """Criteria with other points, new criteria, and removed ones."""
     run(book, anna="ppppp", ben="pfspp")
     bigger = lab(box="5", extra="7")
     run(book, bigger, anna="pppppp", ben="pfsppf")
@@ -85,15 +85,15 @@ def test_another_rubric(book: Gradebook) -> None:
 
 
 def test_another_grader(book: Gradebook, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The version that decided."""
+    """The version of the grader is the reason."""
     run(book, anna="ppppp")
     monkeypatch.setattr(module, "__version__", "99.0")
     run(book, anna="ppppf")
     assert why(book) == {"anna": ("the grader changed",)}
 
 
-def test_marks_by_hand(book: Gradebook) -> None:
-    """Given, given anew, and taken back: since the older run began, until the one after the newer began."""
+def test_manual_marks(book: Gradebook) -> None:
+    """Marks count as changes if they are added, replaced or removed between the start of the older run and the next one."""
     first = run(book, anna="ppp??", ben="ppp??", cleo="ppp??", dora="ppp??")
     put(book, "anna", "essay", "2")
     put(book, "ben", "essay", "2")
@@ -104,8 +104,8 @@ def test_marks_by_hand(book: Gradebook) -> None:
     put(book, "dora", "box", "0")
 
     def seen(before: int, after: int) -> dict[str, list[PointsChange]]:
-        assert all(each.why == ("manual marks changed",) for each in found(book, before, after))
-        return {each.key: list(each.steps) for each in found(book, before, after)}
+        assert all(change.why == ("manual marks changed",) for change in found(book, before, after))
+        return {change.key: list(change.steps) for change in found(book, before, after)}
 
     two, none = Decimal(2), Decimal(0)
     anna = {"anna": [PointsChange("essay", None, two)]}
@@ -122,7 +122,7 @@ def test_marks_by_hand(book: Gradebook) -> None:
 
 
 def test_several_reasons(book: Gradebook) -> None:
-    """All that was another is named."""
+    """All reasons are named."""
     run(book, anna="ppppp")
     run(book, OTHER, digest="b", anna="ppp!f")
     put(book, "anna", "picture", "0.5")
@@ -132,8 +132,8 @@ def test_several_reasons(book: Gradebook) -> None:
     assert why(book) == {"anna": words}
 
 
-def test_who_came_and_who_went(tmp_path: Path) -> None:
-    """Of two gradebooks, and of one in which somebody submits later."""
+def test_students_who_appear_or_disappear(tmp_path: Path) -> None:
+    """Students that only one of two gradebooks has, and a student who submits later."""
     with Gradebook(tmp_path / "a.db", create=True) as one, Gradebook(tmp_path / "b.db", create=True) as two:
         run(one, anna="ppppp", ben="ppppp")
         run(two, anna="ppppp", cleo="fffff")
@@ -146,7 +146,7 @@ def test_who_came_and_who_went(tmp_path: Path) -> None:
 
 
 def test_which_runs(book: Gradebook) -> None:
-    """The last two, or those that are named; in front of one that is named alone stands the one before it."""
+    """The last two runs, or the named ones; a single named run is compared with the one before it."""
     with pytest.raises(InputError, match="not two runs to compare"):
         last_two(book)
     run(book, anna="fffff")
@@ -175,10 +175,10 @@ STATUS_LETTERS = st.text("pfs?!-", min_size=5, max_size=5)
 @given(
     STATUS_LETTERS,
     STATUS_LETTERS,
-    st.lists(st.tuples(st.sampled_from([each.id for each in LAB.criteria]), st.booleans()), max_size=4),
+    st.lists(st.tuples(st.sampled_from([criterion.id for criterion in LAB.criteria]), st.booleans()), max_size=4),
 )
 def test_steps_add_up(before: str, after: str, marks: list[tuple[str, bool]]) -> None:
-    """The difference of the scores is the sum of the steps, and the newer score is the one that counts."""
+    """The difference of the scores is the sum of the steps, and the newer score is the current one."""
     from tempfile import TemporaryDirectory
 
     with TemporaryDirectory() as folder, Gradebook(Path(folder, "book.db"), create=True) as book:
@@ -190,6 +190,6 @@ def test_steps_add_up(before: str, after: str, marks: list[tuple[str, bool]]) ->
             assert change.before is not None
             assert change.after is not None
             assert change.why
-            total = sum(((each.after or 0) - (each.before or 0) for each in change.steps), Decimal(0))
+            total = sum(((step.after or 0) - (step.before or 0) for step in change.steps), Decimal(0))
             assert change.after - change.before == total
             assert change.after == Grades(book).find("anna").score

@@ -1,4 +1,4 @@
-"""The gradebook: one file in which nothing that a check or a person has said is ever lost, and the current grade is a view."""
+"""The gradebook: one file in which no result and no mark is ever lost, and the current grade is a view."""
 
 import sqlite3
 import threading
@@ -20,7 +20,7 @@ from grader.classroom.gradebook.marks import mark
 from grader.classroom.gradebook.schema import APPLICATION_ID, STEPS
 from grader.errors import InputError
 from grader.grading.rubric import Rubric
-from tests.classroom.gradebooks import came_out, graded_into, grader, lab, refusal, units
+from tests.classroom.gradebooks import graded_as, grader, lab, record_run, refusal, units
 
 LABS = (lab(), lab(loads="2", box="5", essay="1.2345"), lab(extra="7.5"), lab(picture="0"))
 STUDENTS = ("anna", "ben", "cleo")
@@ -29,9 +29,9 @@ NAMES = ("loads", "box", "tall", "essay", "picture", "extra")
 
 @pytest.fixture
 def book(tmp_path: Path) -> Iterator[Gradebook]:
-    """A gradebook with one submission and one mark."""
+    """Yield a gradebook with one submission and one mark."""
     with Gradebook(tmp_path / "book.db", create=True) as opened:
-        graded_into(opened, LABS[0], [came_out(LABS[0], "anna", "pps??")])
+        record_run(opened, LABS[0], [graded_as(LABS[0], "anna", "pps??")])
         put(opened, "anna", "essay", Decimal(3), "good")
         yield opened
 
@@ -40,17 +40,17 @@ def put(book: Gradebook, key: str, name: str, points: Decimal | None, why: str =
     """Mark a criterion manually."""
     standings = Grades(book)
     standing = standings.find(key)
-    criterion = next(each for each in standings.rubric(standing.rubric).criteria if each.id == name)
+    criterion = next(criterion for criterion in standings.rubric(standing.rubric).criteria if criterion.id == name)
     mark(book, standing, criterion, points, "me", why)
 
 
 def all_of(book: Gradebook, table: str) -> list[tuple[Any, ...]]:
-    """All rows of a table, the oldest first."""
+    """Return all rows of a table, the oldest first."""
     return list(book.rows(f"SELECT * FROM {table} ORDER BY id"))
 
 
-def test_what_a_new_file_is(book: Gradebook) -> None:
-    """Write-ahead log, foreign keys, a version, and a number by which the file says what it is."""
+def test_a_new_file(book: Gradebook) -> None:
+    """A new gradebook has a write-ahead log, foreign keys, a schema version and an application id."""
     settings_of = {
         name: next(book.rows(f"PRAGMA {name}"))[0]
         for name in ("journal_mode", "foreign_keys", "user_version", "application_id")
@@ -79,7 +79,7 @@ def test_what_a_new_file_is(book: Gradebook) -> None:
         "DELETE FROM student",
     ],
 )
-def test_what_was_said_cannot_be_unsaid(book: Gradebook, statement: str) -> None:
+def test_marks_and_results_cannot_be_changed(book: Gradebook, statement: str) -> None:
     """SQLite itself refuses to change or delete a mark or a result, from any program."""
     before = all_of(book, "mark"), all_of(book, "result")
     with closing(sqlite3.connect(book.path)) as other:
@@ -108,30 +108,30 @@ MARK = st.tuples(
 
 
 class Model:
-    """What the gradebook has to say, worked out in the plainest way."""
+    """A plain model of the gradebook, for comparison."""
 
     def __init__(self) -> None:
         self.results: dict[str, tuple[Rubric, str, str]] = {}
         self.marks: dict[tuple[str, str], int] = {}
 
     def grade(self, key: str) -> tuple[int, int, int, int]:
-        """Score, out of, pending, faults."""
+        """Return score, maximum, pending points and errors."""
         rubric, signs, _ = self.results[key]
         score = out_of = pending = faults = 0
         for criterion, sign in zip(rubric.criteria, signs, strict=True):
-            by_hand = self.marks.get((key, criterion.id))
+            manual = self.marks.get((key, criterion.id))
             worth = units(criterion.points)
-            score += by_hand if by_hand is not None else worth * (sign == "p")
-            out_of += worth * (sign != "-" or by_hand is not None)
-            pending += worth * (sign == "?" and by_hand is None)
-            faults += sign == "!" and by_hand is None
+            score += manual if manual is not None else worth * (sign == "p")
+            out_of += worth * (sign != "-" or manual is not None)
+            pending += worth * (sign == "?" and manual is None)
+            faults += sign == "!" and manual is None
         return score, out_of, pending, faults
 
 
 @settings(max_examples=120)
 @given(st.lists(st.one_of(RUN, MARK, MARK), min_size=2, max_size=14))
 def test_the_view_is_the_sum_over_the_report(steps: list[tuple[Any, ...]]) -> None:
-    """After any runs, changed submissions, changed rubrics, marks and takings back: view, standing, report and a plain model agree."""
+    """View, standing, report and model agree after any runs, changes of submissions and rubrics, and marks."""
     model = Model()
     with TemporaryDirectory() as folder, Gradebook(Path(folder, "book.db"), create=True) as book:
         kept: list[list[tuple[Any, ...]]] = [[], []]
@@ -139,25 +139,25 @@ def test_the_view_is_the_sum_over_the_report(steps: list[tuple[Any, ...]]) -> No
             play(book, model, step)
             now = [all_of(book, "mark"), all_of(book, "result")]
             for before, after in zip(kept, now, strict=True):
-                assert after[: len(before)] == before  # nothing that was there is another or gone
+                assert after[: len(before)] == before  # no earlier row is changed or removed
             kept = now
         check(book, model)
 
 
 def play(book: Gradebook, model: Model, step: tuple[Any, ...]) -> None:
-    """One step, in the gradebook and in the model."""
+    """Apply one step to the gradebook and to the model."""
     match step:
         case ("run", index, found):
             rubric = LABS[index]
             count = len(rubric.criteria)
-            graded_into(
+            record_run(
                 book,
                 rubric,
-                [came_out(rubric, key, signs[:count], digest, why) for key, (signs, digest, why) in found.items()],
+                [graded_as(rubric, key, signs[:count], digest, why) for key, (signs, digest, why) in found.items()],
             )
             model.results |= {key: (rubric, signs[:count], digest) for key, (signs, digest, _) in found.items()}
         case ("mark", key, name, points):
-            names = [each.id for each in model.results[key][0].criteria] if key in model.results else []
+            names = [criterion.id for criterion in model.results[key][0].criteria] if key in model.results else []
             if name in names:
                 put(book, key, name, None if points is None else Decimal(points) / 10_000)
                 if points is None:
@@ -167,31 +167,33 @@ def play(book: Gradebook, model: Model, step: tuple[Any, ...]) -> None:
 
 
 def check(book: Gradebook, model: Model) -> None:
-    """Everyone's grade, asked in four ways."""
+    """Compare everyone's grade, queried in four ways."""
     standings = Grades(book)
-    assert {each.student.key for each in standings.all()} == model.results.keys()
+    assert {standing.student.key for standing in standings.all()} == model.results.keys()
     for key in model.results:
-        wanted = model.grade(key)
+        expected = model.grade(key)
         ((score, out_of, pending, faults),) = book.rows(
             "SELECT score, out_of, pending, faults FROM grade WHERE key = ?", key
         )
-        assert (score, out_of, pending, faults) == wanted
+        assert (score, out_of, pending, faults) == expected
         standing = standings.find(key)
-        assert (*map(units, (standing.score, standing.out_of, standing.pending)), standing.faults) == wanted
+        assert (*map(units, (standing.score, standing.out_of, standing.pending)), standing.faults) == expected
         report = standings.report(standing)
-        open_faults = sum(each.outcome.status == "errored" and each.manual_mark is None for each in report.results)
-        assert (*map(units, (report.score, report.max_score, report.pending)), open_faults) == wanted
-        decided = {each.criterion.id: each.points for each in report.results if is_decided(each)}
+        open_faults = sum(
+            result.outcome.status == "errored" and result.manual_mark is None for result in report.results
+        )
+        assert (*map(units, (report.score, report.max_score, report.pending)), open_faults) == expected
+        decided = {result.criterion.id: result.points for result in report.results if is_decided(result)}
         assert standings.points(standing) == decided
 
 
 def is_decided(result: Any) -> bool:
-    """Whether a check or a person has said what a criterion earns."""
+    """Return whether a check or a mark has decided the points of a criterion."""
     return result.manual_mark is not None or result.outcome.status in ("passed", "failed", "skipped")
 
 
-def test_a_student_without_a_hand_in_has_no_points(book: Gradebook) -> None:
-    """Whoever is only on the roster is missing, with nothing to add up."""
+def test_a_student_without_a_submission_has_no_points(book: Gradebook) -> None:
+    """A student who is only on the roster is missing and has no points."""
     from grader.classroom.gradebook.run_writer import save_student
     from grader.classroom.gradebook.stored import Enrolment
     from grader.classroom.students import Student
@@ -212,12 +214,12 @@ INSERT INTO pet VALUES ('cat; dog');
 """
 
 
-def test_an_older_file_is_brought_up_to_date(book: Gradebook, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A later grader's steps are taken at once, in order, and all that was in the file is still there."""
+def test_an_older_file_is_migrated(book: Gradebook, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The steps of a later version are applied at once, in order, and all data is kept."""
     before = all_of(book, "mark"), all_of(book, "result")
     book.close()
     monkeypatch.setattr(module, "STEPS", (*STEPS, NEXT, "CREATE VIEW pets AS SELECT count(*) AS many FROM pet;\n"))
-    for _ in range(2):  # a second time there is nothing to do
+    for _ in range(2):  # opening it again changes nothing
         with Gradebook(book.path) as newer:
             assert next(newer.rows("PRAGMA user_version")) == (len(STEPS) + 2,)
             assert list(newer.rows("SELECT key, nickname, many FROM student, pets")) == [("anna", "none", 1)]
@@ -227,8 +229,8 @@ def test_an_older_file_is_brought_up_to_date(book: Gradebook, monkeypatch: pytes
         Gradebook(book.path)
 
 
-def test_half_a_step_leaves_no_trace(book: Gradebook, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Where a step fails, the file is as it was, and the grader that made it opens it."""
+def test_a_failed_migration_leaves_no_trace(book: Gradebook, monkeypatch: pytest.MonkeyPatch) -> None:
+    """If a step fails, the file is unchanged and opens with the version that made it."""
     book.close()
     with monkeypatch.context() as patched:
         patched.setattr(module, "STEPS", (*STEPS, NEXT, "CREATE TABLE one (x);\nINSERT INTO nowhere VALUES (1);\n"))
@@ -241,8 +243,8 @@ def test_half_a_step_leaves_no_trace(book: Gradebook, monkeypatch: pytest.Monkey
         assert Grades(again).find("anna").score == Decimal("8.5")
 
 
-def test_many_may_make_the_same_gradebook_at_once(tmp_path: Path) -> None:
-    """Whoever comes second finds it made."""
+def test_concurrent_creation_of_a_gradebook(tmp_path: Path) -> None:
+    """All but the first find the gradebook already made."""
     failed: list[Exception] = []
     start = threading.Barrier(8)
 
@@ -254,10 +256,10 @@ def test_many_may_make_the_same_gradebook_at_once(tmp_path: Path) -> None:
             failed.append(error)
 
     threads = [threading.Thread(target=make) for _ in range(8)]
-    for each in threads:
-        each.start()
-    for each in threads:
-        each.join()
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
     assert failed == []
 
 
@@ -265,7 +267,7 @@ def test_many_may_make_the_same_gradebook_at_once(tmp_path: Path) -> None:
 
 
 def spoil(kind: str, path: Path) -> None:
-    """Put something at a path that is no gradebook of ours."""
+    """Put something other than a gradebook at a path."""
     match kind:
         case "none":
             return
@@ -287,7 +289,7 @@ def spoil(kind: str, path: Path) -> None:
                 made.execute("CREATE TABLE mark (x)")
         case "damaged":
             with Gradebook(path, create=True) as book:
-                graded_into(book, LABS[0], [came_out(LABS[0], f"s{number}", "pps??") for number in range(200)])
+                record_run(book, LABS[0], [graded_as(LABS[0], f"s{number}", "pps??") for number in range(200)])
             data = bytearray(path.read_bytes())
             data[4096:] = b"\xa5" * (len(data) - 4096)
             path.write_bytes(data)
@@ -313,8 +315,8 @@ COMMANDS = {
 
 
 @pytest.mark.parametrize("kind", WHY)
-def test_what_is_no_gradebook_is_refused_in_one_line(kind: str, tmp_path: Path) -> None:
-    """And is not touched."""
+def test_other_files_are_refused_in_one_line(kind: str, tmp_path: Path) -> None:
+    """A file that is no gradebook is not changed."""
     path = tmp_path / "book.db"
     spoil(kind, path)
     before = path.read_bytes() if path.is_file() else None

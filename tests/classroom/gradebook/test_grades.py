@@ -1,4 +1,4 @@
-"""Who is meant by a name, whose grade is final, and who needs a look."""
+"""Which student a name means, whose grade is final, and who needs attention."""
 
 from collections.abc import Iterator
 from decimal import Decimal
@@ -14,7 +14,7 @@ from grader.classroom.gradebook.stored import Enrolment
 from grader.classroom.students import ClassSubmission, Student
 from grader.errors import InputError
 from grader.grading.rubric import Rubric
-from tests.classroom.gradebooks import came_out, graded_into, lab
+from tests.classroom.gradebooks import graded_as, lab, record_run
 
 LAB = lab()
 PEOPLE = (
@@ -27,7 +27,7 @@ PEOPLE = (
 
 @pytest.fixture
 def book(tmp_path: Path) -> Iterator[Gradebook]:
-    """A gradebook with a few people."""
+    """Yield a gradebook with a few students."""
     with Gradebook(tmp_path / "book.db", create=True) as opened:
         with opened.transaction():
             for person in PEOPLE:
@@ -35,16 +35,16 @@ def book(tmp_path: Path) -> Iterator[Gradebook]:
         yield opened
 
 
-def test_people_are_known_by_all_that_names_one_of_them(book: Gradebook) -> None:
-    """Key, login, address, numbers, name; a key goes before the rest."""
+def test_students_are_found_by_every_identifier(book: Gradebook) -> None:
+    """Key, login, address, numbers and name are accepted; a key takes precedence."""
     for name in ("anna", "ae1", "anna@example.org", "9001", "Anna Ek"):
         assert Grades(book).find(name).student.key == "anna"
     assert Grades(book).find("S1").student.name == "Sven"
 
 
 @pytest.mark.parametrize("name", ["Ben Oh", "101"])
-def test_several_are_never_one(book: Gradebook, name: str) -> None:
-    """Nobody is taken whom somebody else might be, even where the names are of two kinds."""
+def test_ambiguous_names_match_nobody(book: Gradebook, name: str) -> None:
+    """A name that several students have matches none of them, even across kinds of identifiers."""
     keys = "'ben', 'emil'" if name == "Ben Oh" else "'anna', 'emil'"
     with pytest.raises(InputError, match=f"'{name}' is ambiguous: it may be {keys}; use one of these ids"):
         Grades(book).find(name)
@@ -59,42 +59,42 @@ def test_several_are_never_one(book: Gradebook, name: str) -> None:
         ("", ""),
     ],
 )
-def test_nobody(book: Gradebook, name: str, guess: str) -> None:
-    """The message guesses who was meant."""
+def test_an_unknown_name(book: Gradebook, name: str, guess: str) -> None:
+    """The message suggests a similar name."""
     with pytest.raises(InputError) as caught:
         Grades(book).find(name)
     everyone = f"; `grader export csv --gradebook {book.path}` lists all students"
     assert str(caught.value) == f"there is no student {name!r} in the gradebook{guess or everyone}"
 
 
-def looks(book: Gradebook) -> dict[str, str]:
-    """Who needs a look, and why."""
-    return {each.who: each.why for each in Grades(book).needing_attention(99).listed}
+def notices(book: Gradebook) -> dict[str, str]:
+    """Return who needs attention, and why."""
+    return {notice.who: notice.why for notice in Grades(book).needing_attention(99).listed}
 
 
 def put(book: Gradebook, key: str, name: str = "essay") -> None:
-    """Give a point by hand."""
+    """Add a manual mark of one point."""
     standings = Grades(book)
     mark(book, standings.find(key), criterion_of(LAB, name), Decimal(1), "me", "")
 
 
-def test_who_needs_a_look(tmp_path: Path) -> None:
-    """Whoever has submitted nothing or nothing readable, or is a stranger, and where the grader failed."""
+def test_who_needs_attention(tmp_path: Path) -> None:
+    """Students without a submission, with an unreadable one, not on the roster, or with an error of the grader."""
     with Gradebook(tmp_path / "book.db", create=True) as book:
         signs = {"anna": "ppp??", "ben": "p!p??", "fay": "ppppp"}
-        graded_into(book, LAB, [came_out(LAB, key, each) for key, each in signs.items()])
-        graded_into(book, LAB, [came_out(LAB, "cleo", "?????", reason="no zip")])
+        record_run(book, LAB, [graded_as(LAB, key, row) for key, row in signs.items()])
+        record_run(book, LAB, [graded_as(LAB, "cleo", "?????", reason="no zip")])
         with book.transaction():
             save_student(book, Student("dora"), Enrolment(1))
             save_student(book, Student("fay"), Enrolment(0))
-        assert looks(book) == {
+        assert notices(book) == {
             "ben": "the grader failed on a criterion",
             "cleo": "it could not be graded: no zip",
             "dora": "nothing was submitted",
             "fay": "not on the roster",
         }
         short = Grades(book).needing_attention(1)
-        assert ([each.who for each in short.listed], short.total) == (["ben"], 4)
+        assert ([notice.who for notice in short.listed], short.total) == (["ben"], 4)
 
 
 @pytest.mark.parametrize(
@@ -106,47 +106,47 @@ def test_who_needs_a_look(tmp_path: Path) -> None:
         (lab(essay="3"), "a", True),
     ],
 )
-def test_a_mark_from_before(rubric: Rubric, digest: str, is_older: bool, tmp_path: Path) -> None:
-    """A mark stays, and is listed where it was given on another submission or for other points."""
+def test_an_older_mark(rubric: Rubric, digest: str, is_older: bool, tmp_path: Path) -> None:
+    """A mark is kept, and listed if it was given for another submission or other points."""
     with Gradebook(tmp_path / "book.db", create=True) as book:
-        graded_into(book, LAB, [came_out(LAB, "anna", "ppp??")])
+        record_run(book, LAB, [graded_as(LAB, "anna", "ppp??")])
         put(book, "anna")
-        assert looks(book) == {}
-        graded_into(book, rubric, [came_out(rubric, "anna", "ppp?f", digest)])
+        assert notices(book) == {}
+        record_run(book, rubric, [graded_as(rubric, "anna", "ppp?f", digest)])
         why = "1 manual mark is from before the submission or the points changed"
-        assert looks(book) == ({"anna": why} if is_older else {})
+        assert notices(book) == ({"anna": why} if is_older else {})
         assert Grades(book).find("anna").marks == 1
 
 
-def test_a_mark_on_what_could_not_be_opened_is_looked_at_again(tmp_path: Path) -> None:
-    """Where there was nothing to tell one submission from another, a new result may be of another one."""
+def test_a_mark_on_an_unreadable_submission_is_listed(tmp_path: Path) -> None:
+    """Unreadable submissions have no digest, so a new result may be about another one."""
     with Gradebook(tmp_path / "book.db", create=True) as book:
-        broken = came_out(LAB, "anna", "?????", reason="no zip")._replace(digest="")
-        graded_into(book, LAB, [broken])
+        broken = graded_as(LAB, "anna", "?????", reason="no zip")._replace(digest="")
+        record_run(book, LAB, [broken])
         put(book, "anna")
-        graded_into(book, LAB, [broken])
-        assert "from before" not in looks(book)["anna"]
-        graded_into(book, LAB, [broken._replace(reason="no tar")])
-        assert "from before" not in looks(book)["anna"]  # the same record: nothing new was found
-        graded_into(book, LAB, [came_out(LAB, "anna", "?????", reason="no tar")])
-        assert "from before" in looks(book)["anna"]
+        record_run(book, LAB, [broken])
+        assert "from before" not in notices(book)["anna"]
+        record_run(book, LAB, [broken._replace(reason="no tar")])
+        assert "from before" not in notices(book)["anna"]  # the same record: nothing new was found
+        record_run(book, LAB, [graded_as(LAB, "anna", "?????", reason="no tar")])
+        assert "from before" in notices(book)["anna"]
 
 
-def test_who_was_left_behind_by_a_new_rubric(tmp_path: Path) -> None:
+def test_a_grade_by_an_earlier_rubric(tmp_path: Path) -> None:
     """A grade by an earlier rubric still counts, and is listed."""
     newer = lab(loads="1")
     with Gradebook(tmp_path / "book.db", create=True) as book:
-        graded_into(book, LAB, [came_out(LAB, key, "ppppp") for key in ("anna", "ben")])
-        graded_into(book, newer, [came_out(newer, "anna", "ppppp")])
-        assert looks(book) == {"ben": "graded with an earlier version of the rubric"}
+        record_run(book, LAB, [graded_as(LAB, key, "ppppp") for key in ("anna", "ben")])
+        record_run(book, newer, [graded_as(newer, "anna", "ppppp")])
+        assert notices(book) == {"ben": "graded with an earlier version of the rubric"}
         assert Grades(book).find("ben").score == LAB.points
 
 
-def test_a_total_is_the_score_less_what_being_late_costs(tmp_path: Path) -> None:
-    """The policy is that of the rubric that the submission was graded by; the score stays as it is."""
+def test_a_total_is_the_score_minus_the_late_penalty(tmp_path: Path) -> None:
+    """The late policy is that of the rubric that graded the submission; the score is unchanged."""
     late = lab("due = 2026-09-01T12:00:00Z\npercent_per_day = 10\n")
     with Gradebook(tmp_path / "book.db", create=True) as book:
-        graded_into(book, late, [came_out(late, "anna", "pppff")], submitted="2026-09-02T13:00:00Z")
+        record_run(book, late, [graded_as(late, "anna", "pppff")], submitted="2026-09-02T13:00:00Z")
         found = Grades(book).find("anna")
         assert (found.score, found.late.days, found.late.points, found.total) == (
             Decimal(6),
@@ -157,16 +157,16 @@ def test_a_total_is_the_score_less_what_being_late_costs(tmp_path: Path) -> None
         assert Grades(book).report(found).score == Decimal(6)
 
 
-def test_names_that_are_no_text(tmp_path: Path) -> None:
-    """What a folder in another encoding calls a student, and where the class is, is kept as far as it can be read."""
-    graded = came_out(LAB, "x", "ppppp")._replace(verdict="unreadable", reason="no \udcff")
+def test_undecodable_names(tmp_path: Path) -> None:
+    """Names of students and folders in another encoding are kept as far as they can be read."""
+    graded = graded_as(LAB, "x", "ppppp")._replace(verdict="unreadable", reason="no \udcff")
     with Gradebook(tmp_path / "book.db", create=True) as book:
         writer = RunWriter(book, "class\udcff", "moodle", LAB)
         student = Student("x", "J\udcfcrg \u00d8")
         with book.transaction():
             result = writer.add_result(save_student(book, student, None), graded)
             writer.add_submission(save_student(book, student, None), result, ClassSubmission(student, ("a\udcff",)), "")
-        known = next(each for each in book.stored_submissions() if each.key == "x")
+        known = next(submission for submission in book.stored_submissions() if submission.key == "x")
         assert known is not None
         assert known.is_same(ClassSubmission(student, ("a\udcff",)), None)
         found = Grades(book).find("x")

@@ -1,4 +1,4 @@
-"""What being late costs: grace, days begun, the floor, whose due time counts, and times with and without an offset."""
+"""Late penalties: grace period, days begun, the floor, whose deadline counts, and times with and without an offset."""
 
 from datetime import datetime, timedelta
 from decimal import Decimal
@@ -21,12 +21,12 @@ LONG_GRACE = lab(f"{DUE}{POLICY}grace_minutes = 30\n")
 
 
 def cost(score: str, days: float, policy: str = POLICY) -> Decimal:
-    """What so many days cost a submission with this score."""
+    """Return the penalty for so many days late on a submission with this score."""
     return lateness(lab(policy), SubmissionTimes(days_late=days), Decimal(score)).points
 
 
 def days(submitted: str, rubric: Rubric = LAB, due: datetime | None = None, own: str = "", **more: Any) -> int:
-    """How many days late a submission is; `own` is when it was due for this student."""
+    """Return how many days late a submission is; `own` is the student's own deadline."""
     return lateness(rubric, SubmissionTimes(submitted=submitted, deadline=own, **more), Decimal(11), due).days
 
 
@@ -37,20 +37,20 @@ def days(submitted: str, rubric: Rubric = LAB, due: datetime | None = None, own:
         ("11", 1, "-1.1"),
         ("11", 1.01, "-2.2"),
         ("11", 5, "-5.5"),
-        ("11", 50, "-5.5"),  # never below half of what can be earned
+        ("11", 50, "-5.5"),  # never below half of the maximum
         ("6", 1, "-0.5"),
         ("5.5", 3, "0"),
-        ("2", 3, "0"),  # what is below already stays
+        ("2", 3, "0"),  # a score below the floor is unchanged
         ("0", 3, "0"),
     ],
 )
-def test_percent_of_what_can_be_earned_down_to_the_floor(score: str, late: float, points: str) -> None:
-    """Each day begun costs a tenth of all points, and nobody falls below the floor by it."""
+def test_percent_of_the_maximum_down_to_the_floor(score: str, late: float, points: str) -> None:
+    """Each day begun costs a tenth of the maximum, and no score falls below the floor."""
     assert cost(score, late) == Decimal(points)
 
 
-def test_without_a_floor_all_can_be_lost() -> None:
-    """But no more than that."""
+def test_without_a_floor_the_penalty_is_at_most_the_score() -> None:
+    """A total is never negative."""
     assert cost("3", 2, "percent_per_day = 10\n") == Decimal("-2.2")
     assert cost("3", 9, "percent_per_day = 10\n") == Decimal(-3)
     assert cost("11", 1, "percent_per_day = 100\n") == Decimal(-11)
@@ -67,23 +67,23 @@ def test_without_a_floor_all_can_be_lost() -> None:
         ("2026-09-10T12:30:01+02:00", 1, 1),
         ("2026-09-11T12:00:00+02:00", 1, 1),
         ("2026-09-11T12:00:01+02:00", 2, 1),
-        ("2026-09-11T12:30:00+02:00", 2, 1),  # days are counted from the end of the grace
+        ("2026-09-11T12:30:00+02:00", 2, 1),  # days are counted from the end of the grace period
         ("2026-09-11T12:30:01+02:00", 2, 2),
         ("2026-09-10T10:00:00Z", 0, 0),
         ("2026-09-10T10:00:01Z", 1, 0),
-        ("2026-09-10T12:00:00", 0, 0),  # no offset: the due time's
+        ("2026-09-10T12:00:00", 0, 0),  # no offset: that of the deadline
         ("2026-09-10T12:00:01", 1, 0),
         ("2026-09-10", 0, 0),
     ],
 )
-def test_days_are_those_begun_after_the_grace(submitted: str, late: int, with_grace: int) -> None:
-    """A second too late is a day, and the grace moves the whole count, as in Canvas."""
+def test_days_begin_after_the_grace_period(submitted: str, late: int, with_grace: int) -> None:
+    """One second late is a day, and the grace period moves the whole count, as in Canvas."""
     assert days(submitted) == late
     assert days(submitted, LONG_GRACE) == with_grace
 
 
-def test_whose_due_time_counts() -> None:
-    """The student's own goes before --due, that before the rubric's; an extension is added to whichever it is."""
+def test_whose_deadline_counts() -> None:
+    """The student's own deadline precedes --due, which precedes the rubric's; an extension is added to any of them."""
     submitted = "2026-09-12T12:00:00+02:00"
     assert days(submitted) == 2
     assert days(submitted, due=read_time("2026-09-11T12:00:00+02:00")) == 1
@@ -92,65 +92,65 @@ def test_whose_due_time_counts() -> None:
     assert days(submitted, extension=2.0) == 0
 
 
-def test_a_date_alone_is_due_at_its_end() -> None:
-    """Who submits on the day is in time."""
+def test_a_date_alone_ends_with_the_day() -> None:
+    """A submission on the day of the deadline is on time."""
     assert days("2026-09-12T23:59:59", own="2026-09-12") == 0
     assert days("2026-09-13T00:00:01", own="2026-09-12") == 1
     assert days("2026-09-12T18:00:00", lab(POLICY), due=read_time("2026-09-12")) == 0
     assert days("2026-09-13T18:00:00", lab(POLICY), due=read_time("2026-09-12")) == 1
 
 
-def test_days_by_the_roster_go_before_all() -> None:
-    """They are rounded up to whole ones; none is not late, whatever the LMS has flagged."""
+def test_days_in_the_roster_take_precedence() -> None:
+    """They are rounded up to whole days; 0 is not late, whatever the LMS has flagged."""
     late = SubmissionTimes(is_late=True, submitted="2026-10-10T12:00:00Z", days_late=1.2)
     assert lateness(LAB, late, Decimal(11)) == Lateness(2, Decimal("-2.2"), "2 days late, from the roster")
     assert days("", is_late=True, days_late=0.0) == 0
 
 
 def test_a_flag_without_a_time_is_one_day() -> None:
-    """Nobody knows by how much, and the words say so; a known time goes before the flag."""
+    """The message says that the time is unknown; a known time takes precedence over the flag."""
     assert days("", is_late=True) == 1
     assert "unknown" in lateness(LAB, SubmissionTimes(is_late=True), Decimal(11)).reason
     assert days("2026-09-10T11:00:00+02:00", is_late=True) == 0
-    assert days("2026-09-15T12:00:00Z", lab(POLICY), is_late=True) == 1  # no due time to compare with
+    assert days("2026-09-15T12:00:00Z", lab(POLICY), is_late=True) == 1  # no deadline to compare with
 
 
-def test_without_a_policy_nothing_is_lost() -> None:
-    """How late it was is still said."""
+def test_without_a_policy_there_is_no_penalty() -> None:
+    """The lateness is still reported."""
     found = lateness(
         lab(), SubmissionTimes(submitted="2026-09-12T12:00:00Z", deadline="2026-09-10T12:00:00Z"), Decimal(11)
     )
     assert (found.days, found.points) == (2, Decimal(0))
 
 
-def test_words_say_when_it_was_due() -> None:
-    """With the offset that was taken for it, so that a wrong one is seen."""
+def test_the_reason_names_the_deadline() -> None:
+    """The reason shows the offset that was used, so that a wrong one is noticed."""
     late = SubmissionTimes(submitted="2026-09-12T12:00:00Z", deadline="2026-09-10T23:59", extension=1.0)
     words = "1 day late: submitted 2026-09-12T12:00:00Z, deadline 2026-09-10T23:59+00:00, extension 1 day"
     assert lateness(LAB, late, Decimal(11)).reason == words
 
 
-def test_summer_time_is_in_the_offset() -> None:
-    """The hour that is lost or won between two offsets is no lateness."""
+def test_daylight_saving_time_is_in_the_offset() -> None:
+    """The hour between two offsets is no lateness."""
     berlin = ZoneInfo("Europe/Berlin")
     due = datetime(2026, 10, 25, 2, 30, tzinfo=berlin, fold=0)  # the first of the two
-    handed_in = datetime(2026, 10, 25, 2, 15, tzinfo=berlin, fold=1).isoformat()  # 45 minutes later
-    assert handed_in.endswith("+01:00")
-    assert days(handed_in, lab(POLICY), due=datetime.fromisoformat(due.isoformat())) == 1
+    with_submission = datetime(2026, 10, 25, 2, 15, tzinfo=berlin, fold=1).isoformat()  # 45 minutes later
+    assert with_submission.endswith("+01:00")
+    assert days(with_submission, lab(POLICY), due=datetime.fromisoformat(due.isoformat())) == 1
     assert days("2026-10-26T01:30:00+01:00", lab(POLICY), due=read_time("2026-10-25T02:30+02:00")) == 1
     assert days("2026-10-26T01:30:01+01:00", lab(POLICY), due=read_time("2026-10-25T02:30+02:00")) == 2
 
 
 @pytest.mark.parametrize("due", ["0001-01-01T00:00:00+14:00", "9999-12-31T23:59:59-12:00", "9999-12-31"])
-def test_times_at_the_ends_of_the_calendar(due: str) -> None:
-    """No extension and no offset leads out of it."""
+def test_deadlines_at_the_ends_of_the_calendar(due: str) -> None:
+    """No extension and no offset overflows the calendar."""
     for submitted in ("0001-01-01T00:00:00", "2026-09-10T12:00:00Z", "9999-12-31T23:59:59-12:00"):
         assert days(submitted, own=due, extension=9999.0) >= 0
 
 
 @pytest.mark.parametrize("text", ["", "tomorrow", "2026-13-01", "12:00", "2026-11-20T25:00"])
-def test_what_is_no_time(text: str) -> None:
-    """One line says how to write it."""
+def test_invalid_times(text: str) -> None:
+    """One line says how to write a time."""
     with pytest.raises(InputError, match="is not a date or time: write it as 2026-11-20T23:59"):
         read_time(text)
 
@@ -160,12 +160,12 @@ SCORE = st.decimals(0, 11, places=4)
 
 
 @given(PERCENT, PERCENT, SCORE, st.integers(0, 400))
-def test_never_below_the_floor_and_never_more_for_being_later(
+def test_totals_respect_the_floor_and_fall_with_the_days(
     percent: Decimal, floor: Decimal, score: Decimal, late: int
 ) -> None:
-    """A total lies between the score and the lower of score and floor, and falls with the days, by whole steps."""
+    """A total lies between the score and the lower of score and floor, and falls with the days by whole steps."""
     policy = f"percent_per_day = {percent}\nfloor_percent = {floor}\n"
-    totals = [score + cost(str(score), each, policy) for each in (late, late + 1)]
+    totals = [score + cost(str(score), days_late, policy) for days_late in (late, late + 1)]
     least = min(score, 11 * floor / 100)
     assert score >= totals[0] >= totals[1] >= least
     if totals[1] > least:
@@ -173,8 +173,8 @@ def test_never_below_the_floor_and_never_more_for_being_later(
 
 
 @given(st.integers(-(10**7), 10**7), st.integers(0, 10**5))
-def test_days_by_the_clock(seconds: int, grace: int) -> None:
-    """As many as were begun once the grace was over."""
+def test_days_by_time(seconds: int, grace: int) -> None:
+    """The number of days is the number begun after the grace period."""
     submitted = (read_time("2026-09-10T12:00:00+02:00") + timedelta(seconds=seconds)).isoformat()
     over = seconds - 60 * grace
     assert days(submitted, lab(f"{DUE}{POLICY}grace_minutes = {grace}\n")) == (0 if over <= 0 else -(-over // 86_400))

@@ -1,4 +1,4 @@
-"""Marks manually: what points may be, whom and what they are for, and what waits for a person."""
+"""Manual marks: valid points, students and criteria, and the criteria that need manual grading."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -13,7 +13,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import criterion_of, manual_grading_queue, mark, pending_criterion, read_points
 from grader.errors import InputError
-from tests.classroom.gradebooks import came_out, graded_into, lab
+from tests.classroom.gradebooks import graded_as, lab, record_run
 
 LAB = lab(essay="4.25")
 ESSAY = criterion_of(LAB, "essay")
@@ -21,11 +21,11 @@ ESSAY = criterion_of(LAB, "essay")
 
 @pytest.fixture
 def standings(tmp_path: Path) -> Iterator[Grades]:
-    """A gradebook with four submissions: two with both questions open, a URDF alone, and one that could not be read."""
+    """Yield a gradebook with four submissions: two with both questions open, a single URDF, and an unreadable one."""
     with Gradebook(tmp_path / "book.db", create=True) as book:
         came = [("anna", "ppp??"), ("ben", "fsp??"), ("cleo", "ppp--")]
-        graded = [came_out(LAB, key, signs) for key, signs in came]
-        graded_into(book, LAB, [*graded, came_out(LAB, "dora", "?????", reason="no zip")])
+        graded = [graded_as(LAB, key, signs) for key, signs in came]
+        record_run(book, LAB, [*graded, graded_as(LAB, "dora", "?????", reason="no zip")])
         yield Grades(book)
 
 
@@ -52,7 +52,7 @@ def put(standings: Grades, key: str, name: str, points: str) -> None:
     ],
 )
 def test_points(text: str, points: str) -> None:
-    """From nothing to all, with up to 4 decimals, behind a point or a comma."""
+    """Points from 0 to the maximum, with up to 4 decimals after a point or a comma."""
     assert read_points(text, ESSAY) == Decimal(points)
 
 
@@ -84,15 +84,15 @@ def test_points(text: str, points: str) -> None:
         ("\x1b[31m3", r"not '\\x1b\[31m3'"),
     ],
 )
-def test_what_are_no_points(text: str, why: str) -> None:
-    """One line says what there may be."""
+def test_invalid_points(text: str, why: str) -> None:
+    """One line says which points are valid."""
     with pytest.raises(InputError, match=why):
         read_points(text, ESSAY)
 
 
 @given(st.text())
 def test_any_text_is_points_or_refused(text: str) -> None:
-    """Whatever is typed, nothing but points that the criterion is worth comes of it."""
+    """Any text is refused or gives points between 0 and the maximum."""
     try:
         points = read_points(text, ESSAY)
     except InputError:
@@ -100,8 +100,8 @@ def test_any_text_is_points_or_refused(text: str) -> None:
     assert points is None or (0 <= points <= ESSAY.points and points * 10_000 % 1 == 0)
 
 
-def test_a_criterion_worth_nothing_takes_nothing_else() -> None:
-    """Its mark can only be for the comment."""
+def test_a_criterion_without_points() -> None:
+    """A mark on a criterion without points can only add a comment."""
     nothing = replace(ESSAY, points=Decimal(0))
     assert read_points("0", nothing) == 0
     with pytest.raises(InputError, match="is worth 0 to 0 points, not 1"):
@@ -109,34 +109,37 @@ def test_a_criterion_worth_nothing_takes_nothing_else() -> None:
 
 
 def test_a_misspelt_criterion() -> None:
-    """The message guesses what was meant."""
+    """The message suggests the similar id."""
     with pytest.raises(InputError, match="the rubric small has no criterion 'esay'; did you mean 'essay'"):
         criterion_of(LAB, "esay")
 
 
-def test_like_is_marked_beside_like(standings: Grades) -> None:
-    """One criterion after the other, in the rubric's order; nothing of a submission that could not be read or has no such part."""
-    wanted = [("anna", "essay"), ("ben", "essay"), ("anna", "picture"), ("ben", "picture")]
-    assert manual_grading_queue(standings) == wanted
-    assert manual_grading_queue(standings, "picture") == wanted[2:]
+def test_questions_are_grouped_by_criterion(standings: Grades) -> None:
+    """Criteria come in the rubric's order; unreadable submissions and missing parts are omitted."""
+    expected = [("anna", "essay"), ("ben", "essay"), ("anna", "picture"), ("ben", "picture")]
+    assert manual_grading_queue(standings) == expected
+    assert manual_grading_queue(standings, "picture") == expected[2:]
     assert manual_grading_queue(standings, "box") == []
 
 
-def test_what_was_marked_waits_no_more(standings: Grades) -> None:
-    """Until the mark is taken back."""
+def test_a_marked_criterion_is_no_longer_queued(standings: Grades) -> None:
+    """It is queued again when the mark is removed."""
     first, *rest = manual_grading_queue(standings)
     assert pending_criterion(standings, first) is not None
     put(standings, "anna", "essay", "1")
     assert manual_grading_queue(standings) == rest
-    assert pending_criterion(standings, first) is None  # somebody else has looked this up before the mark
+    assert pending_criterion(standings, first) is None  # another reviewer has read this before the mark
     put(standings, "anna", "essay", "-")
     assert manual_grading_queue(standings) == [first, *rest]
 
 
-def test_a_fault_of_ours_keeps_nobody_from_marking_the_rest(standings: Grades) -> None:
-    """What a check of ours could not decide is nobody's question, but the written answers of the same submission are."""
-    graded_into(standings.book, LAB, [came_out(LAB, "emil", "p!p??")])
-    assert [each.criterion for each in manual_grading_queue(standings) if each.key == "emil"] == ["essay", "picture"]
+def test_an_error_of_the_grader_does_not_block_manual_grading(standings: Grades) -> None:
+    """An errored criterion is not queued, but the written answers of the same submission are."""
+    record_run(standings.book, LAB, [graded_as(LAB, "emil", "p!p??")])
+    assert [question.criterion for question in manual_grading_queue(standings) if question.key == "emil"] == [
+        "essay",
+        "picture",
+    ]
     standing = standings.find("emil")
     assert (standing.verdict, standing.why_not_final) == ("errored", "the grader failed on a criterion")
     for name, points in (("box", "2.5"), ("essay", "4"), ("picture", "1")):
@@ -145,8 +148,8 @@ def test_a_fault_of_ours_keeps_nobody_from_marking_the_rest(standings: Grades) -
     assert standings.find("emil").score == Decimal("11")
 
 
-def test_a_hand_in_that_cannot_be_read_can_be_marked(standings: Grades) -> None:
-    """Criterion by criterion; it is final when all of them are."""
+def test_an_unreadable_submission_can_be_marked(standings: Grades) -> None:
+    """It is marked criterion by criterion, and final when all have marks."""
     for number, criterion in enumerate(LAB.criteria):
         assert standings.find("dora").why_not_final == "it could not be graded: no zip", number
         put(standings, "dora", criterion.id, str(criterion.points))
@@ -154,17 +157,17 @@ def test_a_hand_in_that_cannot_be_read_can_be_marked(standings: Grades) -> None:
     assert (found.score, found.out_of, found.pending, found.why_not_final) == (LAB.points, LAB.points, Decimal(0), "")
 
 
-def test_what_was_not_asked_for_can_be_marked(standings: Grades) -> None:
-    """A URDF alone has no written answers; if they came by mail, a mark adds their points to both sides."""
+def test_parts_that_were_not_graded_can_be_marked(standings: Grades) -> None:
+    """A single URDF has no written answers; a mark for them adds to both score and maximum."""
     put(standings, "cleo", "essay", "4")
     found = standings.find("cleo")
     assert (found.score, found.out_of, found.pending) == (Decimal(10), Decimal("10.25"), Decimal(0))
-    (essay,) = [each for each in standings.report(found).results if each.criterion.id == "essay"]
+    (essay,) = [result for result in standings.report(found).results if result.criterion.id == "essay"]
     assert (essay.points, essay.outcome.status) == (Decimal(4), "skipped")
 
 
-def test_bytes_that_are_no_text_are_spelt_out(standings: Grades) -> None:
-    """A comment or a name from a terminal in another encoding is kept, as far as it can be read."""
+def test_undecodable_bytes_are_escaped(standings: Grades) -> None:
+    """A comment or a name in another encoding is kept as far as it can be read."""
     mark(standings.book, standings.find("anna"), ESSAY, Decimal(1), "m\udcff", "gr\udcf6n \ud800")
     assert list(standings.book.rows("SELECT author, comment FROM mark")) == [("m\\udcff", "gr\\udcf6n \\ud800")]
     with pytest.raises(InputError, match="there is no"):

@@ -1,4 +1,4 @@
-"""A class's statistics, held against numpy and the standard library on what the CSV export says."""
+"""A class's statistics, compared with numpy and the standard library on the CSV export."""
 
 import csv
 import json
@@ -17,7 +17,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import mark
 from grader.classroom.gradebook.statistics import ClassStatistics, statistics
-from tests.classroom.gradebooks import came_out, graded_into, grader, lab
+from tests.classroom.gradebooks import graded_as, grader, lab, record_run
 from tests.samples import LAB6, ROOT
 
 sys.path.insert(0, str(ROOT / "benchmarks"))  # a folder of scripts
@@ -29,7 +29,7 @@ CRITERIA = [criterion.id for criterion in LAB6.criteria]
 
 @pytest.fixture(scope="module")
 def graded(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[dict[str, str]], dict[str, Any]]:
-    """The CSV export of a class of 60 with some 150 marks manually, and its statistics as JSON."""
+    """Return the CSV export of a class of 60 with some 150 manual marks, and its statistics as JSON."""
     top = tmp_path_factory.mktemp("class")
     count = sum(1 for _ in made_up.make_class(top / "class", 60, 7, "mixed"))
     assert count > 60
@@ -42,7 +42,7 @@ def graded(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[dict[str, str
 
 
 def mark_some(path: Path) -> None:
-    """Marks as people give them: for most of what waits, and now and then against a check."""
+    """Add marks as graders do: for most pending criteria, and sometimes against a check."""
     chance = Random(3).random
     with Gradebook(path) as book:
         standings = Grades(book)
@@ -53,9 +53,9 @@ def mark_some(path: Path) -> None:
                     mark(book, standing, criterion, min(points, criterion.points), "me", "")
 
 
-def close(value: float, wanted: float) -> bool:
-    """Equal to what JSON is rounded to."""
-    return abs(value - wanted) < 2e-6
+def close(value: float, expected: float) -> bool:
+    """Return whether a value equals another up to the rounding of JSON."""
+    return abs(value - expected) < 2e-6
 
 
 def test_marks(graded: tuple[list[dict[str, str]], dict[str, Any]]) -> None:
@@ -79,76 +79,78 @@ def test_criteria(graded: tuple[list[dict[str, str]], dict[str, Any]]) -> None:
     earned = np.array([[float(cell or 0) for cell in row] for row in points])
     decided = np.array([[bool(cell) for cell in row] for row in points])
     most = np.array([float(criterion.points) for criterion in LAB6.criteria])
-    assert [each["id"] for each in found["criteria"]] == CRITERIA
-    for index, each in enumerate(found["criteria"]):
+    assert [criterion["id"] for criterion in found["criteria"]] == CRITERIA
+    for index, criterion in enumerate(found["criteria"]):
         who = decided[:, index]
         share = earned[who, index] / most[index]
         rest = earned[who].sum(axis=1) - earned[who, index]
-        assert close(each["share"], float(share.mean()))
-        assert close(each["discrimination"], float(np.corrcoef(share, rest)[0, 1]))
-        told = ("passed", "marked_by_hand", "failed", "skipped")
-        assert sum(each[name] for name in told) == who.sum()
-    by_hand = sum(each["marked_by_hand"] for each in found["criteria"])
-    assert by_hand > 60
+        assert close(criterion["share"], float(share.mean()))
+        assert close(criterion["discrimination"], float(np.corrcoef(share, rest)[0, 1]))
+        reported = ("passed", "marked_by_hand", "failed", "skipped")
+        assert sum(criterion[name] for name in reported) == who.sum()
+    manual = sum(criterion["marked_by_hand"] for criterion in found["criteria"])
+    assert manual > 60
 
 
 def test_failures(graded: tuple[list[dict[str, str]], dict[str, Any]]) -> None:
-    """The commonest come first, and no more of a kind than did not get all points."""
+    """The most frequent failures come first, and none is more frequent than lost points of its criterion."""
     rows, found = graded
-    counts = [each["count"] for each in found["failures"]]
+    counts = [failure["count"] for failure in found["failures"]]
     assert counts == sorted(counts, reverse=True)
     assert counts[0] > 3
     most = {criterion.id: criterion.points for criterion in LAB6.criteria}
-    for name in {each["criterion"] for each in found["failures"]}:
+    for name in {failure["criterion"] for failure in found["failures"]}:
         missed = sum(row["status"] == "graded" and row[name] != "" and Decimal(row[name]) < most[name] for row in rows)
-        assert sum(each["count"] for each in found["failures"] if each["criterion"] == name) <= missed
+        assert sum(failure["count"] for failure in found["failures"] if failure["criterion"] == name) <= missed
 
 
 def of(path: Path, *signs: str, rubric: Any = LAB) -> ClassStatistics:
-    """The statistics of submissions that came out like this."""
+    """Return the statistics of submissions with these results."""
     with Gradebook(path / "book.db", create=True) as book:
-        came = [
-            came_out(rubric, f"s{number}", each, reason="" if each else "no zip") for number, each in enumerate(signs)
+        results = [
+            graded_as(rubric, f"s{number}", row, reason="" if row else "no zip") for number, row in enumerate(signs)
         ]
-        graded_into(book, rubric, came)
+        record_run(book, rubric, results)
         return statistics(book, rubric)
 
 
 @pytest.mark.parametrize("signs", [(), ("?!p!?",)])
-def test_nobody_is_graded(signs: tuple[str, ...], tmp_path: Path) -> None:
-    """Where there is nothing to tell there are zeros, and no shares."""
+def test_without_grades(signs: tuple[str, ...], tmp_path: Path) -> None:
+    """Without grades there are zeros and no shares."""
     found = of(tmp_path, *signs)
     assert [found.graded, found.mean, found.deviation, found.median, sum(found.bins)] == [0] * 5
-    assert {(each.decided, each.share, each.discrimination) for each in found.criteria} == {(0, None, None)}
+    assert {(criterion.decided, criterion.share, criterion.discrimination) for criterion in found.criteria} == {
+        (0, None, None)
+    }
     assert found.failures == ()
 
 
 def test_one_is_graded(tmp_path: Path) -> None:
-    """One student tells nothing of a criterion."""
+    """With one student no criterion has a discrimination."""
     found = of(tmp_path, "pps?f")
     assert (found.graded, found.mean, found.deviation) == (1, 5.5, 0.0)
     assert {found.lowest, found.median, found.highest} == {Decimal("5.5")}
     assert found.bins == (0, 0, 0, 0, 0, 1, 0, 0, 0, 0)
-    assert [each.share for each in found.criteria] == [1, 1, 0, None, 0]
-    assert {each.discrimination for each in found.criteria} == {None}
+    assert [criterion.share for criterion in found.criteria] == [1, 1, 0, None, 0]
+    assert {criterion.discrimination for criterion in found.criteria} == {None}
 
 
 @pytest.mark.parametrize(("signs", "median"), [(("ppppp", "fffff"), "5.5"), (("ppppp", "fffff", "pffff"), "3")])
 def test_the_median_is_in_the_middle(signs: tuple[str, ...], median: str, tmp_path: Path) -> None:
-    """Of an even number it is halfway between the two middle ones."""
+    """The median of an even number is halfway between the two middle values."""
     assert of(tmp_path, *signs).median == Decimal(median)
 
 
-def test_all_alike_tell_nothing(tmp_path: Path) -> None:
-    """Where the rest of the mark is the same for all, there is no correlation, however points are added up."""
+def test_equal_scores_have_no_discrimination(tmp_path: Path) -> None:
+    """If the rest of the score is the same for all, there is no correlation, in whichever order points are added."""
     rubric = lab(loads="0.1", box="0.2", tall="0.3", essay="0.7")
-    signs = [each for each in ("pppfp", "pppff") for _ in range(7)]
+    signs = [sign_row for sign_row in ("pppfp", "pppff") for _ in range(7)]
     found = of(tmp_path, *signs, rubric=rubric)
-    assert [each.discrimination for each in found.criteria] == [None] * 5
+    assert [criterion.discrimination for criterion in found.criteria] == [None] * 5
 
 
 def test_a_criterion_without_points_still_has_a_share(tmp_path: Path) -> None:
-    """How many passed is worth knowing although it earns nothing, and it is in nobody's rest."""
+    """The share of passes is reported even if the criterion has no points; it does not affect the rest of the score."""
     found = of(tmp_path, "ppppp", "ppppf", "fpppf", rubric=lab(picture="0")).criteria
     assert found[-1].share == pytest.approx(1 / 3)
     assert found[0].discrimination is None
@@ -157,41 +159,41 @@ def test_a_criterion_without_points_still_has_a_share(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("score", "bin_of_it"), [("ppppp", 9), ("fffff", 0), ("ppp-f", 5)])
 def test_all_points_are_in_the_last_tenth(score: str, bin_of_it: int, tmp_path: Path) -> None:
-    """A mark at a border is in the upper one, all points in the last."""
+    """A mark at a boundary is in the upper tenth; full marks are in the last."""
     assert of(tmp_path, score).bins.index(1) == bin_of_it
 
 
-def test_whoever_has_another_rubric_is_not_in_it(tmp_path: Path) -> None:
-    """Points of two rubrics are never thrown together."""
+def test_other_rubrics_are_excluded(tmp_path: Path) -> None:
+    """Points of two rubrics are never mixed."""
     newer = lab(loads="1")
     with Gradebook(tmp_path / "book.db", create=True) as book:
-        graded_into(book, LAB, [came_out(LAB, key, "ppppp") for key in ("anna", "ben")])
-        graded_into(book, newer, [came_out(newer, "anna", "fpppp")])
+        record_run(book, LAB, [graded_as(LAB, key, "ppppp") for key in ("anna", "ben")])
+        record_run(book, newer, [graded_as(newer, "anna", "fpppp")])
         found = statistics(book, newer)
     assert (found.graded, found.verdicts, found.highest) == (1, {"graded": 2}, Decimal(8))
 
 
-def test_a_failure_that_a_person_forgave_is_none(tmp_path: Path) -> None:
-    """With all points by hand it did not go wrong; with some of them it did."""
+def test_a_manually_overridden_failure_is_not_counted(tmp_path: Path) -> None:
+    """A failure with a manual mark of full points is not counted; with fewer points it is."""
     with Gradebook(tmp_path / "book.db", create=True) as book:
-        graded_into(book, LAB, [came_out(LAB, key, "pfspp") for key in ("anna", "ben", "cleo")])
+        record_run(book, LAB, [graded_as(LAB, key, "pfspp") for key in ("anna", "ben", "cleo")])
         standings = Grades(book)
         for key, points in (("anna", "2.5"), ("ben", "1")):
             mark(book, standings.find(key), LAB.criteria[1], Decimal(points), "me", "")
         found = statistics(book, LAB)
-    assert [(each.criterion.id, each.count) for each in found.failures] == [("box", 2)]
+    assert [(failure.criterion.id, failure.count) for failure in found.failures] == [("box", 2)]
     box = found.criteria[1]
     assert (box.passed, box.marked, box.failed, box.decided) == (0, 2, 1, 3)
     assert box.share == pytest.approx(3.5 / 7.5)
 
 
 def test_names_do_not_split_a_group(tmp_path: Path) -> None:
-    """Two students who made the same mistake with other names of joints are two of a kind."""
+    """Two students who made the same mistake with other names of joints are in one group."""
     text = (ROOT / "submissions/lidar-buried/my_robot.urdf").read_text()
     (tmp_path / "class").mkdir()
     for key, joint in (("anna", "base_lidar_joint"), ("ben", "lidar's joint")):
         (tmp_path / "class" / f"{key}.urdf").write_text(text.replace("base_lidar_joint", joint))
     grader("batch", tmp_path / "class", "--gradebook", tmp_path / "book.db", "--jobs", 1)
     found = json.loads(grader("stats", "--gradebook", tmp_path / "book.db", "--format", "json").stdout)
-    counts = {each["criterion"]: each["count"] for each in found["statistics"]["failures"]}
+    counts = {failure["criterion"]: failure["count"] for failure in found["statistics"]["failures"]}
     assert counts == {"lidar-frame": 2, "lidar-on-top": 2, "joint-names": 1}

@@ -18,7 +18,7 @@ from grader.errors import InputError
 from grader.usecases.export import grades_csv
 
 DATA = Path(__file__).parent / "data"
-# A class of five in two runs, with five marks: written by grader 0.1.0 with version 3 of the tables, dumped as SQL.
+# A class of five in two runs, with five marks: written by grader 0.1.0 with schema version 3, dumped as SQL.
 VERSION_3 = (DATA / "version3.sql").read_text(encoding="utf-8")
 TABLES = {
     "rubric": "rubric", "criterion": "criterion", "template": "template", "student": "student", "run": "run",
@@ -28,7 +28,7 @@ TABLES = {
 
 @pytest.fixture
 def path(tmp_path: Path) -> Path:
-    """A gradebook of version 3."""
+    """Return the path of a gradebook of version 3."""
     path = tmp_path / "book.db"
     with closing(sqlite3.connect(path)) as connection:
         connection.executescript(VERSION_3)
@@ -38,13 +38,13 @@ def path(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def book(path: Path) -> Iterator[Gradebook]:
-    """The same gradebook, opened by this grader."""
+    """Yield the same gradebook, opened by this version."""
     with Gradebook(path) as opened:
         yield opened
 
 
 def test_every_row_is_kept(path: Path) -> None:
-    """All values of all tables are what they were, in the same order of columns."""
+    """All values of all tables are unchanged, in the same order of columns."""
     with closing(sqlite3.connect(path)) as connection:
         before = {new: list(connection.execute(f"SELECT * FROM {old}")) for old, new in TABLES.items()}
     with Gradebook(path) as book:
@@ -63,7 +63,7 @@ def test_every_grade_is_kept(book: Gradebook) -> None:
 
 
 def test_every_mark_is_kept(book: Gradebook) -> None:
-    """Marks count with their authors and comments; one that was taken back does not, and can be given again."""
+    """Marks count with their authors and comments; a removed mark does not, and can be added again."""
     grades = Grades(book)
     essay = next(result for result in grades.report(grades.find("anna")).results if result.criterion.id == "essay")
     assert essay.manual_mark is not None

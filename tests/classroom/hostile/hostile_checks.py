@@ -1,4 +1,4 @@
-"""A check of another package that does what a robot's name says: what a worker has to survive."""
+"""A plug-in check that misbehaves as the robot's name says, to test what a worker survives."""
 
 import ctypes
 import os
@@ -24,18 +24,18 @@ _RETURNED: dict[str, Any] = {
 
 
 class Unusual(BaseException):
-    """What no `except Exception` catches."""
+    """An exception that `except Exception` does not catch."""
 
 
 class Wordless(Exception):
-    """Ends the process that asks what it says."""
+    """An exception whose message ends the process."""
 
     def __str__(self) -> str:  # noqa: PLE0307
         sys.exit(0)
 
 
 def behaves(robot: Configuration) -> Outcome:
-    """The robot's name asks for nothing bad."""
+    """The robot's name asks for no misbehaviour."""
     match robot.robot.name:
         case "hangs":
             while True:
@@ -43,7 +43,7 @@ def behaves(robot: Configuration) -> Outcome:
         case "hangs_in_c":
             ctypes.PyDLL(None).sleep(3600)  # with the interpreter's lock held: no thread and no handler gets a turn
         case "stops":
-            while True:  # a shell that ends may have the processes go on that it has started
+            while True:  # a shell that ends may leave its processes running
                 os.kill(os.getpid(), signal.SIGSTOP)
         case "dies":
             os.kill(os.getpid(), signal.SIGKILL)
@@ -78,7 +78,7 @@ def without_annotation(robot: Configuration, *, at_least):  # type: ignore[no-un
 
 
 def without_names(robot: Configuration, *values: float) -> Outcome:
-    """A check whose arguments cannot be given by name."""
+    """A check whose arguments are positional-only."""
     raise NotImplementedError
 
 

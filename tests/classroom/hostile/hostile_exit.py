@@ -1,4 +1,4 @@
-"""A module of another package that ends the process that imports it."""
+"""A plug-in module that ends the process that imports it."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Canvas' bulk download: whose each file is, what is late, and what was submitted again."""
+"""Canvas' bulk download: the owner of each file, lateness, and resubmissions."""
 
 import re
 import tempfile
@@ -13,7 +13,7 @@ from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.matching import canvas_name
 from grader.classroom.students import ClassSubmission, Student
 from grader.errors import InputError
-from tests.classroom.class_folders import lay_out, pack, taken
+from tests.classroom.class_folders import assigned, lay_out, pack
 
 FILES = (
     "doejane_LATE_123_9001_lab6.zip",
@@ -25,52 +25,52 @@ FILES = (
 
 
 def one(tmp_path: Path, *names: str) -> ClassSubmission:
-    (hand_in,) = read_class(lay_out(tmp_path, *names), layout="canvas").submissions()
-    return hand_in
+    (submission,) = read_class(lay_out(tmp_path, *names), layout="canvas").submissions()
+    return submission
 
 
-def test_a_download_is_recognised(tmp_path: Path) -> None:
-    """Files belong to the user whose number they have; a folder and a zip of them give the same."""
+def test_a_download_is_detected(tmp_path: Path) -> None:
+    """Files belong to the user whose number they have; a folder and a zip of them give the same result."""
     expected = {
         "doejane_123": (FILES[1], FILES[0]),
         "müllerjörg_124": (FILES[2],),
         "o_neilsam_126": (FILES[4],),
         "לויעדה_125": (FILES[3],),
     }
-    for place in (lay_out(tmp_path / "class", *FILES), pack(tmp_path / "submissions.zip", FILES)):
-        intake = read_class(place)
-        assert (intake.layout, taken(intake)) == ("canvas", expected)
+    for path in (lay_out(tmp_path / "class", *FILES), pack(tmp_path / "submissions.zip", FILES)):
+        intake = read_class(path)
+        assert (intake.layout, assigned(intake)) == ("canvas", expected)
         jane = next(intake.submissions())
         assert (jane.is_late, jane.names) == (True, ("Task1_Step8.png", "lab6.zip"))
         assert jane.student == Student("doejane_123", canvas="123")
 
 
 def test_anonymous_students(tmp_path: Path) -> None:
-    """An anonymous student has five letters for a number, which are no user's."""
+    """An anonymous student has five letters instead of a number, which are no user's."""
     lay_out(tmp_path, "anon_aB3xY_9001_lab6.zip", "LATE_anon_Qr5tu_9002_lab6.zip", "anon_aB3xY_text.html")
     late, on_time = read_class(tmp_path).submissions()
     assert (late.student, late.is_late) == (Student("anon_Qr5tu"), True)
     assert (on_time.student, on_time.is_late, len(on_time.paths)) == (Student("anon_aB3xY"), False, 2)
 
 
-def test_what_is_handed_in_again(tmp_path: Path) -> None:
-    """Of files with one name, but for the number of a repetition, the one that was saved last counts."""
+def test_resubmitted_files(tmp_path: Path) -> None:
+    """Of files with one name and different resubmission numbers, the one saved last counts."""
     names = ("d_1_20_lab6.tar.gz", "d_1_7_lab6-1.tar.gz", "d_1_100_lab6-2.tar.gz", "d_1_101_a.png", "d_1_3_a.png")
-    hand_in = one(tmp_path, *names)
-    assert hand_in.paths == (names[3], names[2])
-    assert hand_in.names == ("a.png", "lab6-2.tar.gz")
-    assert hand_in.earlier == (names[4], names[1], names[0])
-    assert hand_in.attempt == 3
+    submission = one(tmp_path, *names)
+    assert submission.paths == (names[3], names[2])
+    assert submission.names == ("a.png", "lab6-2.tar.gz")
+    assert submission.earlier == (names[4], names[1], names[0])
+    assert submission.attempt == 3
 
 
-def test_numbers_of_the_students_own_stay(tmp_path: Path) -> None:
-    """Files that are numbered with none that has the plain name are all part of the submission."""
+def test_numbers_in_the_students_own_names(tmp_path: Path) -> None:
+    """Numbered files without an unnumbered one are all part of the submission."""
     names = ("d_1_20_task-1.zip", "d_1_21_task-2.zip", "d_1_22_step-8.png")
     assert one(tmp_path, *names).paths == (names[2], names[0], names[1])
 
 
-def test_what_is_not_named_so_is_left_out(tmp_path: Path) -> None:
-    """A few other files do not hide a download, and are named; many of them do."""
+def test_files_with_other_names_are_ignored(tmp_path: Path) -> None:
+    """A few other files do not prevent detection, and are listed; many of them do."""
     lay_out(tmp_path, *FILES, "solution.zip", "README.md", "grades.csv")
     intake = read_class(tmp_path)
     assert intake.layout == "canvas"
@@ -83,12 +83,12 @@ def test_what_is_not_named_so_is_left_out(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["Team_A_1_2_x.zip", "a b_1_2_x.zip", "ann_1.zip", "ann_1_lab6.zip"])
 def test_other_names_are_no_download(tmp_path: Path, name: str) -> None:
-    """Capitals, spaces, or too few numbers are not Canvas'."""
+    """Capitals, spaces, or too few numbers are not Canvas' format."""
     assert read_class(lay_out(tmp_path, name)).layout == "folders"
 
 
 def test_the_roster_knows_numbers_and_sortable_names(tmp_path: Path) -> None:
-    """A user's number decides; without one the name as Canvas sorts it does, if it is of one student only."""
+    """A user's number takes precedence; without one the sortable name counts, if only one student has it."""
     lay_out(
         tmp_path,
         "xx_1_9_a.zip",
@@ -105,9 +105,9 @@ def test_the_roster_knows_numbers_and_sortable_names(tmp_path: Path) -> None:
         Student("e", "Lee, Kim"),
         Student("f", "Al Ash", canvas="6"),
     ]
-    intake = read_class(tmp_path, Roster(RosterEntry(each) for each in students))
-    assert list(taken(intake)) == ["a", "ashal_5", "b", "c", "leekim_4"]
-    assert [each.student.canvas for each in intake.submissions()] == ["1", "5", "2", "3", "4"]
+    intake = read_class(tmp_path, Roster(RosterEntry(student) for student in students))
+    assert list(assigned(intake)) == ["a", "ashal_5", "b", "c", "leekim_4"]
+    assert [submission.student.canvas for submission in intake.submissions()] == ["1", "5", "2", "3", "4"]
     assert intake.unmatched == ("ashal_5", "leekim_4")
     assert intake.notes == (
         "ashal_5 has the name of f, but another number: left unassigned",
@@ -128,7 +128,7 @@ ORIGINAL = st.from_regex(r"[A-Za-z][A-Za-z0-9_ ]{0,9}\.(zip|png|urdf|tar\.gz)", 
     )
 )
 def test_any_download_is_grouped_again(people: dict[int, tuple[str, bool, dict[str, None]]]) -> None:
-    """Whatever people and files are called, what Canvas makes of them gives the same submissions."""
+    """Whatever students and files are called, Canvas' names for them give the same submissions."""
     attachment, names, expected = 1000, [], {}
     for user, (name, is_late, originals) in people.items():
         shown = re.sub(r"_\d+$", "", canvas_name(name))
@@ -138,4 +138,6 @@ def test_any_download_is_grouped_again(people: dict[int, tuple[str, bool, dict[s
         expected[str(user)] = (is_late, sorted(originals))
     with tempfile.TemporaryDirectory() as folder:
         intake = read_class(pack(Path(folder, "submissions.zip"), names), layout="canvas")
-    assert {each.student.canvas: (each.is_late, sorted(each.names)) for each in intake.submissions()} == expected
+    assert {
+        submission.student.canvas: (submission.is_late, sorted(submission.names)) for submission in intake.submissions()
+    } == expected

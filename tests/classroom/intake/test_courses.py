@@ -1,4 +1,4 @@
-"""Team repositories with a folder for each student, and courses of nbgrader."""
+"""Team repositories with a folder for each student, and nbgrader courses."""
 
 from pathlib import Path
 
@@ -9,7 +9,7 @@ from grader.classroom.intake.reading import read_class
 from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.students import ClassSubmission, Student
 from grader.errors import InputError
-from tests.classroom.class_folders import lay_out, pack, taken
+from tests.classroom.class_folders import assigned, lay_out, pack
 
 TEAM = (
     "red/Lab6/Ash/ws/src/my_robot/package.xml",
@@ -19,12 +19,12 @@ TEAM = (
 )
 
 
-def test_students_of_teams(tmp_path: Path) -> None:
-    """Each student's folder is a submission; its key has the team's name in front; other teams stay whole."""
+def test_students_in_teams(tmp_path: Path) -> None:
+    """Each student's folder is a submission whose key starts with the team's name; other teams stay whole."""
     files = (*TEAM, "blue/lab_06/Ash/lab/a.urdf", "blue/lab_06/Cedar/lab/a.urdf", "gold/my_robot/package.xml")
-    for place in (lay_out(tmp_path / "class", *files), pack(tmp_path / "class.zip", files)):
-        intake = read_class(place)
-        assert (intake.layout, taken(intake)) == (
+    for path in (lay_out(tmp_path / "class", *files), pack(tmp_path / "class.zip", files)):
+        intake = read_class(path)
+        assert (intake.layout, assigned(intake)) == (
             "teams",
             {
                 "blue/Ash": ("blue/lab_06/Ash",),
@@ -51,18 +51,18 @@ def test_students_of_teams(tmp_path: Path) -> None:
         ("red/Lab7/Ash/a.urdf", "red/Lab7/Birch/a.urdf"),
     ],
 )
-def test_what_may_be_one_submission_stays_one(tmp_path: Path, files: tuple[str, ...]) -> None:
+def test_a_single_submission_is_not_split(tmp_path: Path, files: tuple[str, ...]) -> None:
     """Parts of a package or of a report are never taken for students."""
     intake = read_class(lay_out(tmp_path, *files))
-    assert (intake.layout, taken(intake)) == ("folders", {"red": ("red",)})
+    assert (intake.layout, assigned(intake)) == ("folders", {"red": ("red",)})
 
 
-def test_a_roster_makes_students_sure(tmp_path: Path) -> None:
-    """Names that stand in the roster are students' even where nothing is in their folders; surnames count in their team."""
+def test_a_roster_confirms_students(tmp_path: Path) -> None:
+    """Names on the roster are students even if their folders are empty; surnames count within a team."""
     students = [Student("1", "Ann Ash"), Student("2", "Birch, Bea"), Student("3", "Cal Cedar")]
-    roster = Roster(RosterEntry(each, "Red") for each in students)
+    roster = Roster(RosterEntry(student, "Red") for student in students)
     intake = read_class(lay_out(tmp_path, "red/Lab6/ash/step.png", "red/Lab6/Birch.zip", "blue/Lab6/src/"), roster)
-    assert taken(intake) == {"1": ("red/Lab6/ash",), "2": ("red/Lab6/Birch.zip",), "blue": ("blue",)}
+    assert assigned(intake) == {"1": ("red/Lab6/ash",), "2": ("red/Lab6/Birch.zip",), "blue": ("blue",)}
     assert intake.absent == (students[2],)
 
 
@@ -74,36 +74,36 @@ def test_a_roster_makes_students_sure(tmp_path: Path) -> None:
     ],
 )
 @pytest.mark.parametrize("name", ["ash", "ASH", "Ann Ash", "1"])
-def test_a_team_names_only_its_own_members(tmp_path: Path, name: str, group: str, words: str) -> None:
-    """Whatever a folder in a team is called, it is of nobody whose group is not that team; the student is not affected."""
+def test_a_team_can_only_name_its_own_members(tmp_path: Path, name: str, group: str, words: str) -> None:
+    """A folder in a team matches only students whose group is that team; other students are not affected."""
     ann = Student("1", "Ann Ash", login="ash")
     roster = Roster([RosterEntry(ann, group), RosterEntry(Student("2", login="bea"), "red")])
     files = [f"red/Lab6/{name}/a.urdf", "red/Lab6/bea/a.urdf"]
     intake = read_class(lay_out(tmp_path / "class", *files), roster, layout="teams")
-    assert taken(intake) == {"2": ("red/Lab6/bea",), f"red/{name}": (f"red/Lab6/{name}",)}
+    assert assigned(intake) == {"2": ("red/Lab6/bea",), f"red/{name}": (f"red/Lab6/{name}",)}
     assert intake.notes == (f"red/{name} is named like 1, {words}: left unassigned",)
     assert (intake.absent, intake.contested) == ((ann,), ())
     if group:
         intake = read_class(lay_out(tmp_path / "class", "blue/Lab6/ash/a.urdf"), roster, layout="teams")
-        assert taken(intake)["1"] == ("blue/Lab6/ash",)
+        assert assigned(intake)["1"] == ("blue/Lab6/ash",)
 
 
 def test_a_team_cannot_submit_for_another_team(tmp_path: Path) -> None:
-    """A folder that is named like another group counts for nobody in it."""
+    """A folder named like another group counts for nobody in that group."""
     roster = Roster([RosterEntry(Student("1", login="ash"), "blue"), RosterEntry(Student("2", login="bea"), "red")])
     intake = read_class(lay_out(tmp_path, "red/Lab6/blue/a.urdf", "red/Lab6/bea/a.urdf"), roster, layout="teams")
-    assert taken(intake) == {"2": ("red/Lab6/bea",), "red/blue": ("red/Lab6/blue",)}
+    assert assigned(intake) == {"2": ("red/Lab6/bea",), "red/blue": ("red/Lab6/blue",)}
 
 
-def test_teams_that_are_told(tmp_path: Path) -> None:
-    """Told that there are teams, a lab folder's folders are students' unless they are parts of a package."""
+def test_the_teams_layout_as_an_option(tmp_path: Path) -> None:
+    """With the option, the folders in a lab folder are students unless they are parts of a package."""
     lay_out(tmp_path, "red/Lab6/Ash/step.png", "blue/Lab6/src/a.urdf")
     assert read_class(tmp_path).layout == "folders"
-    assert taken(read_class(tmp_path, layout="teams")) == {"red/Ash": ("red/Lab6/Ash",), "blue": ("blue",)}
+    assert assigned(read_class(tmp_path, layout="teams")) == {"red/Ash": ("red/Lab6/Ash",), "blue": ("blue",)}
 
 
-def test_what_a_labs_folder_is_called() -> None:
-    """Case, spaces, hyphens, underscores and leading zeros do not count."""
+def test_names_of_lab_folders() -> None:
+    """Case, spaces, hyphens, underscores and leading zeros are ignored."""
     pattern = lab_folder("lab6")
     assert all(map(pattern.fullmatch, ("lab6", "Lab6", "LAB_6", "lab-06", "Lab 006")))
     assert not any(map(pattern.fullmatch, ("lab66", "lab", "prelab6", "lab6b")))
@@ -120,7 +120,7 @@ COURSE = (
 )
 
 
-def test_a_course_of_nbgrader(tmp_path: Path) -> None:
+def test_an_nbgrader_course(tmp_path: Path) -> None:
     """The course's folder, or `submitted` itself, gives each student's folder of the assignment, and its time."""
     lay_out(tmp_path / "c", *COURSE, "submitted/notes.txt")
     (tmp_path / "c/submitted/ann/lab6/timestamp.txt").write_text("2015-02-02 15:58:23.948203 UTC\n")
@@ -134,15 +134,15 @@ def test_a_course_of_nbgrader(tmp_path: Path) -> None:
         "submitted/bea has no submission for the assignment lab6",
         "submitted/notes.txt is not a student's folder",
     )
-    assert taken(read_class(tmp_path / "c" / "submitted")) == {"ann": ("ann/lab6",)}
-    assert taken(read_class(tmp_path / "c", assignment="ps1")) == {
+    assert assigned(read_class(tmp_path / "c" / "submitted")) == {"ann": ("ann/lab6",)}
+    assert assigned(read_class(tmp_path / "c", assignment="ps1")) == {
         "ann": ("submitted/ann/ps1",),
         "bea": ("submitted/bea/ps1",),
     }
 
 
 def test_a_course_in_a_zip(tmp_path: Path) -> None:
-    """A zip of a course is read where it is, its times included."""
+    """A zip of a course is read in place, including its times."""
     import zipfile
 
     with zipfile.ZipFile(tmp_path / "course.zip", "w") as archive:
@@ -164,17 +164,17 @@ def test_a_course_in_a_zip(tmp_path: Path) -> None:
     ],
 )
 def test_times_of_nbgrader(tmp_path: Path, stamp: bytes, time: str) -> None:
-    """A time without a zone is meant in UTC; one that cannot be told is left out."""
+    """A time without a zone is in UTC; one that cannot be read is ignored."""
     lay_out(tmp_path, "submitted/ann/lab6/")
     (tmp_path / "submitted/ann/lab6/timestamp.txt").write_bytes(stamp)
     (ann,) = read_class(tmp_path).submissions()
     assert ann.submitted == time
 
 
-def test_an_assignment_that_is_not_told(tmp_path: Path) -> None:
-    """One assignment is taken whatever it is called; of several one has to be told, and one that is not there is an error."""
+def test_the_assignment_is_an_option(tmp_path: Path) -> None:
+    """A single assignment is used whatever its name; of several one must be named, and an unknown name is an error."""
     lay_out(tmp_path / "c", "submitted/ann/ps1/")
-    assert taken(read_class(tmp_path / "c")) == {"ann": ("submitted/ann/ps1",)}
+    assert assigned(read_class(tmp_path / "c")) == {"ann": ("submitted/ann/ps1",)}
     lay_out(tmp_path / "c", "submitted/ann/ps2/")
     with pytest.raises(InputError, match="name the assignment to grade with --assignment; there are: ps1, ps2"):
         read_class(tmp_path / "c")

@@ -1,4 +1,4 @@
-"""What a group has submitted together: it counts for each of its members, by the group's name in the roster."""
+"""Group submissions: they count for each member, by the group's name in the roster."""
 
 import random
 from pathlib import Path
@@ -10,7 +10,7 @@ from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.intake.roster_file import read_roster
 from grader.classroom.students import Student
 from grader.errors import InputError
-from tests.classroom.class_folders import lay_out, pack, taken
+from tests.classroom.class_folders import assigned, lay_out, pack
 
 ANN = Student("100", "Ann Ash", login="aash")
 BEA = Student("200", "Bea Birch", login="bbirch")
@@ -20,36 +20,39 @@ SHARED = "group submissions that count for each member: {}"
 
 
 def roster(red: str = "Team Red", blue: str = "Team Blue") -> Roster:
-    """Two groups, the members of which do not stand together."""
+    """Return a roster of two groups whose members are interleaved."""
     return Roster([RosterEntry(CAL, red), RosterEntry(BEA, blue), RosterEntry(ANN, red), RosterEntry(DAN)])
 
 
 @pytest.mark.parametrize("name", ["Team Red", "team_red", "TEAM-RED", "Team  Red", "lab6-team-red"])
-def test_each_member_has_what_the_group_has_handed_in(tmp_path: Path, name: str) -> None:
-    """Case and what stands between words do not count; the paths are the same, names and numbers the member's own."""
+def test_each_member_gets_the_groups_submission(tmp_path: Path, name: str) -> None:
+    """Case and separators are ignored; the paths are the same, names and numbers are the member's own."""
     files = [f"{name}/my_robot.urdf", f"{name[:-1]}x.zip"]
-    for place in (lay_out(tmp_path / "class", *files), pack(tmp_path / "class.zip", files)):
-        intake = read_class(place, roster())
+    for path in (lay_out(tmp_path / "class", *files), pack(tmp_path / "class.zip", files)):
+        intake = read_class(path, roster())
         assert len(intake) == 3
-        assert [(each.student, each.paths) for each in intake.submissions()][:2] == [(ANN, (name,)), (CAL, (name,))]
-        assert (intake.unmatched, intake.absent) == (tuple(list(taken(intake))[2:]), (BEA, DAN))
+        assert [(submission.student, submission.paths) for submission in intake.submissions()][:2] == [
+            (ANN, (name,)),
+            (CAL, (name,)),
+        ]
+        assert (intake.unmatched, intake.absent) == (tuple(list(assigned(intake))[2:]), (BEA, DAN))
         assert intake.notes == (SHARED.format(1),)
 
 
 @pytest.mark.parametrize("name", ["Team", "Red", "TeamRed", "Team Red 2", "Team Reds"])
 def test_only_the_whole_name_counts(tmp_path: Path, name: str) -> None:
-    """A group with another name is a stranger, as without groups."""
+    """A group with another name is unmatched, as without groups."""
     intake = read_class(lay_out(tmp_path, f"{name}/my_robot.urdf", "x.zip"), roster())
-    assert sorted(taken(intake)) == sorted(intake.unmatched) == sorted([name, "x"])
+    assert sorted(assigned(intake)) == sorted(intake.unmatched) == sorted([name, "x"])
     assert len(intake.absent) == 4
     assert not intake.notes
 
 
-def test_who_has_handed_in_keeps_that(tmp_path: Path) -> None:
-    """The group's is that of the others, and a note says so; where all have their own it is a stranger's."""
+def test_a_members_own_submission_takes_precedence(tmp_path: Path) -> None:
+    """The group's counts for the others, with a note; if all have their own, it is unmatched."""
     lay_out(tmp_path, "ccedar.zip", "team-red/", "bbirch.urdf", "team-blue.zip")
     intake = read_class(tmp_path, roster())
-    assert taken(intake) == {
+    assert assigned(intake) == {
         "100": ("team-red",),
         "200": ("bbirch.urdf",),
         "300": ("ccedar.zip",),
@@ -64,18 +67,18 @@ def test_who_has_handed_in_keeps_that(tmp_path: Path) -> None:
     )
 
 
-def test_of_two_of_a_group_none_counts(tmp_path: Path) -> None:
-    """Nobody can tell which is the group's: its members are contested."""
+def test_two_submissions_of_a_group_are_ambiguous(tmp_path: Path) -> None:
+    """It is unknown which is the group's, so its members are contested."""
     intake = read_class(lay_out(tmp_path, "team_red/", "Team Red/"), roster())
-    assert taken(intake) == {"Team Red": ("Team Red",), "team_red": ("team_red",)}
+    assert assigned(intake) == {"Team Red": ("Team Red",), "team_red": ("team_red",)}
     assert intake.notes == ("Team Red, team_red are each named like one group: left unassigned",)
     assert (intake.contested, intake.absent) == ((CAL, ANN), (BEA, DAN))
 
 
-def test_a_student_goes_before_a_group(tmp_path: Path) -> None:
-    """Where a submission has the name of both, or might be of several students, it is not the group's."""
+def test_a_student_takes_precedence_over_a_group(tmp_path: Path) -> None:
+    """A submission that matches a student and a group, or several students, is not the group's."""
     intake = read_class(lay_out(tmp_path, "aash/"), roster(red="aash"))
-    assert taken(intake) == {"100": ("aash",)}
+    assert assigned(intake) == {"100": ("aash",)}
     twins = Roster([RosterEntry(Student("1", "Sam"), "sam"), RosterEntry(Student("2", "Sam"), "sam")])
     intake = read_class(tmp_path, twins)
     assert intake.unmatched == ("aash",)
@@ -84,43 +87,43 @@ def test_a_student_goes_before_a_group(tmp_path: Path) -> None:
 
 
 def test_a_section_is_no_group(tmp_path: Path) -> None:
-    """A folder called like a section that holds submissions of its students is nobody's, and a note says so."""
+    """A folder named like a section that holds submissions of its students is unmatched, with a note."""
     files = ["Section 1/aash/my_robot.urdf", "Section 1/ccedar.zip", "Section 2/bbirch.zip", "Section 2/readme.txt"]
-    place = lay_out(tmp_path, *files)
-    intake = read_class(place, roster("Section 1", "Section 2"))
-    assert taken(intake) == {"200": ("Section 2",), "Section 1": ("Section 1",)}
+    path = lay_out(tmp_path, *files)
+    intake = read_class(path, roster("Section 1", "Section 2"))
+    assert assigned(intake) == {"200": ("Section 2",), "Section 1": ("Section 1",)}
     assert "Section 1 is named like a group, but holds submissions of several students" in intake.notes
 
 
 def test_a_group_in_moodle_and_in_a_roster_file(tmp_path: Path) -> None:
-    """Moodle gives a group's number beside its name; a column of groups goes before one of sections."""
+    """Moodle gives a group's number beside its name; a column of groups takes precedence over one of sections."""
     (tmp_path / "roster.csv").write_text("id,section,Team\naash,A,Team Red\nbbirch,A,\nccedar,B,team red\n")
     known = read_roster(tmp_path / "roster.csv")
     assert [entry.section for entry in known.entries] == ["Team Red", "A", "team red"]
     top = lay_out(tmp_path / "class", "Team Red_7_assignsubmission_file/lab6.zip")
-    hand_ins = list(read_class(top, known).submissions())
-    assert [each.student.key for each in hand_ins] == ["aash", "ccedar"]
-    assert {each.paths for each in hand_ins} == {("Team Red_7_assignsubmission_file/lab6.zip",)}
-    assert {(each.student.moodle, each.student.name) for each in hand_ins} == {("", "")}
+    submissions = list(read_class(top, known).submissions())
+    assert [submission.student.key for submission in submissions] == ["aash", "ccedar"]
+    assert {submission.paths for submission in submissions} == {("Team Red_7_assignsubmission_file/lab6.zip",)}
+    assert {(submission.student.moodle, submission.student.name) for submission in submissions} == {("", "")}
 
 
-def test_the_order_is_that_of_the_keys(tmp_path: Path) -> None:
-    """Whatever the order of the roster, and every time the same."""
+def test_submissions_are_ordered_by_key(tmp_path: Path) -> None:
+    """The order does not depend on the roster and is the same every time."""
     names = [f"team {number:02}" for number in range(20)]
     entries = [RosterEntry(Student(f"s{number:03}"), names[number % 20]) for number in range(100)]
     lay_out(tmp_path, *(f"{name}/" for name in names), "zoe/")
-    wanted = {**{f"s{number:03}": (names[number % 20],) for number in range(100)}, "zoe": ("zoe",)}
+    expected = {**{f"s{number:03}": (names[number % 20],) for number in range(100)}, "zoe": ("zoe",)}
     for seed in range(3):
         random.Random(seed).shuffle(entries)
         intake = read_class(tmp_path, Roster(entries))
-        assert list(taken(intake).items()) == list(wanted.items())
+        assert list(assigned(intake).items()) == list(expected.items())
         assert list(intake.submissions()) == list(intake.submissions())
         assert (len(intake), intake.unmatched, intake.absent) == (101, ("zoe",), ())
 
 
 @pytest.mark.parametrize("layout", ["auto", "folders", "canvas", "moodle", "teams"])
-def test_an_assignment_is_nbgraders(tmp_path: Path, layout: str) -> None:
-    """Named for another layout it would do nothing, which is an error."""
+def test_the_assignment_option_is_for_nbgrader(tmp_path: Path, layout: str) -> None:
+    """With another layout it would have no effect, which is an error."""
     lay_out(tmp_path, "ann/my_robot.urdf", "bea.zip")
     with pytest.raises(InputError, match="--assignment is only for the layout nbgrader"):
         read_class(tmp_path, layout=layout, assignment="ps1")

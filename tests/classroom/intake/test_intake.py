@@ -1,4 +1,4 @@
-"""A class taken in, whatever its layout: what is refused, what is left out, a zip, a roster, and a very large class."""
+"""Reading a class in any layout: refused input, ignored files, a zip, a roster, and a very large class."""
 
 import os
 import sys
@@ -16,8 +16,8 @@ from grader.classroom.intake.reading import LAYOUTS, read_class
 from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.students import Student
 from grader.errors import InputError
-from tests.classroom.class_folders import lay_out, pack, taken
-from tests.patience import processor_time
+from tests.classroom.class_folders import assigned, lay_out, pack
+from tests.processor_time import processor_time
 
 LARGE = 30_000
 ANN = Student("100", "Ann Ash", "ann@example.org", "aash")
@@ -38,14 +38,14 @@ def roster(*students: Student) -> Roster:
         (("package.xml", "setup.py", "urdf/"), "is one submission and not a class"),
     ],
 )
-def test_what_holds_no_class_is_refused(tmp_path: Path, paths: tuple[str, ...], message: str) -> None:
+def test_a_folder_without_submissions_is_refused(tmp_path: Path, paths: tuple[str, ...], message: str) -> None:
     """A folder without a submission is an error of one line."""
     with pytest.raises(InputError, match=message) as caught:
         read_class(lay_out(tmp_path / "class", *paths))
     assert "\n" not in str(caught.value)
 
 
-def test_what_is_no_class_is_refused(tmp_path: Path) -> None:
+def test_other_paths_are_refused(tmp_path: Path) -> None:
     """A missing path, a file that is no zip, a broken zip and an unknown layout are errors of one line."""
     (tmp_path / "class.txt").write_text("no zip")
     (tmp_path / "class.zip").write_bytes(b"PK\x03\x04 and no more")
@@ -63,8 +63,8 @@ def test_what_is_no_class_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
-def test_a_layout_that_is_told_finds_nothing_or_something(tmp_path: Path, layout: str) -> None:
-    """A layout that does not fit raises an InputError, or takes what it can; nothing else happens."""
+def test_a_layout_option_finds_submissions_or_fails(tmp_path: Path, layout: str) -> None:
+    """A layout that does not fit raises an InputError, or finds what it can; nothing else happens."""
     lay_out(tmp_path, "ann/my_robot.urdf", "bea.zip", "notes.txt")
     try:
         assert read_class(tmp_path, layout=layout).layout == layout
@@ -73,19 +73,19 @@ def test_a_layout_that_is_told_finds_nothing_or_something(tmp_path: Path, layout
 
 
 def test_no_symlink_is_a_submission(tmp_path: Path) -> None:
-    """A symlink in the class folder is ignored and named, wherever it leads."""
+    """A symlink in the class folder is ignored and listed, wherever it leads."""
     lay_out(tmp_path / "class", "ann/my_robot.urdf")
     lay_out(tmp_path / "outside", "secret.urdf")
     os.symlink(tmp_path / "outside", tmp_path / "class" / "bea")
     os.symlink("ann", tmp_path / "class" / "cal")
     os.symlink("loop", tmp_path / "class" / "loop")
     intake = read_class(tmp_path / "class")
-    assert taken(intake) == {"ann": ("ann",)}
+    assert assigned(intake) == {"ann": ("ann",)}
     assert intake.ignored == tuple(f"{name} is a symlink, and was not followed" for name in ("bea", "cal", "loop"))
 
 
-def test_left_out_is_bounded(tmp_path: Path) -> None:
-    """Of very many files that are no submissions the first are named, the others counted."""
+def test_the_list_of_ignored_files_is_bounded(tmp_path: Path) -> None:
+    """Of very many files that are no submissions the first are listed, the others counted."""
     lay_out(tmp_path, "ann/", *(f"note{index:05}.txt" for index in range(30 * MAX_LINES)))
     lines = read_class(tmp_path).ignored
     assert len(lines) == MAX_LINES + 1
@@ -94,24 +94,24 @@ def test_left_out_is_bounded(tmp_path: Path) -> None:
     assert lines[-1] == f"and {29 * MAX_LINES} more"
 
 
-def test_a_zip_is_listed_where_it_is(tmp_path: Path) -> None:
-    """A zip gives what its folder would give: names that lead out are left out, and litter is passed over."""
+def test_a_zip_is_listed_in_place(tmp_path: Path) -> None:
+    """A zip gives the same as its folder: names that lead out and litter are ignored."""
     names = ["ann/my_robot/urdf/my_robot.urdf", "bea.zip", "__MACOSX/bea.zip", "../cal.zip", "/dan.zip", "notes.txt"]
     intake = read_class(pack(tmp_path / "class.zip", names))
-    assert taken(intake) == {"ann": ("ann",), "bea": ("bea.zip",)}
+    assert assigned(intake) == {"ann": ("ann",), "bea": ("bea.zip",)}
     assert [line.split()[0] for line in intake.ignored] == ["../cal.zip", "/dan.zip", "notes.txt"]
 
 
-def test_one_folder_around_everything_is_stepped_into(tmp_path: Path) -> None:
-    """The one folder that holds the class is gone into, and stays in the paths; a single submission is not."""
-    assert taken(read_class(pack(tmp_path / "a.zip", ["lab6/ann.zip", "lab6/bea/a.urdf"]))) == {
+def test_a_single_enclosing_folder_is_entered(tmp_path: Path) -> None:
+    """A single folder that holds the class is entered, and stays in the paths; a single submission is not."""
+    assert assigned(read_class(pack(tmp_path / "a.zip", ["lab6/ann.zip", "lab6/bea/a.urdf"]))) == {
         "ann": ("lab6/ann.zip",),
         "bea": ("lab6/bea",),
     }
     alone = ["ann/src/my_robot/package.xml", "ann/answers.txt"]
-    assert taken(read_class(pack(tmp_path / "b.zip", alone))) == {"ann": ("ann",)}
-    assert taken(read_class(pack(tmp_path / "c.zip", ["ann/my_robot.urdf"]))) == {"ann": ("ann",)}
-    assert taken(read_class(pack(tmp_path / "d.zip", ["aash/x/a.urdf", "aash/y/"]), roster())) == {"100": ("aash",)}
+    assert assigned(read_class(pack(tmp_path / "b.zip", alone))) == {"ann": ("ann",)}
+    assert assigned(read_class(pack(tmp_path / "c.zip", ["ann/my_robot.urdf"]))) == {"ann": ("ann",)}
+    assert assigned(read_class(pack(tmp_path / "d.zip", ["aash/x/a.urdf", "aash/y/"]), roster())) == {"100": ("aash",)}
 
 
 def test_a_zip_of_too_many_members_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -122,33 +122,33 @@ def test_a_zip_of_too_many_members_is_refused(tmp_path: Path, monkeypatch: pytes
         read_class(pack(tmp_path / "b.zip", ["a.zip", "b.zip", "c.zip", "d.zip"]))
 
 
-def test_links_in_a_zip_are_not_followed(tmp_path: Path) -> None:
-    """A link in a zip is no submission."""
+def test_symlinks_in_a_zip_are_not_followed(tmp_path: Path) -> None:
+    """A symlink in a zip is no submission."""
     with zipfile.ZipFile(tmp_path / "class.zip", "w") as archive:
         link = zipfile.ZipInfo("ann.zip")
         link.create_system, link.external_attr = 3, 0o120777 << 16
         archive.writestr(link, "/etc/passwd")
         archive.writestr("bea.zip", b"")
     intake = read_class(tmp_path / "class.zip")
-    assert taken(intake) == {"bea": ("bea.zip",)}
+    assert assigned(intake) == {"bea": ("bea.zip",)}
     assert intake.ignored == ("ann.zip is a symlink in an archive, and was not followed",)
 
 
-def test_the_roster_says_whose_each_is(tmp_path: Path) -> None:
-    """Submissions get the roster's students and order; nobody's are strangers, and who has none is absent."""
+def test_the_roster_names_the_students(tmp_path: Path) -> None:
+    """Submissions get the roster's students and order; others are unmatched, and students without one are absent."""
     lay_out(tmp_path, "ccedar.zip", "Bea Birch/", "zoe.zip")
     intake = read_class(tmp_path, roster())
-    assert taken(intake) == {"200": ("Bea Birch",), "300": ("ccedar.zip",), "zoe": ("zoe.zip",)}
+    assert assigned(intake) == {"200": ("Bea Birch",), "300": ("ccedar.zip",), "zoe": ("zoe.zip",)}
     assert intake.unmatched == ("zoe",)
     assert intake.absent == (ANN,)
     assert next(intake.submissions()).student == BEA
     assert list(intake.submissions()) == list(intake.submissions())
 
 
-def test_of_two_submissions_of_one_student_the_certain_one_counts(tmp_path: Path) -> None:
-    """The one with the student's own login is theirs; another that only has their name is unmatched, and the notes say so."""
+def test_of_two_submissions_of_a_student_the_certain_one_counts(tmp_path: Path) -> None:
+    """One with the student's login is theirs; one that only has the name is unmatched, with a note."""
     intake = read_class(lay_out(tmp_path, "Ann Ash/", "aash.zip"), roster())
-    assert taken(intake) == {"100": ("aash.zip",), "Ann Ash": ("Ann Ash",)}
+    assert assigned(intake) == {"100": ("aash.zip",), "Ann Ash": ("Ann Ash",)}
     assert intake.unmatched == ("Ann Ash",)
     assert intake.notes == ("Ann Ash may belong to 100 as well, but aash counts: left unassigned",)
 
@@ -156,32 +156,32 @@ def test_of_two_submissions_of_one_student_the_certain_one_counts(tmp_path: Path
 @pytest.mark.parametrize(
     "names", [("aash.zip", "ann@example.org.zip"), ("Ann Ash/", "Ash, Ann/"), ("AASH/", "Ann Ash/")]
 )
-def test_between_equal_claims_nobody_decides(tmp_path: Path, names: tuple[str, str]) -> None:
-    """Of two that are equally certain, or both uncertain, none is assigned; the student is contested, not absent."""
+def test_equal_claims_are_contested(tmp_path: Path, names: tuple[str, str]) -> None:
+    """Of two claims that are equally certain, or both uncertain, none is assigned; the student is contested, not absent."""
     intake = read_class(lay_out(tmp_path, *names), roster())
-    assert "100" not in taken(intake)
+    assert "100" not in assigned(intake)
     assert (intake.contested, intake.absent) == ((ANN,), (BEA, CAL))
     assert "may each belong to 100: left unassigned; 100 keeps an earlier submission" in intake.notes[0]
 
 
 def test_an_unmatched_submission_never_takes_a_key_of_the_roster(tmp_path: Path) -> None:
-    """A submission that may be of two students is nobody's, and does not stand under the key of one of them."""
+    """A submission that may belong to two students is unmatched and does not get the key of either."""
     lay_out(tmp_path, "sam.zip")
     intake = read_class(tmp_path, roster(Student("sam"), Student("7", login="sam")))
-    assert taken(intake) == {"./sam.zip": ("sam.zip",)}
+    assert assigned(intake) == {"./sam.zip": ("sam.zip",)}
     assert intake.notes == ("sam is ambiguous: it matches several students on the roster: left unassigned",)
     assert (len(intake.contested), intake.absent) == (2, ())
 
 
-def test_a_case_variant_takes_no_key_over(tmp_path: Path) -> None:
-    """Beside the exact key another case is nobody's, and its key cannot be mistaken for the student's."""
+def test_a_case_variant_does_not_take_over_a_key(tmp_path: Path) -> None:
+    """Beside the exact key another case is unmatched, and its key cannot be confused with the student's."""
     intake = read_class(lay_out(tmp_path, "sam.zip", "SAM/"), roster(Student("sam"), Student("Sam2")))
-    assert taken(intake) == {"./SAM": ("SAM",), "sam": ("sam.zip",)}
+    assert assigned(intake) == {"./SAM": ("SAM",), "sam": ("sam.zip",)}
     assert intake.notes == ("SAM may belong to sam as well, but sam counts: left unassigned",)
 
 
-def test_the_rosters_word_on_time_counts(tmp_path: Path) -> None:
-    """Where the roster says when, or whether late, that goes before what the LMS says."""
+def test_the_roster_determines_lateness(tmp_path: Path) -> None:
+    """A time or lateness in the roster takes precedence over the LMS."""
     lay_out(tmp_path, "cedarcal_LATE_33_1_lab6.zip", "ashann_LATE_11_2_lab6.zip")
     entries = [RosterEntry(CAL, is_late=False, submitted="2026-09-01T10:00:00Z"), RosterEntry(ANN)]
     ann, cal = read_class(tmp_path, Roster(entries)).submissions()
@@ -189,34 +189,34 @@ def test_the_rosters_word_on_time_counts(tmp_path: Path) -> None:
     assert (cal.is_late, cal.submitted, cal.student) == (False, "2026-09-01T10:00:00Z", CAL)
 
 
-def test_bytes_that_are_no_utf_8_still_open(tmp_path: Path) -> None:
-    """A name of any bytes gets a printable key of its own, and its path leads to the file."""
+def test_names_that_are_not_utf_8_can_be_opened(tmp_path: Path) -> None:
+    """A name of any bytes gets its own printable key, and its path leads to the file."""
     for name in (b"caf\xe9", b"caf\xe8", b"line\nbreak", b"line\\x0abreak"):
         os.mkdir(os.fsencode(tmp_path) + b"/" + name)
-    found = taken(read_class(tmp_path))
+    found = assigned(read_class(tmp_path))
     assert len(found) == 4
     assert all(key.isprintable() for key in found)
     assert all((tmp_path / path).is_dir() for (path,) in found.values())
 
 
 @given(st.lists(st.text(st.characters(codec="utf-8"), min_size=1, max_size=20), max_size=20))
-def test_any_names_are_taken_in(names: list[str]) -> None:
-    """Whatever the members of a zip are called, keys are printable and differ, and every path is in the zip."""
+def test_any_names_are_accepted(names: list[str]) -> None:
+    """Whatever the members of a zip are called, keys are printable and unique, and every path is in the zip."""
     with tempfile.TemporaryDirectory() as folder:
-        place = Path(folder, "class.zip")
-        with zipfile.ZipFile(place, "w") as archive:
+        target = Path(folder, "class.zip")
+        with zipfile.ZipFile(target, "w") as archive:
             for name in dict.fromkeys(["ann.zip", "bea.zip", *names]).keys() - {"package.xml"}:
                 archive.writestr(zipfile.ZipInfo(name or "x"), b"")
-        hand_ins = list(read_class(place).submissions())
-    keys = [each.student.key for each in hand_ins]
+        submissions = list(read_class(target).submissions())
+    keys = [submission.student.key for submission in submissions]
     assert keys == sorted(set(keys))
     assert all(key.isprintable() for key in keys)
 
 
-def test_a_very_large_class_costs_little(tmp_path: Path) -> None:
-    """Each submission takes hardly more time than a look at its name, and hardly more memory than the name."""
+def test_a_very_large_class_is_fast(tmp_path: Path) -> None:
+    """Each submission takes little more time and memory than its name."""
     folder = large_class(tmp_path / "class", LARGE)
-    with processor_time(30e-6 * LARGE):  # three times of what it takes
+    with processor_time(30e-6 * LARGE):  # three times the usual value
         intake = read_class(folder)
         assert sum(1 for _ in intake.submissions()) == LARGE
     folder = large_class(tmp_path / "smaller", LARGE // 10)
@@ -230,11 +230,11 @@ def test_a_very_large_class_costs_little(tmp_path: Path) -> None:
 
 
 def large_class(folder: Path, count: int) -> Path:
-    """A class of as many URDFs, which are links to a few: files are slow to make."""
+    """Make a class of as many URDFs, which are links to a few, because files are slow to make."""
     folder.mkdir()
     for index in range(count):
         name = f"{folder}/student{index:06}.urdf"
-        if index % 50_000:  # a file system may not have more links to one file
+        if index % 50_000:  # file systems limit the number of links to one file
             os.link(f"{folder}/student{index // 50_000 * 50_000:06}.urdf", name)
         else:
             Path(name).touch()

@@ -10,21 +10,21 @@ from hypothesis import strategies as st
 from grader.classroom.intake.reading import read_class
 from grader.classroom.intake.roster import Roster, RosterEntry
 from grader.classroom.students import Student
-from tests.classroom.class_folders import lay_out, pack, taken
+from tests.classroom.class_folders import assigned, lay_out, pack
 
 FOLDER = "assignsubmission_file"
 
 
 @pytest.mark.parametrize("ending", ["", "_"])
-def test_a_download_is_recognised(tmp_path: Path, ending: str) -> None:
-    """Each participant's folder is a submission, unpacked or in a zip, in new and old versions."""
+def test_a_download_is_detected(tmp_path: Path, ending: str) -> None:
+    """Each participant's folder is a submission, unpacked or in a zip, from new and old versions."""
     names = [f"{name}_{FOLDER}{ending}" for name in ("Jane Doe_12", "O'Neil, Sam_13", "Jörg Müller_14", "עדה לוי_15")]
     files = [f"{name}/lab6.zip" for name in names]
-    for place in (lay_out(tmp_path / "class", *files), pack(tmp_path / "class.zip", files)):
-        intake = read_class(place)
+    for target in (lay_out(tmp_path / "class", *files), pack(tmp_path / "class.zip", files)):
+        intake = read_class(target)
         assert intake.layout == "moodle"
-        assert sorted(each.paths[0] for each in intake.submissions()) == sorted(files)
-        assert [each.student.name for each in intake.submissions()] == [
+        assert sorted(submission.paths[0] for submission in intake.submissions()) == sorted(files)
+        assert [submission.student.name for submission in intake.submissions()] == [
             "Jane Doe",
             "Jörg Müller",
             "O'Neil, Sam",
@@ -34,9 +34,9 @@ def test_a_download_is_recognised(tmp_path: Path, ending: str) -> None:
 
 
 def test_one_participant_in_a_zip(tmp_path: Path) -> None:
-    """A download of one folder is not gone into."""
+    """A download of a single folder is not entered."""
     intake = read_class(pack(tmp_path / "class.zip", [f"Jane Doe_12_{FOLDER}/lab6.zip"]))
-    assert taken(intake) == {"Jane Doe_12": (f"Jane Doe_12_{FOLDER}/lab6.zip",)}
+    assert assigned(intake) == {"Jane Doe_12": (f"Jane Doe_12_{FOLDER}/lab6.zip",)}
 
 
 @pytest.mark.parametrize(
@@ -53,21 +53,21 @@ def test_one_participant_in_a_zip(tmp_path: Path) -> None:
         ((), ""),
     ],
 )
-def test_a_lone_file_is_the_hand_in(tmp_path: Path, files: tuple[str, ...], path: str) -> None:
-    """An archive or URDF with nothing beside it is given without its folder, as Canvas gives it; anything else is a folder."""
+def test_a_single_file_is_the_submission(tmp_path: Path, files: tuple[str, ...], path: str) -> None:
+    """A single archive or URDF is used without its folder, as in Canvas; anything else is a folder."""
     top = f"Jane Doe_12_{FOLDER}"
-    wanted = f"{top}/{path}" if path else top
+    expected = f"{top}/{path}" if path else top
     names = [f"{top}/", *(f"{top}/{name}" for name in files)]
-    for place in (lay_out(tmp_path / "class", *names), pack(tmp_path / "class.zip", names)):
-        (hand_in,) = read_class(place).submissions()
-        assert (hand_in.paths, hand_in.names, hand_in.student.key) == ((wanted,), (), "Jane Doe_12")
+    for target in (lay_out(tmp_path / "class", *names), pack(tmp_path / "class.zip", names)):
+        (submission,) = read_class(target).submissions()
+        assert (submission.paths, submission.names, submission.student.key) == ((expected,), (), "Jane Doe_12")
 
 
-def test_a_lone_link_is_not_the_hand_in(tmp_path: Path) -> None:
-    """One to another participant's file is left where it is, and is not followed there."""
+def test_a_single_symlink_is_not_the_submission(tmp_path: Path) -> None:
+    """A symlink to another participant's file stays in its folder and is not followed."""
     lay_out(tmp_path, f"Jane Doe_12_{FOLDER}/a.urdf", f"Sam_13_{FOLDER}/")
     (tmp_path / f"Sam_13_{FOLDER}/b.urdf").symlink_to(tmp_path / f"Jane Doe_12_{FOLDER}/a.urdf")
-    assert taken(read_class(tmp_path)) == {
+    assert assigned(read_class(tmp_path)) == {
         "Jane Doe_12": (f"Jane Doe_12_{FOLDER}/a.urdf",),
         "Sam_13": (f"Sam_13_{FOLDER}",),
     }
@@ -85,23 +85,23 @@ def test_files_side_by_side(tmp_path: Path) -> None:
 
 
 def test_a_text_beside_the_files(tmp_path: Path) -> None:
-    """Files and a text of one participant are put side by side, with the folders that the files were in."""
+    """Files and a text of one participant are read as one folder, including the folders of the files."""
     top, text = f"Jane Doe_12_{FOLDER}", "Jane Doe_12_assignsubmission_onlinetext"
     files = (f"{top}/my_robot/urdf/my_robot.urdf", f"{top}/step.png", f"{text}/onlinetext.html")
-    for place in (lay_out(tmp_path / "class", *files), pack(tmp_path / "class.zip", files)):
-        (hand_in,) = read_class(place).submissions()
-        assert hand_in.paths == files
-        assert hand_in.names == ("my_robot/urdf/my_robot.urdf", "step.png", "onlinetext/onlinetext.html")
+    for target in (lay_out(tmp_path / "class", *files), pack(tmp_path / "class.zip", files)):
+        (submission,) = read_class(target).submissions()
+        assert submission.paths == files
+        assert submission.names == ("my_robot/urdf/my_robot.urdf", "step.png", "onlinetext/onlinetext.html")
     (alone,) = read_class(lay_out(tmp_path / "other", f"{text}/onlinetext.html")).submissions()
     assert (alone.paths, alone.student.moodle) == ((text,), "12")
 
 
-def test_an_empty_text_is_no_part(tmp_path: Path) -> None:
-    """A lone file stays one beside it, and a lone picture stays a folder."""
+def test_an_empty_text_is_ignored(tmp_path: Path) -> None:
+    """Beside an empty text a single file stays single, and a single picture stays a folder."""
     text = "assignsubmission_onlinetext"
     lay_out(tmp_path, f"Jane Doe_12_{FOLDER}/a.urdf", f"Jane Doe_12_{text}/")
     lay_out(tmp_path, f"Sam_13_{FOLDER}/step.png", f"Sam_13_{text}/", f"Zoe_14_{FOLDER}/", f"Zoe_14_{text}/a.html")
-    assert taken(read_class(tmp_path)) == {
+    assert assigned(read_class(tmp_path)) == {
         "Jane Doe_12": (f"Jane Doe_12_{FOLDER}/a.urdf",),
         "Sam_13": (f"Sam_13_{FOLDER}",),
         "Zoe_14": (f"Zoe_14_{text}",),
@@ -109,36 +109,38 @@ def test_an_empty_text_is_no_part(tmp_path: Path) -> None:
 
 
 def test_empty_folders_and_too_many_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """What cannot be put side by side leaves the folder of files as the submission."""
+    """If file and text folders cannot be combined, the folder of files is the submission."""
     top, text = f"Jane Doe_12_{FOLDER}", "Jane Doe_12_assignsubmission_onlinetext"
     (empty,) = read_class(lay_out(tmp_path, f"{top}/", f"{text}/")).submissions()
     assert (empty.paths, empty.names) == ((top,), ())
     monkeypatch.setattr("grader.classroom.intake.layouts.moodle._MAX_FILES", 2)
     intake = read_class(lay_out(tmp_path, *(f"{top}/{name}" for name in "abc"), f"{text}/onlinetext.html"))
-    assert taken(intake) == {"Jane Doe_12": (top,)}
+    assert assigned(intake) == {"Jane Doe_12": (top,)}
     assert intake.ignored == (f"{top} has more than 2 files: the files beside it were not read",)
 
 
 @pytest.mark.parametrize("word", ["Participant", "Teilnehmerin", "参加者"])
 def test_hidden_names(tmp_path: Path, word: str) -> None:
-    """Where every name is the same word, nobody is called so."""
+    """If every name is the same word, it is no student's name."""
     lay_out(tmp_path, f"{word}_12_{FOLDER}/", f"{word}_13_{FOLDER}/", "README.md")
     intake = read_class(tmp_path)
-    assert [each.student for each in intake.submissions()] == [Student(f"{word}_{n}", moodle=n) for n in ("12", "13")]
+    assert [submission.student for submission in intake.submissions()] == [
+        Student(f"{word}_{n}", moodle=n) for n in ("12", "13")
+    ]
     assert intake.ignored == ("README.md is not named like a submission in Moodle",)
 
 
 def test_teams(tmp_path: Path) -> None:
     """A team has its group's number, or none."""
     intake = read_class(lay_out(tmp_path, f"Team Red_7_{FOLDER}/", f"Default group_{FOLDER}/"))
-    assert [each.student for each in intake.submissions()] == [
+    assert [submission.student for submission in intake.submissions()] == [
         Student("Default group", "Default group"),
         Student("Team Red_7", "Team Red", moodle="7"),
     ]
 
 
 def test_the_roster_knows_numbers_and_names(tmp_path: Path) -> None:
-    """A participant's number decides, and else the full name in either order, whatever its case and spaces."""
+    """A participant's number takes precedence, then the full name in either order, ignoring case and spaces."""
     lay_out(
         tmp_path,
         f"X_12_{FOLDER}/",
@@ -154,8 +156,8 @@ def test_the_roster_knows_numbers_and_names(tmp_path: Path) -> None:
         Student("d", "Max Min", login="max"),
         Student("e", "O'Neil, Sam"),
     ]
-    intake = read_class(tmp_path, Roster(RosterEntry(each) for each in students))
-    assert list(taken(intake)) == ["Ann Ash_14", "a", "b", "e", "max_15"]
+    intake = read_class(tmp_path, Roster(RosterEntry(student) for student in students))
+    assert list(assigned(intake)) == ["Ann Ash_14", "a", "b", "e", "max_15"]
     assert intake.notes == ("Ann Ash_14 has the name of c, but another number: left unassigned",)
 
 
@@ -168,10 +170,10 @@ NAMES = st.text(
 
 @given(st.dictionaries(st.integers(0, 10**12), NAMES, min_size=2, max_size=6))
 def test_any_download_is_grouped_again(people: dict[int, str]) -> None:
-    """Whatever people are called, every participant is told by their number and name."""
+    """Whatever participants are called, each is identified by number and name."""
     names = {str(number): " ".join(name.split()).strip(".") or "x" for number, name in people.items()}
     with tempfile.TemporaryDirectory() as folder:
-        place = pack(Path(folder, "class.zip"), [f"{name}_{number}_{FOLDER}/a.zip" for number, name in names.items()])
-        found = {each.student.moodle: each.student.name for each in read_class(place).submissions()}
+        target = pack(Path(folder, "class.zip"), [f"{name}_{number}_{FOLDER}/a.zip" for number, name in names.items()])
+        found = {submission.student.moodle: submission.student.name for submission in read_class(target).submissions()}
     are_hidden = len(set(names.values())) == 1
     assert found == {number: "" if are_hidden else name for number, name in names.items()}

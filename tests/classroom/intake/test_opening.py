@@ -1,4 +1,4 @@
-"""A submission of a class opened: what its digest and its fingerprint tell, and what is refused."""
+"""Opening a submission of a class: its digest and fingerprint, and what is refused."""
 
 import io
 import os
@@ -27,22 +27,22 @@ URDF = b"<robot name='a'><link name='b'/></robot>"
 
 
 def later() -> int:
-    """A time at which what has just changed has settled."""
+    """Return a time at which a recent change has settled."""
     return time.time_ns() + 10**9
 
 
 def digest(top: Path, *paths: str, names: tuple[str, ...] = (), key: str = "ann") -> str:
-    """The digest of a submission."""
+    """Return the digest of a submission."""
     return open_submission(str(top), paths, names, key).digest
 
 
 def mark(top: Path, *paths: str) -> str:
-    """The fingerprint of a submission, once it has settled."""
+    """Return the fingerprint of a submission after it has settled."""
     return fingerprint(str(top), paths, later())
 
 
 def package(top: Path) -> Path:
-    """A submission that is a folder."""
+    """Make a submission that is a folder."""
     folder = top / "ann"
     (folder / "urdf").mkdir(parents=True)
     (folder / "urdf/my_robot.urdf").write_bytes(URDF)
@@ -96,8 +96,8 @@ CHANGES = [_byte, _name, _moved, _more, _less, _empty_folder, _other_target, _li
 
 
 @pytest.mark.parametrize("change", CHANGES)
-def test_any_change_shows(change: Callable[[Path], None], tmp_path: Path) -> None:
-    """In the digest of a folder, and in its fingerprint."""
+def test_any_change_is_detected(change: Callable[[Path], None], tmp_path: Path) -> None:
+    """Changes show in the digest of a folder and in its fingerprint."""
     folder = package(tmp_path)
     before = digest(tmp_path, "ann"), mark(tmp_path, "ann")
     change(folder)
@@ -107,7 +107,7 @@ def test_any_change_shows(change: Callable[[Path], None], tmp_path: Path) -> Non
 
 
 def test_a_copy_has_the_same_digest(tmp_path: Path) -> None:
-    """Wherever it stands, and however old it is; the fingerprint is another one."""
+    """The digest does not depend on path and age; the fingerprint does."""
     for place in ("one", "other"):
         (tmp_path / place).mkdir()
     package(tmp_path / "one")
@@ -120,7 +120,7 @@ def test_a_copy_has_the_same_digest(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["ann.urdf", "ann.zip", "ann"])
 def test_the_name_is_in_the_digest(name: str, tmp_path: Path) -> None:
-    """It stands in the report."""
+    """The digest covers the name, because the report contains it."""
     if name.endswith(".zip"):
         with zipfile.ZipFile(tmp_path / name, "w") as archive:
             archive.writestr("a.urdf", URDF)
@@ -136,7 +136,7 @@ def test_the_name_is_in_the_digest(name: str, tmp_path: Path) -> None:
 
 @given(st.binary(max_size=200), st.binary(max_size=200))
 def test_digests_are_equal_for_equal_bytes_only(one: bytes, other: bytes) -> None:
-    """As far as anybody can find out."""
+    """Different bytes give different digests."""
     import tempfile
 
     with tempfile.TemporaryDirectory() as place:
@@ -149,8 +149,8 @@ def test_digests_are_equal_for_equal_bytes_only(one: bytes, other: bytes) -> Non
     assert (digests[0] == digests[1]) == (one == other)
 
 
-def test_a_fingerprint_tells_of_times(tmp_path: Path) -> None:
-    """The same size, bytes and time of change are not enough: the inode's own time counts."""
+def test_a_fingerprint_depends_on_times(tmp_path: Path) -> None:
+    """The same size, bytes and modification time are not enough: the inode's change time counts."""
     place = tmp_path / "ann.urdf"
     place.write_bytes(URDF)
     (tmp_path / "dan").mkdir()
@@ -167,8 +167,8 @@ def test_a_fingerprint_tells_of_times(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("kind", ["file", "folder", "several", "zip"])
-def test_nobody_knows_just_after_a_change(kind: str, tmp_path: Path) -> None:
-    """A file system may not tell two changes of one moment apart: then there is no fingerprint."""
+def test_no_fingerprint_just_after_a_change(kind: str, tmp_path: Path) -> None:
+    """A file system may not distinguish two changes within a moment, so there is no fingerprint."""
     top = tmp_path / "class"
     paths: tuple[str, ...] = ("ann.urdf",)
     top.mkdir()
@@ -189,8 +189,8 @@ def test_nobody_knows_just_after_a_change(kind: str, tmp_path: Path) -> None:
     assert fingerprint(str(tmp_path / "missing"), paths, now + 10**9) == ""
 
 
-def test_several_files_are_one_hand_in(tmp_path: Path) -> None:
-    """They stand side by side under the names that their student gave them; these, and the student's, are in the digest."""
+def test_several_files_are_one_submission(tmp_path: Path) -> None:
+    """They are read as one folder under the student's names for them; names and student are in the digest."""
     for name in ("ann_1_my_robot.urdf", "ann_2_notes.txt"):
         (tmp_path / name).write_bytes(URDF)
     paths = ("ann_1_my_robot.urdf", "ann_2_notes.txt")
@@ -211,8 +211,8 @@ def test_several_files_are_one_hand_in(tmp_path: Path) -> None:
     assert len(digests) == 4
 
 
-def test_links_among_several_files_are_refused(tmp_path: Path) -> None:
-    """One that leads out of the class, or to another student's file."""
+def test_symlinks_among_several_files_are_refused(tmp_path: Path) -> None:
+    """A symlink that leads out of the class or to another student's file is refused."""
     (tmp_path / "a.urdf").write_bytes(URDF)
     for target in ("/etc/passwd", "a.urdf"):
         (tmp_path / "b.txt").unlink(missing_ok=True)
@@ -223,10 +223,10 @@ def test_links_among_several_files_are_refused(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("opens_in_folders", [True, False])
 @pytest.mark.parametrize("swapped", ["ann", "ann/urdf", "ann/urdf/my_robot.urdf"])
-def test_a_symlink_that_comes_late_is_not_followed(
+def test_a_symlink_that_replaces_a_file_is_not_followed(
     swapped: str, opens_in_folders: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Once a file is found, another student's file cannot be put in its place, with or without opening folder by folder."""
+    """After a file is found, another student's file cannot be put in its place, with or without openat."""
     monkeypatch.setattr(reading, "_OPENS_IN_FOLDERS", opens_in_folders and reading._OPENS_IN_FOLDERS)
     for name, text in (("ann", URDF), ("bob", b"secret")):
         (tmp_path / name / "urdf").mkdir(parents=True)
@@ -267,8 +267,8 @@ def _circle(top: Path) -> None:
 
 
 @pytest.mark.parametrize("make", [_fifo, _missing, _large, _circle])
-def test_what_cannot_be_opened_is_one_line(make: Callable[[Path], None], tmp_path: Path) -> None:
-    """It is an InputError, for a class as for one alone."""
+def test_unreadable_submissions_are_one_line(make: Callable[[Path], None], tmp_path: Path) -> None:
+    """They raise an InputError, in a class as alone."""
     make(tmp_path)
     with pytest.raises(InputError) as caught:
         open_submission(str(tmp_path), ("ann.urdf",), (), "ann")
@@ -276,14 +276,14 @@ def test_what_cannot_be_opened_is_one_line(make: Callable[[Path], None], tmp_pat
 
 
 def test_neither_a_urdf_nor_a_folder_or_archive(tmp_path: Path) -> None:
-    """Such as a text file that somebody has called so."""
+    """A text file with another name is refused."""
     (tmp_path / "ann.txt").write_text("text")
     with pytest.raises(InputError, match=r"ann\.txt is neither a URDF nor a folder or archive"):
         open_submission(str(tmp_path), ("ann.txt",), (), "ann")
 
 
-def test_a_zip_that_was_replaced_is_read_anew(tmp_path: Path) -> None:
-    """Although it stays open from one submission to the next."""
+def test_a_replaced_zip_is_read_again(tmp_path: Path) -> None:
+    """A zip stays open between submissions but is reopened when it was replaced."""
     place = tmp_path / "class.zip"
     seen = []
     for name in ("one", "other"):
@@ -295,8 +295,8 @@ def test_a_zip_that_was_replaced_is_read_anew(tmp_path: Path) -> None:
     assert [b"one" in seen[0], b"other" in seen[1]] == [True, True]  # type: ignore[operator]
 
 
-def test_quoted_as_long_as_it_is_the_same(tmp_path: Path) -> None:
-    """The text of a file is at hand until the file is another, or gone, or nobody knows what it was."""
+def test_lines_are_quoted_while_a_file_is_unchanged(tmp_path: Path) -> None:
+    """The text of a file is available until the file is changed, removed or was never known."""
     shutil.copytree(ROOT / "submissions/lidar-buried", tmp_path / "ann")
     while not (now := fingerprint(str(tmp_path), ("ann",), time.time_ns())):
         pass  # until it has settled
@@ -324,7 +324,7 @@ def _zip(files: dict[str, bytes]) -> bytes:
 
 
 def _both(top: Path, files: dict[str, bytes], *, entries: bool = False) -> tuple[Path, Path]:
-    """A class as a folder and as a zip, with `entries` for its folders or without."""
+    """Return a class as a folder and as a zip, with or without `entries` for its folders."""
     folder, packed = top / "class", top / "class.zip"
     for name, data in files.items():
         place = folder / name
@@ -355,14 +355,14 @@ BUILT = {"build/my_robot/my_robot.urdf": URDF, "log/a.txt": b"", "__pycache__/a.
     ids=["urdf", "xacro", "zip", "tar", "unnamed-zip", "folder"],
 )
 def test_a_zip_has_the_digests_of_its_folder(files: dict[str, bytes], entries: bool, tmp_path: Path) -> None:
-    """So that nothing is graded again where one comes in place of the other."""
+    """A folder and its zip have the same digests, so that nothing is graded again if one replaces the other."""
     name = next(iter(files)).partition("/")[0]
     folder, packed = _both(tmp_path, files, entries=entries)
     assert digest(folder, name) == digest(packed, name)
 
 
-def test_the_same_archive_packed_anew_is_another(tmp_path: Path) -> None:
-    """Its bytes are, and these are what the digest is made of in a folder and in a zip."""
+def test_a_repacked_archive_has_another_digest(tmp_path: Path) -> None:
+    """The digest is that of the archive's bytes, in a folder and in a zip."""
     seen = set()
     for number, files in enumerate((ROBOT, dict(reversed(ROBOT.items())))):
         for top in _both(tmp_path / str(number), {"ann.zip": _zip(files)}):
@@ -370,25 +370,25 @@ def test_the_same_archive_packed_anew_is_another(tmp_path: Path) -> None:
     assert len(seen) == 2
 
 
-def test_side_by_side_in_a_zip_as_in_a_folder(tmp_path: Path) -> None:
-    """The same digest and the same files: folders of builds and hidden files are passed over in both."""
+def test_several_files_in_a_zip_equal_those_in_a_folder(tmp_path: Path) -> None:
+    """Digests and files are the same: build folders and hidden files are ignored in both."""
     files = {"1": URDF, "2": b"notes", "3": URDF, "4": b"hidden"}
     names = ("my_robot.urdf", "onlinetext/notes.html", "build/my_robot.urdf", ".hidden")
     opened = [open_submission(str(top), tuple(files), names, "ann") for top in _both(tmp_path, files)]
     assert opened[0].digest == opened[1].digest
-    for each in opened:
-        assert each.tree is not None
-        assert set(each.tree.files) == {"my_robot.urdf", "onlinetext/notes.html"}
-        assert each.tree.generated == ("build/my_robot.urdf",)
-        assert each.tree.unseen == {"build"}
+    for submission in opened:
+        assert submission.tree is not None
+        assert set(submission.tree.files) == {"my_robot.urdf", "onlinetext/notes.html"}
+        assert submission.tree.generated == ("build/my_robot.urdf",)
+        assert submission.tree.unseen == {"build"}
 
 
 @pytest.mark.parametrize("name", ["ann.pdf", "ann.xml", "ann.zip", "ann.7z"])
 def test_what_is_refused_in_a_folder_is_refused_in_a_zip(name: str, tmp_path: Path) -> None:
-    """In the same words, from the top of the class."""
-    said = set()
+    """The message is the same, with paths relative to the class."""
+    output = set()
     for top in _both(tmp_path, {f"lab/{name}": b"7z\xbc\xaf\x27\x1c" if name.endswith("7z") else b"text"}):
         with pytest.raises(InputError) as caught:
             open_submission(str(top), (f"lab/{name}",), (), "ann")
-        said.add(str(caught.value).replace(f"{top}/", ""))
-    assert len(said) == 1
+        output.add(str(caught.value).replace(f"{top}/", ""))
+    assert len(output) == 1

@@ -1,4 +1,4 @@
-"""A roster read from a CSV, and whom in it a name belongs to."""
+"""Rosters in CSV files, and matching names to their students."""
 
 from pathlib import Path
 
@@ -14,9 +14,9 @@ from grader.errors import InputError
 
 
 def read(tmp_path: Path, text: str | bytes) -> Roster:
-    place = tmp_path / "roster.csv"
-    place.write_bytes(text if isinstance(text, bytes) else text.encode())
-    return read_roster(place)
+    path = tmp_path / "roster.csv"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return read_roster(path)
 
 
 def only(tmp_path: Path, text: str) -> RosterEntry:
@@ -45,14 +45,14 @@ PLAIN = "id,name,email\n100,Ann Ash,ann@example.org\n\n200,Jörg Müller,jm@exam
     ],
 )
 def test_spellings_of_one_roster(tmp_path: Path, data: bytes) -> None:
-    """Encodings, delimiters, line ends, quotes, blank lines and names of columns are read alike."""
+    """Encodings, delimiters, line endings, quotes, blank lines and spellings of columns are read alike."""
     assert read(tmp_path, data).students == (
         Student("100", "Ann Ash", "ann@example.org", sis="100"),
         Student("200", "Jörg Müller", "jm@example.org", sis="200"),
     )
 
 
-def test_a_gradebook_of_canvas(tmp_path: Path) -> None:
+def test_a_canvas_gradebook(tmp_path: Path) -> None:
     """The ID of a Canvas export is Canvas' own number; its row of points is no student."""
     text = (
         "Student,ID,SIS User ID,SIS Login ID,Section,Lab 6 (98765)\n"
@@ -64,7 +64,7 @@ def test_a_gradebook_of_canvas(tmp_path: Path) -> None:
     assert entry.section == "Tutorial 1"
 
 
-def test_a_worksheet_of_moodle(tmp_path: Path) -> None:
+def test_a_moodle_worksheet(tmp_path: Path) -> None:
     """The number in Moodle's Identifier is the participant's."""
     text = 'Identifier,"Full name","Email address",Status\n"Participant 123",Jane Doe,jane@example.org,Submitted\n'
     assert only(tmp_path, text).student == Student("jane@example.org", "Jane Doe", "jane@example.org", moodle="123")
@@ -72,8 +72,8 @@ def test_a_worksheet_of_moodle(tmp_path: Path) -> None:
     assert only(tmp_path, german).student == Student("Jane Doe", "Jane Doe", moodle="123")
 
 
-def test_everything_that_a_row_may_say(tmp_path: Path) -> None:
-    """All columns that are known, and one that is not."""
+def test_all_columns(tmp_path: Path) -> None:
+    """All known columns are read, and an unknown one is ignored."""
     text = (
         "First name,Surname,Login,GitHub username,SIS ID,Canvas ID,Moodle ID,Group,Due date,Extension,Submitted at,Late,Shoe\n"
         "Ann,Ash,aash,annie,s1,11,22,A,2026-09-01T23:59+02:00,2 days,2026-09-02 10:00:00Z,1.5,44\n"
@@ -101,14 +101,14 @@ def test_late(tmp_path: Path, cell: str, late: tuple[bool | None, float | None])
 
 
 def test_an_extension_is_days_or_a_date(tmp_path: Path) -> None:
-    """A number is one of days, and anything else the day until which."""
+    """A number is a number of days, anything else the date of the extension."""
     first, second = read(tmp_path, "id,extension\n1,3\n2,2026-09-04\n").entries
     assert (first.due, first.extension_days) == ("", 3.0)
     assert (second.due, second.extension_days) == ("2026-09-04", 0.0)
 
 
-def test_a_time_that_is_none_is_noted(tmp_path: Path) -> None:
-    """What an LMS writes about handing in may be no time: it is passed over, and said."""
+def test_an_invalid_time_is_noted(tmp_path: Path) -> None:
+    """An LMS may write text instead of a time of submission: it is ignored with a note."""
     roster = read(tmp_path, "id,submitted\n1,yesterday\n")
     assert roster.entries[0].submitted == ""
     assert roster.notes == ("line 2: 'yesterday' is not a time such as 2026-09-01T10:00, and was ignored",)
@@ -134,8 +134,8 @@ def test_a_time_that_is_none_is_noted(tmp_path: Path) -> None:
         (b"id\n\x81\n", "is not a text file"),
     ],
 )
-def test_what_cannot_be_used(tmp_path: Path, text: str | bytes, message: str) -> None:
-    """Each mistake is one line, with the line of the file where there is one."""
+def test_invalid_rosters(tmp_path: Path, text: str | bytes, message: str) -> None:
+    """Each mistake is one line, with the line of the file if there is one."""
     with pytest.raises(InputError, match=message) as caught:
         read(tmp_path, text)
     assert "\n" not in str(caught.value)
@@ -162,10 +162,10 @@ def test_times(time: object) -> None:
 
 @given(st.binary(max_size=300))
 def test_any_bytes_give_a_roster_or_one_line(tmp_path_factory: pytest.TempPathFactory, data: bytes) -> None:
-    """Whatever is in the file, it is read or refused in one line."""
+    """Any bytes are read or refused in one line."""
     try:
         roster = read(tmp_path_factory.getbasetemp(), b"id,name\n" + data)
     except InputError as error:
         assert "\n" not in str(error)
     else:
-        assert all(each.key.isprintable() for each in roster.students)
+        assert all(student.key.isprintable() for student in roster.students)

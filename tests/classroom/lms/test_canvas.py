@@ -1,4 +1,4 @@
-"""Our totals in a Canvas gradebook: the right cells and no others, and an account of all that is not filled."""
+"""Totals in a Canvas gradebook: only the correct cells change, and every row that is not filled is reported."""
 
 import csv
 import io
@@ -29,9 +29,9 @@ def gradebook(*rows: str, header: str = HEADER, points: str = POINTS, end: str =
 
 
 def fill(data: bytes, *grades: LmsGrade, column: str = "", out_of: str = "100", any_maximum: bool = False) -> Filled:
-    wanted = ("lab6", "A wheeled base")
+    required = ("lab6", "A wheeled base")
     return fill_gradebook(
-        data, grades, out_of=Decimal(out_of), rubric_names=wanted, column=column, any_maximum=any_maximum
+        data, grades, out_of=Decimal(out_of), rubric_names=required, column=column, any_maximum=any_maximum
     )
 
 
@@ -49,7 +49,7 @@ def test_the_grade_goes_into_its_cell() -> None:
 
 
 def test_a_manual_posting_row_and_blank_lines_stay() -> None:
-    """Rows that are no student's come out as they are, and are nobody unknown."""
+    """Rows that are no student's are unchanged and not reported as unknown."""
     rows = (",,,,,Manual Posting", "", ",,,,,", '"Doe, Jane",11,S11,jdoe,A,')
     data = (HEADER + "\r\n" + rows[0] + "\r\n" + POINTS + "\r\n" + "\r\n".join(rows[1:])).encode()
     filled = fill(data, graded("x", canvas="11"))
@@ -68,8 +68,8 @@ def test_a_manual_posting_row_and_blank_lines_stay() -> None:
         {"name": "doejane"},
     ],
 )
-def test_students_are_found_by_what_is_known(known: dict[str, str]) -> None:
-    """By Canvas' number, the university's, the login, or the name in either order and as bulk downloads write it."""
+def test_students_are_found_by_every_identifier(known: dict[str, str]) -> None:
+    """By Canvas' number, the SIS id, the login, or the name in either order and as bulk downloads write it."""
     filled = fill(gradebook('"Doe, Jane",11,S11,jdoe,A,'), graded("x", **known))
     assert filled.preflight.filled == 1
 
@@ -80,8 +80,8 @@ def test_the_key_counts_as_number_and_login(key: str) -> None:
     assert fill(gradebook('"Doe, Jane",11,S11,jdoe@uni.example,A,'), graded(key)).preflight.filled == 1
 
 
-def test_the_surest_key_decides() -> None:
-    """Canvas' number wins over a name, and a name joins nobody whose numbers differ."""
+def test_the_most_reliable_identifier_decides() -> None:
+    """Canvas' number takes precedence over a name, and a name matches nobody whose numbers differ."""
     data = gradebook('"Doe, Jane",11,,,A,', '"Roe, Rick",12,,,A,')
     filled = fill(
         data, graded("a", "10", canvas="12", name="Jane Doe"), graded("b", "20", canvas="13", name="Rick Roe")
@@ -95,7 +95,7 @@ def test_the_surest_key_decides() -> None:
 
 
 def test_namesakes_are_never_guessed() -> None:
-    """Two rows for one student, or two students for one row: reported, and left out."""
+    """Two rows for one student, or two students for one row, are reported and not filled."""
     data = gradebook('"Doe, Jane",11,,,A,', '"Doe, Jane",12,,,A,', '"Lee, Ann",13,,,A,')
     filled = fill(data, graded("a", name="Jane Doe"), graded("b", name="Ann Lee"), graded("c", name="Lee, Ann"))
     assert lines(filled) == [HEADER, POINTS]
@@ -104,8 +104,8 @@ def test_namesakes_are_never_guessed() -> None:
     assert not filled.preflight.matches
 
 
-def test_what_is_left_over_is_no_match() -> None:
-    """A namesake is not matched because the other one is; a name that only a matched student has leaves its row to others."""
+def test_a_remaining_namesake_is_no_match() -> None:
+    """A namesake is not matched because the other one is; a matched student's name leaves its row to others."""
     data = gradebook('"Doe, Jane",11,,,A,', '"Doe, Jane",12,,,A,')
     filled = fill(data, graded("a", canvas="11", name="Jane Doe"), graded("b", name="Jane Doe"))
     assert [(left.row, left.why) for left in filled.preflight.ambiguous] == [
@@ -122,8 +122,8 @@ def test_what_is_left_over_is_no_match() -> None:
     assert filled.preflight.filled == 2
 
 
-def test_rows_without_a_grade_are_left_out_with_the_reason() -> None:
-    """Pending, excused, not assigned, cells out of place: none of them is in the file, each is reported."""
+def test_rows_without_a_grade_are_omitted_with_the_reason() -> None:
+    """Pending, excused, not assigned, misplaced cells: none of them is in the file, and each is reported."""
     rows = ["Pen,11,,,A,80", "Exe,12,,,A,EX", "Nas,13,,,A,N/A", "Rag,14,,,A", "Oks,15,,,A,"]
     grades = [
         graded("a", None, "a person still has to look", canvas="11"),
@@ -140,8 +140,8 @@ def test_rows_without_a_grade_are_left_out_with_the_reason() -> None:
     assert filled.preflight.matches
 
 
-def test_grades_that_are_there_already() -> None:
-    """The same grade stays as it is written; another one is overwritten, and said so."""
+def test_existing_grades() -> None:
+    """The same grade stays as it is written; another one is overwritten and reported."""
     rows = ["Ann,11,,,A,58.5", "Bob,12,,,A,80", "Cem,13,,,A,B+", "Dee,14,,,A,-"]
     filled = fill(gradebook(*rows), *(graded(str(n), canvas=str(n)) for n in range(11, 15)))
     assert lines(filled)[2:] == ["Ann,11,,,A,58.5", "Bob,12,,,A,58.50", "Cem,13,,,A,58.50", "Dee,14,,,A,58.50"]
@@ -149,8 +149,8 @@ def test_grades_that_are_there_already() -> None:
     assert (filled.preflight.filled, filled.preflight.unchanged) == (3, 1)
 
 
-def test_the_test_student_is_nobody() -> None:
-    """Canvas' own test student is left out, and not missed."""
+def test_the_test_student_is_ignored() -> None:
+    """Canvas' own test student is omitted and not reported as missing."""
     filled = fill(gradebook('"Student, Test",99,,abc,A,'))
     assert lines(filled) == [HEADER, POINTS]
     assert filled.preflight.matches
@@ -170,7 +170,7 @@ def test_the_test_student_is_nobody() -> None:
     ],
 )
 def test_the_column(header: str, column: str, chosen: str) -> None:
-    """By its title or number where it is asked for; else the one that names the rubric, else the only assignment."""
+    """By its title or number if given; else the one that names the rubric, else the only assignment."""
     header = "Student,ID,SIS Login ID,Section," + header
     width = header.count(",")
     data = gradebook("Ann,11,a,A" + "," * (width - 3), header=header, points="Points Possible" + "," * width)
@@ -191,14 +191,14 @@ def test_the_column(header: str, column: str, chosen: str) -> None:
         ("Lab 6 (1),Lab 6 (1)", "", "several possible columns"),
     ],
 )
-def test_a_column_that_is_not_plain(header: str, column: str, words: str) -> None:
-    """A column that could be several, or none, is refused with the names of those that there are."""
+def test_an_ambiguous_column_is_refused(header: str, column: str, words: str) -> None:
+    """If several columns or none match, the message lists the existing ones."""
     with pytest.raises(InputError, match=words):
         fill(gradebook(header="Student,ID,SIS Login ID,Section," + header, points=""), column=column)
 
 
-def test_read_only_columns_are_none() -> None:
-    """A column that Canvas marks as read only, in whatever language, is not filled."""
+def test_read_only_columns_are_not_filled() -> None:
+    """A column that Canvas marks as read-only, in any language, is not filled."""
     data = gradebook(header=HEADER + ",Extra (7)", points=POINTS + ",(nur lesen)")
     assert fill(data).preflight.column == "Lab 6 (98765)"
     with pytest.raises(InputError, match="no writable column"):
@@ -207,14 +207,14 @@ def test_read_only_columns_are_none() -> None:
 
 @pytest.mark.parametrize("data", [b"", b"\n", b"Name,Grade\n", b"Student,ID,Lab 6 (1)\n", b"%PDF-1.7 \x81"])
 def test_other_files_are_refused(data: bytes) -> None:
-    """What was not exported from Canvas is refused in one sentence."""
+    """A file that was not exported from Canvas is refused in one sentence."""
     with pytest.raises(InputError, match=r"gradebook") as raised:
         fill(data)
     assert "\n" not in str(raised.value)
 
 
-def test_other_shapes() -> None:
-    """First and last name apart, an integration ID, a root account, no SIS User ID, a formula's guard around a name."""
+def test_other_exports() -> None:
+    """Separate first and last names, an integration ID, a root account, no SIS User ID, a guarded name."""
     header = "LastName,FirstName,ID,SIS User ID,SIS Login ID,Integration ID,Root Account,Section,Lab 6 (1)"
     filled = fill(
         gradebook("Doe,Jane,11,,,,,A,", header=header, points="Points Possible,,,,,,,,100"),
@@ -228,7 +228,7 @@ def test_other_shapes() -> None:
 
 
 def test_semicolons_and_decimal_commas() -> None:
-    """An export in a language with decimal commas gets one; in a file with commas it is in quotes."""
+    """An export in a language with decimal commas gets one; in a file with commas it is quoted."""
     data = gradebook("Jane;11;S;j;A;", header=HEADER.replace(",", ";"), points="Points Possible;;;;;100,00")
     assert lines(fill(data, graded("x", canvas="11")))[2] == "Jane;11;S;j;A;58,50"
     data = gradebook("Jane,11,S,j,A,", points='Points Possible,,,,,"100,00"')
@@ -236,7 +236,7 @@ def test_semicolons_and_decimal_commas() -> None:
 
 
 def test_warnings() -> None:
-    """Other points, no points, a column by elimination, other assignments, another encoding: each is said."""
+    """Other points, no points, a column by elimination, other assignments and another encoding are reported."""
     filled = fill(gradebook(), out_of="70", any_maximum=True)
     assert "has 100.00 points possible in Canvas, and 70 here" in filled.preflight.warnings[0]
     assert "has no points possible" in fill(gradebook(points="Points Possible,,,,,")).preflight.warnings[0]
@@ -252,28 +252,28 @@ def test_warnings() -> None:
     assert "another format" in fill(gradebook().decode().encode("utf-16")).preflight.warnings[0]
 
 
-@pytest.mark.parametrize(("possible", "said"), [("10.00", "10"), ("0", "0"), ('"1.000,00"', "1000")])
-def test_another_maximum_is_refused(possible: str, said: str) -> None:
-    """9.33 of 100 would be 9.33 of 10; whoever wants that says so."""
+@pytest.mark.parametrize(("possible", "output"), [("10.00", "10"), ("0", "0"), ('"1.000,00"', "1000")])
+def test_another_maximum_is_refused(possible: str, output: str) -> None:
+    """9.33 of 100 would be 9.33 of 10, so it needs an option."""
     data = gradebook('"Doe, Jane",11,S11,jdoe,A,', points=f"Points Possible,,,,,{possible}")
     with pytest.raises(InputError) as raised:
         fill(data, graded("x", "9.33", canvas="11"))
     assert str(raised.value) == (
-        f"Canvas' Points Possible of 'Lab 6 (98765)' is {said}, but the rubric's maximum is 100: change the maximum in the"
+        f"Canvas' Points Possible of 'Lab 6 (98765)' is {output}, but the rubric's maximum is 100: change the maximum in the"
         " LMS and export again, or pass --any-maximum to write the points unchanged"
     )
     assert fill(data, graded("x", "9.33", canvas="11"), any_maximum=True).preflight.filled == 1
 
 
 def test_students_without_a_total_are_not_missed() -> None:
-    """Who has no grade and no row is no gap."""
+    """Students with neither a grade nor a row are not reported."""
     assert fill(gradebook(), graded("x", None)).preflight.matches
 
 
 @pytest.mark.parametrize(
     ("total", "text"), [("99.996", "99.99"), ("58.5", "58.50"), ("0", "0.00"), ("1E+2", "100.00"), ("0.009", "0.00")]
 )
-def test_points_are_cut(total: str, text: str) -> None:
+def test_points_are_rounded_down(total: str, text: str) -> None:
     """Two decimals, rounded down, without an exponent."""
     assert points_text(Decimal(total)) == text
     assert points_text(Decimal(total), comma=True) == text.replace(".", ",")
@@ -281,7 +281,7 @@ def test_points_are_cut(total: str, text: str) -> None:
 
 @given(st.decimals(0, 10_000, places=4))
 def test_points_never_gain(points: Decimal) -> None:
-    """What is written is at most what was earned, and less than a cent below; it reads back as itself."""
+    """The written points are at most those earned, less than a cent below, and read back as themselves."""
     text = points_text(points)
     assert Decimal(0) <= points - Decimal(text) < Decimal("0.01")
     assert read_points(text) == read_points(text.replace(".", ",")) == Decimal(text)
@@ -318,7 +318,7 @@ NAMES = st.text(st.sampled_from("aé=+-@\"',;\n\r\t 😀\u202eשא\\(x)"), min_s
 def test_only_grades_change(
     students: list[tuple[str, str, str, bool]], quoting: Literal[0, 1], end: str, encoding: str
 ) -> None:
-    """Whatever names and sections hold, kept rows differ from the export in the grade's cell alone, and none is added."""
+    """Whatever names and sections contain, rows differ from the export in the grade's cell only, and none is added."""
     text = io.StringIO(newline="")
     writer = csv.writer(text, quoting=quoting, lineterminator=end)
     writer.writerow(HEADER.split(","))

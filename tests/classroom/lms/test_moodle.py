@@ -1,4 +1,4 @@
-"""Our totals and comments in a Moodle grading worksheet, in the languages that it comes in."""
+"""Totals and comments in a Moodle grading worksheet, in the languages that Moodle writes."""
 
 import csv
 import html
@@ -49,7 +49,7 @@ def row(
 
 
 def worksheet(*rows: str, header: str = HEADER, end: str = "\n") -> bytes:
-    return "".join(each + end for each in (header, *rows)).encode()
+    return "".join(row + end for row in (header, *rows)).encode()
 
 
 def fill(
@@ -86,20 +86,20 @@ def test_grade_and_comment_go_into_their_cells() -> None:
 @pytest.mark.parametrize(
     "known", [{"moodle": "7"}, {"email": "P7@uni.example"}, {"name": "Doe, Jane"}, {"name": "jane  doe"}]
 )
-def test_students_are_found_by_what_is_known(known: dict[str, str]) -> None:
+def test_students_are_found_by_every_identifier(known: dict[str, str]) -> None:
     """By the number in the identifier, the address, or the name."""
     assert fill(worksheet(row(7)), graded("x", **known)).preflight.filled == 1
 
 
 @pytest.mark.parametrize("title", ["ID number", "Username", "ID-Nummer"])
 def test_the_key_counts_as_id_number(title: str) -> None:
-    """Where the site shows ID numbers or user names, a student is found by them."""
+    """If the site shows ID numbers or user names, a student is found by them."""
     data = f"Identifier,Full name,{title},Status,Grade,Maximum grade\nParticipant 7,Jane,s123,-,,100.00\n".encode()
     assert fill(data, graded("S123")).preflight.filled == 1
 
 
 def test_namesakes_and_other_numbers_are_never_guessed() -> None:
-    """One name in two rows is ambiguous; a name whose participant number differs joins nobody."""
+    """A name in two rows is ambiguous; a name whose participant number differs matches nobody."""
     data = worksheet(row(1), row(2), row(3, "Ann Lee"))
     filled = fill(data, graded("a", name="Jane Doe"), graded("b", name="Ann Lee", moodle="4"))
     assert cells(filled) == [next(csv.reader([HEADER]))]
@@ -109,22 +109,22 @@ def test_namesakes_and_other_numbers_are_never_guessed() -> None:
 
 
 def test_a_suspended_student_has_a_plain_name() -> None:
-    """The span and the picture that Moodle puts around a suspended student's name are no part of it."""
+    """The span and the picture that Moodle puts around a suspended student's name are ignored."""
     name = '<span class=""usersuspended"">Jane &amp; Doe <img src=""x"" title=""Suspended"" /></span>'
     filled = fill(worksheet(row(7, name)), graded("x", None, why_not="pending", name="Jane & Doe"))
     assert filled.preflight.ungraded == [RowNote(2, "Jane & Doe", "pending")]
 
 
 def test_blind_marking() -> None:
-    """Without names, people are called by their identifiers and found by the number."""
+    """Without names, students have identifiers and are found by the number."""
     data = b'Identifier,Status,Grade,"Maximum grade"\n"Participant 7",Submitted,,100.00\n"Participant 8",Submitted,,100.00\n'
     filled = fill(data, graded("x", moodle="7"))
     assert cells(filled)[1:] == [["Participant 7", "Submitted", "58.50", "100.00"]]
     assert filled.preflight.unknown[0].who == "Participant 8"
 
 
-def test_rows_without_a_grade_are_left_out() -> None:
-    """Locked, above Moodle's maximum, pending, cells out of place: left out, so that nothing of theirs changes."""
+def test_rows_without_a_grade_are_omitted() -> None:
+    """Locked, above Moodle's maximum, pending, misplaced cells: omitted, so that Moodle changes nothing."""
     rows = [row(1, change="No"), row(2, maximum="50.00"), row(3, old="12.00", comment="mine"), row(4) + ",x"]
     grades = [
         graded("1", moodle="1"),
@@ -144,40 +144,40 @@ def test_rows_without_a_grade_are_left_out() -> None:
 
 
 def test_full_marks_are_not_above_the_maximum() -> None:
-    """A total at the maximum is filled."""
+    """A total equal to the maximum is filled."""
     assert fill(worksheet(row(1)), graded("x", "100", moodle="1")).preflight.filled == 1
 
 
-def test_grades_that_are_there_already() -> None:
-    """The same grade stays as it is written; another one is overwritten, and said so."""
+def test_existing_grades() -> None:
+    """The same grade stays as it is written; another one is overwritten and reported."""
     filled = fill(worksheet(row(1, old="58.5"), row(2, old="80.00")), graded("1", moodle="1"), graded("2", moodle="2"))
-    assert [each[4] for each in cells(filled)[1:]] == ["58.5", "58.50"]
+    assert [row[4] for row in cells(filled)[1:]] == ["58.5", "58.50"]
     assert filled.preflight.conflicts == [Conflict(3, "Jane Doe", "80.00", "58.50")]
     assert (filled.preflight.filled, filled.preflight.unchanged) == (1, 1)
     assert "modified more recently" in filled.preflight.warnings[0]
 
 
-def test_comments_of_people_stay() -> None:
-    """A comment that a person wrote, or added to ours, is kept and reported; ours of an earlier run is written anew."""
+def test_manual_comments_are_kept() -> None:
+    """A comment that a person wrote or extended is kept and reported; the grader's own comments are replaced."""
     quoted = '"' + COMMENT.replace("</ul>", "</ul><p>But well written!</p>").replace('"', '""') + '"'
     older = feedback_html(Decimal(3), Decimal(100), [])
     data = worksheet(row(1, comment="Please come to my office."), row(2, comment=quoted), row(3, comment=older))
     filled = fill(data, *(graded(str(n), feedback=COMMENT, moodle=str(n)) for n in (1, 2, 3)))
-    assert [each[9] for each in cells(filled)[1:]] == [
-        each[9] for each in cells(Filled(data, filled.preflight))[1:3]
-    ] + [COMMENT]
+    assert [row[9] for row in cells(filled)[1:]] == [row[9] for row in cells(Filled(data, filled.preflight))[1:3]] + [
+        COMMENT
+    ]
     assert [left.row for left in filled.preflight.kept_feedback] == [2, 3]
 
 
-def test_no_comment_leaves_the_cell_alone() -> None:
-    """Without feedback of ours the comment that is there stays, and nothing is said of it."""
+def test_no_comment_leaves_the_cell_unchanged() -> None:
+    """Without feedback from the grader the existing comment stays, without a message."""
     filled = fill(worksheet(row(1, comment="mine")), graded("1", moodle="1"))
     assert cells(filled)[1][9] == "mine"
     assert not filled.preflight.kept_feedback
 
 
-def test_a_comment_from_elsewhere_starts_no_formula() -> None:
-    """What is written into a cell is neutral, whoever made it."""
+def test_a_comment_starts_no_formula() -> None:
+    """A written cell starts no formula, whoever wrote the comment."""
     assert cells(fill(worksheet(row(1)), graded("1", feedback="=1+1", moodle="1")))[1][9] == "'=1+1"
 
 
@@ -188,7 +188,7 @@ GERMAN = (
 
 
 def test_german() -> None:
-    """The number sticks to the word, the decimals have a comma, and No is Nein."""
+    """The number follows the word without a space, decimals have a comma, and No is Nein."""
     rows = [
         'Teilnehmer/in123,"Jörg Öztürk",j@uni.example,"Zur Bewertung abgegeben",,"100,00",Ja,-,-,',
         'Teilnehmer/in124,"Ann Lee",a@uni.example,"Zur Bewertung abgegeben",,"100,00",Nein,-,-,',
@@ -212,8 +212,8 @@ def test_german() -> None:
     assert not filled.preflight.warnings
 
 
-def test_a_language_that_is_not_known() -> None:
-    """Grade and maximum are found by what stands in them; a comment needs its column's name."""
+def test_an_unknown_language() -> None:
+    """Grade and maximum are found by their values; a comment needs its column's name."""
     header = "Tunniste,Nimi,Sposti,Tila,Ryhmä,Arvosana,Enimmäisarvosana,Muokattu,Palaute"
     data = worksheet(
         "Osallistuja 7,Jane,j@uni.example,ok,3,,100.00,-,",
@@ -231,7 +231,7 @@ def test_a_language_that_is_not_known() -> None:
 
 
 def test_a_workflow_a_marker_and_an_online_text() -> None:
-    """Columns that only some sites have, in between, change nothing."""
+    """Columns that only some sites have change nothing."""
     header = (
         "Identifier,Full name,ID number,Email address,Status,Group,Marker,Grade,Maximum grade,Marking workflow state,"
         "Grade can be changed,Last modified (submission),Online text,Last modified (grade),Feedback comments"
@@ -257,14 +257,14 @@ def test_a_workflow_a_marker_and_an_online_text() -> None:
     ],
 )
 def test_other_files_are_refused(data: bytes, words: str) -> None:
-    """What is no worksheet, or one with a scale, is refused in one sentence with the headers that there are."""
+    """A file that is no worksheet, or has a scale, is refused in one sentence that lists the headers."""
     with pytest.raises(InputError, match=words) as raised:
         fill(data)
     assert "\n" not in str(raised.value)
 
 
-def test_columns_that_are_not_there() -> None:
-    """A column that somebody names has to be there."""
+def test_missing_columns() -> None:
+    """A named column must exist."""
     with pytest.raises(InputError, match=r"no column 'Mark'.*'Grade'"):
         fill(worksheet(row(1)), column="Mark")
     with pytest.raises(InputError, match="no column 'Notes'"):
@@ -272,7 +272,7 @@ def test_columns_that_are_not_there() -> None:
 
 
 def test_warnings() -> None:
-    """Another maximum, and a file that has to be uploaded with other settings, are said."""
+    """Another maximum, and a file that must be uploaded with other settings, are reported."""
     assert fill(worksheet(row(1)), out_of="70", any_maximum=True).preflight.warnings == [
         "the maximum in Moodle is 100.00 points, and that of the rubric 70",
     ]
@@ -281,7 +281,7 @@ def test_warnings() -> None:
 
 
 def test_another_maximum_is_refused() -> None:
-    """9.33 of 100 would be 9.33 of 10, for anyone in the file; whoever wants that says so."""
+    """9.33 of 100 would be 9.33 of 10, so it needs an option."""
     data = worksheet(row(1), row(2, maximum="10.00"))
     with pytest.raises(InputError) as raised:
         fill(data, graded("1", "9.33", moodle="1"))
@@ -296,7 +296,7 @@ RUBRIC = lab()
 
 
 def result(name: str, outcome: Outcome, because: str | None = None, ruling: ManualMark | None = None) -> Result:
-    (criterion,) = [each for each in RUBRIC.criteria if each.id == name]
+    (criterion,) = [criterion for criterion in RUBRIC.criteria if criterion.id == name]
     return Result(criterion, outcome, because, "", ruling)
 
 
@@ -304,8 +304,8 @@ def skipped(name: str, because: str = "loads", ruling: ManualMark | None = None)
     return result(name, Outcome("skipped", f"not decided, because {because} failed"), because, ruling)
 
 
-def test_what_has_one_cause_is_one_remark() -> None:
-    """Criteria that are skipped because another failed, or wait for the same reason, are told once; messages begin large."""
+def test_feedback_is_grouped_by_cause() -> None:
+    """Criteria that are skipped or pending for one reason are one item; messages begin with a capital."""
     loads = result("loads", Outcome("failed", "the file has no root"))
     text = feedback_html(
         Decimal(0), Decimal(11), list(feedback_items([loads, *map(skipped, ("box", "tall", "essay"))]))
@@ -314,14 +314,14 @@ def test_what_has_one_cause_is_one_remark() -> None:
         "About loads: 0 of 3. The file has no root",
         "3 criteria were skipped because loads failed: 0 of 7.",
     ]
-    waits = Outcome("pending", "nobody can tell; needs manual grading")
-    assert list(feedback_items([result(name, waits) for name in ("box", "tall")])) == [
+    pending = Outcome("pending", "nobody can tell; needs manual grading")
+    assert list(feedback_items([result(name, pending) for name in ("box", "tall")])) == [
         FeedbackItem("2 criteria need manual grading", Decimal(0), Decimal(3), "Nobody can tell; needs manual grading")
     ]
 
 
-def test_what_has_a_cause_of_its_own_stays() -> None:
-    """One skip, a question with its model answer, a person's word, and all that has its points."""
+def test_items_with_their_own_cause_stay_separate() -> None:
+    """A single skip, a question with its model answer, a manual comment, and criteria with full points."""
     asks = Outcome("pending", "a person has to mark it", "this", "that")
     found = [
         result("loads", Outcome("passed", "fine")),
@@ -330,7 +330,7 @@ def test_what_has_a_cause_of_its_own_stays() -> None:
         result("essay", asks),
         result("picture", asks._replace(measured='xyz="0" is off', message='xyz="0" is off')),
     ]
-    assert [(each.title, each.message) for each in feedback_items(found)] == [
+    assert [(item.title, item.message) for item in feedback_items(found)] == [
         ("About box", "nice try"),
         ("About tall", "Not decided, because box failed"),
         ("About essay", "A person has to mark it"),
@@ -339,7 +339,7 @@ def test_what_has_a_cause_of_its_own_stays() -> None:
 
 
 def test_feedback() -> None:
-    """Score as exported, then the remarks; HTML of a student's is shown as text; one line."""
+    """The score as exported, then the items; a student's HTML is shown as text; one line."""
     text = feedback_html(
         Decimal("99.996"),
         Decimal(100),
@@ -352,16 +352,16 @@ def test_feedback() -> None:
     assert is_own_feedback(text)
 
 
-def test_feedback_that_an_editor_has_written_anew() -> None:
-    """Other tags and spaces around the same words are still ours; other words, or none of ours, are not."""
+def test_feedback_that_an_editor_reformatted() -> None:
+    """The same words in other tags and spaces are still recognised; other words are not."""
     assert is_own_feedback(COMMENT.replace("<p>", "<p dir='ltr'>\n ").replace("</li>", "</li>\n"))
     assert not is_own_feedback(COMMENT.replace("too low", "far too low"))
     assert not is_own_feedback("Graded automatically: 3 of 4 points.")
     assert not is_own_feedback("")
 
 
-def test_feedback_has_an_end() -> None:
-    """A long comment says how many remarks it leaves out."""
+def test_feedback_is_limited() -> None:
+    """A long comment says how many items it omits."""
     remarks = [FeedbackItem(f"Criterion {n}", Decimal(0), Decimal(1), "x" * 200) for n in range(90)]
     text = feedback_html(Decimal(0), Decimal(90), remarks)
     shown = text.count("Criterion")
@@ -377,7 +377,7 @@ REMARKS = st.builds(
 
 @given(st.lists(REMARKS, max_size=8))
 def test_feedback_is_always_safe(remarks: list[FeedbackItem]) -> None:
-    """Any text: one line, within the limit, no tags but ours, no formula, and known again."""
+    """Any text gives one line within the limit, with only the grader's tags, no formula, and is recognised again."""
     text = feedback_html(Decimal(1), Decimal(2), remarks)
     assert len(text) <= LIMIT
     assert text.splitlines() == [text]
@@ -391,7 +391,7 @@ def test_feedback_is_always_safe(remarks: list[FeedbackItem]) -> None:
 
 @given(st.text(st.sampled_from('<>&=+-@;" a'), max_size=12))
 def test_feedback_shows_the_message(message: str) -> None:
-    """What a reader sees is the message, character for character but for runs of spaces."""
+    """A reader sees the message, character for character except for runs of spaces."""
     text = feedback_html(Decimal(1), Decimal(2), [FeedbackItem("t", Decimal(1), Decimal(2), message)])
     item = re.search(r"<li>t: 1 of 2\.(.*?)</li>", text)
     assert item is not None
@@ -409,20 +409,20 @@ NAMES = st.text(st.sampled_from("aé=+-@\"',;\n\t 😀\u202eשא\\<>"), min_size
 def test_only_grades_and_comments_change(
     students: list[tuple[str, str, str, bool]], quoting: Literal[0, 1], end: str
 ) -> None:
-    """Whatever names and comments hold, kept rows differ from the download in two cells, and a person's comment in one."""
+    """Whatever names and comments contain, rows differ from the download in two cells, and a manual comment in one."""
     text = io.StringIO(newline="")
     writer = csv.writer(text, quoting=quoting, lineterminator=end)
     writer.writerow(next(csv.reader([HEADER])))
     for number, (name, comment, old, _) in enumerate(students):
         writer.writerow([f"Participant {number}", name, f"{number}@x", "-", old, "100.00", "Yes", "-", "-", comment])
     data = text.getvalue().encode("utf-8-sig")
-    wanted = [n for n, (*_, is_graded) in enumerate(students) if is_graded]
-    filled = fill(data, *(graded(f"k{n}", moodle=str(n), feedback=COMMENT) for n in wanted))
+    expected = [n for n, (*_, is_graded) in enumerate(students) if is_graded]
+    filled = fill(data, *(graded(f"k{n}", moodle=str(n), feedback=COMMENT) for n in expected))
     before, after = read_table(data, "x"), read_table(filled.data, "x")
     assert after.bom == before.bom
-    assert [each.value(0) for each in after.rows[1:]] == [f"Participant {n}" for n in wanted]
+    assert [row.value(0) for row in after.rows[1:]] == [f"Participant {n}" for n in expected]
     assert after.rows[0] == before.rows[0]
-    for number, changed in zip(wanted, after.rows[1:], strict=True):
+    for number, changed in zip(expected, after.rows[1:], strict=True):
         old_row = before.rows[number + 1]
         assert changed.end == old_row.end
         assert changed.value(4) == "58.50"

@@ -1,4 +1,4 @@
-"""CSV kept as it was written: values as Python's csv reads them, every byte but the changed cell's where it was."""
+"""CSV edited in place: values as Python's csv reads them, and every byte but those of the changed cell unchanged."""
 
 import csv
 import io
@@ -38,10 +38,8 @@ def by_csv(text: str, delimiter: str) -> list[list[str]]:
     st.sampled_from(["\n", "\r\n", "\r"]),
     st.sampled_from([csv.QUOTE_ALL, csv.QUOTE_MINIMAL]),
 )
-def test_what_csv_wrote_is_read_as_it_was_meant(
-    rows: list[list[str]], delimiter: str, end: str, quoting: Literal[0, 1]
-) -> None:
-    """A header and any cells, in any quoting, have the values that were written, and the same bytes come out."""
+def test_tables_read_as_csv_wrote_them(rows: list[list[str]], delimiter: str, end: str, quoting: Literal[0, 1]) -> None:
+    """A header and any cells, in any quoting, have the written values, and encode to the same bytes."""
     text = written([["Student", "ID"], *rows], delimiter, end, quoting)
     table = read_table(text.encode(), "x.csv")
     assert table.delimiter == delimiter
@@ -52,8 +50,8 @@ def test_what_csv_wrote_is_read_as_it_was_meant(
 
 
 @given(LOOSE)
-def test_any_text_is_read_as_csv_reads_it_or_refused(text: str) -> None:
-    """Quotes in odd places, mixed line breaks: the values of csv.reader and the same bytes; an open quote is refused."""
+def test_any_text_is_read_like_csv_or_refused(text: str) -> None:
+    """Odd quotes and mixed line breaks give csv.reader's values and the same bytes; an open quote is refused."""
     try:
         table = read_table(text.encode(), "x.csv")
     except InputError as error:
@@ -66,7 +64,7 @@ def test_any_text_is_read_as_csv_reads_it_or_refused(text: str) -> None:
 
 
 def first_delimiter(text: str) -> str:
-    """The delimiter that a table of this text has, found with the quote closed."""
+    """Return the delimiter of a table of this text with the quote closed."""
     return read_table(text.encode() + b'"', "x.csv").delimiter
 
 
@@ -79,7 +77,7 @@ def test_a_changed_cell_changes_nothing_else(rows: list[list[str]], data: st.Dat
     changed = table.changed(row, column, value)
     others = [cell for index, cell in enumerate(changed.cells) if index != column]
     assert others == [cell for index, cell in enumerate(row.cells) if index != column]
-    after = replace(table, rows=tuple(changed if each is row else each for each in table.rows))
+    after = replace(table, rows=tuple(changed if other is row else other for other in table.rows))
     again = read_table(after.encoded(), "x.csv")
     expected = values(after)
     if changed.cells == (tables.Cell("", ""),):  # one empty cell alone is a blank line
@@ -98,7 +96,7 @@ def test_a_changed_cell_changes_nothing_else(rows: list[list[str]], data: st.Dat
     ],
 )
 def test_encodings(data: bytes, encoding: str) -> None:
-    """UTF-8 and UTF-16 with their marks, and Windows' encoding, are told apart; the mark is no part of the first header."""
+    """UTF-8 and UTF-16 with a byte-order mark, and Windows-1252, are detected; the mark is not part of the first header."""
     table = read_table(data, "x.csv")
     assert table.encoding == encoding
     assert table.rows[0].value(0) == "Student"
@@ -109,8 +107,8 @@ def test_encodings(data: bytes, encoding: str) -> None:
 @pytest.mark.parametrize(
     "text", ["a,b\r\n1,2\n3,4\r5,6", "a,b\n\n\r\n1,2\n\n", 'a,b\n"x\r\ny\n",2\n', "a,b\n1,", "", "\n", "a"]
 )
-def test_line_breaks_stay(text: str) -> None:
-    """Mixed line breaks, blank lines, breaks inside quotes and a missing last one come out as they are."""
+def test_line_breaks_are_kept(text: str) -> None:
+    """Mixed line breaks, blank lines, breaks inside quotes and a missing last one are unchanged."""
     table = read_table(text.encode(), "x.csv")
     assert table.encoded() == text.encode()
     assert values(table) == by_csv(text, ",")
@@ -122,8 +120,8 @@ def test_delimiter_outside_quotes() -> None:
     assert read_table(b"Student;ID;Lab 6, part 2, again, and again (7)", "x.csv").delimiter == ";"
 
 
-def test_refused() -> None:
-    """What is no CSV is refused in one sentence that says what it is."""
+def test_other_files_are_refused() -> None:
+    """A file that is no CSV is refused in one sentence that says what it is."""
     for data, words in [
         (b'a,b\n1,"2', "row 2 is never closed"),
         (b"a,b\n\0,2", "NUL"),
@@ -146,15 +144,15 @@ def test_limits(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.undo()
 
 
-def test_what_an_encoding_lacks_becomes_a_reference() -> None:
-    """A new cell with an emoji, in a file of Windows' encoding, is written as HTML writes it."""
+def test_unencodable_characters_become_references() -> None:
+    """An emoji in a new cell of a Windows-1252 file is written as an HTML character reference."""
     table = read_table("Name,Text\nJörg,x\n".encode("cp1252"), "x.csv")
     changed = table.changed(table.rows[1], 1, "gut 😀")
     assert replace(table, rows=(table.rows[0], changed)).encoded() == "Name,Text\nJörg,gut &#128512;\n".encode("cp1252")
 
 
 def test_quoting_of_a_changed_cell() -> None:
-    """A cell that was quoted stays quoted; one that was not is, where its new value has to be."""
+    """A quoted cell stays quoted; another one is quoted if its new value needs it."""
     table = read_table(b'a,b\n"1",2\n', "x.csv")
     row = table.rows[1]
     assert table.changed(row, 0, "3").cells[0].raw == '"3"'

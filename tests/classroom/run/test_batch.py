@@ -1,4 +1,4 @@
-"""A class gets the marks that each submission gets alone, whoever does the work, and a second run grades only what has changed."""
+"""A class gets the same marks as each submission alone, with any number of workers; a second run grades only changes."""
 
 import json
 import os
@@ -16,7 +16,7 @@ from tests.classroom.class_runs import (
     counted,
     grader,
     mixed_class,
-    report_here,
+    report_in_process,
     rows,
     urdf_class,
     verdicts,
@@ -29,7 +29,7 @@ REFERENCE = ROOT / "submissions/reference/roscourse_sim_ws/src/my_robot/urdf/my_
 
 
 def batch(path: Path, out: Path, *arguments: str, jobs: int = 2) -> dict[str, bytes]:
-    """Grade a class into a new gradebook; the JSON reports by key."""
+    """Grade a class into a new gradebook and return the JSON reports by key."""
     book, reports = out.with_suffix(".db"), out.with_suffix(".reports")
     done = grader("batch", path, "--gradebook", book, "--jobs", str(jobs), "--reports", reports, *JSON, *arguments)
     assert done.returncode == 0, done.stderr
@@ -37,7 +37,7 @@ def batch(path: Path, out: Path, *arguments: str, jobs: int = 2) -> dict[str, by
 
 
 def reports_of(book: Path, reports: Path) -> dict[str, bytes]:
-    """The reports in a folder by the key of their students."""
+    """Return the reports in a folder by the key of their students."""
     from grader.usecases.class_reports import file_names
 
     names = file_names([str(key) for (key,) in rows(book, "SELECT key FROM grade WHERE result IS NOT NULL")])
@@ -51,7 +51,7 @@ def reports_of(book: Path, reports: Path) -> dict[str, bytes]:
 
 @pytest.fixture(scope="module")
 def samples(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A class whose submissions are the samples."""
+    """Make a class whose submissions are the samples."""
     folder = tmp_path_factory.mktemp("samples") / "class"
     for name in SAMPLES:
         shutil.copytree(ROOT / "submissions" / name, folder / name)
@@ -60,14 +60,16 @@ def samples(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def mixed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A class of all kinds of submissions."""
+    """Make a class of all kinds of submissions."""
     return mixed_class(tmp_path_factory.mktemp("mixed") / "class", 120)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["samples", "mixed"])
-def test_a_class_is_graded_as_each_submission_alone(name: str, request: pytest.FixtureRequest, tmp_path: Path) -> None:
-    """With 1, 2 and 8 workers the reports are those of `grader grade`, byte for byte; what it refuses is refused for the same reason."""
+def test_a_class_is_graded_like_each_submission_alone(
+    name: str, request: pytest.FixtureRequest, tmp_path: Path
+) -> None:
+    """With 1, 2 and 8 workers the reports equal those of `grader grade` byte for byte; refusals have the same reason."""
     folder: Path = request.getfixturevalue(name)
     one = batch(folder, tmp_path / "one", "--layout", "folders", jobs=1)
     assert one == batch(folder, tmp_path / "two", "--layout", "folders", jobs=2)
@@ -77,8 +79,8 @@ def test_a_class_is_graded_as_each_submission_alone(name: str, request: pytest.F
     with Gradebook(tmp_path / "one.db") as book:
         for standing in Grades(book).all():
             (path,) = standing.files.paths
-            code, alone = report_here(folder / path, tmp_path / "alone.json")
-            if code != 2:  # in a folder that can be read there may still be nothing else that can
+            code, alone = report_in_process(folder / path, tmp_path / "alone.json")
+            if code != 2:  # a readable folder may contain only unreadable files
                 assert standing.verdict in ("graded", "unreadable")
                 assert alone == one[standing.student.key], path
                 is_red = bool({"f", "s"} & set(standing.statuses)) or is_undecided(alone)
@@ -91,30 +93,30 @@ def test_a_class_is_graded_as_each_submission_alone(name: str, request: pytest.F
 
 
 def is_undecided(report: bytes | str) -> bool:
-    """Whether something needs manual grading that a program normally decides."""
-    waiting = {each["id"] for each in json.loads(report)["results"] if each["status"] == "pending"}
+    """Return whether something needs manual grading that a program normally decides."""
+    waiting = {result["id"] for result in json.loads(report)["results"] if result["status"] == "pending"}
     return bool(waiting - {"answer-floating-link", "answer-launch-nodes", "evidence-webcam"})
 
 
-def test_the_command_grade_says_the_same_in_a_process_of_its_own(samples: Path, tmp_path: Path) -> None:
-    """A few of the samples, through the whole command line."""
+def test_the_command_grade_gives_the_same_in_its_own_process(samples: Path, tmp_path: Path) -> None:
+    """A few of the samples give the same through the whole command line."""
     reports = batch(samples, tmp_path / "out", "--layout", "folders")
     for name in list(SAMPLES)[::20]:
         assert grader("grade", samples / name, "--format", "json").stdout.encode() == reports[name], name
 
 
-def _pack(folder: Path, place: Path) -> Path:
-    with zipfile.ZipFile(place, "w") as archive:
+def _pack(folder: Path, target: Path) -> Path:
+    with zipfile.ZipFile(target, "w") as archive:
         for path in sorted(folder.rglob("*")):
             archive.write(path, path.relative_to(folder))
-    return place
+    return target
 
 
 @pytest.mark.parametrize("layout", ["canvas", "moodle", "folders"])
 def test_a_zip_is_graded_as_its_folder(layout: str, tmp_path: Path) -> None:
-    """What an LMS gives as one zip needs not be unpacked: the reports are the same, and a second run grades nothing.
+    """A zip as an LMS provides it is graded without unpacking: the reports are the same, and a second run grades nothing.
 
-    Nor does one of the folder, apart from what could not be opened, which has no digest.
+    Nor does a run over the folder, apart from submissions that could not be opened, which have no digest.
     """
     folder = mixed_class(tmp_path / "class", 120, layout, for_zip=True)
     packed = _pack(folder, tmp_path / "class.zip")
@@ -128,8 +130,8 @@ def test_a_zip_is_graded_as_its_folder(layout: str, tmp_path: Path) -> None:
     assert closed < 10
 
 
-def test_files_side_by_side_are_graded_as_a_folder_of_them(tmp_path: Path) -> None:
-    """What Canvas has saved as several files of one student is the folder that the student had."""
+def test_several_files_are_graded_like_a_folder(tmp_path: Path) -> None:
+    """Several files of one student in a Canvas download equal the folder that the student had."""
     folder = mixed_class(tmp_path / "class", 100, "canvas")
     reports = batch(folder, tmp_path / "out")
     several = 0
@@ -143,7 +145,7 @@ def test_files_side_by_side_are_graded_as_a_folder_of_them(tmp_path: Path) -> No
                 together.mkdir(parents=True)
                 for path, name in zip(paths, names, strict=True):
                     shutil.copy(folder / path, together / name)
-                _, alone = report_here(together, tmp_path / "alone.json")
+                _, alone = report_in_process(together, tmp_path / "alone.json")
                 assert alone == reports[standing.student.key]
                 several += 1
     assert several > 3
@@ -159,7 +161,7 @@ SIZE = 6 + len(PACKED) + 1
 
 @pytest.fixture
 def graded(tmp_path: Path) -> Path:
-    """A class of files, packages and a zip, graded once."""
+    """Grade a class of files, packages and a zip once."""
     folder = urdf_class(tmp_path / "class", 6)
     for key in PACKED:
         shutil.copytree(PACKAGE, folder / key)
@@ -169,14 +171,14 @@ def graded(tmp_path: Path) -> Path:
 
 
 def again(folder: Path, *arguments: str) -> str:
-    """What the next run into the same gradebook says."""
+    """Run into the same gradebook again and return the output."""
     done = grader("batch", folder, "--gradebook", folder.parent / "lab6.db", *arguments)
     assert done.returncode == 0
     return counted(done)
 
 
 def results(folder: Path) -> dict[str, list[int]]:
-    """The results of each student."""
+    """Return the results of each student."""
     found: dict[str, list[int]] = {}
     for key, result in rows(
         folder.parent / "lab6.db", "SELECT key, result.id FROM result JOIN student ON student.id = student ORDER BY 2"
@@ -189,8 +191,8 @@ def _files(folder: Path) -> list[Path]:
     return sorted(path for path in folder.rglob("*") if path.is_file())
 
 
-def test_what_has_the_same_bytes_is_not_graded_again(graded: Path) -> None:
-    """Nor where the times or the files are others."""
+def test_the_same_bytes_are_not_graded_again(graded: Path) -> None:
+    """Other times or inodes change nothing."""
     before = results(graded)
     assert again(graded) == f"0 graded, {SIZE} unchanged"
     for path in _files(graded):
@@ -205,14 +207,14 @@ def test_what_has_the_same_bytes_is_not_graded_again(graded: Path) -> None:
 
 
 def test_a_class_may_move(graded: Path) -> None:
-    """Its path is nobody's business; reports quote what is there now."""
+    """The path of the class does not matter; reports quote the files at the new path."""
     moved = graded.rename(graded.parent / "elsewhere")
     assert again(moved, "--reports", str(graded.parent / "reports")) == f"0 graded, {SIZE} unchanged"
     assert len(contents(graded.parent / "reports")) == SIZE
 
 
 def _change_one_byte(path: Path) -> None:
-    """Another number, with nothing else to tell by."""
+    """Change a number without changing the size or the time of the file."""
     before = path.stat()
     data = bytearray(path.read_bytes())
     data[data.index(b"link")] = ord("x")
@@ -221,8 +223,8 @@ def _change_one_byte(path: Path) -> None:
     assert (path.stat().st_size, path.stat().st_mtime_ns) == (before.st_size, before.st_mtime_ns)
 
 
-def test_exactly_what_has_changed_is_graded_again(graded: Path, tmp_path: Path) -> None:
-    """One byte, one name, one file more or less: the report is what it would have been at once, and the old result stays."""
+def test_exactly_the_changed_submissions_are_graded_again(graded: Path, tmp_path: Path) -> None:
+    """One byte, name or file more or less: the report equals a first grading, and the old result is kept."""
     byte, ending, attempt, *_ = sorted(graded.glob("*.urdf"))
     _change_one_byte(byte)
     ending.rename(ending.with_suffix(".urdf.xacro"))
@@ -237,13 +239,13 @@ def test_exactly_what_has_changed_is_graded_again(graded: Path, tmp_path: Path) 
     assert again(graded, "--reports", str(tmp_path / "reports"), *JSON) == f"8 graded, {SIZE - 8} unchanged"
     after = results(graded)
     changed = {byte.stem, ending.stem, attempt.stem, "more", "fewer", "emptier", "renamed", "zipped"}
-    assert {each for each in after if after[each] != before[each]} == changed
-    assert all(after[each][:-1] == before[each] for each in changed)
+    assert {path for path in after if after[path] != before[path]} == changed
+    assert all(after[path][:-1] == before[path] for path in changed)
     assert reports_of(tmp_path / "lab6.db", tmp_path / "reports") == batch(graded, tmp_path / "fresh")
 
 
-def test_a_new_student_and_one_who_is_gone(graded: Path, tmp_path: Path) -> None:
-    """Only the new one is graded; the grade of one whose submission is gone stays."""
+def test_new_and_removed_students(graded: Path, tmp_path: Path) -> None:
+    """Only the new one is graded; the grade of a removed submission stays."""
     shutil.copy(REFERENCE, graded / "new.urdf")
     gone = min(graded.glob("*.urdf"))
     gone.unlink()
@@ -252,7 +254,7 @@ def test_a_new_student_and_one_who_is_gone(graded: Path, tmp_path: Path) -> None
 
 
 def test_another_rubric_and_force_grade_all_again(graded: Path, tmp_path: Path) -> None:
-    """A rubric that differs by a word is another one; with --force nothing is taken as given, and no result is doubled."""
+    """A rubric that differs by a word is another one; --force grades everything, and no result is duplicated."""
     rubric = tmp_path / "lab6.toml"
     text = (ROOT / "rubrics/lab6.toml").read_text()
     rubric.write_text(text + "\n# another year\n")
@@ -261,13 +263,13 @@ def test_another_rubric_and_force_grade_all_again(graded: Path, tmp_path: Path) 
     assert again(graded, "--rubric", str(rubric)) == f"0 graded, {SIZE} unchanged"
     assert again(graded) == f"{SIZE} graded, 0 unchanged"
     once_more = results(graded)
-    assert {len(each) for each in once_more.values()} == {3}
+    assert {len(row) for row in once_more.values()} == {3}
     assert again(graded, "--force") == f"{SIZE} graded, 0 unchanged"
     assert results(graded) == once_more != before
 
 
-def test_late_is_taken_in_without_grading(graded: Path, tmp_path: Path) -> None:
-    """What the roster says of a student changes the grade, and not the result."""
+def test_lateness_is_updated_without_grading(graded: Path, tmp_path: Path) -> None:
+    """A change of the roster changes the grade, not the result."""
     path = min(graded.glob("*.urdf"))
     before = results(graded)
     for late in ("yes", "no"):
@@ -287,7 +289,7 @@ KEYS = (
 
 
 def test_reports_have_safe_names_whatever_students_are_called(tmp_path: Path) -> None:
-    """A report for each, in the folder and nowhere else, with names that every system takes and none of them twice."""
+    """There is a report for each student, only in the folder, with unique names that are valid on every system."""
     folder = tmp_path / "class"
     folder.mkdir()
     for key in KEYS:
@@ -307,8 +309,8 @@ def test_reports_have_safe_names_whatever_students_are_called(tmp_path: Path) ->
     assert {"ALICE", "alice", "Alice"} <= {json.loads(data)["submission"]["id"] for data in reports.values()}
 
 
-def test_reports_quote_files_only_as_they_were(tmp_path: Path) -> None:
-    """A report in words has the line that is meant, as `grader grade` has; once the file has changed, only its number."""
+def test_reports_quote_unchanged_files_only(tmp_path: Path) -> None:
+    """A text report has the quoted line, as `grader grade` has; once the file has changed, only its number."""
     folder = tmp_path / "class"
     shutil.copytree(ROOT / "submissions/several-mistakes", folder / "ann")
     shutil.copytree(ROOT / "submissions/several-mistakes", folder / "bea")
@@ -340,7 +342,7 @@ MODULES = (
 
 
 def test_nothing_of_a_class_is_imported(tmp_path: Path) -> None:
-    """Not even where the grader is started in the class folder: nor by the processes that do the work."""
+    """Nothing is imported even if the grader starts in the class folder, nor by its worker processes."""
     folder = urdf_class(tmp_path / "class", 5)
     mark = tmp_path / "ran"
     for name in MODULES:
@@ -352,9 +354,9 @@ def test_nothing_of_a_class_is_imported(tmp_path: Path) -> None:
 
 
 def test_awkward_names_are_found_in_the_roster(tmp_path: Path) -> None:
-    """A folder whose name holds a change of direction, a line break or a tab belongs to the student of that very name."""
-    strangers, absent = class_with_roster(tmp_path / "class", tmp_path / "roster.csv", 300)
+    """A folder with a bidirectional mark, a line break or a tab in its name belongs to the student of that name."""
+    unmatched, absent = class_with_roster(tmp_path / "class", tmp_path / "roster.csv", 300)
     done = grader("batch", tmp_path / "class", "--gradebook", tmp_path / "lab6.db", "--roster", tmp_path / "roster.csv")
     assert done.returncode == 0
-    assert [key for (key,) in rows(tmp_path / "lab6.db", "SELECT key FROM grade WHERE is_on_roster = 0")] == strangers
+    assert [key for (key,) in rows(tmp_path / "lab6.db", "SELECT key FROM grade WHERE is_on_roster = 0")] == unmatched
     assert rows(tmp_path / "lab6.db", "SELECT count(*) FROM grade WHERE verdict = 'missing'") == [(absent,)]

@@ -1,4 +1,4 @@
-"""A submission that hangs, dies or breaks the grader costs nobody else anything, and no process outlives the command."""
+"""A submission that hangs, crashes or breaks the grader affects only itself, and no process outlives the command."""
 
 import os
 import re
@@ -22,7 +22,7 @@ from tests.classroom.class_runs import (
     urdf_class,
     verdicts,
 )
-from tests.command_line import PATIENCE
+from tests.command_line import HANG_TIMEOUT
 
 GOOD = tuple(f"fine-{number}" for number in range(150))
 SLOW = r"grading it took longer than 4 s \(--timeout raises the limit\)"
@@ -45,7 +45,7 @@ RUBRIC = ("--rubric", HOSTILE_RUBRIC)
 
 
 @pytest.mark.slow
-def test_each_misdeed_costs_one_submission(tmp_path: Path) -> None:
+def test_each_misbehaviour_affects_one_submission(tmp_path: Path) -> None:
     """All of them at once among many others: each is errored with its reason, and only these are tried again."""
     folder = hostile_class(tmp_path / "class", *REASONS, *GOOD)
     book = tmp_path / "lab.db"
@@ -62,7 +62,7 @@ def test_each_misdeed_costs_one_submission(tmp_path: Path) -> None:
     marks = rows(book, "SELECT DISTINCT score FROM grade WHERE verdict = 'graded'")
     assert marks == [(30_000,)]
 
-    for name in REASONS:  # as their students hand in something else
+    for name in REASONS:  # as their students submit something else
         (folder / f"{name}.urdf").write_text('<robot name="fine"><link name="a"/></robot>')
     (folder / "dies.urdf").write_text('<robot name="dies"><link name="a"/></robot>')
     assert counted(grader(*command, **WITH_HOSTILE)) == (f"{len(REASONS)} graded (1 errored), {len(GOOD)} unchanged")
@@ -72,8 +72,8 @@ def test_each_misdeed_costs_one_submission(tmp_path: Path) -> None:
     assert is_sound(book)
 
 
-def test_a_class_of_nothing_but_misdeeds_comes_to_an_end(tmp_path: Path) -> None:
-    """Where every worker is ended again and again, each submission still has its reason."""
+def test_a_class_of_misbehaving_submissions_finishes(tmp_path: Path) -> None:
+    """Even if every worker is killed again and again, each submission has its reason."""
     names = [f"{name}-{number}" for name in ("dies", "leaves", "crashes") for number in range(8)]
     folder, book = hostile_class(tmp_path / "class", *names), tmp_path / "lab.db"
     done = grader("batch", folder, "--gradebook", book, *RUBRIC, "--timeout", "6", "--jobs", "2", **WITH_HOSTILE)
@@ -81,11 +81,11 @@ def test_a_class_of_nothing_but_misdeeds_comes_to_an_end(tmp_path: Path) -> None
     assert set(verdicts(book)) == set(names)
 
 
-def test_no_process_is_left_behind(tmp_path: Path) -> None:
-    """When the command is done, all that it has started has ended or is about to."""
+def test_no_process_remains(tmp_path: Path) -> None:
+    """When the command has finished, all its processes have ended or are ending."""
     folder = urdf_class(tmp_path / "class", 20)
     with started("batch", folder, "--gradebook", tmp_path / "lab.db", "--jobs", "3") as process:
-        assert process.wait(PATIENCE) == 0
+        assert process.wait(HANG_TIMEOUT) == 0
         assert eventually(lambda: not session_of(process))
 
 
@@ -93,32 +93,34 @@ HANGING = ("hangs", "hangs-2", "hangs_in_c", "fine")
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGKILL, -9), (signal.SIGTERM, -15)])
-def test_no_process_outlives_a_command_that_is_ended(number: signal.Signals, code: int, tmp_path: Path) -> None:
-    """Not even those that hang in the midst of a submission, where the interpreter gets no turn."""
+def test_no_process_outlives_a_killed_command(number: signal.Signals, code: int, tmp_path: Path) -> None:
+    """Not even workers that hang within a submission and never return to the interpreter."""
     folder, book = hostile_class(tmp_path / "class", *HANGING), tmp_path / "lab.db"
     command = ("batch", folder, "--gradebook", book, *RUBRIC, "--timeout", "3600", "--jobs", "4")
     with started(*command, **WITH_HOSTILE) as process:
         assert eventually(lambda: "fine" in verdicts(book))
-        assert eventually(lambda: len(session_of(process)) >= 1 + 2 + 4)  # beside the workers two that serve them
+        assert eventually(
+            lambda: len(session_of(process)) >= 1 + 2 + 4
+        )  # two service processes in addition to the workers
         if number is signal.SIGINT:
             os.killpg(process.pid, number)  # as a terminal does
         else:
             process.send_signal(number)
-        assert process.wait(PATIENCE) == code
+        assert process.wait(HANG_TIMEOUT) == code
         assert eventually(lambda: not session_of(process))
     assert verdicts(book) == {"fine": "graded"}
 
 
-def test_workers_that_somebody_ends_are_replaced(tmp_path: Path) -> None:
-    """As the kernel does where memory is short: nobody is left without a result, and most are graded at once."""
+def test_killed_workers_are_replaced(tmp_path: Path) -> None:
+    """As when the kernel is short of memory: every submission has a result, and most are graded at once."""
     folder, book = urdf_class(tmp_path / "class", 1_000), tmp_path / "lab.db"
     with started("batch", folder, "--gradebook", book, "--jobs", "3") as process:
         for count in (30, 200, 350, 500, 700):
             assert eventually(lambda at=count: rows(book, "SELECT 1 FROM result LIMIT 1 OFFSET ?", at))  # type: ignore[misc]
-            workers = [each for each in session_of(process) if each > process.pid][2:]
+            workers = [pid for pid in session_of(process) if pid > process.pid][2:]
             if workers:
                 os.kill(workers[-1], signal.SIGKILL)
-        assert process.wait(PATIENCE) == 0
+        assert process.wait(HANG_TIMEOUT) == 0
     found = list(verdicts(book).values())
     assert len(found) == 1_000
     assert found.count("errored") <= 5

@@ -1,4 +1,4 @@
-"""What `grader batch` cannot use is one clear line on standard error and exit code 2, and nothing is lost."""
+"""What `grader batch` refuses gives one clear line on standard error and exit code 2, and nothing is lost."""
 
 import os
 import sqlite3
@@ -15,16 +15,16 @@ from tests.samples import ROOT
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A class of three."""
+    """Make a class of three."""
     return urdf_class(tmp_path / "class", 3)
 
 
 def refused(*arguments: str | Path) -> str:
-    """The one line with which a command is refused."""
+    """Return the single line in which a command is refused."""
     done = grader(*arguments)
     assert (done.returncode, done.stdout) == (2, "")
     *before, line = done.stderr.splitlines()
-    assert all(each.startswith("grader: ") for each in (*before, line))
+    assert all(message.startswith("grader: ") for message in (*before, line))
     assert "Traceback" not in done.stderr
     return line.removeprefix("grader: ")
 
@@ -65,7 +65,7 @@ def _pictures(top: Path) -> Path:
 
 
 @pytest.mark.parametrize(
-    ("make", "said"),
+    ("make", "output"),
     [
         (_missing, "does not exist"),
         (_empty, "is empty"),
@@ -76,40 +76,40 @@ def _pictures(top: Path) -> Path:
         (_pictures, "there is no submission in"),
     ],
 )
-def test_what_is_no_class(make: Callable[[Path], Path], said: str, tmp_path: Path) -> None:
-    """No gradebook is made for it."""
-    assert said in refused("batch", make(tmp_path), "--gradebook", tmp_path / "lab6.db")
+def test_no_class(make: Callable[[Path], Path], output: str, tmp_path: Path) -> None:
+    """No gradebook is made for a path that is no class."""
+    assert output in refused("batch", make(tmp_path), "--gradebook", tmp_path / "lab6.db")
     assert not (tmp_path / "lab6.db").exists()
 
 
-def _folder(place: Path) -> None:
-    place.mkdir()
+def _folder(path: Path) -> None:
+    path.mkdir()
 
 
-def _text(place: Path) -> None:
-    place.write_text("id,score\nann,70\n" * 1_000)
+def _text(path: Path) -> None:
+    path.write_text("id,score\nann,70\n" * 1_000)
 
 
-def _short_text(place: Path) -> None:
-    place.write_text("notes")
+def _short_text(path: Path) -> None:
+    path.write_text("notes")
 
 
-def _other_program(place: Path) -> None:
-    with sqlite3.connect(place) as other:
+def _other_program(path: Path) -> None:
+    with sqlite3.connect(path) as other:
         other.execute("CREATE TABLE notes (text)")
         other.execute("INSERT INTO notes VALUES ('precious')")
     other.close()
 
 
-def _newer(place: Path) -> None:
-    assert grader("batch", ROOT / "submissions", "--layout", "folders", "--gradebook", place).returncode == 0
-    with sqlite3.connect(place) as book:
+def _newer(path: Path) -> None:
+    assert grader("batch", ROOT / "submissions", "--layout", "folders", "--gradebook", path).returncode == 0
+    with sqlite3.connect(path) as book:
         book.execute(f"PRAGMA user_version = {len(STEPS) + 1}")
     book.close()
 
 
 @pytest.mark.parametrize(
-    ("make", "said"),
+    ("make", "output"),
     [
         (_folder, "unable to open database file"),
         (_text, "file is not a database"),
@@ -118,34 +118,34 @@ def _newer(place: Path) -> None:
         (_newer, "was made by a newer grader: install that version, or name another file"),
     ],
 )
-def test_what_is_no_gradebook(make: Callable[[Path], None], said: str, folder: Path, tmp_path: Path) -> None:
-    """It stays as it is, to the last byte."""
-    place = tmp_path / "lab6.db"
-    make(place)
-    before = place.read_bytes() if place.is_file() else b""
-    line = refused("batch", folder, "--gradebook", place)
-    assert said in line
-    assert str(place) in line
-    assert (place.read_bytes() if place.is_file() else b"") == before
+def test_no_gradebook(make: Callable[[Path], None], output: str, folder: Path, tmp_path: Path) -> None:
+    """A file that is no gradebook is unchanged, to the last byte."""
+    path = tmp_path / "lab6.db"
+    make(path)
+    before = path.read_bytes() if path.is_file() else b""
+    line = refused("batch", folder, "--gradebook", path)
+    assert output in line
+    assert str(path) in line
+    assert (path.read_bytes() if path.is_file() else b"") == before
 
 
 def test_a_gradebook_in_a_missing_folder(folder: Path, tmp_path: Path) -> None:
-    """The line names the gradebook."""
-    place = tmp_path / "missing" / "lab6.db"
-    assert refused("batch", folder, "--gradebook", place).startswith(f"cannot create the gradebook {place}: ")
+    """The message names the gradebook."""
+    path = tmp_path / "missing" / "lab6.db"
+    assert refused("batch", folder, "--gradebook", path).startswith(f"cannot create the gradebook {path}: ")
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="nothing is closed to root")
-def test_a_gradebook_that_may_not_be_written(folder: Path, tmp_path: Path) -> None:
-    """A file, or a folder, without the right to write is told."""
-    place = tmp_path / "lab6.db"
-    assert grader("batch", folder, "--gradebook", place).returncode == 0
-    place.chmod(0o400)
-    assert "readonly" in refused("batch", folder, "--gradebook", place, "--force")
+def test_a_read_only_gradebook(folder: Path, tmp_path: Path) -> None:
+    """A file or a folder without write permission is reported."""
+    path = tmp_path / "lab6.db"
+    assert grader("batch", folder, "--gradebook", path).returncode == 0
+    path.chmod(0o400)
+    assert "readonly" in refused("batch", folder, "--gradebook", path, "--force")
 
 
 def test_a_gradebook_on_a_device(folder: Path) -> None:
-    """What takes no file says so."""
+    """A device that takes no file is refused."""
     assert refused("batch", folder, "--gradebook", "/dev/full").startswith("the gradebook /dev/full: ")
 
 
@@ -167,14 +167,14 @@ def test_a_gradebook_on_a_device(folder: Path) -> None:
     ],
 )
 def test_wrong_usage(arguments: tuple[str, str], folder: Path, tmp_path: Path) -> None:
-    """Nothing is begun."""
+    """Nothing is started."""
     line = refused("batch", folder, "--gradebook", tmp_path / "lab6.db", *arguments)
     assert arguments[0].removeprefix("--") in line or arguments[1] in line
     assert not (tmp_path / "lab6.db").exists()
 
 
 def test_a_broken_rubric_and_a_broken_roster(folder: Path, tmp_path: Path) -> None:
-    """What is wrong with it is told with its line, and nothing is begun."""
+    """The mistake is reported with its line, and nothing is started."""
     (tmp_path / "broken.toml").write_text(
         (ROOT / "rubrics/lab6.toml").read_text().replace("points = 6", "points = 'six'", 1)
     )
@@ -185,8 +185,8 @@ def test_a_broken_rubric_and_a_broken_roster(folder: Path, tmp_path: Path) -> No
     assert not (tmp_path / "lab6.db").exists()
 
 
-def test_reports_where_a_file_stands(folder: Path, tmp_path: Path) -> None:
-    """It is said before anything is graded, and the file is as it was."""
+def test_a_file_in_place_of_the_reports(folder: Path, tmp_path: Path) -> None:
+    """It is reported before anything is graded, and the file is unchanged."""
     (tmp_path / "reports").write_text("precious")
     book = tmp_path / "lab6.db"
     assert "reports: it is not a folder" in refused(
@@ -198,8 +198,8 @@ def test_reports_where_a_file_stands(folder: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("option", ["--reports", "--csv", "--gradebook"])
-def test_no_link_of_a_submission_is_written_through(option: str, folder: Path, tmp_path: Path) -> None:
-    """It is refused before anything is graded; a link beside the class is followed."""
+def test_symlinks_of_a_submission_are_not_written_through(option: str, folder: Path, tmp_path: Path) -> None:
+    """They are refused before anything is graded; a symlink beside the class is followed."""
     (folder / "mallory").mkdir()
     (tmp_path / "elsewhere").mkdir()
     (folder / "mallory" / "out").symlink_to(tmp_path / "elsewhere")
@@ -214,7 +214,7 @@ def test_no_link_of_a_submission_is_written_through(option: str, folder: Path, t
 
 
 @pytest.mark.skipif(os.geteuid() == 0, reason="nothing is closed to root")
-def test_a_hand_in_that_may_not_be_read(folder: Path, tmp_path: Path) -> None:
+def test_a_submission_without_read_permission(folder: Path, tmp_path: Path) -> None:
     """It is unreadable, the others are graded, and it is graded once it may be read."""
     (folder / "closed").mkdir()
     (folder / "closed").chmod(0)
@@ -226,8 +226,8 @@ def test_a_hand_in_that_may_not_be_read(folder: Path, tmp_path: Path) -> None:
     assert counted(grader("batch", folder, "--gradebook", book)) == "1 graded, 3 unchanged"
 
 
-def test_a_class_that_vanishes(folder: Path, tmp_path: Path) -> None:
-    """What was graded stays; nobody is given another grade for it."""
+def test_a_class_that_disappears(folder: Path, tmp_path: Path) -> None:
+    """Results so far are kept, and no student gets another grade."""
     book = tmp_path / "lab6.db"
     assert grader("batch", folder, "--gradebook", book).returncode == 0
     before = rows(book, "SELECT * FROM grade")
@@ -236,8 +236,8 @@ def test_a_class_that_vanishes(folder: Path, tmp_path: Path) -> None:
     assert rows(book, "SELECT * FROM grade") == before
 
 
-def test_a_short_time_is_for_submissions_and_not_for_reports(tmp_path: Path) -> None:
-    """Writing the reports of a class takes longer than one submission may."""
+def test_the_timeout_excludes_reports(tmp_path: Path) -> None:
+    """Writing the reports of a class may take longer than the timeout of a submission."""
     folder = urdf_class(tmp_path / "class", 200)
     reports = tmp_path / "reports"
     command = ("batch", folder, "--gradebook", tmp_path / "lab6.db", "--reports", reports, "--timeout", "0.1")

@@ -1,4 +1,4 @@
-"""Whatever ends a run, what was graded is kept, and the same command goes on to what an undisturbed run gives."""
+"""However a run ends, results are kept, and rerunning the command gives the same as an undisturbed run."""
 
 import os
 import resource
@@ -18,7 +18,7 @@ from tests.classroom.class_runs import (
     Done,
     contents,
     counted,
-    doubled,
+    duplicates,
     environment,
     eventually,
     grader,
@@ -30,7 +30,7 @@ from tests.classroom.class_runs import (
     urdf_class,
     verdicts,
 )
-from tests.command_line import GRADER, PATIENCE
+from tests.command_line import GRADER, HANG_TIMEOUT
 
 KILLS, SIZE = 20, 700
 JSON = ("--report-format", "json")
@@ -38,13 +38,13 @@ JSON = ("--report-format", "json")
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A class that takes some seconds with its reports."""
+    """Make a class that takes some seconds with its reports."""
     return urdf_class(tmp_path_factory.mktemp("large") / "class", SIZE)
 
 
 @pytest.fixture(scope="module")
 def undisturbed(folder: Path) -> tuple[dict[str, bytes], float]:
-    """The reports of a run that nothing happens to, and how long it takes."""
+    """Return the reports of an undisturbed run, and how long it takes."""
     began = time.monotonic()
     done = grader(*_command(folder, folder.parent / "undisturbed"))
     seconds = time.monotonic() - began
@@ -57,13 +57,13 @@ def _command(folder: Path, out: Path) -> tuple[str | Path, ...]:
 
 
 def _visible(folder: Path) -> dict[str, bytes]:
-    """The files of a folder, but for those that were being written."""
+    """Return the files of a folder, without those that were being written."""
     return {name: data for name, data in contents(folder).items() if not name.startswith(".")}
 
 
 @pytest.mark.slow
 def test_killed_twenty_times(folder: Path, undisturbed: tuple[dict[str, bytes], float], tmp_path: Path) -> None:
-    """With kill -9 while it starts, grades and writes: every result is there once, and the reports are those of a run at one go."""
+    """After kill -9 during start, grading and writing every result is there once, and the reports equal those of one run."""
     reports, seconds = undisturbed
     out, dice = tmp_path / "out", Random(7)
     book = out.with_suffix(".db")
@@ -83,7 +83,7 @@ def test_killed_twenty_times(folder: Path, undisturbed: tuple[dict[str, bytes], 
     assert grader(*_command(folder, out)).returncode == 0
     assert _visible(out) == reports
     assert rows(book, "SELECT count(*), count(DISTINCT student), count(DISTINCT digest) FROM result") == [(SIZE,) * 3]
-    assert (doubled(book), is_sound(book)) == ([], True)
+    assert (duplicates(book), is_sound(book)) == ([], True)
     assert set(verdicts(book).values()) == {"graded"}
 
 
@@ -93,15 +93,15 @@ def _wait(process: "subprocess.Popen[str]", seconds: float) -> None:
 
 
 def test_interrupted(folder: Path, undisturbed: tuple[dict[str, bytes], float], tmp_path: Path) -> None:
-    """Ctrl-C says in a line how many are kept, which they are; then it goes on."""
+    """Ctrl-C reports in a line how many results are kept, which they are; then the run continues."""
     out = tmp_path / "out"
     book = out.with_suffix(".db")
     with started(*_command(folder, out)) as process:
         assert eventually(lambda: len(verdicts(book)) > 20)
         os.killpg(process.pid, signal.SIGINT)
-        _, said = process.communicate(timeout=PATIENCE)
+        _, output = process.communicate(timeout=HANG_TIMEOUT)
         assert process.returncode == 130
-    first, stopped, last = said.splitlines()
+    first, stopped, last = output.splitlines()
     assert first == f"grader: {SIZE} submissions, layout folders"
     assert last == "grader: interrupted"
     count = int(stopped.removeprefix("grader: stopped: ").partition(" ")[0])
@@ -117,17 +117,17 @@ def test_interrupted(folder: Path, undisturbed: tuple[dict[str, bytes], float], 
 
 
 @pytest.mark.parametrize("moment", [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6])
-def test_interrupted_while_it_starts(folder: Path, moment: float, tmp_path: Path) -> None:
-    """Whenever Ctrl-C comes once the command has begun, there is no traceback, of a worker neither."""
+def test_interrupted_at_the_start(folder: Path, moment: float, tmp_path: Path) -> None:
+    """Whenever Ctrl-C arrives after the command has begun, no process prints a traceback."""
     out = tmp_path / "out"
     with started(*_command(folder, out)) as process:
         assert process.stderr is not None
-        process.stderr.readline()  # the class is taken in
+        process.stderr.readline()  # the class has been read
         time.sleep(moment)
         os.killpg(process.pid, signal.SIGINT)
-        _, said = process.communicate(timeout=PATIENCE)
-        assert (shell_code(process.returncode), said.splitlines()[-1]) == (130, "grader: interrupted")
-        assert all(line.startswith("grader: ") for line in said.splitlines())
+        _, output = process.communicate(timeout=HANG_TIMEOUT)
+        assert (shell_code(process.returncode), output.splitlines()[-1]) == (130, "grader: interrupted")
+        assert all(line.startswith("grader: ") for line in output.splitlines())
         assert eventually(lambda: not session_of(process))
 
 
@@ -136,26 +136,26 @@ def _with_small_files(limit: int) -> None:
 
 
 def _limited(limit: int, *arguments: str | Path) -> Done:
-    """Run the command line where no file may be larger than so many bytes."""
+    """Run the command line with a limit on the size of files."""
     return subprocess.run(
         [*GRADER, *map(str, arguments)],
         env=environment(),
         capture_output=True,
         text=True,
         check=False,
-        timeout=PATIENCE,
+        timeout=HANG_TIMEOUT,
         preexec_fn=lambda: _with_small_files(limit),
     )
 
 
 def _is_one_complaint(done: Done) -> bool:
-    """Whether there is no more on standard error than plain lines, the last of them the reason."""
+    """Return whether standard error has only plain lines, the last of them the reason."""
     return all(line.startswith("grader: ") and "Traceback" not in line for line in done.stderr.splitlines())
 
 
 @pytest.mark.parametrize("limit", [0, 50_000, 400_000])
-def test_where_nothing_more_can_be_written(limit: int, folder: Path, tmp_path: Path) -> None:
-    """What was committed stays, the reason is a plain line, and the run goes on when there is room again."""
+def test_no_space_left(limit: int, folder: Path, tmp_path: Path) -> None:
+    """Committed results are kept, the reason is one line, and the run continues when there is space again."""
     book = tmp_path / "lab6.db"
     command = ("batch", folder, "--gradebook", book, "--jobs", "2")
     done = _limited(limit, *command)
@@ -167,11 +167,11 @@ def test_where_nothing_more_can_be_written(limit: int, folder: Path, tmp_path: P
     assert (kept > 0) == (limit > 100_000)
     again = grader(*command)
     assert counted(again) == f"{SIZE - kept} graded, {kept} unchanged"
-    assert (is_sound(book), len(verdicts(book)), doubled(book)) == (True, SIZE, [])
+    assert (is_sound(book), len(verdicts(book)), duplicates(book)) == (True, SIZE, [])
 
 
 def test_on_a_full_disk(folder: Path, tmp_path: Path) -> None:
-    """On a small file system, which is then enlarged."""
+    """The same on a small file system, which is then enlarged."""
     disk = tmp_path / "disk"
     disk.mkdir()
     mounted = shutil.which("mount") and subprocess.run(
@@ -187,7 +187,7 @@ def test_on_a_full_disk(folder: Path, tmp_path: Path) -> None:
         assert 0 < len(verdicts(book)) < SIZE
         subprocess.run(["mount", "-o", "remount,size=100m", disk], check=True)
         again = grader("batch", folder, "--gradebook", book)
-        assert (again.returncode, len(verdicts(book)), doubled(book), is_sound(book)) == (0, SIZE, [], True)
+        assert (again.returncode, len(verdicts(book)), duplicates(book), is_sound(book)) == (0, SIZE, [], True)
     finally:
         subprocess.run(["umount", disk], check=True)
 
@@ -195,7 +195,7 @@ def test_on_a_full_disk(folder: Path, tmp_path: Path) -> None:
 def test_reports_that_cannot_be_written(
     folder: Path, undisturbed: tuple[dict[str, bytes], float], tmp_path: Path
 ) -> None:
-    """No room for reports is one line; the grades are kept, and the reports come with the next run."""
+    """No space for reports is one line; the grades are kept, and the reports follow with the next run."""
     out = tmp_path / "out"
     command = _command(folder, out)
     assert grader(*command[:4]).returncode == 0
@@ -207,8 +207,8 @@ def test_reports_that_cannot_be_written(
     assert _visible(out) == undisturbed[0]
 
 
-def test_several_at_once_on_the_same_class(folder: Path, tmp_path: Path) -> None:
-    """All succeed; each result is there once, whoever was first."""
+def test_concurrent_runs_on_the_same_class(folder: Path, tmp_path: Path) -> None:
+    """All succeed, and each result is there once."""
     book = tmp_path / "lab6.db"
     command = ("batch", folder, "--gradebook", book, "--jobs", "1")
     with ThreadPoolExecutor(3) as threads:
@@ -220,22 +220,22 @@ def test_several_at_once_on_the_same_class(folder: Path, tmp_path: Path) -> None
     assert counted(grader(*command)) == f"0 graded, {SIZE} unchanged"
 
 
-def test_two_at_once_on_different_classes(tmp_path: Path) -> None:
-    """Two groups of a course into one gradebook: nothing of either is lost."""
+def test_concurrent_runs_on_different_classes(tmp_path: Path) -> None:
+    """Two sections of a course are graded into one gradebook, and nothing of either is lost."""
     groups = [urdf_class(tmp_path / f"group{seed}", 200, seed) for seed in (1, 2)]
     keys = {path.stem for group in groups for path in group.iterdir()}
     book = tmp_path / "lab6.db"
     with ThreadPoolExecutor(2) as threads:
         done = list(threads.map(lambda group: grader("batch", group, "--gradebook", book, "--jobs", "1"), groups))
-    assert [each.returncode for each in done] == [0, 0], [each.stderr for each in done]
+    assert [process.returncode for process in done] == [0, 0], [process.stderr for process in done]
     assert verdicts(book) == dict.fromkeys(keys, "graded")
-    assert (doubled(book), is_sound(book)) == ([], True)
+    assert (duplicates(book), is_sound(book)) == ([], True)
     for group in groups:
         assert counted(grader("batch", group, "--gradebook", book)) == "0 graded, 200 unchanged"
 
 
-def test_one_that_is_locked_is_waited_for(folder: Path, tmp_path: Path) -> None:
-    """While another program writes to the gradebook the run waits, and goes on when it is done."""
+def test_a_locked_gradebook_is_waited_for(folder: Path, tmp_path: Path) -> None:
+    """While another program writes to the gradebook the run waits, and continues when it is done."""
     book = tmp_path / "lab6.db"
     assert grader("batch", folder, "--gradebook", book).returncode == 0
     other = sqlite3.connect(book, isolation_level=None)
@@ -245,5 +245,5 @@ def test_one_that_is_locked_is_waited_for(folder: Path, tmp_path: Path) -> None:
             process.wait(2)
         other.execute("ROLLBACK")
         other.close()
-        assert process.wait(PATIENCE) == 0
+        assert process.wait(HANG_TIMEOUT) == 0
     assert rows(book, "SELECT count(*) FROM result") == [(SIZE,)]

@@ -1,4 +1,4 @@
-"""On a Dask cluster a class gets the same marks, whatever happens to its workers; what it cannot use is one plain line."""
+"""On a Dask cluster a class gets the same marks, whatever happens to its workers; unusable clusters are one line."""
 
 import json
 import os
@@ -18,7 +18,7 @@ from tests.classroom.class_runs import (
     WITH_HOSTILE,
     contents,
     counted,
-    doubled,
+    duplicates,
     environment,
     eventually,
     grader,
@@ -31,7 +31,7 @@ from tests.classroom.class_runs import (
     urdf_class,
     verdicts,
 )
-from tests.command_line import PATIENCE
+from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
 
 pytest.importorskip("distributed")
@@ -42,7 +42,7 @@ JSON = ("--report-format", "json")
 
 @contextmanager
 def service(log: Path, *arguments: str) -> Iterator[subprocess.Popen[bytes]]:
-    """A program of Dask's that runs, in a session of its own; all that it has started ends with it."""
+    """Yield a running Dask program in its own session; all its processes end with it."""
     with log.open("wb") as out:
         process = subprocess.Popen(
             [*DASK, *arguments], env=environment(**WITH_HOSTILE), stdout=out, stderr=out, start_new_session=True
@@ -58,65 +58,65 @@ def service(log: Path, *arguments: str) -> Iterator[subprocess.Popen[bytes]]:
                     process.kill()
 
 
-class Cluster:
-    """A scheduler and what is known of it."""
+class DaskCluster:
+    """A scheduler and its workers."""
 
-    def __init__(self, place: Path) -> None:
-        self._place = place
+    def __init__(self, target: Path) -> None:
+        self._folder = target
         self.process = 0
 
     @property
     def file(self) -> Path:
-        """Where the scheduler says how it is reached."""
-        return self._place / "scheduler.json"
+        """Return the scheduler file."""
+        return self._folder / "scheduler.json"
 
     @property
     def address(self) -> str:
-        """The scheduler's address."""
+        """Return the scheduler's address."""
         return str(json.loads(self.file.read_text())["address"])
 
     @property
     def log(self) -> str:
-        """What the workers have said."""
-        return (self._place / "worker.log").read_text()
+        """Return the output of the workers."""
+        return (self._folder / "worker.log").read_text()
 
     def workers(self) -> list[int]:
-        """The process ids of the workers, in which tasks run."""
+        """Return the process ids of the workers that run tasks."""
         from distributed import Client
 
-        with Client(self.address, timeout=PATIENCE, set_as_default=False) as client:  # type: ignore[no-untyped-call]
+        with Client(self.address, timeout=HANG_TIMEOUT, set_as_default=False) as client:  # type: ignore[no-untyped-call]
             return list(client.run(os.getpid).values())
 
     @contextmanager
-    def with_workers(self, count: int, threads: int = 1) -> Iterator["Cluster"]:
-        """Workers for it, each with a nanny that starts it anew."""
+    def with_workers(self, count: int, threads: int = 1) -> Iterator["DaskCluster"]:
+        """Start workers, each with a nanny that restarts it."""
         shape = ("--nworkers", str(count), "--nthreads", str(threads), "--host", "127.0.0.1")
-        place = ("--scheduler-file", str(self.file), "--local-directory", str(self._place))
-        with service(self._place / "worker.log", "worker", *place, *shape, "--no-dashboard"):
+        target = ("--scheduler-file", str(self.file), "--local-directory", str(self._folder))
+        with service(self._folder / "worker.log", "worker", *target, *shape, "--no-dashboard"):
             assert eventually(lambda: self.log.count("Registered to:") >= count), self.log
             yield self
 
 
 @contextmanager
-def scheduler(place: Path) -> Iterator[Cluster]:
-    """A scheduler without workers."""
-    cluster = Cluster(place)
+def scheduler(target: Path) -> Iterator[DaskCluster]:
+    """Yield a scheduler without workers."""
+    cluster = DaskCluster(target)
     arguments = ("--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(cluster.file))
-    with service(place / "scheduler.log", "scheduler", *arguments) as process:
+    with service(target / "scheduler.log", "scheduler", *arguments) as process:
         cluster.process = process.pid
         assert eventually(lambda: cluster.file.exists() and cluster.file.read_text().endswith("}"))
         yield cluster
 
 
 @pytest.fixture(scope="module")
-def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
-    """A scheduler and two workers, one of them for two tasks at once."""
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[DaskCluster]:
+    """Yield a scheduler and two workers, one of them for two tasks at once."""
     with scheduler(tmp_path_factory.mktemp("cluster")) as found, found.with_workers(2, threads=2):
         yield found
 
 
 def refused(*arguments: str | Path, **variables: str) -> str:
-    """The one line with which a command is refused, behind the one that says what was taken in."""
+    """Return the line with which a command is refused, after the one about the class."""
     done = grader(*arguments, **variables)
     assert (done.returncode, done.stdout) == (2, "")
     lines = done.stderr.splitlines()
@@ -126,8 +126,8 @@ def refused(*arguments: str | Path, **variables: str) -> str:
 
 
 @pytest.mark.parametrize("kind", ["mixed", "samples", "zip"])
-def test_a_cluster_gives_the_same_marks(kind: str, cluster: Cluster, tmp_path: Path) -> None:
-    """The reports are those of the processes of this machine, byte for byte; a second run grades nothing; stderr is quiet."""
+def test_a_cluster_gives_the_same_marks(kind: str, cluster: DaskCluster, tmp_path: Path) -> None:
+    """The reports equal those of local processes, byte for byte; a second run grades nothing; stderr is empty."""
     if kind == "samples":
         folder = tmp_path / "class"
         for name in sorted(path.name for path in (ROOT / "submissions").iterdir())[::4]:
@@ -136,19 +136,19 @@ def test_a_cluster_gives_the_same_marks(kind: str, cluster: Cluster, tmp_path: P
         folder = mixed_class(tmp_path / "class", 100, for_zip=kind == "zip")
     if kind == "zip":
         folder = Path(shutil.make_archive(str(tmp_path / "packed"), "zip", folder))
-    here, there = tmp_path / "here", tmp_path / "there"
-    one = grader("batch", folder, "--gradebook", tmp_path / "here.db", "--reports", here, *JSON)
+    local, remote = tmp_path / "here", tmp_path / "there"
+    one = grader("batch", folder, "--gradebook", tmp_path / "here.db", "--reports", local, *JSON)
     command = ("batch", folder, "--gradebook", tmp_path / "there.db", "--cluster", cluster.address)
-    other = grader(*command, "--reports", there, *JSON)
+    other = grader(*command, "--reports", remote, *JSON)
     assert (other.returncode, other.stdout) == (0, one.stdout)
-    assert other.stderr == one.stderr.replace(str(here), str(there))
-    assert contents(here) == contents(there)
+    assert other.stderr == one.stderr.replace(str(local), str(remote))
+    assert contents(local) == contents(remote)
     assert counted(grader(*command)).startswith("0 graded, ")
 
 
 @pytest.mark.slow
-def test_misdeeds_end_no_worker(cluster: Cluster, tmp_path: Path) -> None:
-    """Each costs one submission, for the reason that it would have here; the cluster's workers live on, and log nothing."""
+def test_misbehaviour_ends_no_worker(cluster: DaskCluster, tmp_path: Path) -> None:
+    """Each affects one submission, for the same reason as locally; the cluster's workers live on and log nothing."""
     names = ("hangs", "hangs_in_c", "dies", "crashes", "leaves", "leaves_loudly", "exits", "raises", "fine", "fine-2")
     folder = hostile_class(tmp_path / "class", *names)
     before = sorted(cluster.workers())
@@ -158,17 +158,17 @@ def test_misdeeds_end_no_worker(cluster: Cluster, tmp_path: Path) -> None:
         where = ("--cluster", cluster.address) if book == "there.db" else ()
         done = grader(*command, "--gradebook", tmp_path / book, *where, **WITH_HOSTILE)
         assert (done.returncode, counted(done)) == (0, "10 graded (8 errored), 0 unchanged")
-    here, there = (reasons(tmp_path / book) for book in ("here.db", "there.db"))
+    local, remote = (reasons(tmp_path / book) for book in ("here.db", "there.db"))
     slow = "grading it took longer than 4 s (--timeout raises the limit)"
-    assert set(here) == set(there) == set(names[:8])
-    assert all(here[key] == there[key] or slow in (here[key], there[key]) for key in here)
-    assert here["hangs"] == there["hangs"] == slow
+    assert set(local) == set(remote) == set(names[:8])
+    assert all(local[key] == remote[key] or slow in (local[key], remote[key]) for key in local)
+    assert local["hangs"] == remote["hangs"] == slow
     assert sorted(cluster.workers()) == before
     assert "ERROR" not in cluster.log[logged:]
 
 
-def test_two_batches_at_once(cluster: Cluster, tmp_path: Path) -> None:
-    """Two people may use a cluster at the same time, each with a time of their own for a submission."""
+def test_two_batches_at_once(cluster: DaskCluster, tmp_path: Path) -> None:
+    """Two users may use a cluster at the same time, each with their own timeout."""
     folders = [urdf_class(tmp_path / f"class{seed}", 150, seed) for seed in (1, 2)]
 
     def run(number: int) -> int:
@@ -181,31 +181,31 @@ def test_two_batches_at_once(cluster: Cluster, tmp_path: Path) -> None:
         assert list(verdicts(tmp_path / f"{number}.db").values()) == ["graded"] * 150
 
 
-def test_a_worker_that_is_killed(cluster: Cluster, tmp_path: Path) -> None:
-    """Its tasks go to the others, and it is started anew: no result is lost, none is there twice."""
+def test_a_killed_worker(cluster: DaskCluster, tmp_path: Path) -> None:
+    """Its tasks move to the others, and it is restarted: no result is lost or duplicated."""
     folder, book = urdf_class(tmp_path / "class", 600), tmp_path / "lab6.db"
     victims = cluster.workers()
     with started("batch", folder, "--gradebook", book, "--cluster", cluster.address) as process:
         for count, victim in zip((50, 250), victims, strict=True):
             assert eventually(lambda at=count: len(verdicts(book)) > at)  # type: ignore[misc]
             os.kill(victim, signal.SIGKILL)
-        _, said = process.communicate(timeout=PATIENCE)
-        assert process.returncode == 0, said
+        _, output = process.communicate(timeout=HANG_TIMEOUT)
+        assert process.returncode == 0, output
     assert verdicts(book) == dict.fromkeys((path.stem for path in folder.iterdir()), "graded")
-    assert (doubled(book), is_sound(book)) == ([], True)
+    assert (duplicates(book), is_sound(book)) == ([], True)
     assert eventually(lambda: len(cluster.workers()) == 2)
 
 
-def test_ctrl_c_leaves_the_cluster_alone(cluster: Cluster, tmp_path: Path) -> None:
-    """The run ends at once and says what is kept; the workers are there for the next one."""
+def test_ctrl_c_leaves_the_cluster_alone(cluster: DaskCluster, tmp_path: Path) -> None:
+    """The run ends at once and reports what is kept; the workers are ready for the next run."""
     folder, book = urdf_class(tmp_path / "class", 600), tmp_path / "lab6.db"
     command = ("batch", folder, "--gradebook", book, "--cluster", cluster.address)
     with started(*command) as process:
         assert eventually(lambda: len(verdicts(book)) > 20)
         os.killpg(process.pid, signal.SIGINT)
-        _, said = process.communicate(timeout=PATIENCE)
+        _, output = process.communicate(timeout=HANG_TIMEOUT)
         assert process.returncode == 130
-    first, stopped, last = said.splitlines()
+    first, stopped, last = output.splitlines()
     assert (first, last) == ("grader: 600 submissions, layout folders", "grader: interrupted")
     assert stopped.startswith("grader: stopped: ")
     kept = len(verdicts(book))
@@ -213,46 +213,46 @@ def test_ctrl_c_leaves_the_cluster_alone(cluster: Cluster, tmp_path: Path) -> No
 
 
 @pytest.mark.slow
-def test_a_scheduler_that_is_lost(tmp_path: Path) -> None:
-    """The run ends with a line, nobody is called errored for it, and it goes on elsewhere."""
+def test_a_lost_scheduler(tmp_path: Path) -> None:
+    """The run ends with a line, no submission is errored, and the run continues elsewhere."""
     folder, book = urdf_class(tmp_path / "class", 1_000), tmp_path / "lab6.db"
     with scheduler(tmp_path) as found, found.with_workers(1):
         address = found.address
         with started("batch", folder, "--gradebook", book, "--cluster", address) as process:
             assert eventually(lambda: len(verdicts(book)) > 20)
             os.kill(found.process, signal.SIGKILL)
-            _, said = process.communicate(timeout=PATIENCE)
-            assert process.returncode == 2, said
-    *_, stopped, last = said.splitlines()
+            _, output = process.communicate(timeout=HANG_TIMEOUT)
+            assert process.returncode == 2, output
+    *_, stopped, last = output.splitlines()
     assert stopped.startswith("grader: stopped: ")
     assert last == f"grader: lost the connection to the Dask scheduler at {address}"
     assert set(verdicts(book).values()) == {"graded"}
     assert grader("batch", folder, "--gradebook", book).returncode == 0
-    assert (len(verdicts(book)), doubled(book)) == (1_000, [])
+    assert (len(verdicts(book)), duplicates(book)) == (1_000, [])
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "foo", "", "http://127.0.0.1:1", "tls://127.0.0.1:1"])
 def test_no_scheduler(address: str, tmp_path: Path) -> None:
-    """Whatever address is written where there is none."""
+    """An address without a scheduler is refused in one line."""
     folder = urdf_class(tmp_path / "class", 2)
     line = refused("batch", folder, "--gradebook", tmp_path / "lab6.db", "--cluster", address)
     assert line.startswith(f"there is no Dask scheduler at {address or repr('')}: ")
 
 
 @pytest.fixture(scope="module")
-def lonely(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
-    """A scheduler that each test finds, and leaves, without workers."""
-    with scheduler(tmp_path_factory.mktemp("lonely")) as found:
+def idle_scheduler(tmp_path_factory: pytest.TempPathFactory) -> Iterator[DaskCluster]:
+    """Yield a scheduler without workers, shared by tests."""
+    with scheduler(tmp_path_factory.mktemp("idle_scheduler")) as found:
         yield found
 
 
-def test_no_workers(lonely: Cluster, tmp_path: Path) -> None:
+def test_no_workers(idle_scheduler: DaskCluster, tmp_path: Path) -> None:
     """A scheduler alone grades nothing; the line says how to start a worker."""
     folder = urdf_class(tmp_path / "class", 2)
-    line = refused("batch", folder, "--gradebook", tmp_path / "lab6.db", "--cluster", lonely.address)
-    start = f"`dask worker {lonely.address}`"
-    assert line == f"the Dask cluster at {lonely.address} has no workers yet: start one with {start}"
+    line = refused("batch", folder, "--gradebook", tmp_path / "lab6.db", "--cluster", idle_scheduler.address)
+    start = f"`dask worker {idle_scheduler.address}`"
+    assert line == f"the Dask cluster at {idle_scheduler.address} has no workers yet: start one with {start}"
 
 
 _BLIND = """
@@ -265,24 +265,26 @@ _WITHOUT = "import sys\nsys.modules['grader'] = None\n"
 
 
 @pytest.mark.parametrize(
-    ("start", "said"),
+    ("start", "output"),
     [
         (_BLIND, r"does not see {folder}: share that folder with it"),
         (_OTHER, "has grader 0.0.1, and this is "),
         (_WITHOUT, "cannot grade: "),
     ],
 )
-def test_a_worker_that_cannot_grade_this_class(start: str, said: str, lonely: Cluster, tmp_path: Path) -> None:
-    """One that does not see the folder, has another grader or none is found out before anything is graded."""
+def test_a_worker_that_cannot_grade_this_class(
+    start: str, output: str, idle_scheduler: DaskCluster, tmp_path: Path
+) -> None:
+    """A worker that does not see the folder, or has another grader or none, is detected before anything is graded."""
     folder = urdf_class(tmp_path / "class", 2)
     (tmp_path / "start.py").write_text(start)
-    arguments = ("--scheduler-file", str(lonely.file), "--host", "127.0.0.1", "--no-dashboard", "--no-nanny")
+    arguments = ("--scheduler-file", str(idle_scheduler.file), "--host", "127.0.0.1", "--no-dashboard", "--no-nanny")
     log = tmp_path / "worker.log"
     with service(log, "worker", *arguments, "--preload", str(tmp_path / "start.py")):
         assert eventually(lambda: "Registered to:" in log.read_text())
-        line = refused("batch", folder, "--gradebook", tmp_path / "lab6.db", "--cluster", lonely.address)
-    assert eventually(lambda: not lonely.workers())
-    assert said.format(folder=folder) in line
+        line = refused("batch", folder, "--gradebook", tmp_path / "lab6.db", "--cluster", idle_scheduler.address)
+    assert eventually(lambda: not idle_scheduler.workers())
+    assert output.format(folder=folder) in line
     assert rows(tmp_path / "lab6.db", "SELECT * FROM run") == []
 
 

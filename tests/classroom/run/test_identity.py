@@ -1,4 +1,4 @@
-"""The same people under other keys: a roster that comes later, is corrected or left out; and who is no longer there."""
+"""The same students under other keys: rosters that come later, are corrected or omitted; and removed students."""
 
 import json
 import shutil
@@ -15,7 +15,7 @@ BOTH = "id,login,name\n101,alice,Alice Ash\n102,bob,Bob Birch\n"
 
 @pytest.fixture
 def top(tmp_path: Path) -> Path:
-    """A class of two that was graded without a roster; a mark was given to one of them."""
+    """Make a class of two, graded without a roster, with one mark."""
     shutil.copytree(ROOT / "submissions" / "reference", tmp_path / "class" / "alice")
     shutil.copytree(ROOT / "submissions" / "lidar-buried", tmp_path / "class" / "bob")
     assert batch(tmp_path).returncode == 0
@@ -32,24 +32,24 @@ def batch(top: Path, *more: str | Path, roster: str = "") -> Done:
 
 
 def students(top: Path, *more: str) -> dict[str, dict[str, Any]]:
-    """Everyone's current grade, by key."""
+    """Return everyone's current grade, by key."""
     done = grader("export", "json", "--gradebook", top / "g.db", *more)
-    return {each["id"]: each for each in json.loads(done.stdout)["students"]}
+    return {student["id"]: student for student in json.loads(done.stdout)["students"]}
 
 
 def test_a_roster_may_come_later(top: Path) -> None:
-    """Those who were known by their folders are known by the roster's ids then, with all marks, and nobody is there twice."""
+    """Students known by folder are then known by the roster's ids, with all marks, and none is there twice."""
     done = batch(top, roster=BOTH)
     assert "alice is 101 now, with all manual marks" in done.stderr
     assert "0 graded, 2 unchanged" in done.stderr
-    assert {key: (each["score"], each["marks_by_hand"]) for key, each in students(top).items()} == {
+    assert {key: (student["score"], student["marks_by_hand"]) for key, student in students(top).items()} == {
         "101": (93.5, 1),
         "102": (62, 0),
     }
 
 
-def test_a_roster_may_be_left_out_and_come_again(top: Path) -> None:
-    """Whatever they are called in between, the marks are theirs."""
+def test_a_roster_may_be_omitted_and_come_again(top: Path) -> None:
+    """Marks stay with their students, whatever the keys in between."""
     for roster in (BOTH, "", BOTH, BOTH):
         assert batch(top, roster=roster).returncode == 0
     assert students(top)["101"]["marks_by_hand"] == 1
@@ -57,7 +57,7 @@ def test_a_roster_may_be_left_out_and_come_again(top: Path) -> None:
 
 
 def test_the_roster_is_remembered(top: Path) -> None:
-    """A run that names no roster takes the one that was named last, with all that it says."""
+    """A run without --roster uses the last one, with everything in it."""
     batch(top, roster="id,login,name,late\n101,alice,Alice Ash,2\n102,bob,Bob Birch,\n103,cal,Cal Cedar,\n")
     before = students(top)
     done = batch(top)
@@ -68,8 +68,8 @@ def test_the_roster_is_remembered(top: Path) -> None:
     assert "zoe is not on the roster" in batch(top).stderr
 
 
-def test_who_is_enrolled_late_was_a_stranger_first(top: Path) -> None:
-    """A stranger who comes on the roster, or a place on it that was empty, takes the results along."""
+def test_late_enrolment(top: Path) -> None:
+    """An unmatched student who is added to the roster, or an empty row of it, takes over the results."""
     batch(top, roster="id,login,name\n102,bob,Bob Birch\n")
     assert set(students(top)) == {"alice", "102"}
     batch(top, roster=BOTH)
@@ -77,7 +77,7 @@ def test_who_is_enrolled_late_was_a_stranger_first(top: Path) -> None:
     assert students(top)["101"]["score"] == 93.5
 
 
-def test_a_number_of_the_lms_is_stronger_than_a_place(tmp_path: Path) -> None:
+def test_an_lms_number_is_stronger_than_a_path(tmp_path: Path) -> None:
     """A new download has other file names; the user's id is the same, and the roster comes late."""
     first, second = tmp_path / "class" / "ashalice_7_1_my_robot.urdf", tmp_path / "class" / "ashalice_7_2_my_robot.urdf"
     first.parent.mkdir()
@@ -87,24 +87,24 @@ def test_a_number_of_the_lms_is_stronger_than_a_place(tmp_path: Path) -> None:
     first.rename(second)
     done = batch(tmp_path, "--layout", "canvas", roster="id,name,canvas id\n101,Alice Ash,7\n")
     assert "ashalice_7 is 101 now" in done.stderr
-    assert {key: each["marks_by_hand"] for key, each in students(tmp_path).items()} == {"101": 1}
+    assert {key: student["marks_by_hand"] for key, student in students(tmp_path).items()} == {"101": 1}
 
 
-def test_a_key_that_was_a_folders_goes_to_whom_the_roster_gives_it(top: Path) -> None:
-    """The results of a folder that was named like a student's id stay with that folder, and the student's own move along."""
+def test_a_folders_key_that_the_roster_gives_to_another(top: Path) -> None:
+    """Results of a folder named like a student's id stay with the folder, and the student's own move along."""
     shutil.copytree(ROOT / "submissions" / "wheels-black", top / "class" / "101")
     batch(top)
     assert grader("mark", "101", "lidar-frame", "0", "--gradebook", top / "g.db").returncode == 0
     shutil.rmtree(top / "class" / "101")
     done = batch(top, roster=BOTH)
     assert "alice is 101 now" in done.stderr
-    assert {key: each["marks_by_hand"] for key, each in students(top).items()} == {"101": 1, "102": 0, "./101": 1}
+    assert {key: student["marks_by_hand"] for key, student in students(top).items()} == {"101": 1, "102": 0, "./101": 1}
     assert students(top)["101"]["score"] == 93.5
     assert "./101: no longer in the class folder" in done.stdout
 
 
-def test_who_is_not_there_any_more_gets_no_grade(top: Path) -> None:
-    """A submission that was taken away is listed and not handed on; when it comes back all is as it was."""
+def test_removed_submissions_have_no_grade(top: Path) -> None:
+    """A removed submission is listed and not exported; when it comes back, everything is as before."""
     for name in ("answer-floating-link", "answer-launch-nodes", "evidence-webcam"):
         assert grader("mark", "alice", name, "2", "--gradebook", top / "g.db").returncode == 0
     assert students(top)["alice"]["is_final"]
@@ -119,16 +119,16 @@ def test_who_is_not_there_any_more_gets_no_grade(top: Path) -> None:
     assert students(top)["alice"]["marks_by_hand"] == 3
 
 
-def test_another_class_folder_takes_nobody_away(top: Path) -> None:
-    """A run over a folder with one late submission says nothing of the others."""
+def test_another_class_folder_removes_nobody(top: Path) -> None:
+    """A run over a folder with one late submission does not affect the others."""
     shutil.copytree(ROOT / "submissions" / "wheels-black", top / "late" / "carol")
     done = grader("batch", top / "late", "--gradebook", top / "g.db", "--add")
     assert "any more" not in done.stdout
     assert set(students(top)) == {"alice", "bob", "carol"}
 
 
-def test_a_newer_rubric_leaves_the_others_without_a_grade(top: Path) -> None:
-    """Who was not graded by the newest rubric has no grade to be handed on."""
+def test_grades_by_an_older_rubric_are_not_exported(top: Path) -> None:
+    """Students who were not graded by the newest rubric have no final grade."""
     text = (ROOT / "rubrics" / "lab6.toml").read_text(encoding="utf-8")
     (top / "lab6.toml").write_text(text.replace('reference = "lab6/my_robot"', "", 1) + "\n# newer\n", encoding="utf-8")
     shutil.copytree(ROOT / "submissions" / "wheels-black", top / "late" / "carol")
@@ -138,8 +138,8 @@ def test_a_newer_rubric_leaves_the_others_without_a_grade(top: Path) -> None:
     assert done.stdout.count("it was graded with an earlier version of the rubric") == 2
 
 
-def test_when_it_was_due_is_remembered(tmp_path: Path) -> None:
-    """What batch was told of the due time holds for the exports that follow, and can be told anew."""
+def test_the_deadline_is_remembered(tmp_path: Path) -> None:
+    """The deadline given to batch applies to later exports, and can be changed."""
     text = (ROOT / "rubrics" / "lab6.toml").read_text(encoding="utf-8")
     policy = text.replace('reference = "lab6/my_robot"', "", 1) + "\n[late]\npercent_per_day = 10\n"
     (tmp_path / "lab6.toml").write_text(policy, encoding="utf-8")
@@ -161,8 +161,8 @@ def test_when_it_was_due_is_remembered(tmp_path: Path) -> None:
         ("--csv", "nowhere/grades.csv", "there is no folder"),
     ],
 )
-def test_what_could_not_be_written_is_refused_first(top: Path, option: str, value: str, words: str) -> None:
-    """Nothing is graded before it is clear where everything goes, and the gradebook is never written over."""
+def test_unwritable_outputs_are_refused_first(top: Path, option: str, value: str, words: str) -> None:
+    """Nothing is graded before all outputs are known to be writable, and the gradebook is never overwritten."""
     before = (top / "g.db").read_bytes()
     done = batch(top, option, top / value)
     assert (done.returncode, done.stdout) == (2, "")
@@ -171,7 +171,7 @@ def test_what_could_not_be_written_is_refused_first(top: Path, option: str, valu
 
 
 def test_a_corrected_id_stays_on_the_roster(top: Path) -> None:
-    """A student with a new id on the roster is not reported as one who is no longer on it."""
+    """A student with a new id on the roster is not reported as removed from it."""
     batch(top, roster=BOTH)
     done = batch(top, roster=BOTH.replace("102", "099"))
     assert "102 is 099 now, with all manual marks" in done.stderr

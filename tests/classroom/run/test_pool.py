@@ -1,4 +1,4 @@
-"""Processes that do the work: whatever is done in them, each promise is kept in time."""
+"""The pool of worker processes: whatever runs in them, each future completes in time."""
 
 import multiprocessing
 import os
@@ -12,21 +12,21 @@ from typing import Any
 import pytest
 
 from grader.classroom.run.pool import Processes, WorkerError, processors
-from tests.command_line import PATIENCE
+from tests.command_line import HANG_TIMEOUT
 
 MEMORY = 512 * 1024**2
 
 
 @pytest.fixture(scope="module")
 def pool() -> Iterator[Processes]:
-    """Two workers, each with half a gigabyte."""
-    with Processes(2, PATIENCE, MEMORY) as processes:
+    """Yield a pool of two workers with half a gigabyte each."""
+    with Processes(2, HANG_TIMEOUT, MEMORY) as processes:
         yield processes
 
 
 def lost(future: "Future[Any]") -> str:
-    """Why there is no result."""
-    error = future.exception(PATIENCE)
+    """Return why there is no result."""
+    error = future.exception(HANG_TIMEOUT)
     assert isinstance(error, WorkerError), error
     return str(error)
 
@@ -48,30 +48,30 @@ def _unspeakable() -> object:
 
 
 def test_results_come_back(pool: Processes) -> None:
-    """Whatever can be sent is, with arguments by place and by name."""
-    assert pool.submit(sorted, [3, 1, 2], reverse=True).result(PATIENCE) == [3, 2, 1]
-    assert len(pool.submit(bytes, 10**7).result(PATIENCE)) == 10**7
+    """Anything that can be sent is returned, with positional and keyword arguments."""
+    assert pool.submit(sorted, [3, 1, 2], reverse=True).result(HANG_TIMEOUT) == [3, 2, 1]
+    assert len(pool.submit(bytes, 10**7).result(HANG_TIMEOUT)) == 10**7
 
 
-def test_errors_come_back_as_they_are(pool: Processes) -> None:
-    """An error of what was asked is that error; what cannot be sent is told, too."""
+def test_errors_are_raised(pool: Processes) -> None:
+    """An error of the function is raised; a result that cannot be sent is reported, too."""
     with pytest.raises(ZeroDivisionError):
-        pool.submit(divmod, 1, 0).result(PATIENCE)
+        pool.submit(divmod, 1, 0).result(HANG_TIMEOUT)
     with pytest.raises(ValueError, match="as asked"):
-        pool.submit(_raise, ValueError).result(PATIENCE)
-    assert pool.submit(_unspeakable).exception(PATIENCE) is not None
-    assert pool.submit(len, "abc").result(PATIENCE) == 3
+        pool.submit(_raise, ValueError).result(HANG_TIMEOUT)
+    assert pool.submit(_unspeakable).exception(HANG_TIMEOUT) is not None
+    assert pool.submit(len, "abc").result(HANG_TIMEOUT) == 3
 
 
 def _stop() -> None:
-    while True:  # a shell that ends may have the processes go on that it has started
+    while True:  # a shell that ends may leave its processes running
         signal.raise_signal(signal.SIGSTOP)
 
 
 def test_no_more_memory_than_allowed(pool: Processes) -> None:
-    """What needs more is lost, and its worker goes on."""
+    """A task that needs more memory is lost, and its worker continues."""
     assert lost(pool.submit(_eat)) == "grading it needs more memory than a worker may use (2 GiB)"
-    assert pool.submit(len, "abc").result(PATIENCE) == 3
+    assert pool.submit(len, "abc").result(HANG_TIMEOUT) == 3
 
 
 @pytest.mark.parametrize(
@@ -89,34 +89,34 @@ def test_no_more_memory_than_allowed(pool: Processes) -> None:
         (time.sleep, (600,), "grading it took longer than 1.5 s (--timeout raises the limit)"),
     ],
 )
-def test_what_ends_or_holds_a_worker_is_lost(
+def test_a_task_that_ends_or_blocks_its_worker_is_lost(
     function: Any, arguments: tuple[Any, ...], reason: str, pool: Processes
 ) -> None:
-    """And nothing else with it."""
+    """Nothing else is lost with it."""
     ended = pool.submit_within(1.5, function, arguments, {})
     others = [pool.submit(pow, number, 2) for number in range(20)]
     assert lost(ended) in (reason, "grading it took longer than 1.5 s (--timeout raises the limit)")
-    assert [each.result(PATIENCE) for each in others] == [number**2 for number in range(20)]
+    assert [other.result(HANG_TIMEOUT) for other in others] == [number**2 for number in range(20)]
 
 
-def test_workers_find_nothing_in_the_current_folder(pool: Processes) -> None:
-    """A module there would be the class's; nor do they hear Ctrl-C."""
-    assert pool.submit(eval, "__import__('sys').flags.safe_path").result(PATIENCE)
-    assert pool.submit(signal.getsignal, signal.SIGINT).result(PATIENCE) is signal.SIG_IGN
-    assert "" not in pool.submit(eval, "__import__('sys').path").result(PATIENCE)
+def test_workers_ignore_the_current_folder_and_ctrl_c(pool: Processes) -> None:
+    """Modules in the current folder, which may be the class's, are not imported."""
+    assert pool.submit(eval, "__import__('sys').flags.safe_path").result(HANG_TIMEOUT)
+    assert pool.submit(signal.getsignal, signal.SIGINT).result(HANG_TIMEOUT) is signal.SIG_IGN
+    assert "" not in pool.submit(eval, "__import__('sys').path").result(HANG_TIMEOUT)
 
 
-def test_all_workers_ended_at_once(pool: Processes) -> None:
-    """As where memory is short: what is asked afterwards is done."""
-    pids = {pool.submit(_pid_after, 0.2).result(PATIENCE) for _ in range(4)}
+def test_all_workers_killed_at_once(pool: Processes) -> None:
+    """As when memory is short: later tasks are done."""
+    pids = {pool.submit(_pid_after, 0.2).result(HANG_TIMEOUT) for _ in range(4)}
     for pid in pids:
         os.kill(pid, signal.SIGKILL)
     results = []
     for _ in range(10):
         future = pool.submit(len, "abc")
-        results.append(future.exception(PATIENCE) or future.result())
+        results.append(future.exception(HANG_TIMEOUT) or future.result())
     assert results[-1] == 3
-    assert all(each == 3 or isinstance(each, WorkerError) for each in results)
+    assert all(result == 3 or isinstance(result, WorkerError) for result in results)
 
 
 def _pid_after(seconds: float) -> int:
@@ -124,27 +124,27 @@ def _pid_after(seconds: float) -> int:
     return os.getpid()
 
 
-def test_shut_in_the_midst_of_work() -> None:
-    """Whoever leaves does not wait for what hangs."""
-    processes = Processes(1, 10 * PATIENCE)
-    pid = processes.submit(os.getpid).result(PATIENCE)
-    processes.submit(time.sleep, 10 * PATIENCE)
+def test_shutdown_during_work() -> None:
+    """Shutting down does not wait for tasks that hang."""
+    processes = Processes(1, 10 * HANG_TIMEOUT)
+    pid = processes.submit(os.getpid).result(HANG_TIMEOUT)
+    processes.submit(time.sleep, 10 * HANG_TIMEOUT)
     began = time.monotonic()
     processes.shutdown()
-    assert time.monotonic() - began < PATIENCE
+    assert time.monotonic() - began < HANG_TIMEOUT
     with pytest.raises(ProcessLookupError):
         os.kill(pid, 0)
 
 
-def test_shut_before_any_work() -> None:
-    """Where nothing was asked nothing is started."""
+def test_shutdown_before_any_work() -> None:
+    """Without a task no process is started."""
     before = multiprocessing.active_children()
-    with Processes(2, PATIENCE) as processes:
+    with Processes(2, HANG_TIMEOUT) as processes:
         assert not processes._has_begun
         assert multiprocessing.active_children() == before
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="asks the kernel")
 def test_as_many_workers_as_processors() -> None:
-    """Those that this process may use."""
+    """The pool has as many workers as this process may use processors."""
     assert processors() == len(os.sched_getaffinity(0))

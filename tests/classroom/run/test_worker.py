@@ -1,4 +1,4 @@
-"""What comes of one submission: that it could not be read is said whatever it was wrapped in, and in the words of a class run."""
+"""The result of one submission: whether it could be read does not depend on the folder or archive around it."""
 
 import io
 import json
@@ -11,7 +11,7 @@ import pytest
 
 from grader.classroom.gradebook.result import GradingResult
 from grader.classroom.run.worker import ClassContext, Task, grade_all
-from tests.classroom.class_runs import report_here
+from tests.classroom.class_runs import report_in_process
 from tests.samples import LAB6, ROOT
 
 URDF = (ROOT / "submissions/lidar-buried/my_robot.urdf").read_bytes()
@@ -19,7 +19,7 @@ LARGE = URDF + b" " * 1024 * 1024
 
 
 def zipped(files: dict[str, bytes]) -> bytes:
-    """A zip with these files."""
+    """Make a zip with these files."""
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w") as archive:
         for name, data in files.items():
@@ -28,7 +28,7 @@ def zipped(files: dict[str, bytes]) -> bytes:
 
 
 def damaged(name: str) -> bytes:
-    """A zip in which one file of this name has a wrong checksum."""
+    """Make a zip in which one file of this name has a wrong checksum."""
     data = zipped({name: URDF})
     start = data.index(b"<robot")
     return data[:start] + b"<R" + data[start + 2 :]
@@ -48,7 +48,7 @@ UNREADABLE = {
 
 
 def graded(top: Path, *paths: str) -> GradingResult:
-    """What comes of a submission below a folder."""
+    """Return the result of a submission below a folder."""
     (result,) = grade_all(ClassContext(str(top), LAB6.data, str(LAB6.path)), [Task("ann", paths)])
     return result
 
@@ -56,11 +56,11 @@ def graded(top: Path, *paths: str) -> GradingResult:
 @pytest.mark.parametrize("kind", UNREADABLE)
 @pytest.mark.parametrize("wrapped", ["", "ann/", "ann/src/lab/"])
 def test_the_folder_around_it_does_not_matter(kind: str, wrapped: str, tmp_path: Path) -> None:
-    """What cannot be read on its own cannot be read in a folder; the reason names it."""
+    """A file that cannot be read alone cannot be read in a folder; the reason names it."""
     name, data, reason = UNREADABLE[kind]
-    place = tmp_path / "class" / wrapped / name
-    place.parent.mkdir(parents=True)
-    place.write_bytes(data)
+    folder = tmp_path / "class" / wrapped / name
+    folder.parent.mkdir(parents=True)
+    folder.write_bytes(data)
     top = tmp_path / "class"
     result = graded(top, wrapped.partition("/")[0] or name)
     assert (result.verdict, reason in result.reason) == ("unreadable", True), result.reason
@@ -68,20 +68,20 @@ def test_the_folder_around_it_does_not_matter(kind: str, wrapped: str, tmp_path:
     assert str(tmp_path) not in result.reason
 
 
-def test_the_report_stays_what_it_is(tmp_path: Path) -> None:
-    """Of a submission that is a folder: its points, what is pending, and every word, as `grader grade` says it."""
+def test_a_folder_has_the_same_report(tmp_path: Path) -> None:
+    """Points, pending criteria and messages of a folder equal those of `grader grade`."""
     shutil.copytree(ROOT / "submissions/reference", tmp_path / "ann")
     (urdf,) = (tmp_path / "ann").rglob("*.urdf")
     urdf.write_bytes(LARGE)
     result = graded(tmp_path, "ann")
-    _, alone = report_here(tmp_path / "ann", tmp_path / "alone.json")
-    told = json.loads(alone)
+    _, alone = report_in_process(tmp_path / "ann", tmp_path / "alone.json")
+    reported = json.loads(alone)
     assert (result.verdict, result.reason.partition(" is ")[0]) == (
         "unreadable",
         str(urdf.relative_to(tmp_path / "ann")),
     )
     assert result.score > 0
-    assert result.score == told["score"] * 10_000
+    assert result.score == reported["score"] * 10_000
     assert b"(--max-size raises it)" in zlib.decompress(result.record)
     assert (
         grade_all(
@@ -102,17 +102,17 @@ def test_the_report_stays_what_it_is(tmp_path: Path) -> None:
     ],
     ids=["urdf", "package", "archive", "pdf", "answers"],
 )
-def test_what_can_be_graded_is(files: dict[str, bytes], tmp_path: Path) -> None:
-    """Beside an archive that is damaged, or where nothing is."""
+def test_readable_files_are_graded(files: dict[str, bytes], tmp_path: Path) -> None:
+    """Files beside a damaged archive are graded, and so is an empty folder."""
     for name, data in files.items():
-        place = tmp_path / "ann" / name
-        place.parent.mkdir(parents=True, exist_ok=True)
-        place.write_bytes(data)
+        folder = tmp_path / "ann" / name
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        folder.write_bytes(data)
     assert (graded(tmp_path, "ann").verdict, graded(tmp_path, "ann").reason) == ("graded", "")
 
 
 def test_several_archives_are_counted(tmp_path: Path) -> None:
-    """The first is named with what is wrong with it."""
+    """The first is named with its error."""
     (tmp_path / "ann").mkdir()
     for name in ("a.zip", "b.zip", "c.zip"):
         (tmp_path / "ann" / name).write_bytes(b"garbage")

@@ -1,4 +1,4 @@
-"""Small URDFs, each at the edge of a rule, with ROS 2's verdict on each."""
+"""Small URDFs, each at the edge of a rule, with ROS 2's verdict on it."""
 
 from tests.robot.edge_cases import document, joints, links, markup, materials, numbers, references, tree
 from tests.robot.edge_cases.case import EdgeCase

@@ -1,4 +1,4 @@
-"""An edge case, and the builders that keep each case to a line or two."""
+"""An edge case, and builders that keep each case to a line or two."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -9,7 +9,7 @@ Oracle = Literal["agrees", "hangs", "aborts"]
 
 @dataclass(frozen=True, slots=True)
 class EdgeCase:
-    """One file and ROS 2's verdict on it; a program that hangs or crashes on a file has rejected it."""
+    """A file and ROS 2's verdict on it; a program that hangs or crashes on a file has rejected it."""
 
     name: str
     rule: str
@@ -19,63 +19,63 @@ class EdgeCase:
 
 
 def clean(name: str, rule: str, text: str | bytes) -> EdgeCase:
-    """A file that loads whole."""
+    """Return the case of a file that loads completely."""
     return EdgeCase(name, rule, _encoded(text), "clean")
 
 
 def degraded(name: str, rule: str, text: str | bytes) -> EdgeCase:
-    """A file that loads, with an error in the log or with something left out."""
+    """Return the case of a file that loads with an error in the log or with something omitted."""
     return EdgeCase(name, rule, _encoded(text), "degraded")
 
 
 def rejected(name: str, rule: str, text: str | bytes, oracle: Oracle = "agrees") -> EdgeCase:
-    """A file that does not load."""
+    """Return the case of a file that does not load."""
     return EdgeCase(name, rule, _encoded(text), "rejected", oracle)
 
 
 def robot(body: str, attributes: str = 'name="r"') -> str:
-    """A robot that holds these links and joints."""
+    """Return a robot with these links and joints."""
     return f"<robot {attributes}>{body}</robot>"
 
 
 def one_link(body: str = "") -> str:
-    """A robot with a single link that holds this."""
+    """Return a robot with a single link with this content."""
     return robot(f'<link name="base">{body}</link>')
 
 
 def joint(parent: str, child: str, name: str = "j", *, kind: str = "fixed", body: str = "") -> str:
-    """A joint from link to link; the body follows its `<parent>` and `<child>`."""
+    """Return a joint from link to link; the body follows its `<parent>` and `<child>`."""
     ends = f'<parent link="{parent}"/><child link="{child}"/>'
     return f'<joint name="{name}" type="{kind}">{ends}{body}</joint>'
 
 
 def links(*names: str) -> str:
-    """Bare links with these names."""
+    """Return empty links with these names."""
     return "".join(f'<link name="{name}"/>' for name in names)
 
 
 def one_joint(body: str = "", kind: str = "fixed") -> str:
-    """A robot of two links whose joint holds this."""
+    """Return a robot of two links whose joint has this content."""
     return robot(links("a", "b") + joint("a", "b", kind=kind, body=body))
 
 
 def reference(name: str, child: str) -> str:
-    """A robot that loads if these two spell the same name: a link has the one, and a joint names the other."""
+    """Return a robot that loads if both spell the same name: a link has one, and a joint names the other."""
     return robot(links("root", name) + joint("root", child))
 
 
 def visual(body: str) -> str:
-    """A visual that holds this after a good geometry."""
+    """Return a visual with this content after a correct geometry."""
     return f'<visual><geometry><box size="1 1 1"/></geometry>{body}</visual>'
 
 
 def geometry(shape: str) -> str:
-    """A robot whose link shows this shape."""
+    """Return a robot whose link shows this shape."""
     return one_link(f"<visual><geometry>{shape}</geometry></visual>")
 
 
 def with_bytes(text: str, raw: bytes) -> bytes:
-    """This text with raw bytes for each @, to put what no text can hold into it."""
+    """Return this text with raw bytes for each @, for bytes that no text can contain."""
     return text.encode().replace(b"@", raw)
 
 

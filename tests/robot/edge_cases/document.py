@@ -1,4 +1,4 @@
-"""Text around the root, and how the bytes are encoded: TinyXML2's rules, not XML's."""
+"""Text around the root, and encodings: TinyXML2's rules, not XML's."""
 
 from codecs import BOM_UTF8, BOM_UTF16_BE, BOM_UTF16_LE, BOM_UTF32_BE, BOM_UTF32_LE
 
@@ -21,7 +21,7 @@ _NAMELESS = f"<robot>{links('a')}</robot>"
 DECLARED = f"{DECLARATION}\n{ROBOT}\n"
 
 _ANY_DECLARATION = "a declaration is skipped unread"
-_PLACE = "a declaration or processing instruction may follow only its like"
+_POSITION = "a declaration or processing instruction may follow only its like"
 _LABEL = "the declared encoding is ignored"
 _BYTES = "bytes need not be UTF-8"
 _BOM = "a UTF-8 byte-order mark may come after white space"
@@ -59,31 +59,31 @@ DECLARATIONS = (
     clean("declaration-after-newline", "white space may precede the declaration", f"\n{DECLARED}"),
     clean("declaration-after-blank-lines", "white space may precede the declaration", f"\r\n\t\r\n{DECLARED}"),
     clean("declaration-after-form-feed", "white space may precede the declaration", f"\v\f{DECLARED}"),
-    rejected("declaration-after-text", _PLACE, f"urdf\n{DECLARED}"),
-    rejected("declaration-after-no-break-space", _PLACE, f"\u00a0{DECLARED}"),
-    rejected("declaration-after-comment", _PLACE, f"<!-- robot -->\n{DECLARED}"),
-    rejected("declaration-after-doctype", _PLACE, f"<!DOCTYPE robot>\n{DECLARED}"),
-    rejected("declaration-after-cdata", _PLACE, f"<![CDATA[]]>\n{DECLARED}"),
-    rejected("declaration-after-element", _PLACE, f"<a/>{DECLARED}"),
-    clean("declaration-twice", _PLACE, f"{DECLARATION}\n{DECLARED}"),
-    clean("declaration-three-times", _PLACE, f"{DECLARATION}\n{DECLARATION}{DECLARED}"),
-    rejected("declaration-comment-declaration", _PLACE, f"{DECLARATION}<!-- x -->{DECLARED}"),
-    rejected("declaration-inside-robot", _PLACE, robot(f"{links('a')}{DECLARATION}")),
-    rejected("declaration-inside-link", _PLACE, one_link(DECLARATION)),
-    rejected("declaration-first-in-robot", _PLACE, robot(f"{DECLARATION}{links('a')}")),
-    rejected("declaration-after-root", _PLACE, f"{ROBOT}\n{DECLARATION}"),
-    rejected("document-pasted-inside", _PLACE, robot(f"{links('a')}\n{DECLARED}")),
-    rejected("document-pasted-after", _PLACE, f"{DECLARED}{DECLARED}"),
-    clean("instruction-before-root", _PLACE, f"{DECLARATION}<?xml-model href='a'?>{ROBOT}"),
-    clean("instruction-before-declaration", _PLACE, f"<?python eval?>{DECLARED}"),
-    clean("instruction-then-comment", _PLACE, f"{DECLARATION}<?a?><!-- b -->{ROBOT}"),
-    rejected("instruction-after-comment", _PLACE, f"{DECLARATION}<!-- b --><?a?>{ROBOT}"),
-    rejected("instruction-inside-robot", _PLACE, robot(f"{links('a')}<?a?>")),
-    rejected("instruction-inside-visual", _PLACE, one_link("<visual><?a?></visual>")),
-    rejected("instruction-after-root", _PLACE, f"{ROBOT}<?a?>"),
-    clean("instruction-in-comment", _PLACE, one_link("<!-- <?a?> -->")),
-    clean("instruction-in-cdata", _PLACE, one_link("<![CDATA[<?a?>]]>")),
-    clean("instruction-in-attribute", _PLACE, robot(links("a"), 'name="<?a?>"')),
+    rejected("declaration-after-text", _POSITION, f"urdf\n{DECLARED}"),
+    rejected("declaration-after-no-break-space", _POSITION, f"\u00a0{DECLARED}"),
+    rejected("declaration-after-comment", _POSITION, f"<!-- robot -->\n{DECLARED}"),
+    rejected("declaration-after-doctype", _POSITION, f"<!DOCTYPE robot>\n{DECLARED}"),
+    rejected("declaration-after-cdata", _POSITION, f"<![CDATA[]]>\n{DECLARED}"),
+    rejected("declaration-after-element", _POSITION, f"<a/>{DECLARED}"),
+    clean("declaration-twice", _POSITION, f"{DECLARATION}\n{DECLARED}"),
+    clean("declaration-three-times", _POSITION, f"{DECLARATION}\n{DECLARATION}{DECLARED}"),
+    rejected("declaration-comment-declaration", _POSITION, f"{DECLARATION}<!-- x -->{DECLARED}"),
+    rejected("declaration-inside-robot", _POSITION, robot(f"{links('a')}{DECLARATION}")),
+    rejected("declaration-inside-link", _POSITION, one_link(DECLARATION)),
+    rejected("declaration-first-in-robot", _POSITION, robot(f"{DECLARATION}{links('a')}")),
+    rejected("declaration-after-root", _POSITION, f"{ROBOT}\n{DECLARATION}"),
+    rejected("document-pasted-inside", _POSITION, robot(f"{links('a')}\n{DECLARED}")),
+    rejected("document-pasted-after", _POSITION, f"{DECLARED}{DECLARED}"),
+    clean("instruction-before-root", _POSITION, f"{DECLARATION}<?xml-model href='a'?>{ROBOT}"),
+    clean("instruction-before-declaration", _POSITION, f"<?python eval?>{DECLARED}"),
+    clean("instruction-then-comment", _POSITION, f"{DECLARATION}<?a?><!-- b -->{ROBOT}"),
+    rejected("instruction-after-comment", _POSITION, f"{DECLARATION}<!-- b --><?a?>{ROBOT}"),
+    rejected("instruction-inside-robot", _POSITION, robot(f"{links('a')}<?a?>")),
+    rejected("instruction-inside-visual", _POSITION, one_link("<visual><?a?></visual>")),
+    rejected("instruction-after-root", _POSITION, f"{ROBOT}<?a?>"),
+    clean("instruction-in-comment", _POSITION, one_link("<!-- <?a?> -->")),
+    clean("instruction-in-cdata", _POSITION, one_link("<![CDATA[<?a?>]]>")),
+    clean("instruction-in-attribute", _POSITION, robot(links("a"), 'name="<?a?>"')),
 )
 
 
@@ -121,7 +121,7 @@ ENCODINGS = (
     clean("mark-after-space-and-tab", _BOM, b" \t" + BOM_UTF8 + DECLARED.encode()),
     clean("mark-twice", "a second mark is text before the root", BOM_UTF8 * 2 + ROBOT.encode()),
     rejected("mark-twice-declaration", "a second mark is text before the root", BOM_UTF8 * 2 + DECLARED.encode()),
-    rejected("mark-after-declaration-twice", _PLACE, DECLARATION.encode() + BOM_UTF8 + DECLARED.encode()),
+    rejected("mark-after-declaration-twice", _POSITION, DECLARATION.encode() + BOM_UTF8 + DECLARED.encode()),
     clean("mark-after-declaration", _BEFORE, DECLARATION.encode() + BOM_UTF8 + ROBOT.encode()),
     rejected("mark-after-root", _AFTER, DECLARED.encode() + BOM_UTF8),
     rejected("mark-only", "the document must not be empty", BOM_UTF8),
@@ -272,7 +272,7 @@ DOCTYPES = (
     clean("subset-external-entity", _DOCTYPE, _subset('<!ENTITY e SYSTEM "file:///etc/passwd">', one_link("&e;"))),
     clean("subset-comment", _DOCTYPE, _subset("<!-- a > b -->")),
     clean("subset-instruction", "the first > may be that of an instruction", _subset("<?a?>")),
-    rejected("subset-instruction-after-entity", _PLACE, _subset('<!ENTITY e "1"><?a?>')),
+    rejected("subset-instruction-after-entity", _POSITION, _subset('<!ENTITY e "1"><?a?>')),
     clean("subset-entity-in-text", _LITERAL, _subset('<!ENTITY e "1">', one_link("&e;"))),
     clean("subset-entity-in-name", _LITERAL, _subset('<!ENTITY e "1">', robot(links("&e;")))),
     rejected("subset-entity-and-its-value-differ", _LITERAL, _subset('<!ENTITY e "b">', reference("b", "&e;"))),

@@ -1,4 +1,4 @@
-"""What a joint holds. Almost anything wrong in a joint stops the whole robot from loading."""
+"""Joints. Almost any error in a joint stops the whole robot from loading."""
 
 from tests.robot.edge_cases.case import EdgeCase, clean, joint, links, one_joint, rejected, robot
 

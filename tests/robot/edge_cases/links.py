@@ -1,4 +1,4 @@
-"""What a link holds: geometry, visuals, collisions and inertia. Nothing in a link stops a robot from loading."""
+"""Links: geometry, visuals, collisions and inertia. No error in a link stops a robot from loading."""
 
 from tests.robot.edge_cases.case import (
     EdgeCase,

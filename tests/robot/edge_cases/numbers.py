@@ -1,4 +1,4 @@
-"""Numbers in vectors, scalars, colours and the version; Python's `float` reads other ones."""
+"""Numbers in vectors, scalars, colours and the version; Python's `float` accepts others."""
 
 from tests.robot.edge_cases.case import (
     EdgeCase,

@@ -1,4 +1,4 @@
-"""How the joints tie the links together: roots, cycles, second parents."""
+"""The tree of links: roots, cycles, second parents."""
 
 from itertools import pairwise
 
@@ -15,7 +15,7 @@ _DEEP = "a tree may be deep or wide"
 
 
 def _tree(*joints: str, extra: str = "") -> str:
-    """A robot of joints written `ab`, for one from a to b, and named in this order; `extra` names more links."""
+    """Return a robot of joints written `ab`, for one from a to b, and named in this order; `extra` names more links."""
     names = "".join(dict.fromkeys("".join(joints) + extra))
     return robot(links(*names) + "".join(joint(ends[0], ends[1], f"j{index}") for index, ends in enumerate(joints)))
 

@@ -1,4 +1,4 @@
-"""Whose submission it is, through the command line: nothing that a student can write decides it."""
+"""Assigning submissions to students through the command line: nothing that a student writes changes it."""
 
 import json
 import shutil
@@ -8,16 +8,16 @@ from typing import Any
 
 import pytest
 
-from tests.classroom.class_runs import Done, here
+from tests.classroom.class_runs import Done, run_in_process
 from tests.samples import ROOT
 
 GOOD, BAD = ROOT / "submissions" / "reference", ROOT / "submissions" / "lidar-buried"
 TEAMS = "id,login,name,group\n1,alice,Alice Ash,team2\n2,mallory,Mallory Moss,team1\n"
 
 
-def submit(place: Path, source: Path = GOOD) -> None:
-    """Put a submission somewhere."""
-    shutil.copytree(source, place)
+def submit(folder: Path, source: Path = GOOD) -> None:
+    """Write a submission."""
+    shutil.copytree(source, folder)
 
 
 def batch(top: Path, *more: str | Path, roster: str = "", into: str = "g.db") -> Done:
@@ -25,19 +25,19 @@ def batch(top: Path, *more: str | Path, roster: str = "", into: str = "g.db") ->
     if roster:
         (top / "roster.csv").write_text(roster, encoding="utf-8")
         more = (*more, "--roster", top / "roster.csv")
-    return here("batch", top / "class", "--gradebook", top / into, *more)
+    return run_in_process("batch", top / "class", "--gradebook", top / into, *more)
 
 
 def students(top: Path, into: str = "g.db") -> dict[str, dict[str, Any]]:
-    """Everyone's current grade, by key."""
-    done = here("export", "json", "--gradebook", top / into)
+    """Return everyone's current grade, by key."""
+    done = run_in_process("export", "json", "--gradebook", top / into)
     assert done.returncode == 0, done.stderr
-    return {each["id"]: each for each in json.loads(done.stdout)["students"]}
+    return {student["id"]: student for student in json.loads(done.stdout)["students"]}
 
 
 def mark(top: Path, who: str) -> None:
-    """Give somebody a manual mark."""
-    assert here("mark", who, "answer-floating-link", "3.5", "--gradebook", top / "g.db").returncode == 0
+    """Give a student a manual mark."""
+    assert run_in_process("mark", who, "answer-floating-link", "3.5", "--gradebook", top / "g.db").returncode == 0
 
 
 @pytest.mark.parametrize("name", ["alice", "ALICE", "Alice Ash", "Ash", "1"])
@@ -63,8 +63,8 @@ def test_a_team_cannot_submit_for_a_member_of_another(tmp_path: Path, name: str)
 
 @pytest.mark.parametrize("roster", ["", "id,name\nalice,Alice Ash\n"])
 @pytest.mark.parametrize("name", ["ALICE", "Alice", "alice~2", "\u0430lice", "Alice Ash", "alice ash"])
-def test_a_name_that_is_alike_takes_nothing_over(tmp_path: Path, name: str, roster: str) -> None:
-    """Beside alice another spelling of her name has a grade of its own, and hers stays with all manual marks."""
+def test_a_similar_name_takes_over_nothing(tmp_path: Path, name: str, roster: str) -> None:
+    """Another spelling of alice's name has its own grade, and hers stays with all manual marks."""
     submit(tmp_path / "class/alice", BAD)
     batch(tmp_path, roster=roster)
     mark(tmp_path, "alice")
@@ -78,11 +78,11 @@ def test_a_name_that_is_alike_takes_nothing_over(tmp_path: Path, name: str, rost
     shutil.rmtree(tmp_path / "class/alice")
     batch(tmp_path)
     assert students(tmp_path)["alice"]["marks_by_hand"] == 1
-    assert sum(each["marks_by_hand"] for each in students(tmp_path).values()) == 1
+    assert sum(student["marks_by_hand"] for student in students(tmp_path).values()) == 1
 
 
 def test_marks_never_leave_the_roster(tmp_path: Path) -> None:
-    """A roster entry keeps its marks though its folder is contested: no folder name moves them to `alice~2` or elsewhere."""
+    """A roster entry keeps its marks even if its folder is contested: no folder name moves them, to `alice~2` for example."""
     submit(tmp_path / "class/alice", BAD)
     roster = "id,login\n7,alice\n"
     batch(tmp_path, roster=roster)
@@ -92,13 +92,13 @@ def test_marks_never_leave_the_roster(tmp_path: Path) -> None:
     done = batch(tmp_path, roster=changed)
     assert "alice is ambiguous: it matches several students on the roster: left unassigned" in done.stderr
     after = students(tmp_path)
-    assert [after["7"][each] for each in ("score", "marks_by_hand", "status")] == [65.5, 1, "graded"]
+    assert [after["7"][key] for key in ("score", "marks_by_hand", "status")] == [65.5, 1, "graded"]
     assert before["score"] == 65.5
     assert after["alice"]["marks_by_hand"] == 0
 
 
-def test_sections_with_rosters_of_their_own(tmp_path: Path) -> None:
-    """A second class that is added leaves those of the first on their roster; who is taken off it is no longer expected."""
+def test_sections_with_their_own_rosters(tmp_path: Path) -> None:
+    """Adding a second class keeps the first one's students on their roster; a removed student is no longer expected."""
     for name in ("ann", "bea"):
         submit(tmp_path / "class" / name, BAD)
     batch(tmp_path, roster="id\nann\nbea\nabe\n")
@@ -113,8 +113,8 @@ def test_sections_with_rosters_of_their_own(tmp_path: Path) -> None:
         tmp_path / "second.csv",
         "--add",
     )
-    assert here(*added).returncode == 0
-    listed = here("export", "csv", "--gradebook", tmp_path / "g.db").stdout
+    assert run_in_process(*added).returncode == 0
+    listed = run_in_process("export", "csv", "--gradebook", tmp_path / "g.db").stdout
     assert [line.split(",")[0] for line in listed.splitlines()[1:]] == ["abe", "ann", "bea", "cal"]
     assert "not on the roster" not in batch(tmp_path).stdout
     shutil.rmtree(tmp_path / "class/bea")
@@ -124,7 +124,7 @@ def test_sections_with_rosters_of_their_own(tmp_path: Path) -> None:
 
 
 def test_contested_submissions_change_nothing(tmp_path: Path) -> None:
-    """Once a second folder claims the same student by name only, neither counts, and what was there before stays."""
+    """If a second folder claims the same student by name only, neither counts, and earlier results stay."""
     submit(tmp_path / "class/Alice Ash", BAD)
     roster = "id,name\n7,Alice Ash\n"
     batch(tmp_path, roster=roster)
@@ -145,27 +145,27 @@ def test_contested_submissions_change_nothing(tmp_path: Path) -> None:
         ("class/red", "Lab6/mallory", "../../blue/Lab6/bob"),
     ],
 )
-def test_a_symlink_brings_nobody_elses_work(tmp_path: Path, start: str, link: str, target: str) -> None:
-    """In every layout a symlink from one student's folder to another's is not followed: not as the submission, not as an attempt."""
-    for place in (
+def test_a_symlink_to_another_students_work_is_not_followed(tmp_path: Path, start: str, link: str, target: str) -> None:
+    """In every layout, neither as the submission nor as an attempt."""
+    for folder in (
         "class/lab6-bob",
         "class/submitted/bob/lab6",
         "class/red/Lab6/bob",
         "class/red/Lab6/ann",
         "class/blue/Lab6/bob",
     ):
-        if place.startswith(start):
-            submit(tmp_path / place)
+        if folder.startswith(start):
+            submit(tmp_path / folder)
     (tmp_path / start / link).parent.mkdir(parents=True, exist_ok=True)
     (tmp_path / start / link).symlink_to(target)
     batch(tmp_path)
-    found = {key: each for key, each in students(tmp_path).items() if "mallory" in key}
-    assert all(each["score"] in (0, None) and each["status"] != "graded" for each in found.values()), found
+    found = {key: student for key, student in students(tmp_path).items() if "mallory" in key}
+    assert all(student["score"] in (0, None) and student["status"] != "graded" for student in found.values()), found
 
 
 @pytest.mark.parametrize("target", ["../lab6-bob/src", "../lab6-bob/src/my_robot", "..", "../../class/lab6-bob", "/"])
 def test_a_symlink_in_a_submission_stays_in_it(tmp_path: Path, target: str) -> None:
-    """A symlink below a student's folder that leads out of it is ignored and named; one that stays in it is followed."""
+    """A symlink that leads out of a student's folder is ignored and listed; one that stays in it is followed."""
     submit(tmp_path / "class/lab6-bob")
     (tmp_path / "class/lab6-mallory").mkdir(parents=True)
     (tmp_path / "class/lab6-mallory/src").symlink_to(target)
@@ -180,7 +180,7 @@ def test_a_symlink_in_a_submission_stays_in_it(tmp_path: Path, target: str) -> N
 
 @pytest.mark.parametrize("roster", ["", "id\nann\nbea\ncal\ndee\n"])
 def test_another_class_is_refused(tmp_path: Path, roster: str) -> None:
-    """A class with no student in common is refused with a line that says what the gradebook holds, unless --add."""
+    """A class with no student in common is refused with a line that describes the gradebook, unless --add."""
     for name in ("ann", "bea", "cal", "dee"):
         submit(tmp_path / "class" / name)
     batch(tmp_path, roster=roster)
@@ -200,7 +200,7 @@ def test_another_class_is_refused(tmp_path: Path, roster: str) -> None:
 
 
 def test_another_rubric_is_refused(tmp_path: Path) -> None:
-    """Results of two labs never mix unasked."""
+    """Results of two labs are mixed only on request."""
     submit(tmp_path / "class/ann", BAD)
     batch(tmp_path)
     text = (ROOT / "rubrics" / "lab6.toml").read_text(encoding="utf-8").replace('id = "lab6"', 'id = "lab7"', 1)
@@ -219,7 +219,7 @@ def test_another_rubric_is_refused(tmp_path: Path) -> None:
     ],
 )
 def test_another_course_of_canvas_is_refused(tmp_path: Path, first: str, second: str, words: str) -> None:
-    """A roster that Canvas has exported for another course has none of the assignments of the first."""
+    """A roster that Canvas exported for another course has none of the assignments of the first."""
     submit(tmp_path / "class/ann", BAD)
     header = "Student,ID,SIS User ID,SIS Login ID,Section"
     batch(tmp_path, roster=f'{header},{first}\n"Ash, Ann",5,s5,ann,A{"," * (first.count(",") + 1)}\n')
@@ -228,32 +228,32 @@ def test_another_course_of_canvas_is_refused(tmp_path: Path, first: str, second:
 
 
 def test_another_assignment_of_moodle_is_refused(tmp_path: Path) -> None:
-    """Moodle gives the participants of each assignment other numbers: the same names with other numbers are another assignment."""
+    """Moodle numbers participants per assignment: the same names with other numbers are another assignment."""
     for number in (12, 13):
         submit(tmp_path / f"class/Jane Doe {number}_{number}_assignsubmission_file/my_robot", BAD)
     batch(tmp_path)
     for number in (12, 13):
-        place = tmp_path / "class" / f"Jane Doe {number}_{number}_assignsubmission_file"
-        place.rename(tmp_path / "class" / f"Jane Doe {number}_{number + 70}_assignsubmission_file")
+        folder = tmp_path / "class" / f"Jane Doe {number}_{number}_assignsubmission_file"
+        folder.rename(tmp_path / "class" / f"Jane Doe {number}_{number + 70}_assignsubmission_file")
     done = batch(tmp_path)
     assert done.returncode == 2
     assert "the Moodle ids of its students are not those of this class" in done.stderr
 
 
 @pytest.mark.parametrize("layout", ["moodle", "canvas"])
-def test_a_display_name_takes_nothing_over_later(tmp_path: Path, layout: str) -> None:
-    """The gradebook knows the number of a student whom the roster has by name only: the same name with another is not theirs."""
-    places = {
+def test_a_display_name_takes_over_nothing_later(tmp_path: Path, layout: str) -> None:
+    """The gradebook knows a student's number if the roster has only the name: another number is another student."""
+    paths = {
         "moodle": ("Bob Birch_12_assignsubmission_file", "Bob Birch_99_assignsubmission_file"),
         "canvas": ("birchbob_12_1001_robot", "birchbob_99_1002_robot"),
     }[layout]
-    submit(tmp_path / "class" / places[0], BAD)
-    submit(tmp_path / "class" / places[0].replace("12", "13").replace("Bob", "Eve").replace("bob", "eve"), BAD)
+    submit(tmp_path / "class" / paths[0], BAD)
+    submit(tmp_path / "class" / paths[0].replace("12", "13").replace("Bob", "Eve").replace("bob", "eve"), BAD)
     batch(tmp_path, "--layout", layout, roster="id,name\nbob,Bob Birch\neve,Eve Birch\n")
     mark(tmp_path, "bob")
     before = students(tmp_path)["bob"]
-    (tmp_path / "class" / places[0]).rename(tmp_path / "away")
-    submit(tmp_path / "class" / places[1])
+    (tmp_path / "class" / paths[0]).rename(tmp_path / "away")
+    submit(tmp_path / "class" / paths[1])
     done = batch(tmp_path, "--layout", layout)
     assert "has the name of bob, but another number: left unassigned" in done.stderr
     after = students(tmp_path)["bob"]
@@ -261,7 +261,7 @@ def test_a_display_name_takes_nothing_over_later(tmp_path: Path, layout: str) ->
 
 
 def test_a_display_name_removes_nobody(tmp_path: Path) -> None:
-    """Where the files of two users of Canvas can be read as each other's, neither is graded, and the grade so far stays."""
+    """If the files of two Canvas users can be read as each other's, neither is graded, and earlier grades stay."""
     (tmp_path / "class").mkdir()
     shutil.copy(BAD / "my_robot.urdf", tmp_path / "class/doejane_12_1001_6_robot.urdf")
     shutil.copy(BAD / "my_robot.urdf", tmp_path / "class/roerick_13_1002_robot.urdf")
@@ -275,9 +275,9 @@ def test_a_display_name_removes_nobody(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("roster", ["", "id,login\nalice,alice\n", "id,login,group\nalice,alice,team2\n"])
 def test_marks_stay_in_their_team(tmp_path: Path, roster: str) -> None:
-    """A folder of the same name in another team gets nothing of a team that is gone, with a roster or without."""
-    for place in ("team1/Lab6/mallory", "team1/Lab6/dave", "team2/Lab6/alice", "team2/Lab6/bob"):
-        submit(tmp_path / "class" / place, BAD)
+    """A folder of the same name in another team gets nothing of a removed team, with or without a roster."""
+    for folder in ("team1/Lab6/mallory", "team1/Lab6/dave", "team2/Lab6/alice", "team2/Lab6/bob"):
+        submit(tmp_path / "class" / folder, BAD)
     batch(tmp_path)
     mark(tmp_path, "team2/alice")
     (tmp_path / "class/team2").rename(tmp_path / "away")
@@ -290,7 +290,7 @@ def test_marks_stay_in_their_team(tmp_path: Path, roster: str) -> None:
 
 
 def test_two_exact_claims_are_contested(tmp_path: Path) -> None:
-    """A login that is equal to another student's id does not win over that student's own login."""
+    """A login that equals another student's id does not take precedence over that student's own login."""
     submit(tmp_path / "class/lab6-alice-gh", BAD)
     roster = "id,name,github\ns123456,Alice Ash,alice-gh\n"
     batch(tmp_path, roster=roster)
@@ -300,8 +300,8 @@ def test_two_exact_claims_are_contested(tmp_path: Path) -> None:
     assert students(tmp_path)["s123456"] == before
 
 
-def test_a_case_variant_takes_no_key_over_later(tmp_path: Path) -> None:
-    """Once alice's folder is gone, ALICE still is nobody's: her grade and marks stay as they were."""
+def test_a_case_variant_takes_over_no_key_later(tmp_path: Path) -> None:
+    """After alice's folder is removed, ALICE is still unmatched: her grade and marks stay as they were."""
     submit(tmp_path / "class/alice", BAD)
     submit(tmp_path / "class/ALICE")
     roster = "id\nalice\n"
@@ -314,7 +314,7 @@ def test_a_case_variant_takes_no_key_over_later(tmp_path: Path) -> None:
     assert students(tmp_path)["alice"] == before
 
 
-def test_a_folder_without_the_prefix_takes_nothing_over(tmp_path: Path) -> None:
+def test_a_folder_without_the_prefix_takes_over_nothing(tmp_path: Path) -> None:
     """In a class of `lab6-...`, a folder `alice` is not the one that was graded as alice's."""
     for name in ("lab6-alice", "lab6-carl"):
         submit(tmp_path / "class" / name, BAD)
@@ -323,7 +323,7 @@ def test_a_folder_without_the_prefix_takes_nothing_over(tmp_path: Path) -> None:
     submit(tmp_path / "class/alice")
     batch(tmp_path)
     found = students(tmp_path)
-    assert {key: (each["score"], each["marks_by_hand"]) for key, each in found.items()} == {
+    assert {key: (student["score"], student["marks_by_hand"]) for key, student in found.items()} == {
         "./alice": (90, 0),
         "./lab6-alice": (65.5, 1),
         "carl": (62, 0),
@@ -342,55 +342,55 @@ def test_another_assignment_of_nbgrader_is_refused(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("roster", ["", "id,login\n1,ann\n"])
 def test_a_fresh_download_is_not_refused(tmp_path: Path, roster: str) -> None:
-    """The same class in another folder goes into the same gradebook, and so does one whose roster comes later."""
+    """The same class in another folder, or with a roster that comes later, is accepted for the same gradebook."""
     submit(tmp_path / "class/lab6-ann", BAD)
     batch(tmp_path)
     (tmp_path / "class").rename(tmp_path / "old")
     submit(tmp_path / "class/lab6-ann")
     assert batch(tmp_path, roster=roster).returncode == 0
-    assert [each["score"] for each in students(tmp_path).values()] == [90]
+    assert [student["score"] for student in students(tmp_path).values()] == [90]
 
 
 def test_hostile_display_names_of_moodle_are_refused(tmp_path: Path) -> None:
-    """A full name that imitates a participant's number is ignored: it could be read as either."""
+    """A full name that imitates a participant's number is ambiguous and ignored."""
     submit(tmp_path / "class/Bob_7_assignsubmission_file/my_robot", BAD)
     submit(tmp_path / "class/Mallory_7_assignsubmission_file__9_assignsubmission_file/my_robot")
     done = batch(tmp_path)
     assert "Mallory_7_assignsubmission_file__9_assignsubmission_file" in done.stderr
-    assert {key: each["score"] for key, each in students(tmp_path).items()} == {"Bob_7": 62}
+    assert {key: student["score"] for key, student in students(tmp_path).items()} == {"Bob_7": 62}
 
 
 def test_hostile_display_names_of_canvas_are_refused(tmp_path: Path) -> None:
-    """A name that ends in another user's number could be read as theirs: beside the user's own files it is ignored."""
+    """A name that ends in another user's number is ambiguous: beside the user's own files it is ignored."""
     (tmp_path / "class").mkdir()
     shutil.copy(BAD / "my_robot.urdf", tmp_path / "class/smithbob_77_100_my_robot.urdf")
     shutil.copy(ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf", tmp_path / "class/mallory_77_99_101_my_robot.urdf")
     done = batch(tmp_path, "--layout", "canvas")
     assert "mallory_77_99_101_my_robot.urdf" in done.stderr
-    assert {key: each["score"] for key, each in students(tmp_path).items()} == {"smithbob_77": 62}
+    assert {key: student["score"] for key, student in students(tmp_path).items()} == {"smithbob_77": 62}
 
 
 def digested(key: str) -> str:
-    """A report's name with the whole digest of a key."""
+    """Return a report's name with the whole digest of a key."""
     return f"{key.replace(' ', '_')}-{sha256(key.encode()).hexdigest()}"
 
 
-def test_a_report_is_of_one_student(tmp_path: Path) -> None:
-    """Names that become alike in a file system have reports of their own, and an index says whose each is."""
+def test_a_report_belongs_to_one_student(tmp_path: Path) -> None:
+    """Names that collide in a file system have separate reports, and an index names their students."""
     names = ["Bob Smith", "Bob_Smith", "bob_smith", "CON", "a" * 200, "a" * 201, "Zoe\u0308", "Zo\u00eb"]
     names += ["Bob_Smith-7e3d89", digested("Bob Smith"), digested("BOB_SMITH")]
     for name in names:
         submit(tmp_path / "class" / name, BAD)
     batch(tmp_path, "--reports", tmp_path / "reports")
-    written = [each.name for each in (tmp_path / "reports").iterdir() if each.suffix == ".txt"]
-    assert len({each.casefold() for each in written}) == len(names)
+    written = [path.name for path in (tmp_path / "reports").iterdir() if path.suffix == ".txt"]
+    assert len({name.casefold() for name in written}) == len(names)
     index = dict(line.split(",") for line in (tmp_path / "reports/index.csv").read_text().splitlines()[1:])
     assert sorted(index.values()) == sorted(names)
-    assert sorted(f"{each}.txt" for each in index) == sorted(written)
+    assert sorted(f"{name}.txt" for name in index) == sorted(written)
 
 
-def test_a_report_of_another_student_is_not_written_over(tmp_path: Path) -> None:
-    """A folder with reports of another class is refused where a name stands for somebody else there."""
+def test_a_report_of_another_student_is_not_overwritten(tmp_path: Path) -> None:
+    """A folder with reports of another class is refused if a name belongs to another student there."""
     submit(tmp_path / "class/ann", BAD)
     (tmp_path / "reports").mkdir()
     (tmp_path / "reports/index.csv").write_text("report,id\r\nann,Ann Ash\r\n")

@@ -1,4 +1,4 @@
-"""Gradescope's folders, as an autograder finds them, and what it takes as results."""
+"""Gradescope's folders as an autograder finds them, and the results that Gradescope accepts."""
 
 import json
 import os
@@ -12,7 +12,7 @@ from typing import Any
 
 import jsonschema
 
-from tests.command_line import PATIENCE
+from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
 
 SCHEMA = json.loads((ROOT / "tests/report/schemas/gradescope.json").read_text())
@@ -27,7 +27,7 @@ METADATA = {
 
 
 class Autograder:
-    """A folder laid out as /autograder is, with the submission still empty."""
+    """A folder laid out like /autograder; the submission is empty at first."""
 
     def __init__(self, root: Path, source: Path, environment: Path) -> None:
         self.root = root
@@ -40,15 +40,15 @@ class Autograder:
 
     @property
     def submission(self) -> Path:
-        """Where the student's files are."""
+        """Return the folder of the student's files."""
         return self.root / "submission"
 
-    def hand_in(self, sample: str) -> None:
-        """Put one of the sample submissions there."""
+    def submit(self, sample: str) -> None:
+        """Copy one of the sample submissions into the submission folder."""
         shutil.copytree(ROOT / "submissions" / sample, self.submission, dirs_exist_ok=True)
 
     def run(self, **variables: str) -> dict[str, Any]:
-        """Run it as Gradescope does; what students see, which is always there, valid and without a path of this machine."""
+        """Run the autograder as Gradescope does and return the results, which are valid and without paths of this machine."""
         done = self.ended(**variables)
         assert done.returncode == 0, done
         text = (self.root / "results" / "results.json").read_text(encoding="utf-8")
@@ -59,7 +59,7 @@ class Autograder:
         return results
 
     def ended(self, **variables: str) -> subprocess.CompletedProcess[str]:
-        """How run_autograder ends, and what instructors see."""
+        """Return the exit of run_autograder and the output that instructors see."""
         return subprocess.run(
             [self.root / "run_autograder"],
             cwd=self.root,
@@ -68,12 +68,12 @@ class Autograder:
             stderr=subprocess.STDOUT,
             text=True,
             check=False,
-            timeout=PATIENCE,
+            timeout=HANG_TIMEOUT,
         )
 
 
 def unpacked(bundle: Path, into: Path) -> Path:
-    """The autograder's files, unpacked with their permissions as Gradescope does."""
+    """Unpack the autograder's files with their permissions, as Gradescope does."""
     with zipfile.ZipFile(bundle) as archive:
         archive.extractall(into)
         for entry in archive.infolist():
@@ -82,7 +82,7 @@ def unpacked(bundle: Path, into: Path) -> Path:
 
 
 def environment_for(source: Path, into: Path) -> Path:
-    """What setup.sh makes, but with the packages that are installed here already."""
+    """Make the environment that setup.sh makes, but with the packages that are installed here."""
     venv.create(into, symlinks=True)
     (packages,) = into.glob("lib/python*/site-packages")
     (packages / "autograder.pth").write_text(f"{source}\n{sysconfig.get_path('purelib')}\n")

@@ -1,4 +1,4 @@
-"""Random text in which a URDF's pieces, and what goes wrong between them, are likely."""
+"""Random text in which pieces of a URDF, and errors between them, are likely."""
 
 from hypothesis import strategies as st
 
@@ -116,4 +116,4 @@ robots = soups.map(lambda inside: f'<robot name="r">{inside}</robot>')
 links = soups.map(lambda inside: f'<robot name="r"><link name="a">{inside}</link></robot>')
 documents = (soups | robots | links).map(lambda text: text.encode("utf-8", "surrogatepass"))
 data = documents | st.lists(documents | st.binary(max_size=4), max_size=5).map(b"".join)
-"""Bytes for the reader: soup, soup inside a robot or a link, and soup with stray bytes in it."""
+"""Bytes for the reader: random text, alone or inside a robot or a link, and with stray bytes in it."""

@@ -1,4 +1,4 @@
-"""The samples of launch files, and what the reader tells of one in a form that is easy to compare."""
+"""The samples of launch files, and the results of evaluating one in a form that is easy to compare."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -33,11 +33,11 @@ _SIGNS = {True: "", False: "!", None: "?"}
 
 
 @dataclass(frozen=True)
-class Told:
-    """What is told of a launch file.
+class LaunchSummary:
+    """The results of evaluating a launch file, in a short form.
 
-    A node is named by its program, with its package before it where this has another name; ! is off, ? is perhaps. Of
-    anything else there is its line and its path or text; `wrong:` and `unknown:` stand before why there is no path.
+    A node is named by its program, preceded by its package if that has another name; ! means not started, ? unknown.
+    Everything else has its line and its path or text; `wrong:` and `unknown:` precede the reason why there is no path.
     """
 
     nodes: str = ""
@@ -50,13 +50,13 @@ class Told:
     syntax: str = ""
 
 
-def told(sample: str) -> Told:
-    """What the reader tells of a sample, which is installed in my_robot's folder launch."""
-    return in_short(read(SAMPLES[sample].read_bytes(), sample))
+def summarize_sample(sample: str) -> LaunchSummary:
+    """Return the results for a sample, which is installed in my_robot's folder launch."""
+    return summarize(read(SAMPLES[sample].read_bytes(), sample))
 
 
 def read(data: bytes, name: str, others: dict[str, bytes] = INNER) -> Launch:
-    """What the reader tells of a launch file of this name; `others` are installed, too."""
+    """Return the results for a launch file of this name; `others` are installed, too."""
 
     def installed(path: str) -> tuple[bytes, str] | None:
         return (others[path], path.removeprefix("share/my_robot/")) if path in others else None
@@ -64,9 +64,9 @@ def read(data: bytes, name: str, others: dict[str, bytes] = INNER) -> Launch:
     return read_launch(data, f"launch/{name}", f"{FOLDER}/{name}", installed)
 
 
-def in_short(launch: Launch) -> Told:
-    """What is told of a launch file, for comparing."""
-    return Told(
+def summarize(launch: Launch) -> LaunchSummary:
+    """Return the results for a launch file in a short form."""
+    return LaunchSummary(
         " ".join(_node(node.package, node.executable) + _SIGNS[node.when] for node in launch.nodes),
         tuple(map(_reference, launch.named("urdf"))),
         tuple(map(_reference, launch.named("rviz"))),
@@ -83,9 +83,9 @@ def _node(package: str, executable: str) -> str:
 
 
 def _fault(fault: LaunchFault) -> str:
-    """A fault with its line; the words of the parsers themselves differ between their versions."""
+    """Return a fault with its line; the parsers' own messages differ between their versions."""
     parsers = ("Python cannot read the file", "not readable as XML", "not readable as YAML")
-    message = next((each for each in parsers if fault.message.startswith(f"{each}: ")), fault.message)
+    message = next((parser for parser in parsers if fault.message.startswith(f"{parser}: ")), fault.message)
     return f"{fault.location.line}: {message}"
 
 

@@ -1,4 +1,4 @@
-"""Ways to ask a check about a robot or a submission: alone, as a criterion of a rubric, and where it cannot answer."""
+"""Helpers that run a check on a robot or a submission: alone, as a criterion of a rubric, or if something is missing."""
 
 import re
 from collections.abc import Callable
@@ -16,7 +16,7 @@ from grader.grading.rubric import Criterion, Part, Rubric
 from grader.source import Location
 from grader.submission.submission import read_submission
 from tests.checks.robots import PATH, Scene
-from tests.checks.submitted import Submitted
+from tests.checks.submissions import Submitted
 
 AnyCheck = Callable[..., Outcome]
 Arguments = dict[str, Any]
@@ -27,32 +27,32 @@ _EXPLANATION = re.compile(r" \(URDF\d{3}: .*\)\Z", re.DOTALL)
 
 
 def ask(check: AnyCheck, of: Scene | Submitted, /, **arguments: Any) -> Outcome:
-    """What a check finds."""
+    """Return the outcome of a check."""
     return check(_subject(check, of), **arguments)
 
 
 def finds(check: AnyCheck, submitted: Submitted, /, **arguments: Any) -> Finding:
-    """What a check finds in a submission: status, message and place."""
+    """Return status, message and location of a check's outcome for a submission."""
     outcome = ask(check, submitted, **arguments)
     return outcome.status, outcome.message, outcome.location
 
 
 def missing(check: AnyCheck, of: Scene | Submitted, /, **arguments: Any) -> MissingElement:
-    """What a check misses; fails the test if it finds an answer."""
+    """Return the message of the MissingElement that a check raises; fail the test if it returns an outcome."""
     with pytest.raises(MissingElement) as caught:
         ask(check, of, **arguments)
     return caught.value
 
 
 def lacks(check: AnyCheck, submitted: Submitted, /, **arguments: Any) -> Lack:
-    """What a check misses in a submission: kind, name, message and place."""
+    """Return kind, name, message and location of the MissingElement that a check raises for a submission."""
     error = missing(check, submitted, **arguments)
     assert error.location is None or isinstance(error.location, Location)
     return error.kind, error.name, str(error), error.location
 
 
 def graded(check: AnyCheck, of: Scene | Submitted, /, **arguments: Any) -> Outcome:
-    """The outcome of a rubric's only criterion, which names this check."""
+    """Return the outcome of a rubric's only criterion, which uses this check."""
     criterion = Criterion("only", "The only one", "all", Decimal(1), describe(check), arguments)
     rubric = Rubric("test", "Test", (Part("all", "All"),), (criterion,), "robot.urdf", "", b"", Path("test.toml"))
     single = of.text.encode() if isinstance(of, Scene) else b""
@@ -61,7 +61,7 @@ def graded(check: AnyCheck, of: Scene | Submitted, /, **arguments: Any) -> Outco
 
 
 def passes(check: AnyCheck, scene: Scene, **arguments: Any) -> str:
-    """The message of a check, which must pass and point to no place."""
+    """Return the message of a check, which must pass without a location."""
     outcome = ask(check, scene, **arguments)
     assert outcome.status == "passed", outcome
     assert outcome.location is None, outcome
@@ -69,12 +69,12 @@ def passes(check: AnyCheck, scene: Scene, **arguments: Any) -> str:
 
 
 def fails(check: AnyCheck, scene: Scene, *, at: str | None = None, **arguments: Any) -> str:
-    """The own message of a check, which must fail; `at` begins at the place that it must point to."""
+    """Return the message of a check, which must fail; `at` is the text at its location."""
     outcome = graded(check, scene, **arguments)
     assert outcome.status == "failed", outcome
-    expected: Location | None = scene.place(at) if at is not None else outcome.location
+    expected: Location | None = scene.location_of(at) if at is not None else outcome.location
     assert outcome.location == expected, (outcome, expected)
-    return own_words(outcome)
+    return own_message(outcome)
 
 
 def _subject(check: AnyCheck, of: Scene | Submitted) -> object:
@@ -84,6 +84,6 @@ def _subject(check: AnyCheck, of: Scene | Submitted) -> object:
     return of.reading if subject == "urdf" else of.robot
 
 
-def own_words(outcome: Outcome) -> str:
-    """A message without what a grade run adds to it: the reader's problem at the same place, in parentheses."""
+def own_message(outcome: Outcome) -> str:
+    """Return a message without the problem of the reader that a grade run adds in parentheses."""
     return _EXPLANATION.sub("", outcome.message)

@@ -1,4 +1,4 @@
-"""What students hand in, as values: files by their paths, and the submission that they make, without a disk."""
+"""Submissions as values: files by their paths, and the submission read from them, without a disk."""
 
 import struct
 import zlib
@@ -27,13 +27,13 @@ _RUBRICS = Path(__file__).parents[2] / "rubrics" / "lab6"
 
 @dataclass(frozen=True)
 class Submitted:
-    """Files by their paths: what a student has handed in."""
+    """The files of a submission by their paths."""
 
     files: Mapping[str, str | bytes]
 
     @cached_property
     def submission(self) -> Submission:
-        """What the grader sees of it."""
+        """Return the submission that the grader reads from the files."""
         files = [_file(path, self.data(path)) for path in self.files]
         tree = make_tree(
             "submission",
@@ -47,22 +47,22 @@ class Submitted:
 
     @property
     def package(self) -> Package:
-        """The package that is graded; there has to be one."""
+        """Return the package that is graded; there must be one."""
         package = self.submission.package
         assert package is not None, sorted(self.files)
         return package
 
     def data(self, path: str) -> bytes:
-        """The bytes of a file."""
+        """Return the bytes of a file."""
         content = self.files[path]
         return content.encode() if isinstance(content, str) else content
 
     def with_files(self, files: Mapping[str, str | bytes]) -> "Submitted":
-        """The same with these files, new ones or others in place of those that there are."""
+        """Return a copy with these files added or replaced."""
         return Submitted({**self.files, **files})
 
     def without(self, *paths: str) -> "Submitted":
-        """The same without some files, or folders with all that is in them; each must be there."""
+        """Return a copy without some files or folders, all of which must exist."""
         left = dict(self.files)
         for path in paths:
             gone = [name for name in left if name == path or name.startswith(path + "/")]
@@ -72,19 +72,19 @@ class Submitted:
         return Submitted(left)
 
     def renaming(self, old: str, new: str) -> "Submitted":
-        """The same with a file or folder under another path."""
+        """Return a copy with a file or folder under another path."""
         moved = {path: path.replace(old, new, 1) for path in self.files if path == old or path.startswith(old + "/")}
         assert moved, f"{old} is not among {sorted(self.files)}"
         return Submitted({moved.get(path, path): content for path, content in self.files.items()})
 
     def replacing(self, path: str, old: str, new: str) -> "Submitted":
-        """The same with another text everywhere in a file, which must hold it."""
+        """Return a copy in which a text of a file, which must occur, is replaced everywhere."""
         text = self.data(path).decode()
         assert old in text, f"{old!r} does not stand in {path}:\n{text}"
         return self.with_files({path: text.replace(old, new)})
 
-    def place(self, path: str, text: str) -> Location:
-        """Where a text begins in a file, which must stand there just once."""
+    def location_of(self, path: str, text: str) -> Location:
+        """Return the location of a text in a file, which must occur exactly once."""
         whole = self.data(path).decode()
         assert whole.count(text) == 1, f"{text!r} stands {whole.count(text)} times in {path}:\n{whole}"
         before = whole[: whole.index(text)]
@@ -92,12 +92,12 @@ class Submitted:
 
 
 def start_of(path: str) -> Location:
-    """The place of what a file is without."""
+    """Return the location of something that is missing in a file: its start."""
     return Location(path, 1, 1)
 
 
 def png(width: int = 640, height: int = 480) -> bytes:
-    """A picture with nothing on it."""
+    """Return an empty PNG."""
 
     def chunk(kind: bytes, data: bytes) -> bytes:
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
@@ -108,12 +108,12 @@ def png(width: int = 640, height: int = 480) -> bytes:
 
 
 def gif(width: int = 320, height: int = 240) -> bytes:
-    """The beginning of a GIF, which tells its size."""
+    """Return the beginning of a GIF, which contains its size."""
     return b"GIF89a" + struct.pack("<HH", width, height) + b"\x00\x00\x00\x3b"
 
 
 def jpeg(width: int = 800, height: int = 600) -> bytes:
-    """The beginning of a JPEG, which tells its size."""
+    """Return the beginning of a JPEG, which contains its size."""
     return (
         b"\xff\xd8\xff\xc0\x00\x11\x08"
         + struct.pack(">HH", height, width)

@@ -1,4 +1,4 @@
-"""What cannot be read is no way to a green check, and is told where findings are told."""
+"""Content that cannot be read is not a green check, and is reported with the findings."""
 
 import json
 import shutil
@@ -14,44 +14,44 @@ URDF = ROOT / "rubrics" / "lab6" / "my_robot" / "urdf" / "my_robot.urdf"
 
 
 def graded(path: Path, *options: str) -> tuple[int, str]:
-    """The exit code of grading a path, and its annotations."""
+    """Return the exit code for a path, and its annotations."""
     done = run(("grade", str(path), "--format", "github", *options))
     return done.returncode, done.stdout.decode()
 
 
 @pytest.mark.parametrize("name", ["lab6.zip", "notes.tar.gz"])
-def test_an_archive_that_does_not_open(tmp_path: Path, name: str) -> None:
-    """Alone or beside a URDF: what may be in it is not decided, and the check is red."""
+def test_an_unreadable_archive(tmp_path: Path, name: str) -> None:
+    """Alone or beside a URDF: its content is undecided, and the check is red."""
     (tmp_path / name).write_bytes(b"no archive")
-    code, told = graded(tmp_path)
+    code, reported = graded(tmp_path)
     assert code == 1
-    assert f"::warning title=urdf-loads::No URDF was found, but {name} could not be opened" in told
+    assert f"::warning title=urdf-loads::No URDF was found, but {name} could not be opened" in reported
     shutil.copy(URDF, tmp_path)
-    code, told = graded(tmp_path)
+    code, reported = graded(tmp_path)
     assert code == 1
-    assert f"::warning title=package-found::No package was found, but {name} could not be opened" in told
-    assert "Could not be decided (20 points): package-found, " in told
+    assert f"::warning title=package-found::No package was found, but {name} could not be opened" in reported
+    assert "Could not be decided (20 points): package-found, " in reported
 
 
 def test_a_urdf_that_is_too_large(tmp_path: Path) -> None:
-    """The rest is graded, Task 1 waits for a person, and the check is red until somebody has looked."""
+    """The rest is graded, Task 1 needs manual grading, and the check is red."""
     shutil.copytree(REFERENCE, tmp_path / "work")
     [urdf] = (tmp_path / "work").rglob("*.urdf")
     urdf.write_bytes(urdf.read_bytes() + b"<!-- " + b"x" * 1_100_000 + b" -->")
-    code, told = graded(tmp_path / "work")
+    code, reported = graded(tmp_path / "work")
     assert code == 1
-    assert "::warning title=urdf-loads::" in told or "::warning file=" in told
-    assert "Could not be decided (70 points)" in told
+    assert "::warning title=urdf-loads::" in reported or "::warning file=" in reported
+    assert "Could not be decided (70 points)" in reported
 
 
-def test_what_a_person_marks_anyway_is_green() -> None:
-    """Pictures and written answers wait for a person in every hand-in."""
+def test_regular_manual_grading_is_green() -> None:
+    """Pictures and written answers need manual grading in every submission."""
     assert graded(REFERENCE) == (0, graded(REFERENCE)[1])
     assert "::warning" not in graded(REFERENCE)[1]
 
 
 def test_with_a_threshold_only_the_score_counts(tmp_path: Path) -> None:
-    """Green if and only if the score reaches it: neither passing everything else nor an undecided criterion changes that."""
+    """Green if and only if the score reaches it: neither other passes nor undecided criteria change that."""
     assert graded(REFERENCE, "--fail-under", "90")[0] == 0
     assert graded(REFERENCE, "--fail-under", "90.5")[0] == 1
     assert graded(REFERENCE, "--fail-under", "95%")[0] == 1
@@ -64,41 +64,41 @@ def test_with_a_threshold_only_the_score_counts(tmp_path: Path) -> None:
 
 
 def test_xacro_that_cannot_be_expanded_is_not_green(tmp_path: Path) -> None:
-    """Nothing of it is decided: exit code 1, and standard error and the annotation say what was not decided."""
+    """Nothing of it is decided: exit code 1, and standard error and the annotation name the undecided criteria."""
     macro = '<xacro:macro name="m" params="x"><link name="${x}"/></xacro:macro><xacro:m x="base_link"/>'
     text = f'<robot name="my_robot" xmlns:xacro="http://www.ros.org/wiki/xacro">{macro}</robot>'
     (tmp_path / "my_robot.urdf.xacro").write_text(text)
     done = run(("grade", str(tmp_path / "my_robot.urdf.xacro")))
     assert done.returncode == 1
     assert b"grader: exit code 1: could not be decided, and needs manual grading: urdf-loads, base-box, " in done.stderr
-    code, told = graded(tmp_path / "my_robot.urdf.xacro")
+    code, reported = graded(tmp_path / "my_robot.urdf.xacro")
     assert code == 1
-    assert "Could not be decided (70 points): urdf-loads, base-box, " in told
+    assert "Could not be decided (70 points): urdf-loads, base-box, " in reported
     assert graded(tmp_path / "my_robot.urdf.xacro", "--fail-under", "0")[0] == 0
 
 
-def test_findings_in_an_archive_of_a_folder_are_on_the_archive(tmp_path: Path) -> None:
-    """The repository has no file inside it; the words say where it is."""
+def test_findings_in_an_archive_are_on_the_archive(tmp_path: Path) -> None:
+    """The repository has no file inside it; the text has the location."""
     with zipfile.ZipFile(tmp_path / "lab6.zip", "w") as archive:
         archive.write(ROOT / "submissions" / "several-mistakes" / "my_robot.urdf", "my_robot.urdf")
     (tmp_path / ".git").mkdir()
-    _, told = graded(tmp_path)
-    assert "::error file=lab6.zip,title=base-green (6 points lost)::" in told
-    assert "In lab6.zip/my_robot.urdf:6:14." in told
+    _, reported = graded(tmp_path)
+    assert "::error file=lab6.zip,title=base-green (6 points lost)::" in reported
+    assert "In lab6.zip/my_robot.urdf:6:14." in reported
     done = run(("grade", str(tmp_path), "--format", "codeclimate"))
-    assert {each["location"]["path"] for each in json.loads(done.stdout)} <= {"lab6.zip", "lab6.zip/my_robot.urdf"}
+    assert {issue["location"]["path"] for issue in json.loads(done.stdout)} <= {"lab6.zip", "lab6.zip/my_robot.urdf"}
 
 
-def test_what_causes_most_is_told_first() -> None:
+def test_the_most_consequential_failure_comes_first() -> None:
     """A criterion counts for those that are skipped because of it."""
-    _, told = graded(ROOT / "submissions" / "several-mistakes")
-    first = told.splitlines()[1]
+    _, reported = graded(ROOT / "submissions" / "several-mistakes")
+    first = reported.splitlines()[1]
     assert "title=package-found (20 points lost)::" in first
     assert "Skipped because of it: 11 more, 19 points." in first
 
 
-def test_many_files_push_nothing_out(tmp_path: Path) -> None:
-    """Of what was passed over the first dozen is told in a report that people read, and all of it in JSON."""
+def test_many_files_hide_nothing(tmp_path: Path) -> None:
+    """Of the ignored files the first dozen are listed in text reports, and all of them in JSON."""
     shutil.copytree(REFERENCE, tmp_path / "work")
     for number in range(40):
         (tmp_path / "work" / f"robot_{number}.urdf").write_text("<robot name='r'/>", encoding="utf-8")
@@ -110,18 +110,18 @@ def test_many_files_push_nothing_out(tmp_path: Path) -> None:
     assert len(json.loads(done.stdout)["submission"]["passed_over"]) == 40
 
 
-def test_what_is_graded_is_not_written_over(tmp_path: Path) -> None:
+def test_inputs_are_not_overwritten(tmp_path: Path) -> None:
     """Neither the URDF, alone or in its folder, nor the rubric; and nothing else is written then."""
     shutil.copy(URDF, tmp_path / "my_robot.urdf")
     shutil.copy(ROOT / "rubrics" / "lab6.toml", tmp_path / "lab.toml")
-    for place, over in (
+    for folder, over in (
         (tmp_path / "my_robot.urdf", "my_robot.urdf"),
         (tmp_path, "my_robot.urdf"),
         (tmp_path, "lab.toml"),
     ):
         before = (tmp_path / over).read_bytes()
         options = ("--rubric", str(tmp_path / "lab.toml"), "--save", f"json={tmp_path / 'a.json'}")
-        done = run(("grade", str(place), *options, "--save", f"markdown={tmp_path / over}"))
+        done = run(("grade", str(folder), *options, "--save", f"markdown={tmp_path / over}"))
         assert done.returncode == 2
         assert b"which is graded: choose another file" in done.stderr
         assert (tmp_path / over).read_bytes() == before
@@ -129,7 +129,7 @@ def test_what_is_graded_is_not_written_over(tmp_path: Path) -> None:
 
 
 def test_a_report_may_be_saved_to_standard_output(tmp_path: Path) -> None:
-    """Beside the one that is printed, in a pipe and in a file."""
+    """It follows the printed one, in a pipe and in a file."""
     arguments = (
         "grade",
         str(URDF),

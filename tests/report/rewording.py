@@ -1,4 +1,4 @@
-"""The same report with other words wherever a student's may stand."""
+"""The same report with other text wherever a student's text may be."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -13,22 +13,25 @@ Words = Callable[[], str]
 
 
 def recast(report: Report, words: Words) -> Report:
-    """A report of the same results, in other words: messages, notes, problems, paths, names, lines that are quoted."""
+    """Return a report with the same results and other text: messages, notes, problems, paths, names, quoted lines."""
 
     def path() -> str:
         return f"a{printable(words())}"
 
-    problems = tuple(replace(each, message=words(), location=Location(path(), 2, 3)) for each in other_problems(report))
+    problems = tuple(
+        replace(problem, message=words(), location=Location(path(), 2, 3)) for problem in other_problems(report)
+    )
     return replace(
         report,
         submission=_submission(report.submission, words, path),
-        results=tuple(_result(each, words, path) for each in report.results),
+        results=tuple(_result(result, words, path) for result in report.results),
         problems=problems,
         notes=tuple(words() for _ in report.notes),
         exhibits=tuple(
-            each._replace(files=tuple(replace(file, path=path()) for file in each.files)) for each in report.exhibits
+            exhibit._replace(files=tuple(replace(file, path=path()) for file in exhibit.files))
+            for exhibit in report.exhibits
         ),
-        others=tuple(replace(each, path=path()) for each in report.others),
+        others=tuple(replace(other, path=path()) for other in report.others),
     )
 
 

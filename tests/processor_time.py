@@ -1,4 +1,4 @@
-"""A limit of processor time for a block, so that a slow input fails its test instead of holding up the others."""
+"""A limit on processor time for a block, so that a slow input fails its test instead of delaying the others."""
 
 import signal
 from collections.abc import Iterator
@@ -7,7 +7,7 @@ from threading import current_thread, main_thread
 from time import process_time
 from types import FrameType
 
-# The limits tell linear time from quadratic, which takes twenty seconds and more for a megabyte. A busy machine, and a
+# The limits separate linear time from quadratic time, which takes twenty seconds and more for a megabyte. A busy machine, and a
 # process that holds the objects of five thousand tests, take three times as long as a quiet one.
 BUSY = 2.5
 
@@ -18,9 +18,9 @@ class TooSlow(AssertionError):
 
 @contextmanager
 def processor_time(limit: float) -> Iterator[None]:
-    """Fail if the block takes more than so many seconds; where the system has no timers, only when it is done.
+    """Fail if the block takes more than so many seconds; without timers in the system, only at its end.
 
-    The seconds are those of a quiet machine.
+    The seconds are those of an idle machine.
     """
     limit *= BUSY
     start = process_time()
