@@ -7,6 +7,7 @@ from grader.checks.outcome import Outcome, Status, failed, judged, passed, pendi
 from grader.errors import MissingElement, NotDecided
 from grader.names import closest
 from grader.package.launch.places import (
+    HOME,
     PREFIX,
     SHARE,
     WORKING_FOLDER,
@@ -159,7 +160,7 @@ def _verdict(package: Package, named: "Reference") -> Verdict:
         owner, _, rest = path.removeprefix(f"{SHARE}/").partition("/")
         return _below_share(package, owner, rest, named)
     if is_of_one_machine(path):
-        return "failed", f"{looks} {one_machine_only(path)}"
+        return "failed", f"{looks} {path.replace(HOME, '~')}, which exists on one machine only"
     if path.startswith(WORKING_FOLDER) or not path.startswith("/"):
         shown = path.removeprefix(WORKING_FOLDER + "/")
         if shown.startswith("~"):

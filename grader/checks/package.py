@@ -97,7 +97,7 @@ def _readable_setup(package: Package) -> "Setup | Outcome":
     """
     setup = package.setup
     if package.is_cmake:
-        reason = "the grader does not evaluate CMakeLists.txt, which says what is installed"
+        reason = "the grader does not evaluate CMakeLists.txt, which lists what is installed"
         return pending(f"{reason}; needs manual grading")
     if setup is None:
         message = "the package has no setup.py, so a build of an ament_python package installs nothing"

@@ -73,7 +73,7 @@ _ID = constrained(
     Constraint("one printable word", lambda text: text.isprintable() and len(text.split(" ")) == 1 and text != ""),
 )
 _TITLE = constrained(
-    simple_type("a text", _TEXT.schema, lambda value: isinstance(value, str), lambda text: " ".join(text.split())),
+    simple_type("a string", _TEXT.schema, lambda value: isinstance(value, str), lambda text: " ".join(text.split())),
     Constraint("a non-empty string", bool),
 )
 _TIME = simple_type(

@@ -171,4 +171,6 @@ def is_stdout(path: Path) -> bool:
 def missing_folder(path: Path) -> InputError:
     """Return the error for a file whose folder does not exist."""
     folder = printable(str(path.parent))
-    return InputError(f"cannot write {printable(str(path))}: there is no folder {folder} (mkdir -p {folder} makes it)")
+    return InputError(
+        f"cannot write {printable(str(path))}: there is no folder {folder} (create it with `mkdir -p {folder}`)"
+    )

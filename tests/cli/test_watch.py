@@ -228,7 +228,7 @@ def test_a_rubric_in_a_file_is_watched(robot: Path, tmp_path: Path) -> None:
     text = (ROOT / "rubrics" / "lab6.toml").read_text()
     rubric.write_text(text)
     with Watch(robot, "--rubric", rubric) as watch:
-        watch.out.until("explains the first failed criterion")
+        watch.out.until("64 / 70 points")
         put(text.replace("points = 6", "points = -6"), rubric)
         assert "lab.toml:" in watch.err.until("\n")
         put("id = [", rubric)

@@ -44,11 +44,11 @@ class Gradebook(AbstractContextManager["Gradebook"]):
         self.shown = printable_path(path)
         if not create and not path.exists():
             command = f"grader batch PATH --gradebook {self.shown}"
-            raise InputError(f"there is no gradebook {self.shown}: create it with {command}")
+            raise InputError(f"there is no gradebook {self.shown}: create it with `{command}`")
         if not path.parent.exists():
             folder = printable_path(path.parent)
             raise InputError(
-                f"cannot create the gradebook {self.shown}: there is no folder {folder} (mkdir -p {folder} makes it)"
+                f"cannot create the gradebook {self.shown}: there is no folder {folder} (create it with `mkdir -p {folder}`)"
             )
         with self.input_errors():
             self.connection = sqlite3.connect(path, timeout=_BUSY_TIMEOUT, isolation_level=None)

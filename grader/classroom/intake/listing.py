@@ -93,7 +93,7 @@ class ZipListing:
             with path.open("rb") as file:
                 for count, member in enumerate(zip_members(file)):
                     if count >= MAX_MEMBERS or len(self._folders) > MAX_MEMBERS:
-                        raise InputError(f"{printable_path(path)} holds more than {MAX_MEMBERS} files, the limit")
+                        raise InputError(f"{printable_path(path)} contains more than {MAX_MEMBERS} files, the limit")
                     self._add(member)
         except ARCHIVE_ERRORS as error:
             raise InputError(f"{printable_path(path)} cannot be read as a zip: {error_text(error)}") from None

@@ -32,8 +32,8 @@ def launch_stem(name: str) -> str:
 
 
 def one_machine_only(path: str) -> str:
-    """Return the words for a path that leads to one machine."""
-    return f"{path.replace(HOME, '~')}, which exists on one machine only"
+    """Return the message about a path that is hard-coded for one machine."""
+    return f"the path {path.replace(HOME, '~')} exists on one machine only"
 
 
 def is_of_one_machine(path: str) -> bool:
