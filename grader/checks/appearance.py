@@ -21,7 +21,7 @@ Shown = TypeVar("Shown", Box, Cylinder, Sphere)
 def shows_box(robot: Configuration, *, link: str, size: Size, tolerance: NonNegative) -> Outcome:
     """A link shows a box whose edges along the link's x, y and z axes have the given lengths in metres."""
     edges = [(_edges(visual, box), visual) for visual, box in _shown(robot, link, Box)]
-    actual, visual = min(edges, key=lambda pair: _difference(pair[0], size))
+    actual, visual = edges[0] if len(edges) == 1 else min(edges, key=lambda pair: _difference(pair[0], size))
     is_turned = actual is None or _all_within(sorted(actual), sorted(size), tolerance)
     is_turned = is_turned and any(visual.origin.rpy)
     at = place(visual.origin.location, "rpy") if is_turned else place(visual.geometry.location, "size")
@@ -38,7 +38,7 @@ def shows_cylinder(
     """A link shows a cylinder of the given radius and length in metres."""
     expected = (radius, length)
     sizes = [((abs(shape.radius), abs(shape.length)), shape) for _, shape in _shown(robot, link, Cylinder)]
-    actual, best = min(sizes, key=lambda pair: _difference(pair[0], expected))
+    actual, best = sizes[0] if len(sizes) == 1 else min(sizes, key=lambda pair: _difference(pair[0], expected))
     fine = _all_within(actual, expected, tolerance)
     message = f"{link!r} shows a cylinder of radius {point(actual[:1])} m and length {point(actual[1:])} m"
     if not fine:
@@ -128,7 +128,10 @@ def _edges(visual: Visual, box: Box) -> Vector | None:
 
 
 def _all_within(actual: Sequence[float], expected: Sequence[float], tolerance: float) -> bool:
-    return all(within(a, b, tolerance) for a, b in zip(actual, expected, strict=True))
+    for a, b in zip(actual, expected, strict=True):  # a loop takes half the time of `all`
+        if not within(a, b, tolerance):
+            return False
+    return True
 
 
 def _difference(actual: Sequence[float] | None, expected: Sequence[float]) -> float:

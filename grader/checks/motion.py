@@ -37,8 +37,10 @@ def rolls_forward(
     joint = _turning_joint(robot, link, base)
     ahead, upward = unit(forward) or forward, unit(up) or up
     poses = [(visual.geometry, visual_pose(robot, link, visual, base)) for visual in visuals(robot, link)]
-    lowest = min(poses, key=lambda shape: extent(shape[0], shape[1], upward)[0])
-    highest = max(poses, key=lambda shape: extent(shape[0], shape[1], upward)[1])
+    lowest = highest = poses[0]
+    if len(poses) > 1:
+        lowest = min(poses, key=lambda shape: extent(shape[0], shape[1], upward)[0])
+        highest = max(poses, key=lambda shape: extent(shape[0], shape[1], upward)[1])
     low, high = farthest(*lowest, minus((0.0, 0.0, 0.0), upward)), farthest(*highest, upward)
     displaced = robot.displacement(link, joint, _SMALL_ANGLE, relative_to=base)
     moved_low = _flat(minus(displaced.apply(low), low), upward)

@@ -167,7 +167,7 @@ def point(values: tuple[float, ...]) -> str:
 
 def place(element: LazyLocation | None, attribute: str | None = None, inside: str | None = None) -> LazyLocation | None:
     """Return the place of an element that was read from the file, of one of its attributes, or of an element inside."""
-    return element._replace(attribute=attribute, inside=inside) if element is not None else None
+    return LazyLocation(element.source, element.tag, attribute, inside) if element is not None else None
 
 
 @lru_cache(maxsize=4096)
