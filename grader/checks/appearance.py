@@ -1,7 +1,7 @@
 """Checks of the appearance of a link: the shape, size and colour of its visuals."""
 
 from collections.abc import Sequence
-from itertools import permutations
+from itertools import permutations, repeat
 from math import cos, radians
 from typing import TypeVar
 
@@ -128,10 +128,7 @@ def _edges(visual: Visual, box: Box) -> Vector | None:
 
 
 def _all_within(actual: Sequence[float], expected: Sequence[float], tolerance: float) -> bool:
-    for a, b in zip(actual, expected, strict=True):  # a loop takes half the time of `all`
-        if not within(a, b, tolerance):
-            return False
-    return True
+    return all(map(within, actual, expected, repeat(tolerance)))
 
 
 def _difference(actual: Sequence[float] | None, expected: Sequence[float]) -> float:
