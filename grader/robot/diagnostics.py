@@ -96,14 +96,15 @@ class ElementReader:
         """`consequence` says what ROS 2 does about a defect; the name of the `link` is put where it has {}."""
         self._problems = problems
         self._kind = kind
-        self._consequence = consequence.format(quoted(link))
+        self._consequence = consequence
         self._link = link
         self.failed = False
 
     def fail(self, reason: str, element: Element, attribute: str | None = None) -> None:
         """Add a problem: the element is lost."""
         self.failed = True
-        self._problems.add(self._kind, f"{reason}; {self._consequence}", element, attribute, self._link)
+        consequence = self._consequence.format(quoted(self._link))
+        self._problems.add(self._kind, f"{reason}; {consequence}", element, attribute, self._link)
 
     def number(self, element: Element, attribute: str, default: float = 0.0) -> float:
         """Return an attribute's number, or the default if it is not given."""
