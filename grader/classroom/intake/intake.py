@@ -28,7 +28,7 @@ class _Placed(NamedTuple):
 class Intake:
     """The submissions of a class. `ignored` says in lines what in the folder is not a submission, and why.
 
-    With a roster, `unmatched` are the keys of submissions of nobody on it (they are graded all the same), `absent` are students
+    With a roster, `unmatched` are the keys of submissions of students who are not on it (they are graded too), `absent` are students
     without a submission, `contested` students with several possible submissions: none is assigned, and the gradebook keeps the
     earlier one. `notes` says which submissions are ambiguous. `assignments` are the names of the assignment in nbgrader or Canvas.
     """

@@ -52,7 +52,7 @@ class Preflight:
     """What importing the filled file does.
 
     `filled` rows are changed and `unchanged` ones have the grade already; all other students' rows are removed from the file, so that
-    nothing of theirs can change. `ungraded` are rows of students without a grade, `unknown` rows that match nobody, `missing`
+    nothing of theirs can change. `ungraded` are rows of students without a grade, `unknown` rows that match no student, `missing`
     students with a grade but without a row, `ambiguous` rows and students with several possible matches, which are left
     unassigned. `kept_feedback` are rows with a comment that a person wrote.
     """
