@@ -98,7 +98,7 @@ def test_the_best_match_is_shown() -> None:
 
 
 def test_a_table_of_contents_is_no_answer() -> None:
-    """A heading without text below it is passed over in favour of one with an answer."""
+    """A heading with an answer below it is preferred to one without text."""
     text = "Contents\nTask 1 Step 15 ..... 2\nTask 2 Step 2 ..... 3\n\nTask 1 Step 15\nIt vanishes, for it has two roots.\n"
     assert passage({"answers.txt": text})[0] == "Task 1 Step 15\nIt vanishes, for it has two roots."
     assert passage({"answers.txt": "Task 1 Step 15: yes"})[0] == "Task 1 Step 15: yes"

@@ -215,7 +215,7 @@ def gradescope_text(text: str) -> str:
     )
 
 
-_FINDINGS = "it holds what is to be mended, a line each, and nothing else"
+_FINDINGS = "it contains what to fix, one finding per line, and nothing else"
 _TESTS = "it has a test for each criterion, and no room for anything else"
 _ALIKE_LINES = "criteria in a row that are skipped, or wait, for one reason are one line"
 _NAMED = "of ten notices one names all that wait and all that are skipped"

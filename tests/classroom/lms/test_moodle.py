@@ -177,7 +177,7 @@ def test_no_comment_leaves_the_cell_unchanged() -> None:
 
 
 def test_a_comment_starts_no_formula() -> None:
-    """A written cell starts no formula, whoever wrote the comment."""
+    """A written cell starts no formula, regardless of who wrote the comment."""
     assert cells(fill(worksheet(row(1)), graded("1", feedback="=1+1", moodle="1")))[1][9] == "'=1+1"
 
 
