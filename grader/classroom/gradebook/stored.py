@@ -58,7 +58,7 @@ class StoredSubmission(NamedTuple):
 
     @property
     def enrolment(self) -> Enrolment:
-        """What the roster said about the student."""
+        """Return the enrolment that the roster gives the student."""
         return Enrolment(*self.profile[_COUNT:])
 
     @property

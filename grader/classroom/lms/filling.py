@@ -49,7 +49,7 @@ class Conflict(NamedTuple):
 
 @dataclass(slots=True)
 class Preflight:
-    """What importing the filled file does.
+    """The effects of importing the filled file.
 
     `filled` rows are changed and `unchanged` ones have the grade already; all other students' rows are removed from the file, so that
     nothing of theirs can change. `ungraded` are rows of students without a grade, `unknown` rows that match no student, `missing`
