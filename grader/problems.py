@@ -8,7 +8,7 @@ from typing import Literal
 from grader.source import Location
 
 Severity = Literal["error", "warning", "note"]
-Effect = Literal["rejects", "drops", "loads", "other"]
+Effect = Literal["rejects", "undetermined", "drops", "loads", "other"]
 
 
 @dataclass(frozen=True, slots=True)

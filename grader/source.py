@@ -15,11 +15,15 @@ _ATTRIBUTE = re.compile(r"""\s*([^\s=/>"']+)\s*=\s*(?:"[^"]*"|'[^']*')""")
 
 @dataclass(frozen=True, slots=True)
 class Location:
-    """A location in a file of the submission; line and column count from 1, columns in characters."""
+    """A location in a file of the submission; line and column count from 1, columns in characters.
+
+    `calls` are the macro calls of xacro that led to it, outermost first: the name of each macro, and where it is called.
+    """
 
     path: str
     line: int
     column: int
+    calls: "tuple[tuple[str, Location], ...]" = ()
 
 
 class Source:

@@ -1,6 +1,7 @@
 """XML read by lxml, which may open nothing: no file, no network, no entity; and a URDF as TinyXML2 reads it."""
 
 import re
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from lxml import etree
@@ -29,6 +30,16 @@ _DEFAULT_NAMESPACE = re.compile(rb"xmlns[ \t\r\n]*=")
 _PLAIN_START = re.compile(
     rb"""(?!<\?|\xff\xfe|\xfe\xff|\xef\xbb\xbf)|<\?xml\s+version\s*=\s*["']1\.0["'](?:\s+encoding\s*=\s*["'](?i:utf-8)["'])?\s*\?>"""
 )
+
+
+class Unresolved(NamedTuple):
+    """What is not known of an expanded element: attributes that are left as written, with the reason, and its content.
+
+    The reason of an attribute is empty where xacro refuses it, so that nothing about it is unknown.
+    """
+
+    attributes: Mapping[str, str]
+    content: str = ""  # why it may have more attributes and children; empty where it has no more
 
 
 class XmlDocument(NamedTuple):

@@ -1,0 +1,162 @@
+"""Walks the elements of a xacro file and writes the expanded ones, in the order of xacro."""
+
+from collections.abc import Callable, Mapping
+from typing import NamedTuple
+
+from grader.problems import Kind, Problem
+from grader.source import Location
+from grader.static_python.closed import Budget, OutOfSteps
+from grader.static_python.closed_values import ExpressionFails, Undetermined, Value
+from grader.xacro import catalogue
+from grader.xacro.files import FileFails, Files, XmlFails
+from grader.xacro.functions import document_functions
+from grader.xacro.macros import MacroError
+from grader.xacro.nodes import Node, Place
+from grader.xacro.scopes import Reported, Scope
+from grader.xacro.texts import Texts
+from grader.xacro.yaml_values import read_yaml_values
+
+_MAX_STEPS = 60_000
+_MAX_LISTED = 100
+
+
+class TagFails(ExpressionFails):
+    """A xacro tag with a missing or wrong attribute."""
+
+
+class Open(NamedTuple):
+    """Something that cannot be determined statically, and where it is used."""
+
+    reason: str
+    location: Location
+
+
+class Scopes(NamedTuple):
+    """The macros and properties that are known at a place."""
+
+    macros: Scope
+    symbols: Scope
+
+
+# Expands one xacro tag: its element, the expanded element that the result goes into, and the scopes.
+Handler = Callable[["Expander", Node, Node, Scopes], None]
+_KINDS: Mapping[type[ExpressionFails], Kind] = {
+    MacroError: catalogue.XACRO_MACRO,
+    FileFails: catalogue.XACRO_FILE,
+    XmlFails: catalogue.XACRO_NOT_XML,
+    TagFails: catalogue.XACRO_TAG,
+}
+
+
+class Expander:
+    """The state of one expansion. `calls` are the macro calls around the current place."""
+
+    def __init__(self, files: Files, arguments: Mapping[str, str], handlers: Mapping[str, Handler], other: Handler) -> None:
+        """`handlers` expand xacro's own tags, and `other` every other tag that begins with xacro: a macro call."""
+        self.files = files
+        self.budget = Budget(_MAX_STEPS)
+        own = document_functions(self._load_yaml, lambda name: self.texts.argument(name))
+        self.texts = Texts(dict(arguments), self.budget, self.report, own)
+        self.problems: list[Problem] = []
+        self.undetermined: list[Open] = []
+        self.calls: tuple[tuple[str, Place], ...] = ()
+        self._handlers = handlers
+        self._other = other
+
+    def root(self, source: Node) -> Node:
+        """Return the expanded root element of a document."""
+        scopes = Scopes(Scope(), Scope())
+        out = self.start(source, scopes)
+        try:
+            self.content(source, out, scopes)
+        except (OutOfSteps, RecursionError):
+            self.leave_open(out, Undetermined("expanding this file takes too long"), source.place)
+        return out
+
+    def content(self, source: Node, out: Node, scopes: Scopes) -> None:
+        """Expand the children of an element into another. What is refused or cannot be determined is left out."""
+        out.open = out.open or source.open
+        for child in source.children:
+            place = child.place if isinstance(child, Node) else source.place
+            try:
+                if isinstance(child, Node):
+                    self._element(child, out, scopes)
+                else:
+                    out.children.append(self.texts.text(child, scopes.symbols))
+            except OutOfSteps:
+                raise
+            except ExpressionFails as error:
+                self.refuse(error, place)
+            except Undetermined as error:
+                self.leave_open(out, error, place)
+
+    def start(self, source: Node, scopes: Scopes) -> Node:
+        """Return an element with its attributes expanded, without its children."""
+        place = source.place
+        out = Node(source.tag, place if place.calls is not None else place._replace(calls=self.calls))
+        out.moved, out.unresolved = source.moved, dict(source.unresolved)
+        for name, text in source.attributes.items():
+            if "$" not in text or name in out.unresolved:
+                value = text
+            else:
+                value = self._attribute(out, name, text, scopes)
+            if not name.startswith("xacro:"):
+                out.attributes[name] = value
+        return out
+
+    def refuse(self, error: ExpressionFails, place: Place, attribute: str | None = None) -> None:
+        """List that xacro refuses something, unless it is listed already."""
+        if not isinstance(error, Reported):
+            self.report(str(error), place, attribute, _KINDS.get(type(error), catalogue.XACRO_EXPRESSION))
+
+    def report(
+        self, message: str, place: Place, attribute: str | None, kind: Kind = catalogue.XACRO_EXPRESSION
+    ) -> None:
+        """List a problem at a place."""
+        location = self._placed(place).at(attribute)
+        problem = Problem(kind, f"{message}; xacro stops here, and ROS 2 gets no robot", location)
+        if len(self.problems) < _MAX_LISTED and problem not in self.problems:
+            self.problems.append(problem)
+
+    def leave_open(self, out: Node, error: Undetermined, place: Place) -> None:
+        """Note that an expanded element may have more content than is known."""
+        out.open = out.open or str(error)
+        self.note(error, place)
+
+    def note(self, error: Undetermined, place: Place, attribute: str | None = None) -> None:
+        """List something that cannot be determined."""
+        found = Open(str(error), self._placed(place).at(attribute))
+        if len(self.undetermined) < _MAX_LISTED and found not in self.undetermined:
+            self.undetermined.append(found)
+
+    def _placed(self, place: Place) -> Place:
+        return place if place.calls is not None else place._replace(calls=self.calls)
+
+    def _element(self, node: Node, out: Node, scopes: Scopes) -> None:
+        self.budget.spend()
+        handler = self._handlers.get(node.tag)
+        if handler is not None:
+            handler(self, node, out, scopes)
+        elif node.tag.startswith("xacro:"):
+            self._other(self, node, out, scopes)
+        else:
+            new = self.start(node, scopes)
+            out.children.append(new)
+            self.content(node, new, scopes)
+
+    def _attribute(self, out: Node, name: str, text: str, scopes: Scopes) -> str:
+        """Return the value of an attribute; its text as it is written where it has none."""
+        try:
+            return self.texts.text(text, scopes.symbols)
+        except OutOfSteps:
+            raise
+        except ExpressionFails as error:
+            self.refuse(error, out.place, name)
+            out.unresolved[name] = ""
+        except Undetermined as error:
+            self.note(error, out.place, name)
+            out.unresolved[name] = str(error)
+        return text
+
+    def _load_yaml(self, name: Value) -> Value:
+        return read_yaml_values(self.files.read(self.files.path(str(name))))

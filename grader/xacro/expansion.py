@@ -1,0 +1,95 @@
+"""A xacro file, expanded statically, as the document that ROS 2 reads; every element keeps its place in the source.
+
+xacro (ros/xacro 2.1) stops at the first thing that it refuses. Here it becomes a problem, and the rest is expanded all the
+same, so that one defect does not hide another.
+"""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from lxml import etree
+
+from grader.problems import Problem
+from grader.source import Location, Source
+from grader.static_python.closed_values import Undetermined
+from grader.xacro import catalogue
+from grader.xacro.expander import Expander, Open
+from grader.xacro.files import Files, Workspace
+from grader.xacro.nodes import Node, Place, read_nodes
+from grader.xacro.tags import CALL, HANDLERS
+from grader.xml.parsing import Element, Unresolved, XMLSyntaxError
+
+__all__ = ("Expansion", "Open", "Workspace", "expand")
+_MAX_ELEMENTS = 50_000
+
+
+class Expansion(NamedTuple):
+    """An expanded file. `root` is None where it cannot be expanded at all."""
+
+    root: Element | None
+    source: Source
+    problems: tuple[Problem, ...]  # what xacro refuses
+    undetermined: tuple[Open, ...]  # what cannot be determined statically
+    unresolved: Mapping[Element, Unresolved]  # the elements that are not known completely
+
+
+class ExpandedSource(Source):
+    """The text of a xacro file, whose start tags are those of the expanded elements."""
+
+    def __init__(self, source: Source, nodes: list[Node]) -> None:
+        super().__init__(source.path, source.text)
+        self._nodes = nodes
+
+    def tag(self, index: int, attribute: str | None = None) -> Location:
+        """Return the location in the source of an expanded element, or of an attribute if it has it."""
+        node = self._nodes[index]
+        moved = node.moved.get(attribute) if attribute is not None else None
+        return node.place.at(attribute) if moved is None else moved.at("value")
+
+    def next_tag(self, index: int, name: str) -> int:
+        """Return the index of the first expanded element of this name after another one; that one if there is none."""
+        others = range(index + 1, len(self._nodes))
+        return next((other for other in others if self._nodes[other].tag == name), index)
+
+
+def expand(data: bytes, path: str, workspace: Workspace, arguments: Mapping[str, str]) -> Expansion:
+    """Return a xacro file as xacro expands it with these arguments; never raises. `path` is that in the submission."""
+    plain = Source(path, data.decode("utf-8", "surrogateescape"))
+    try:
+        source = read_nodes(data, path)
+    except XMLSyntaxError as error:
+        line, column = error.position
+        location = Location(path, max(line or 1, 1), max(column or 1, 1))
+        message = f"xacro needs well-formed XML: {error.msg}; xacro stops here, and ROS 2 gets no robot"
+        return Expansion(None, plain, (Problem(catalogue.XACRO_NOT_XML, message, location),), (), {})
+    except Undetermined as error:
+        return Expansion(None, plain, (), (Open(str(error), plain.at(0)),), {})
+    expander = Expander(Files(workspace, path), arguments, HANDLERS, CALL)
+    root = expander.root(source)
+    nodes: list[Node] = []
+    unresolved: dict[Element, Unresolved] = {}
+    element = _element(root, nodes, unresolved)
+    return Expansion(
+        element, ExpandedSource(plain, nodes), tuple(expander.problems), tuple(expander.undetermined), unresolved
+    )
+
+
+def _element(root: Node, nodes: list[Node], unresolved: dict[Element, Unresolved]) -> Element:
+    """Return the elements of lxml for expanded ones; `nodes` becomes the latter in document order."""
+    made = etree.Element(root.tag, root.attributes)
+    pending: list[tuple[Node, Element]] = [(root, made)]
+    while pending:
+        node, element = pending.pop()
+        nodes.append(node)
+        if node.unresolved or node.open:
+            unresolved[element] = Unresolved(node.unresolved, node.open)
+        children: list[tuple[Node, Element]] = []
+        for child in node.children:
+            if isinstance(child, Node):
+                children.append((child, etree.SubElement(element, child.tag, child.attributes)))
+            elif children:
+                children[-1][1].tail = (children[-1][1].tail or "") + child
+            else:
+                element.text = (element.text or "") + child
+        pending += reversed(children)
+    return made

@@ -1,0 +1,89 @@
+"""The files that a xacro file names: where they are in the submission, and what is in them."""
+
+import posixpath
+import re
+from collections.abc import Callable, Collection
+from fnmatch import fnmatchcase
+from typing import NamedTuple
+
+from grader.errors import InputError, NotDecided
+from grader.static_python.closed_values import ExpressionFails, Undetermined
+from grader.xacro.texts import INSTALLED
+from grader.xml.parsing import XMLSyntaxError
+from grader.xacro.nodes import Node, read_nodes
+
+_GLOB = re.compile(r"[*\[?]")
+_MAX_OPEN = 50  # files that include each other
+_MAX_FILES = 200  # that one pattern names
+
+
+class Workspace(NamedTuple):
+    """The files of a submission, as xacro sees them."""
+
+    read: Callable[[str], bytes]  # the bytes of a file by its path; raises InputError, or NotDecided
+    package: Callable[[str], str | None]  # the folder of a package of the submission, None for other packages
+    paths: Collection[str] = ()
+    installed: Callable[[str, str], str | None] = lambda *_: None  # the file that a build installs at a path in a package
+
+
+class FileFails(ExpressionFails):
+    """A file that is not there."""
+
+
+class XmlFails(ExpressionFails):
+    """A file that is not well-formed XML, at `line` and `column`."""
+
+
+class Files:
+    """The files that are open while a document is expanded, innermost last."""
+
+    def __init__(self, workspace: Workspace, path: str) -> None:
+        self._workspace = workspace
+        self.open = [path]
+
+    def named(self, text: str) -> list[str]:
+        """Return the paths of the files that an include names: several for a pattern."""
+        path = self.path(text)
+        if not _GLOB.search(text):
+            return [path]
+        return sorted(other for other in self._workspace.paths if _matches(other, path))[:_MAX_FILES]
+
+    def path(self, text: str) -> str:
+        """Return the path in the submission of a file that the innermost file names. Raises Undetermined."""
+        if text.startswith(f"{INSTALLED}/"):
+            name, _, inside = text.removeprefix(f"{INSTALLED}/").partition("/")
+            inside = posixpath.normpath(inside.removeprefix(f"share/{name}").lstrip("/") or ".")
+            folder = self._workspace.package(name)
+            if folder is None:
+                raise Undetermined(f"the package {name} is not part of the submission")
+            source = self._workspace.installed(name, inside)
+            path = source if source is not None else posixpath.normpath(posixpath.join(folder, inside))
+        else:
+            path = posixpath.normpath(posixpath.join(posixpath.dirname(self.open[-1]), text))
+        if path.startswith(("/", "../")) or path == "..":
+            raise Undetermined(f"{text} is outside the submission")
+        return path
+
+    def read(self, path: str) -> bytes:
+        """Return the bytes of a file. Raises FileFails for one that does not exist, Undetermined."""
+        try:
+            return self._workspace.read(path)
+        except InputError as error:
+            raise FileFails(str(error)) from None
+        except NotDecided as error:
+            raise Undetermined(str(error)) from None
+
+    def nodes(self, path: str) -> Node:
+        """Return the root element of an included file."""
+        if self.open.count(path) and len(self.open) > _MAX_OPEN:
+            raise FileFails(f"{path} includes itself again and again")
+        try:
+            return read_nodes(self.read(path), path)
+        except XMLSyntaxError as error:
+            raise XmlFails(f"{path} is not well-formed XML: {error.msg}") from None
+
+
+def _matches(path: str, pattern: str) -> bool:
+    """Return whether a path matches a pattern folder by folder."""
+    steps, patterns = path.split("/"), pattern.split("/")
+    return len(steps) == len(patterns) and all(map(fnmatchcase, steps, patterns))

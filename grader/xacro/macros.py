@@ -1,0 +1,122 @@
+"""Macros of xacro: their parameters, and what a call binds to them."""
+
+import re
+from typing import NamedTuple
+
+from grader.static_python.closed_values import ExpressionFails, Undetermined
+from grader.xacro.nodes import Node
+from grader.xacro.scopes import Scope
+from grader.xacro.texts import Texts
+
+# A parameter with a default, as xacro reads it: name, := or =, perhaps ^ or ^|, and the default's text up to a space.
+_WITH_DEFAULT = re.compile(
+    r"""\s*([^\s:=]+?)\s*:?=\s*(\^\|?)?(\$\{.*?\}|\$\(.*?\)|(?:'.*?'|\".*?\"|[^\s'\"]+)+|)(?:\s+|$)(.*)""", re.ASCII
+)
+_MAX_PARAMETERS = 200
+
+
+class MacroError(ExpressionFails):
+    """A macro that is not defined, or a call that does not fit its parameters."""
+
+
+class Parameter(NamedTuple):
+    """A parameter: `default` is its text, `is_forwarded` whether the caller's property of this name comes before it."""
+
+    name: str
+    default: str | None = None
+    is_forwarded: bool = False
+
+    @property
+    def is_block(self) -> bool:
+        """Return whether it takes an element."""
+        return self.name.startswith("*")
+
+
+class Macro(NamedTuple):
+    """A macro: its element, whose children a call inserts."""
+
+    name: str
+    body: Node
+    parameters: tuple[Parameter, ...]
+
+
+def read_parameters(text: str) -> tuple[Parameter, ...]:
+    """Return the parameters in the attribute params of a macro."""
+    parameters: list[Parameter] = []
+    while text:
+        found = _WITH_DEFAULT.match(text)
+        if found is None:
+            words = text.lstrip().split(None, 1)
+            if not words:
+                raise MacroError("the parameters of this macro end with a space")
+            parameters.append(Parameter(words[0]))
+            text = words[1] if len(words) > 1 else ""
+        else:
+            name, forward, default, text = found.groups()
+            parameters.append(Parameter(name, default or None, is_forwarded=bool(forward)))
+        if len(parameters) > _MAX_PARAMETERS:
+            raise Undetermined("a macro has too many parameters")
+    return tuple(parameters)
+
+
+def find_macro(name: str, macros: Scope, symbols: Scope) -> tuple[Macro, Scope, Scope] | None:
+    """Return the macro of a name, which may begin with namespaces, and the scopes in which it is defined."""
+    holder = macros.holder(name)
+    if holder is None and "." in name:
+        *namespaces, name = name.split(".")
+        for space in namespaces:
+            inner_macros, inner_symbols = _namespace(space, macros), _namespace(space, symbols)
+            if inner_macros is None or inner_symbols is None:
+                return None
+            macros, symbols = inner_macros, inner_symbols
+        holder = macros.holder(name)
+    macro = holder.properties[name].value if holder is not None else None
+    return (macro, macros, symbols) if isinstance(macro, Macro) else None
+
+
+def _namespace(name: str, scope: Scope) -> Scope | None:
+    holder = scope.holder(f"{name}.")
+    value = holder.properties[f"{name}."].value if holder is not None else None
+    return value if isinstance(value, Scope) else None
+
+
+def bind_values(macro: Macro, call: Node, caller: Scope, inner: Scope, texts: Texts) -> list[Parameter]:
+    """Bind the parameters that a call gives values in attributes; return the others."""
+    left = list(macro.parameters)
+    for name, text in call.attributes.items():
+        parameter = next((parameter for parameter in left if parameter.name == name), None)
+        if parameter is None:
+            known = ", ".join(parameter.name for parameter in macro.parameters) or "none"
+            raise MacroError(f"the macro {macro.name} has no parameter {name}; it has: {known}")
+        left.remove(parameter)
+        texts.bind(inner, name, text, caller, call.place, name)
+    return left
+
+
+def bind_blocks(macro: Macro, blocks: list[Node], left: list[Parameter], inner: Scope) -> None:
+    """Bind the parameters that are elements to the children of a call."""
+    waiting = list(blocks)
+    for parameter in left:
+        if parameter.is_block:
+            if not waiting:
+                raise MacroError(f"this call of the macro {macro.name} has no element for {parameter.name}")
+            inner.bind(parameter.name, waiting.pop(0))
+    if waiting:
+        raise MacroError(f"the macro {macro.name} takes no element <{waiting[0].tag}> here")
+
+
+def bind_defaults(macro: Macro, left: list[Parameter], call: Node, caller: Scope, inner: Scope, texts: Texts) -> None:
+    """Bind the parameters that the call does not give."""
+    missing = [it.name for it in left if not it.is_block and it.default is None and not it.is_forwarded]
+    for parameter in left:
+        if parameter.is_block or parameter.name in missing:
+            continue
+        holder = caller.holder(parameter.name) if parameter.is_forwarded else None
+        if holder is not None:
+            inner.bind(parameter.name, texts.find(parameter.name, caller))
+        elif parameter.default is not None:
+            texts.bind(inner, parameter.name, parameter.default, caller, macro.body.place, "params")
+        else:
+            missing.append(parameter.name)
+    if missing:
+        raise MacroError(f"this call of the macro {macro.name} gives no value for {', '.join(missing)}")

@@ -1,0 +1,88 @@
+"""The elements of a xacro file before and after expansion, each with the place in the source that it came from."""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+from grader.source import Location, Source
+from grader.static_python.closed_values import Undetermined
+from grader.xml.parsing import Element, parse_xml
+
+Children = list["Node | str"]
+
+
+class Place(NamedTuple):
+    """A start tag in a source file; `calls` are the macro calls that led to it, outermost first, None before expansion."""
+
+    source: Source
+    tag: int
+    calls: "tuple[tuple[str, Place], ...] | None" = None
+
+    def at(self, attribute: str | None = None) -> Location:
+        """Return the location of the tag, or of an attribute if it has it, with the macro calls."""
+        location = self.source.tag(self.tag, attribute)
+        if not self.calls:
+            return location
+        return replace(location, calls=tuple((macro, place.at()) for macro, place in self.calls))
+
+
+class Node:
+    """An element. `unresolved` holds why attributes are left as written: they are refused, or cannot be determined."""
+
+    __slots__ = ("attributes", "children", "moved", "open", "place", "tag", "unresolved")
+
+    def __init__(self, tag: str, place: Place, attributes: dict[str, str] | None = None) -> None:
+        self.tag = tag
+        self.place = place
+        self.attributes: dict[str, str] = attributes if attributes is not None else {}
+        self.children: Children = []
+        self.unresolved: dict[str, str] = {}  # attribute -> why it cannot be determined; empty where xacro refuses it
+        self.open = ""  # why it may have more children or attributes than these
+        self.moved: dict[str, Place] = {}  # the places of attributes that <xacro:attribute> sets
+
+    @property
+    def elements(self) -> "list[Node]":
+        """The children that are elements."""
+        return [child for child in self.children if isinstance(child, Node)]
+
+
+def read_nodes(data: bytes, path: str) -> Node:
+    """Return the root of an XML file. Raises XMLSyntaxError, and Undetermined for a file with entities of its own."""
+    root = parse_xml(data)
+    definitions = root.getroottree().docinfo.internalDTD
+    if definitions is not None and any(True for _ in definitions.iterentities()):
+        raise Undetermined("entities of a DOCTYPE are not supported")
+    source = Source(path, data.decode("utf-8", "surrogateescape"))
+    nodes: dict[Element, Node] = {}
+    for index, element in enumerate(root.iter()):
+        node = nodes[element] = Node(_tag(element), Place(source, index), _attributes(element))
+        _add_text(node.children, element.text)
+        parent = element.getparent()
+        if parent is not None:
+            children = nodes[parent].children
+            children.append(node)
+            _add_text(children, element.tail)
+    return nodes[root]
+
+
+def _add_text(children: Children, text: str | None) -> None:
+    if text and not text.isspace():
+        children.append(text)
+
+
+def _tag(element: Element) -> str:
+    tag = str(element.tag)
+    local = tag.rpartition("}")[2]
+    return f"{element.prefix}:{local}" if element.prefix else local
+
+
+def _attributes(element: Element) -> dict[str, str]:
+    attributes = dict(element.attrib)
+    if not any(name.startswith("{") for name in attributes):
+        return attributes  # type: ignore[return-value]
+    prefixes = {uri: prefix for prefix, uri in element.nsmap.items() if prefix} | {_XML: "xml"}
+    named = (name[1:].partition("}") if name.startswith("{") else ("", "", name) for name in attributes)
+    names = [f"{prefixes[uri]}:{local}" if uri else local for uri, _, local in named]
+    return dict(zip(names, attributes.values(), strict=True))  # type: ignore[arg-type]
+
+
+_XML = "http://www.w3.org/XML/1998/namespace"

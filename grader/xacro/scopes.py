@@ -1,0 +1,108 @@
+"""The names that xacro binds: properties, evaluated when they are first used, and macros, in nested scopes."""
+
+from collections.abc import Callable
+
+from grader.static_python.closed_values import ExpressionFails, Undetermined, Value
+from grader.xacro.nodes import Place
+
+# What a scope needs to evaluate a text in it, and to report that xacro refuses one.
+Evaluate = Callable[[str, "Scope"], Value]
+Report = Callable[[str, Place, str], None]
+
+
+class Reported(ExpressionFails):
+    """Something that xacro refuses, which is already listed as a problem."""
+
+
+class Property:
+    """A value, or the text whose value is determined at the first use; `failure` is why it has none."""
+
+    __slots__ = ("failure", "is_lazy", "is_open", "place", "value")
+
+    def __init__(self, value: Value, *, is_lazy: bool, place: Place | None) -> None:
+        value = literal(value)
+        self.value = value
+        self.is_lazy = is_lazy and isinstance(value, str)
+        self.place = place
+        self.is_open = False  # whether it is being evaluated
+        self.failure: ExpressionFails | Undetermined | None = None
+
+
+class Scope:
+    """The names of one macro call, one namespace or the whole document."""
+
+    def __init__(self, parent: "Scope | None" = None, *, is_namespace: bool = False) -> None:
+        self.parent = parent
+        self.is_namespace = is_namespace
+        self.properties: dict[str, Property] = {}
+
+    @property
+    def top(self) -> "Scope":
+        """The scope of the whole document."""
+        scope = self
+        while scope.parent is not None:
+            scope = scope.parent
+        return scope
+
+    def holder(self, name: str) -> "Scope | None":
+        """Return the nearest scope that binds a name."""
+        scope: Scope | None = self
+        while scope is not None and name not in scope.properties:
+            scope = scope.parent
+        return scope
+
+    def names(self) -> list[str]:
+        """Return the names that are bound here."""
+        own = [name for name in self.properties if name.isidentifier()]
+        return own + (self.parent.names() if self.parent is not None else [])
+
+    def bind(self, name: str, value: Value, *, is_lazy: bool = False, place: Place | None = None) -> None:
+        """Give a name a value, or a text that is evaluated lazily."""
+        self.properties[name] = Property(value, is_lazy=is_lazy, place=place)
+
+    def remove(self, name: str) -> None:
+        """Remove a name from this scope and those around it."""
+        scope: Scope | None = self
+        while scope is not None:
+            scope.properties.pop(name, None)
+            scope = scope.parent
+
+    def value(self, name: str, evaluate: Evaluate, report: Report) -> Value:
+        """Return the value of a name that this scope binds itself."""
+        found = self.properties[name]
+        if found.failure is not None:
+            raise found.failure
+        if not found.is_lazy:
+            return found.value
+        if found.is_open:
+            raise ExpressionFails(f"the property {name} is defined by itself")
+        found.is_open = True
+        try:
+            found.value, found.is_lazy = literal(evaluate(found.value, self)), False
+        except ExpressionFails as error:
+            if found.place is not None and not isinstance(error, Reported):
+                report(str(error), found.place, "value")
+            found.failure = Reported(str(error))
+            raise found.failure from None
+        except Undetermined as error:
+            found.failure = error
+            raise
+        finally:
+            found.is_open = False
+        return found.value
+
+
+def literal(value: Value) -> Value:
+    """Return the number or boolean that a text is for xacro, else the text, without single quotes around it."""
+    if not isinstance(value, str):
+        return value
+    if len(value) >= 2 and value[0] == "'" == value[-1]:
+        return value[1:-1]
+    if "_" in value:
+        return value
+    for kind in (int, float):
+        try:
+            return kind(value)
+        except ValueError:
+            pass
+    return {"true": True, "True": True, "false": False, "False": False}.get(value, value)

@@ -1,0 +1,248 @@
+"""xacro's own tags: one function for each, as `eval_all` of ros/xacro handles it."""
+
+from collections.abc import Mapping
+from keyword import iskeyword
+
+from grader.names import did_you_mean
+from grader.static_python.closed import OutOfSteps
+from grader.static_python.closed_values import Undetermined, Value
+from grader.xacro.expander import Expander, Handler, Scopes, TagFails
+from grader.xacro.files import FileFails
+from grader.xacro.macros import (
+    Macro,
+    MacroError,
+    bind_blocks,
+    bind_defaults,
+    bind_values,
+    find_macro,
+    read_parameters,
+)
+from grader.xacro.nodes import Node
+from grader.xacro.scopes import Reported, Scope
+
+_MAX_CALLS = 100  # macros that call each other
+
+
+def _needed(node: Node, name: str) -> str:
+    """Return an attribute that xacro requires."""
+    if name not in node.attributes:
+        raise TagFails(f"<{node.tag}> has no attribute {name}")
+    return node.attributes[name]
+
+
+def _boolean(value: Value, text: str) -> bool:
+    """Return the boolean that a condition has as its value."""
+    if not isinstance(value, str):
+        return bool(value)
+    try:
+        return {"true": True, "True": True, "false": False, "False": False}.get(value) or (
+            value not in ("false", "False") and bool(int(value))
+        )
+    except ValueError:
+        raise TagFails(f'the condition "{text}" gives "{value}", which is neither true nor false') from None
+
+
+def _flag(node: Node, name: str, default: str, expander: Expander, scopes: Scopes) -> bool:
+    text = node.attributes.get(name) or default
+    return _boolean(expander.texts.evaluate(text, scopes.symbols), text)
+
+
+def _property(expander: Expander, node: Node, _: Node, scopes: Scopes) -> None:
+    symbols, texts, given = scopes.symbols, expander.texts, node.attributes
+    name = texts.text(_needed(node, "name"), symbols)
+    if not name.isidentifier() or iskeyword(name):
+        raise TagFails(f"the name of a property must be a Python identifier, not {name!r}")
+    if name.startswith("__"):
+        raise TagFails(f"the name of a property must not begin with two underscores: {name}")
+    is_removed = _flag(node, "remove", "false", expander, scopes)
+    if ("value" in given) + ("default" in given) + is_removed > 1:
+        raise TagFails(f"the property {name} has more than one of value, default and remove")
+    if is_removed and texts.is_bound(name, symbols):
+        symbols.remove(name)
+        return
+    text = given.get("value")
+    if "default" in given:
+        if texts.is_bound(name, symbols):
+            return
+        text = given["default"]
+    value: Value = text
+    if text is None:
+        name, value = f"**{name}", node
+    is_lazy = _flag(node, "lazy_eval", "true", expander, scopes)
+    target = symbols
+    if given.get("scope") == "global":
+        target, is_lazy = symbols.top, False
+    elif given.get("scope") == "parent":
+        if symbols.parent is None:
+            raise TagFails(f"the property {name} has the scope parent, but is outside of every macro")
+        target, is_lazy = _outer(symbols), False
+    if is_lazy or text is None:
+        target.bind(name, value, is_lazy=True, place=node.place)
+    else:
+        texts.bind(target, name, text, symbols, node.place, "value")
+
+
+def _outer(symbols: Scope) -> Scope:
+    """Return the scope around a macro's: that of its caller, not a namespace."""
+    outer = symbols.parent or symbols
+    while not symbols.is_namespace and outer.is_namespace and outer.parent is not None:
+        outer = outer.parent
+    return outer
+
+
+def _macro(expander: Expander, node: Node, _: Node, scopes: Scopes) -> None:
+    name = _needed(node, "name").removeprefix("xacro:")
+    if name == "call" or "." in name:
+        raise TagFails(f"a macro cannot have the name {name}")
+    scopes.macros.bind(name, Macro(name, node, read_parameters(node.attributes.get("params", ""))))
+
+
+def _call(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
+    """Expand a call of a macro by its name: <xacro:wheel prefix="left"/>."""
+    _call_named(expander, node.tag.removeprefix("xacro:"), node, out, scopes)
+
+
+def _dynamic_call(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
+    name = expander.texts.text(_needed(node, "macro"), scopes.symbols)
+    if not name:
+        raise TagFails("<xacro:call> has an empty attribute macro")
+    call = _renamed(node, f"xacro:{name}", "macro")
+    _call_named(expander, name, call, out, scopes)
+
+
+def _call_named(expander: Expander, name: str, node: Node, out: Node, scopes: Scopes) -> None:
+    found = find_macro(name, *scopes)
+    if found is None:
+        if expander.texts.names_open is not None:
+            raise expander.texts.names_open
+        raise MacroError(f"there is no macro {name} at this place{did_you_mean(name, scopes.macros.names())}")
+    macro, outer_macros, outer_symbols = found
+    if len(expander.calls) >= _MAX_CALLS:
+        raise Undetermined(f"macros call each other more than {_MAX_CALLS} deep")
+    inner = Scopes(Scope(outer_macros), Scope(outer_symbols))
+    left = bind_values(macro, node, scopes.symbols, inner.symbols, expander.texts)
+    arguments = Node(node.tag, node.place)
+    expander.content(node, arguments, scopes)
+    if arguments.open and not arguments.elements:
+        raise Undetermined(arguments.open)
+    bind_blocks(macro, arguments.elements, left, inner.symbols)
+    bind_defaults(macro, left, node, scopes.symbols, inner.symbols, expander.texts)
+    before = expander.calls
+    expander.calls = (*before, (name, node.place))
+    try:
+        expander.start(macro.body, inner)  # xacro evaluates the attributes of <xacro:macro> too
+        expander.content(macro.body, out, inner)
+    finally:
+        expander.calls = before
+
+
+def _insert_block(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
+    name = _needed(node, "name")
+    for key in (f"**{name}", f"*{name}"):
+        holder = scopes.symbols.holder(key)
+        if holder is not None:
+            block = holder.properties[key].value
+            break
+    else:
+        if expander.texts.names_open is not None:
+            raise expander.texts.names_open
+        raise MacroError(f"there is no block {name} at this place")
+    if key.startswith("**"):
+        expander.start(block, scopes)
+        expander.content(block, out, scopes)
+    else:
+        new = expander.start(block, scopes)
+        out.children.append(new)
+        expander.content(block, new, scopes)
+
+
+def _if(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
+    text = _needed(node, "value")
+    keep = _boolean(expander.texts.evaluate(text, scopes.symbols), text)
+    if keep == (node.tag == "xacro:if"):
+        expander.content(node, out, scopes)
+
+
+def _arg(expander: Expander, node: Node, _: Node, scopes: Scopes) -> None:
+    name, default = _needed(node, "name"), _needed(node, "default")
+    if name not in expander.texts.arguments:
+        expander.texts.arguments[name] = expander.texts.text(default, scopes.symbols)
+
+
+def _element(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
+    name = expander.texts.evaluate(_needed(node, "xacro:name"), scopes.symbols)
+    if not name or not isinstance(name, str):
+        raise TagFails("<xacro:element> needs a name that is a text and not empty")
+    renamed = Node("", node.place)
+    renamed.children.append(_renamed(node, name, "xacro:name"))
+    expander.content(renamed, out, scopes)
+
+
+def _attribute(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
+    name, value = (expander.texts.evaluate(_needed(node, key), scopes.symbols) for key in ("name", "value"))
+    if not name or not isinstance(name, str):
+        raise TagFails("<xacro:attribute> needs a name that is a text and not empty")
+    if value and not isinstance(value, str):
+        raise TagFails(f"<xacro:attribute> needs a value that is a text: xacro fails with the number {value}")
+    out.attributes[name] = value or ""
+    out.moved = {**out.moved, name: node.place}
+
+
+def _include(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
+    texts = expander.texts
+    space = node.attributes.get("ns")
+    inner = scopes
+    if space:
+        space = texts.text(space, scopes.symbols)
+        inner = Scopes(Scope(is_namespace=True), Scope(scopes.symbols, is_namespace=True))
+        scopes.macros.bind(f"{space}.", inner.macros)
+        scopes.symbols.bind(f"{space}.", inner.symbols)
+        scopes.symbols.bind(space, texts.namespace(space, inner.symbols))
+    optional = node.attributes.get("optional")
+    is_optional = optional is not None and _boolean(optional, optional)
+    try:
+        for path in expander.files.named(texts.text(_needed(node, "filename"), scopes.symbols)):
+            _insert_file(expander, path, out, inner)
+    except FileFails as error:
+        if is_optional:
+            return
+        texts.names_open = texts.names_open or Reported(str(error))
+        raise
+    except OutOfSteps:
+        raise
+    except Undetermined as error:
+        if not isinstance(texts.names_open, Undetermined):
+            texts.names_open = error
+        raise
+
+
+def _insert_file(expander: Expander, path: str, out: Node, scopes: Scopes) -> None:
+    root = expander.files.nodes(path)
+    expander.files.open.append(path)
+    try:
+        expander.start(root, scopes)
+        expander.content(root, out, scopes)
+    finally:
+        expander.files.open.pop()
+
+
+def _renamed(node: Node, tag: str, without: str) -> Node:
+    """Return an element with another tag and without an attribute."""
+    renamed = Node(tag, node.place, {name: text for name, text in node.attributes.items() if name != without})
+    renamed.children, renamed.unresolved = node.children, node.unresolved
+    return renamed
+
+
+HANDLERS: Mapping[str, Handler] = {
+    "xacro:property": _property,
+    "xacro:macro": _macro,
+    "xacro:call": _dynamic_call,
+    "xacro:insert_block": _insert_block,
+    "xacro:if": _if,
+    "xacro:unless": _if,
+    "xacro:arg": _arg,
+    "xacro:element": _element,
+    "xacro:attribute": _attribute,
+    "xacro:include": _include,
+}
+CALL: Handler = _call

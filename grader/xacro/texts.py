@@ -1,0 +1,167 @@
+"""The values of xacro texts: ${expressions}, $(substitutions) and escapes, in a scope."""
+
+import re
+from collections.abc import Callable
+from keyword import iskeyword
+from typing import Any
+
+from grader.names import did_you_mean
+from grader.static_python.closed import Budget, OutOfSteps, evaluate
+from grader.static_python.closed_values import ExpressionFails, Namespace, Undetermined, Value, check_size, text_of
+from grader.xacro.functions import GLOBALS, argument_value
+from grader.xacro.nodes import Place
+from grader.xacro.scopes import Report, Reported, Scope
+
+_PIECE = re.compile(
+    r"(?P<escape>\$\$+[{(])|\$\{(?P<expression>[^}]*)\}|\$\((?P<substitution>[^)]*)\)|(?P<text>[^$]+|\$[^{($]+|\$\Z)"
+)
+_NESTED_FIND = re.compile(r"\$\(find +([^\s()$]+) *\)")
+INSTALLED = "/install"  # where the packages are for $(find package): in a folder that no submission has
+
+
+class Texts:
+    """Evaluates texts. `arguments` are those of $(arg): given ones first, then the defaults of the file."""
+
+    def __init__(self, arguments: dict[str, str], budget: Budget, report: Report, own: dict[str, Value]) -> None:
+        """`own` are functions that need the document, such as load_yaml."""
+        self.arguments = arguments
+        self.names_open: ExpressionFails | Undetermined | None = None  # why a name may be bound that is not known
+        self._budget = budget
+        self._report = report
+        self._globals = {**GLOBALS, **own}
+
+    def evaluate(self, text: str, scope: Scope) -> Value:
+        """Return the value of a text: that of its expression, if it is a single one, else a text."""
+        if "$" not in text:
+            return text
+        self._budget.spend(1 + len(text) // 64)
+        values: list[Value] = []
+        position = 0
+        while position < len(text):
+            piece = _PIECE.match(text, position)
+            if piece is None:
+                raise ExpressionFails(f"invalid expression: {text[position : position + 60]}")
+            values.append(self._piece(piece, scope))
+            position = piece.end()
+        if len(values) == 1:
+            return values[0]
+        joined = "".join(map(text_of, values))
+        check_size(joined)
+        return joined
+
+    def text(self, text: str, scope: Scope) -> str:
+        """Return the value of a text as it is written into the expanded file."""
+        return text_of(self.evaluate(text, scope)) if "$" in text else text
+
+    def find(self, name: str, scope: Scope) -> Value:
+        """Return the value of a name: a property, else one of xacro's own."""
+        holder = scope.holder(name)
+        if holder is not None:
+            return holder.value(name, self.evaluate, self._report)
+        if name in self._globals:
+            return self._globals[name]
+        if self.names_open is not None:
+            raise self.names_open
+        raise ExpressionFails(f"there is no property {name} at this place{did_you_mean(name, scope.names())}")
+
+    def is_bound(self, name: str, scope: Scope) -> bool:
+        """Return whether a name has a value in a scope."""
+        return scope.holder(name) is not None or name in self._globals
+
+    def bind(self, target: Scope, name: str, text: str, scope: Scope, place: Place, attribute: str) -> None:
+        """Bind a name to the value that the text of an attribute has in a scope, or to why it has none."""
+        try:
+            target.bind(name, self.evaluate(text, scope))
+            return
+        except OutOfSteps:
+            raise
+        except Reported as error:
+            failure: ExpressionFails | Undetermined = error
+        except ExpressionFails as error:
+            self._report(str(error), place, attribute)
+            failure = Reported(str(error))
+        except Undetermined as error:
+            failure = error
+        target.bind(name, "")
+        target.properties[name].failure = failure
+
+    def namespace(self, name: str, scope: Scope) -> Namespace:
+        """Return the properties of a scope as a namespace."""
+        return Namespace(name, lambda wanted: self.find(wanted, scope))
+
+    def _piece(self, piece: re.Match[str], scope: Scope) -> Value:
+        if piece["text"] is not None:
+            return piece["text"]
+        if piece["escape"] is not None:
+            return piece["escape"][1:]
+        if piece["substitution"] is not None:
+            return self._substitution(self.text(piece["substitution"], scope))
+        expression = self.text(piece["expression"], scope).strip()
+        if expression.isidentifier() and not iskeyword(expression) and not expression.startswith("__"):
+            return self.find(expression, scope)
+        return evaluate(expression, lambda name: self.find(name, scope), self._budget)
+
+    def _substitution(self, text: str) -> str:
+        """Return what $(...) gives."""
+        if text.startswith("eval "):
+            return self._python(text[5:])
+        if "$" in text or "(" in text:
+            raise ExpressionFails(f"$({text}): no $ and no ( can be inside of $(...)")
+        if not text:
+            return "$()"
+        command, *args = [word for word in text.split(" ") if word] or [""]
+        if text == "cwd":
+            raise Undetermined("the folder in which xacro runs is known only at run time")
+        if command not in _SUBSTITUTIONS:
+            raise ExpressionFails(f"$({text}): unknown substitution; xacro knows find, arg, env, optenv, eval and cwd")
+        found = _SUBSTITUTIONS[command](self, args)
+        return _NESTED_FIND.sub(lambda nested: share_folder(nested[1]), found) if "$(" in found else found
+
+    def _python(self, expression: str) -> str:
+        if "__" in expression:
+            raise ExpressionFails("$(eval ...) may not contain two underscores in a row")
+
+        def find(name: str) -> Value:
+            if name in self.arguments and name not in GLOBALS:
+                return argument_value(self.arguments[name])
+            if name in ("env", "optenv", "find", "arg", "dirname"):
+                raise Undetermined(f"the function {name} in $(eval ...) is not supported")
+            if name in GLOBALS or name in ("true", "false"):
+                return {"true": True, "false": False}[name] if name in ("true", "false") else GLOBALS[name]
+            raise Undetermined(f"the argument {name} has no default, and no value is given")
+
+        return text_of(evaluate(expression, find, self._budget))
+
+    def argument(self, name: str) -> str:
+        """Return the value of an argument."""
+        if name in self.arguments:
+            return self.arguments[name]
+        raise Undetermined(f"the argument {name} has no default; give it with --arg {name}=VALUE")
+
+
+def share_folder(package: str) -> str:
+    """Return the text that $(find package) gives."""
+    return f"{INSTALLED}/{package}/share/{package}"
+
+
+def _one(command: str, args: list[str]) -> str:
+    if len(args) != 1:
+        raise ExpressionFails(f"$({command} ...) takes one name, not {len(args)}")
+    return args[0]
+
+
+def _environment(name: str) -> str:
+    raise Undetermined(f"the environment variable {name} is known only at run time")
+
+
+def _no_folder(*_: Any) -> str:
+    raise ExpressionFails("xacro does not know $(dirname)")
+
+
+_SUBSTITUTIONS: dict[str, Callable[[Texts, list[str]], str]] = {
+    "find": lambda _, args: share_folder(_one("find", args)),
+    "arg": lambda texts, args: texts.argument(_one("arg", args)),
+    "env": lambda _, args: _environment(_one("env", args)),
+    "optenv": lambda _, args: _environment(args[0] if args else _one("optenv", args)),
+    "dirname": _no_folder,
+}

@@ -1,0 +1,51 @@
+"""Values from a YAML file, as load_yaml of xacro returns them: plain values, numbers with units, nothing constructed."""
+
+from itertools import islice
+from typing import Any
+
+import yaml
+
+from grader.static_python.closed_values import ExpressionFails, Undetermined, Value, check_size
+from grader.xacro.functions import dotted
+
+_MAX_EVENTS = 20_000
+_MAX_DEPTH = 100
+_UNITS = {
+    "!radians": 1.0, "!degrees": 3.141592653589793 / 180.0, "!meters": 1.0, "!millimeters": 0.001, "!foot": 0.3048,
+    "!inches": 0.0254,
+}  # fmt: skip
+
+
+class _Loader(yaml.SafeLoader):
+    """PyYAML's safe loader with xacro's units."""
+
+
+def _with_unit(loader: _Loader, node: yaml.Node) -> float:
+    text = loader.construct_scalar(node)  # type: ignore[arg-type]
+    try:
+        return float(text) * _UNITS[node.tag]
+    except ValueError:  # xacro evaluates it as an expression
+        raise Undetermined(f"the value {str(text)[:40]} with a unit is not supported") from None
+
+
+for _unit in _UNITS:
+    _Loader.add_constructor(_unit, _with_unit)
+
+
+def read_yaml_values(data: bytes) -> Value:
+    """Return the value of a YAML text. Raises ExpressionFails for what is not YAML, Undetermined for what is too large."""
+    text = data.decode("utf-8", "replace")
+    depth = 0
+    try:
+        events = list(islice(yaml.parse(text, Loader=yaml.SafeLoader), _MAX_EVENTS + 1))
+        for event in events:
+            depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
+            if depth > _MAX_DEPTH:
+                raise Undetermined("the YAML file is too deeply nested")
+        if len(events) > _MAX_EVENTS:
+            raise Undetermined("the YAML file is too large")
+        value: Any = yaml.load(text, Loader=_Loader)  # noqa: S506  a safe loader
+    except (yaml.YAMLError, ValueError) as error:
+        raise ExpressionFails(f"the file is not YAML: {' '.join(str(error).split())[:200]}") from None
+    check_size(value)
+    return dotted(value)
