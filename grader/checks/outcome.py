@@ -82,9 +82,9 @@ def passed(message: str) -> Outcome:
     return Outcome("passed", message)
 
 
-def pending(message: str) -> Outcome:
+def pending(message: str, at: AnyPlace = None) -> Outcome:
     """Return the outcome for a fact that needs manual grading."""
-    return Outcome("pending", message)
+    return Outcome("pending", message, location=location_of(at))
 
 
 def failed(message: str, at: AnyPlace = None, *, detail: str = "", problem: str = "") -> Outcome:

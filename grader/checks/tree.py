@@ -2,13 +2,14 @@
 
 from collections.abc import Mapping
 
-from grader.checks.outcome import Outcome, failed, passed, place
+from grader.checks.outcome import Outcome, failed, passed, pending, place
 from grader.errors import MissingElement
 from grader.names import did_you_mean
 from grader.robot.joints import JOINT_TYPES, MOVING_TYPES, JointType
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading
 from grader.text import counted, enumerated
+from grader.xacro.catalogue import XACRO_CATALOGUE
 
 
 def urdf_loads(urdf: Reading) -> Outcome:
@@ -16,6 +17,10 @@ def urdf_loads(urdf: Reading) -> Outcome:
     problems = [problem for problem in urdf.problems if problem.kind.effect == "rejects" or problem.kind.detaches_links]
     if not problems and urdf.verdict != "rejected":
         return passed("ROS 2 loads the file, and all links form one tree")
+    undetermined = [problem for problem in urdf.problems if problem.kind.effect == "undetermined"]
+    if undetermined and not problems:
+        return pending(undetermined[0].message, undetermined[0].location)
+    problems.sort(key=lambda problem: problem.kind not in XACRO_CATALOGUE)  # xacro runs before ROS 2 reads the result
     causes = [problem for problem in problems if not problem.kind.is_consequence]
     first = (causes or problems or list(urdf.problems))[0]
     others = f" (and {counted(len(problems) - 1, 'more such problem')})" if len(problems) > 1 else ""
@@ -69,6 +74,7 @@ def joints_named(robot: Configuration, *, parent: str, joints: Mapping[str, str]
         joint = robot.parent_joints.get(link)
         if _is_named(robot, name, link, parent):
             continue
+        robot.robot.check_complete()
         if joint is None:
             wrong.append((f"no joint {name!r} connects {link!r}", ""))
         else:

@@ -7,7 +7,7 @@ from grader.checks.outcome import place
 from grader.errors import MissingElement
 from grader.robot.frames import placed_by
 from grader.robot.kinematics import Configuration
-from grader.robot.model import Box, Cylinder, Geometry, Mesh, Sphere, Visual
+from grader.robot.model import Box, Cylinder, Geometry, Link, Mesh, Sphere, Visual
 from grader.robot.shapes import extent, is_empty, volume
 from grader.robot.transforms import Transform, Vector
 from grader.source import LazyLocation
@@ -17,12 +17,22 @@ def visuals(robot: Configuration, link: str) -> tuple[Visual, ...]:
     """Return the visuals of a link that have a size; raise MissingElement if there is none."""
     shown = robot.shown.get(link)
     if shown is None:
+        _check_resolved(robot.link(link))
         shown = tuple(visual for visual in robot.link(link).visuals if not is_empty(visual.geometry))
         robot.shown[link] = shown
     if not shown:
         message = f"link {link!r} has no visual with a size"
         raise MissingElement("visual", link, message=message, location=place(robot.link(link).location))
     return shown
+
+
+def _check_resolved(link: Link) -> None:
+    """Raise NotDecided or MissingElement where a visual of a link, or whether it has one, is not known because of xacro."""
+    part = link.unresolved.get("visual", link.unresolved.get("") if not link.visuals else None)
+    if part is not None:
+        part.check()
+        message = f"xacro cannot expand the visual of link {link.name!r}"
+        raise MissingElement("visual", link.name, message=message, location=part.location)
 
 
 ShapeName = Literal["any", "box", "cylinder", "sphere"]

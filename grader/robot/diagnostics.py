@@ -8,18 +8,25 @@ from typing import TypeVar
 from grader.names import closest, did_you_mean
 from grader.problems import Effect, Kind, Problem
 from grader.robot import catalogue
-from grader.robot.model import Joint, Origin
+from grader.robot.model import Joint, Origin, UnresolvedPart, UnresolvedParts
 from grader.robot.numbers import NumberError, number, vector
 from grader.robot.transforms import Vector
-from grader.source import LazyLocation, Source
+from grader.source import LazyLocation
 from grader.text import quoted
-from grader.xml.parsing import Element
+from grader.xml.parsing import Element, XmlDocument
 
 _FORMAT_DIRECTIVE = re.compile(r"%[-+ #0-9.$*'hlLqjzt]*n")
 _MAX_PROBLEMS = 1000
 _MAX_GUESSES = 50  # in one file, because they take long
 _PRINTED = frozenset({"origin", "box", "cylinder", "sphere", "mass"})  # whose values urdfdom uses as printf's format
 _FULL_TURN = 6.2832  # radians
+_OF_MISSING = (
+    catalogue.UNKNOWN_LINK,
+    catalogue.TWO_ROOTS,
+    catalogue.NO_ROOT,
+    catalogue.NO_LINKS,
+    catalogue.MIMIC_TARGET,
+)
 _ZERO: Vector = (0.0, 0.0, 0.0)
 
 Value = TypeVar("Value")
@@ -28,9 +35,10 @@ Value = TypeVar("Value")
 class Problems:
     """The problems of one file, and the locations of its elements."""
 
-    def __init__(self, source: Source, root: Element) -> None:
-        self.source = source
+    def __init__(self, document: XmlDocument, root: Element) -> None:
+        self.source = document.source
         self.root = root
+        self.unresolved = document.unresolved
         self.listed: list[Problem] = []
         self.effects: set[Effect] = set()
         self.unlisted = 0
@@ -42,6 +50,37 @@ class Problems:
         """Return the location of an element, to be computed when it is needed."""
         return LazyLocation(self.source, self._indices[element])
 
+    def parts(self, element: Element) -> UnresolvedParts:
+        """Return what xacro left unresolved of a link or joint, by the tag of its child; "@name" for its own attribute."""
+        parts: dict[str, UnresolvedPart] = {}
+        for inner in element.iter() if self.unresolved else ():
+            found = self.unresolved.get(inner)
+            if found is None:
+                continue
+            above = inner
+            while above is not element and (parent := above.getparent()) is not element and parent is not None:
+                above = parent
+            for name, reason in found.attributes.items():
+                key = f"@{name}" if inner is element else str(above.tag)
+                parts.setdefault(key, UnresolvedPart(reason, self.location(inner)._replace(attribute=name)))
+            if found.content is not None:
+                key = "" if inner is element else str(above.tag)
+                parts.setdefault(key, UnresolvedPart(found.content, self.location(inner)))
+        return parts
+
+    def is_unresolved(self, element: Element) -> bool:
+        """Return whether xacro left anything in an element unresolved."""
+        return bool(self.unresolved) and any(inner in self.unresolved for inner in element.iter())
+
+    def _explains(self, kind: Kind, element: Element, attribute: str | None) -> bool:
+        """Return whether what xacro left unresolved explains a problem."""
+        found, of_root = self.unresolved.get(element), self.unresolved.get(self.root)
+        if kind in _OF_MISSING and of_root is not None and of_root.content is not None:
+            return True
+        return found is not None and (
+            attribute in found.attributes if element.get(attribute or "") else found.content is not None
+        )
+
     def line(self, element: Element) -> int:
         """Return the line of an element, counted from 1."""
         return self.location(element).resolve().line
@@ -51,7 +90,9 @@ class Problems:
         return self._elements[joint.location.tag] if joint.location is not None else self.root
 
     def add(self, kind: Kind, message: str, element: Element, attribute: str | None = None, subject: str = "") -> None:
-        """Add a problem at an element, or at one of its attributes if it has it."""
+        """Add a problem at an element, or at one of its attributes if it has it, unless xacro left that unresolved."""
+        if self.unresolved and self._explains(kind, element, attribute):
+            return
         self.effects.add(kind.effect)
         if len(self.listed) < _MAX_PROBLEMS:
             location = self.source.tag(self._indices[element], attribute)

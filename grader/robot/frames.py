@@ -100,6 +100,9 @@ class Frames:
 
 def undefined_pose(joint: Joint) -> MissingElement:
     """Return the error for a pose that is undefined because of this joint."""
+    for part in ("origin", "axis", ""):
+        if part in joint.unresolved:
+            joint.unresolved[part].check()
     at = joint.axis_location and joint.axis_location._replace(attribute="xyz")
     if joint.origin is None:
         reason, at = "the joint's origin cannot be read", joint.location and joint.location._replace(inside="origin")

@@ -46,8 +46,11 @@ def read_joint(element: Element, problems: Problems) -> Joint:
         message = f"joint {label} is {kind}: robot_state_publisher {how}"
         problems.add(catalogue.UNPUBLISHED_JOINT, message, element, "type")
     axis_at = problems.location(inside["axis"]) if "axis" in inside else None
-    frame = None if reader.failed else origin
-    return Joint(name, kind, parent, child, frame, axis, limit, mimic, problems.location(element), axis_at)
+    unresolved = problems.parts(element)
+    is_open = "" in unresolved  # then a missing element may be there all the same
+    frame = None if reader.failed or (is_open and "origin" not in inside) else origin
+    axis = None if is_open and "axis" not in inside else axis
+    return Joint(name, kind, parent, child, frame, axis, limit, mimic, problems.location(element), axis_at, unresolved)
 
 
 def _check_type(element: Element, kind: str, label: str, problems: Problems) -> None:

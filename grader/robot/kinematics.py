@@ -81,6 +81,7 @@ class Configuration:
         frame = self._frames.of(link)
         base = self._frames.of(relative_to if relative_to is not None else frame.root)
         if frame.root != base.root:
+            self.robot.check_complete()
             roots = " and ".join(sorted((frame.root, base.root)))
             message = f"no chain of joints leads from {quoted(relative_to or base.root)} to {quoted(link)}"
             raise MissingElement("connection", roots, message=message, location=self.link(link).location)
@@ -103,7 +104,10 @@ class Configuration:
         return direction
 
     def chain(self, link: str, *, above: str | None = None) -> tuple[Joint, ...] | None:
-        """Return the joints that lead to a link, top down, from its root or from `above`; None if that is not above it."""
+        """Return the joints that lead to a link, top down, from its root or from `above`; None if that is not above it.
+
+        Raises MissingElement for a link that is not there, NotDecided where the type of one of the joints is not known.
+        """
         self.link(link)
         joints: list[Joint] = []
         name = link
@@ -113,6 +117,9 @@ class Configuration:
         if above is not None and name != above:
             self.link(above)
             return None
+        for joint in joints if self.robot.rejected else ():
+            if "@type" in joint.unresolved:
+                joint.unresolved["@type"].check()
         return tuple(reversed(joints))
 
     def between(self, one: str, other: str) -> tuple[Joint, ...]:

@@ -112,15 +112,16 @@ def read_link(element: Element, problems: Problems, materials: Materials) -> Lin
     for child in element:
         parts.get(child.tag, []).append(child)
     inertial = _read_inertial(parts["inertial"][0], problems, name) if parts["inertial"] else None
-    dropping = inertial is None and parts["inertial"] != []
+    dropping = inertial is None and parts["inertial"] != [] and not problems.is_unresolved(parts["inertial"][0])
     shapes: list[Visual | Collision] = []
     for child in parts["visual"] + parts["collision"]:
         shape = _read_shape(child, problems, name, None if dropping else materials)
-        dropping = dropping or shape is None
+        dropping = dropping or (shape is None and not problems.is_unresolved(child))
         if shape is not None and not dropping:
             shapes.append(shape)
     visuals = tuple(shape for shape in shapes if isinstance(shape, Visual))
-    return Link(name, visuals, tuple(shape for shape in shapes if isinstance(shape, Collision)), inertial, location)
+    collisions = tuple(shape for shape in shapes if isinstance(shape, Collision))
+    return Link(name, visuals, collisions, inertial, location, problems.parts(element))
 
 
 def _read_inertial(element: Element, problems: Problems, link: str) -> Inertial | None:

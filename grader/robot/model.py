@@ -4,16 +4,33 @@ Lengths are metres, angles radians about fixed axes x, y, z (REP 103). `None` is
 cannot be read; a value that the file does not give has ROS 2's default.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import NoReturn
+from typing import NamedTuple, NoReturn
 
-from grader.errors import MissingElement
+from grader.errors import MissingElement, NotDecided
 from grader.names import did_you_mean
 from grader.source import LazyLocation
 from grader.text import quoted
 
 Vector = tuple[float, float, float]
+
+
+class UnresolvedPart(NamedTuple):
+    """A part of a link or joint that xacro leaves open: why it cannot be determined; empty where xacro refuses it."""
+
+    reason: str
+    location: LazyLocation
+
+    def check(self) -> None:
+        """Raise NotDecided if the part cannot be determined."""
+        if self.reason:
+            raise NotDecided(self.reason)
+
+
+# The parts of an element that are unresolved: "@name" for its attribute, "visual" for something in a <visual>, "" for more
+# children than are known. Empty for a plain URDF.
+UnresolvedParts = Mapping[str, UnresolvedPart]
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,6 +127,7 @@ class Link:
     collisions: tuple[Collision, ...] = ()
     inertial: Inertial | None = None
     location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    unresolved: UnresolvedParts = field(default_factory=dict, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,13 +167,15 @@ class Joint:
     mimic: Mimic | None = None
     location: LazyLocation | None = field(default=None, compare=False, repr=False)
     axis_location: LazyLocation | None = field(default=None, compare=False, repr=False)
+    unresolved: UnresolvedParts = field(default_factory=dict, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)
 class Robot:
     """Links and joints in file order; of two with the same name the first is looked up.
 
-    If ROS 2 has `rejected` the file, this is what could be read of it, not what ROS 2 would do.
+    If ROS 2 has `rejected` the file, this is what could be read of it, not what ROS 2 would do. `incomplete` says why there may
+    be more links and joints, which cannot be determined statically.
     """
 
     name: str
@@ -163,6 +183,7 @@ class Robot:
     joints: tuple[Joint, ...] = ()
     materials: tuple[Material, ...] = ()
     rejected: bool = field(default=False, compare=False)
+    incomplete: str = field(default="", compare=False)
     _links: dict[str, Link] = field(init=False, compare=False, repr=False, hash=False)
     _joints: dict[str, Joint] = field(init=False, compare=False, repr=False, hash=False)
 
@@ -172,11 +193,11 @@ class Robot:
 
     def link(self, name: str) -> Link:
         """Return the link of this name; raises MissingElement, which lists the existing names."""
-        return self._links.get(name) or _raise_missing("link", name, self.links)
+        return self._links.get(name) or self._raise_missing("link", name, self.links)
 
     def joint(self, name: str) -> Joint:
         """Return the joint of this name; raises MissingElement, which lists the existing names."""
-        return self._joints.get(name) or _raise_missing("joint", name, self.joints)
+        return self._joints.get(name) or self._raise_missing("joint", name, self.joints)
 
     def has_joint(self, name: str) -> bool:
         """Return whether a joint of this name was read."""
@@ -186,8 +207,13 @@ class Robot:
         """Return whether a link of this name was read."""
         return name in self._links
 
+    def check_complete(self) -> None:
+        """Raise NotDecided if there may be more links and joints than are known."""
+        if self.incomplete:
+            raise NotDecided(self.incomplete)
 
-def _raise_missing(kind: str, name: str, existing: Iterable[Link | Joint]) -> NoReturn:
-    known = tuple(element.name for element in existing)
-    guess = did_you_mean(name, known) or f"; the file has: {', '.join(map(quoted, known[:20])) or 'none'}"
-    raise MissingElement(kind, name, known, message=f"there is no {kind} {quoted(name)}", detail=guess)
+    def _raise_missing(self, kind: str, name: str, existing: Iterable[Link | Joint]) -> NoReturn:
+        self.check_complete()
+        known = tuple(element.name for element in existing)
+        guess = did_you_mean(name, known) or f"; the file has: {', '.join(map(quoted, known[:20])) or 'none'}"
+        raise MissingElement(kind, name, known, message=f"there is no {kind} {quoted(name)}", detail=guess)

@@ -16,10 +16,11 @@ from grader.robot.spelling import check_spelling
 from grader.robot.tree import check_tree
 from grader.source import Source
 from grader.text import quoted
-from grader.xml.parsing import Element, read_document
+from grader.xml.parsing import Element, XmlDocument, read_document
 
 Verdict = Literal["clean", "degraded", "rejected"]
 
+_FATAL = ("rejects", "undetermined")
 _XACRO = re.compile(r"<xacro:|\$\{|\$\(")
 
 
@@ -39,27 +40,35 @@ def read_urdf(data: bytes, path: str = "robot.urdf") -> Reading:
     The verdict is ROS 2 Jazzy's (urdfdom on TinyXML2): `clean`; `degraded`, if content is dropped or links are omitted
     of the tree; `rejected`. Every problem is reported, sorted by location. Never raises for any input.
     """
-    root, source, listed, first_tag = read_document(data, path)
+    return read_robot(read_document(data, path))
+
+
+def read_robot(document: XmlDocument) -> Reading:
+    """Read a document as `read_urdf` does; its list of problems is extended."""
+    root, source, listed = document.root, document.source, document.problems
     robot = None
     effects = {problem.kind.effect for problem in listed}
     if root is not None and root.tag == "robot":
-        problems = Problems(source, root)
+        problems = Problems(document, root)
         robot = _read_robot(root, problems)
+        _check_text(problems, is_expanded=document.is_expanded)
         listed += problems.listed
         effects |= problems.effects
         if problems.unlisted:
             message = f"{problems.unlisted} more problems of this file are not listed"
             listed.append(Problem(catalogue.UNLISTED, message, source.at(len(source.text))))
-    elif "rejects" not in effects:
+    elif effects.isdisjoint(_FATAL):
         effects.add("rejects")
         message = "the file has no <robot> at its top level; ROS 2 rejects it"
         if root is not None:
             message = f"the root of the file is <{root.tag.rpartition('}')[2]}>, expected <robot>; ROS 2 rejects it"
-        listed.append(Problem(catalogue.NO_ROBOT, message, source.at(first_tag) if root is None else source.tag(0)))
-    verdict: Verdict = "rejected" if "rejects" in effects else "degraded" if "drops" in effects else "clean"
+        listed.append(
+            Problem(catalogue.NO_ROBOT, message, source.at(document.first_tag) if root is None else source.tag(0))
+        )
+    verdict: Verdict = "rejected" if not effects.isdisjoint(_FATAL) else "degraded" if "drops" in effects else "clean"
     listed.sort(key=lambda problem: (problem.location.line, problem.location.column, problem.code))
     if robot is not None and verdict == "rejected":
-        robot = replace(robot, rejected=True)
+        robot = replace(robot, rejected=True, incomplete=_incomplete(document, robot))
     return Reading(verdict, robot, tuple(listed), source)
 
 
@@ -90,8 +99,15 @@ def _read_robot(root: Element, problems: Problems) -> Robot:
     check_tree(robot, elements, problems)
     check_spelling(root, problems)
     _check_root_inertia(robot, elements, problems)
-    _check_text(problems)
     return robot
+
+
+def _incomplete(document: XmlDocument, robot: Robot) -> str:
+    """Return why there may be more links and joints than are known: unknown content, or the name of one is unknown."""
+    of_root = document.unresolved.get(document.root) if document.root is not None else None
+    parts = [*(link.unresolved for link in robot.links), *(joint.unresolved for joint in robot.joints)]
+    named = (found[key].reason for found in parts for key in ("@name", "parent", "child") if key in found)
+    return next(filter(None, (of_root.content if of_root is not None else "", *named)), "")
 
 
 def _read_joints(root: Element, problems: Problems) -> tuple[Joint, ...]:
@@ -116,10 +132,10 @@ def _check_root_inertia(robot: Robot, links: dict[str, Element], problems: Probl
             problems.add(catalogue.ROOT_INERTIA, message, next(links[link.name].iterchildren("inertial")))
 
 
-def _check_text(problems: Problems) -> None:
+def _check_text(problems: Problems, *, is_expanded: bool) -> None:
     text = problems.source.text
     comments = list(_comments(text))
-    if "$" in text or "xacro:" in text:
+    if not is_expanded and ("$" in text or "xacro:" in text):
         outside = zip([0, *(end for _, end in comments)], [*(start for start, _ in comments), len(text)], strict=True)
         xacro = next(filter(None, (_XACRO.search(text, *span) for span in outside)), None)
         if xacro is not None:

@@ -70,7 +70,9 @@ def _filter(function: Value, items: Value) -> Value:
 
 
 def _isinstance(value: Value, kinds: Value) -> bool:
-    named = [kind.name if isinstance(kind, Function) else "" for kind in (kinds if isinstance(kinds, tuple) else (kinds,))]
+    named = [
+        kind.name if isinstance(kind, Function) else "" for kind in (kinds if isinstance(kinds, tuple) else (kinds,))
+    ]
     if not set(named) <= _TYPES.keys():
         _refuse("this use of isinstance")
     return isinstance(value, tuple(_TYPES[name] for name in named))

@@ -16,10 +16,10 @@ MAX_ITEMS = 20_000  # of a value, with all that it contains
 _MAX_BITS = 4_096  # of an integer
 _MAX_WIDTH = 1_000  # of a formatted value
 _MAX_SMALL = 200  # arguments of factorial and its like
-_VIEWS = (type({}.keys()), type({}.values()), type({}.items()))
-_ITERATOR = type(iter([]))
-_CONTAINERS = (list, tuple, set, frozenset, dict, *_VIEWS)
-_PLAIN = (str, int, float, complex, type(None), range, *_CONTAINERS)
+_VIEWS: tuple[Any, ...] = (type({}.keys()), type({}.values()), type({}.items()))
+_ITERATOR: Any = type(iter([]))
+_CONTAINERS: tuple[Any, ...] = (list, tuple, set, frozenset, dict, *_VIEWS)
+_PLAIN: tuple[Any, ...] = (str, int, float, complex, type(None), range, *_CONTAINERS)
 _SPEC = re.compile(r"[^{}]?[<>=^]?[-+ ]?#?0?(\d{0,3})[,_]?(?:\.\d{1,3})?[a-zA-Z%]?")
 _PERCENT = re.compile(r"%(?:\(\w*\))?[-#0 +]*\d{0,3}(?:\.\d{1,3})?[diouxXeEfFgGcrs%]")
 
@@ -107,7 +107,9 @@ def compare(op: ast.cmpop, left: Value, right: Value) -> bool:
     """Return the value of one comparison."""
     if not (isinstance(left, _PLAIN) and isinstance(right, _PLAIN)):
         raise Undetermined("this comparison is not supported")
-    if isinstance(op, ast.Is | ast.IsNot) and not any(value is None or isinstance(value, bool) for value in (left, right)):
+    if isinstance(op, ast.Is | ast.IsNot) and not any(
+        value is None or isinstance(value, bool) for value in (left, right)
+    ):
         raise Undetermined("which values are one object is not defined")
     return bool(run(_COMPARISONS[type(op)], left, right))
 
@@ -176,11 +178,11 @@ def _format(template: str, *args: Value, **kwargs: Value) -> str:
         pieces.append(literal)
         if field is None:
             continue
-        if field == "":
-            field, automatic = str(automatic), automatic + 1
-        if not field.isalnum() or "{" in (spec or ""):
+        key = field or str(automatic)
+        automatic += not field
+        if not key.isalnum() or "{" in (spec or ""):
             raise Undetermined("this format is not supported")
-        value = args[int(field)] if field.isdigit() else kwargs[field]
+        value = args[int(key)] if key.isdigit() else kwargs[key]
         pieces.append(format_value(value, spec or "", conversion))
     return "".join(pieces)
 
@@ -189,7 +191,7 @@ def _percent_format(template: str, value: Value) -> str:
     if "%" in _PERCENT.sub("", template):
         raise Undetermined("this format is not supported")
     check_size(value)
-    return template % value
+    return str(template % value)
 
 
 def _replace(text: str, old: str, new: str, *count: int) -> str:
@@ -252,14 +254,56 @@ _OWN_METHODS: Mapping[str, Callable[..., Value]] = {
 }  # fmt: skip
 _METHODS: dict[type, frozenset[str]] = {
     str: frozenset(
-        "capitalize casefold count endswith find index isalnum isalpha isascii isdecimal isdigit isidentifier islower "
-        "isnumeric isspace istitle isupper lower lstrip partition removeprefix removesuffix rfind rindex rpartition rsplit "
-        "rstrip split splitlines startswith strip swapcase title upper format replace join center ljust rjust zfill".split()
+        [
+            "capitalize",
+            "casefold",
+            "count",
+            "endswith",
+            "find",
+            "index",
+            "isalnum",
+            "isalpha",
+            "isascii",
+            "isdecimal",
+            "isdigit",
+            "isidentifier",
+            "islower",
+            "isnumeric",
+            "isspace",
+            "istitle",
+            "isupper",
+            "lower",
+            "lstrip",
+            "partition",
+            "removeprefix",
+            "removesuffix",
+            "rfind",
+            "rindex",
+            "rpartition",
+            "rsplit",
+            "rstrip",
+            "split",
+            "splitlines",
+            "startswith",
+            "strip",
+            "swapcase",
+            "title",
+            "upper",
+            "format",
+            "replace",
+            "join",
+            "center",
+            "ljust",
+            "rjust",
+            "zfill",
+        ]
     ),
     list: frozenset(("count", "index", "copy")),
     tuple: frozenset(("count", "index")),
     dict: frozenset(("get", "keys", "values", "items", "copy")),
-    set: frozenset("copy difference intersection isdisjoint issubset issuperset symmetric_difference union".split()),
+    set: frozenset(
+        ["copy", "difference", "intersection", "isdisjoint", "issubset", "issuperset", "symmetric_difference", "union"]
+    ),
     float: frozenset(("is_integer", "hex")),
     int: frozenset(("bit_length",)),
 }

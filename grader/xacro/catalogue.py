@@ -1,7 +1,6 @@
 """The kinds of problems that a xacro file can have. `docs/problems.md` is generated from it."""
 
-
-from grader.problems import Kind, notes, rejects
+from grader.problems import Kind, kinds_in, notes, rejects
 
 XACRO_NOT_XML = rejects(
     "XACRO001",
@@ -47,3 +46,4 @@ OTHER_INCLUDE = notes(
     "The package of an included file is not part of the submission, but a file with this name is. That file is read instead.",
 )
 
+XACRO_CATALOGUE = kinds_in(globals().values())

@@ -51,12 +51,14 @@ _KINDS: Mapping[type[ExpressionFails], Kind] = {
 class Expander:
     """The state of one expansion. `calls` are the macro calls around the current place."""
 
-    def __init__(self, files: Files, arguments: Mapping[str, str], handlers: Mapping[str, Handler], other: Handler) -> None:
+    def __init__(
+        self, files: Files, arguments: Mapping[str, str], handlers: Mapping[str, Handler], other: Handler
+    ) -> None:
         """`handlers` expand xacro's own tags, and `other` every other tag that begins with xacro: a macro call."""
         self.files = files
         self.budget = Budget(_MAX_STEPS)
-        own = document_functions(self._load_yaml, lambda name: self.texts.argument(name))
-        self.texts = Texts(dict(arguments), self.budget, self.report, own)
+        own = document_functions(self._load_yaml, lambda name: self.texts.argument(name))  # noqa: PLW0108  texts is set below
+        self.texts = Texts(dict(arguments), self.budget, self.report, own, files.has_package)
         self.problems: list[Problem] = []
         self.undetermined: list[Open] = []
         self.calls: tuple[tuple[str, Place], ...] = ()
@@ -87,6 +89,7 @@ class Expander:
                 raise
             except ExpressionFails as error:
                 self.refuse(error, place)
+                out.open = out.open or ""
             except Undetermined as error:
                 self.leave_open(out, error, place)
 
@@ -96,10 +99,8 @@ class Expander:
         out = Node(source.tag, place if place.calls is not None else place._replace(calls=self.calls))
         out.moved, out.unresolved = source.moved, dict(source.unresolved)
         for name, text in source.attributes.items():
-            if "$" not in text or name in out.unresolved:
-                value = text
-            else:
-                value = self._attribute(out, name, text, scopes)
+            is_plain = "$" not in text or name in out.unresolved
+            value = text if is_plain else self._attribute(out, name, text, scopes)
             if not name.startswith("xacro:"):
                 out.attributes[name] = value
         return out

@@ -15,9 +15,9 @@ from grader.static_python.closed_values import Undetermined
 from grader.xacro import catalogue
 from grader.xacro.expander import Expander, Open
 from grader.xacro.files import Files, Workspace
-from grader.xacro.nodes import Node, Place, read_nodes
+from grader.xacro.nodes import Node, read_nodes
 from grader.xacro.tags import CALL, HANDLERS
-from grader.xml.parsing import Element, Unresolved, XMLSyntaxError
+from grader.xml.parsing import Element, Unresolved, XmlDocument, XMLSyntaxError
 
 __all__ = ("Expansion", "Open", "Workspace", "expand")
 _MAX_ELEMENTS = 50_000
@@ -31,6 +31,17 @@ class Expansion(NamedTuple):
     problems: tuple[Problem, ...]  # what xacro refuses
     undetermined: tuple[Open, ...]  # what cannot be determined statically
     unresolved: Mapping[Element, Unresolved]  # the elements that are not known completely
+
+    @property
+    def document(self) -> XmlDocument:
+        """The expanded file as the reader of robots takes it; what cannot be determined is a problem in it."""
+        message = "{}; this needs manual grading"
+        undetermined = [
+            Problem(catalogue.XACRO_UNDETERMINED, message.format(found.reason), found.location)
+            for found in self.undetermined
+        ]
+        problems = [*self.problems, *undetermined]
+        return XmlDocument(self.root, self.source, problems, 0, self.unresolved, is_expanded=True)
 
 
 class ExpandedSource(Source):
@@ -81,7 +92,7 @@ def _element(root: Node, nodes: list[Node], unresolved: dict[Element, Unresolved
     while pending:
         node, element = pending.pop()
         nodes.append(node)
-        if node.unresolved or node.open:
+        if node.unresolved or node.open is not None:
             unresolved[element] = Unresolved(node.unresolved, node.open)
         children: list[tuple[Node, Element]] = []
         for child in node.children:

@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 from grader.errors import InputError, NotDecided
 from grader.static_python.closed_values import ExpressionFails, Undetermined
+from grader.xacro.nodes import Node, read_nodes
 from grader.xacro.texts import INSTALLED
 from grader.xml.parsing import XMLSyntaxError
-from grader.xacro.nodes import Node, read_nodes
 
 _GLOB = re.compile(r"[*\[?]")
 _MAX_OPEN = 50  # files that include each other
@@ -23,7 +23,9 @@ class Workspace(NamedTuple):
     read: Callable[[str], bytes]  # the bytes of a file by its path; raises InputError, or NotDecided
     package: Callable[[str], str | None]  # the folder of a package of the submission, None for other packages
     paths: Collection[str] = ()
-    installed: Callable[[str, str], str | None] = lambda *_: None  # the file that a build installs at a path in a package
+    installed: Callable[[str, str], str | None] = lambda *_: (
+        None
+    )  # the file that a build installs at a path in a package
 
 
 class FileFails(ExpressionFails):
@@ -40,6 +42,10 @@ class Files:
     def __init__(self, workspace: Workspace, path: str) -> None:
         self._workspace = workspace
         self.open = [path]
+
+    def has_package(self, name: str) -> bool:
+        """Return whether a package is part of the submission."""
+        return self._workspace.package(name) is not None
 
     def named(self, text: str) -> list[str]:
         """Return the paths of the files that an include names: several for a pattern."""

@@ -53,7 +53,7 @@ def document_functions(load_yaml: Callable[[Value], Value], argument: Callable[[
     return {"xacro": namespace("xacro", own), "load_yaml": load}
 
 
-def _tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]:  # noqa: FBT001, FBT002  xacro's signature
+def _tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]:
     if not _PLAIN_SEPARATORS.fullmatch(sep):
         raise Undetermined("tokenize with these separators is not supported")
     parts = re.split(f"[{sep}]", text)
@@ -69,9 +69,7 @@ def _no_path(*_: Value) -> Value:
 
 
 _XACRO: dict[str, Value] = {
-    **{
-        name: Function(name, lambda *_, **__: "") for name in ("message", "warning", "error", "print_location")
-    },
+    **{name: Function(name, lambda *_, **__: "") for name in ("message", "warning", "error", "print_location")},
     "fatal": Function("fatal", _fatal),
     "tokenize": Function("tokenize", _tokenize),
     "dotify": Function("dotify", dotted),

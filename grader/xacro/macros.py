@@ -105,7 +105,7 @@ def bind_blocks(macro: Macro, blocks: list[Node], left: list[Parameter], inner: 
         raise MacroError(f"the macro {macro.name} takes no element <{waiting[0].tag}> here")
 
 
-def bind_defaults(macro: Macro, left: list[Parameter], call: Node, caller: Scope, inner: Scope, texts: Texts) -> None:
+def bind_defaults(macro: Macro, left: list[Parameter], caller: Scope, inner: Scope, texts: Texts) -> None:
     """Bind the parameters that the call does not give."""
     missing = [it.name for it in left if not it.is_block and it.default is None and not it.is_forwarded]
     for parameter in left:

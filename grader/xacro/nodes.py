@@ -36,7 +36,7 @@ class Node:
         self.attributes: dict[str, str] = attributes if attributes is not None else {}
         self.children: Children = []
         self.unresolved: dict[str, str] = {}  # attribute -> why it cannot be determined; empty where xacro refuses it
-        self.open = ""  # why it may have more children or attributes than these
+        self.open: str | None = None  # why it may have more children or attributes; empty where xacro refuses them
         self.moved: dict[str, Place] = {}  # the places of attributes that <xacro:attribute> sets
 
     @property
@@ -49,7 +49,7 @@ def read_nodes(data: bytes, path: str) -> Node:
     """Return the root of an XML file. Raises XMLSyntaxError, and Undetermined for a file with entities of its own."""
     root = parse_xml(data)
     definitions = root.getroottree().docinfo.internalDTD
-    if definitions is not None and any(True for _ in definitions.iterentities()):
+    if definitions is not None and next(definitions.iterentities(), None) is not None:  # type: ignore[attr-defined]
         raise Undetermined("entities of a DOCTYPE are not supported")
     source = Source(path, data.decode("utf-8", "surrogateescape"))
     nodes: dict[Element, Node] = {}
@@ -76,13 +76,13 @@ def _tag(element: Element) -> str:
 
 
 def _attributes(element: Element) -> dict[str, str]:
-    attributes = dict(element.attrib)
+    attributes = {str(name): str(value) for name, value in element.items()}
     if not any(name.startswith("{") for name in attributes):
-        return attributes  # type: ignore[return-value]
+        return attributes
     prefixes = {uri: prefix for prefix, uri in element.nsmap.items() if prefix} | {_XML: "xml"}
     named = (name[1:].partition("}") if name.startswith("{") else ("", "", name) for name in attributes)
-    names = [f"{prefixes[uri]}:{local}" if uri else local for uri, _, local in named]
-    return dict(zip(names, attributes.values(), strict=True))  # type: ignore[arg-type]
+    names = (f"{prefixes[uri]}:{local}" if uri else local for uri, _, local in named)
+    return dict(zip(names, attributes.values(), strict=True))
 
 
 _XML = "http://www.w3.org/XML/1998/namespace"

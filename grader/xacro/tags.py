@@ -90,7 +90,7 @@ def _outer(symbols: Scope) -> Scope:
     return outer
 
 
-def _macro(expander: Expander, node: Node, _: Node, scopes: Scopes) -> None:
+def _macro(_expander: Expander, node: Node, _: Node, scopes: Scopes) -> None:
     name = _needed(node, "name").removeprefix("xacro:")
     if name == "call" or "." in name:
         raise TagFails(f"a macro cannot have the name {name}")
@@ -126,7 +126,7 @@ def _call_named(expander: Expander, name: str, node: Node, out: Node, scopes: Sc
     if arguments.open and not arguments.elements:
         raise Undetermined(arguments.open)
     bind_blocks(macro, arguments.elements, left, inner.symbols)
-    bind_defaults(macro, left, node, scopes.symbols, inner.symbols, expander.texts)
+    bind_defaults(macro, left, scopes.symbols, inner.symbols, expander.texts)
     before = expander.calls
     expander.calls = (*before, (name, node.place))
     try:

@@ -22,11 +22,19 @@ INSTALLED = "/install"  # where the packages are for $(find package): in a folde
 class Texts:
     """Evaluates texts. `arguments` are those of $(arg): given ones first, then the defaults of the file."""
 
-    def __init__(self, arguments: dict[str, str], budget: Budget, report: Report, own: dict[str, Value]) -> None:
-        """`own` are functions that need the document, such as load_yaml."""
+    def __init__(
+        self,
+        arguments: dict[str, str],
+        budget: Budget,
+        report: Report,
+        own: dict[str, Value],
+        is_own: Callable[[str], bool],
+    ) -> None:
+        """`own` are functions that need the document, such as load_yaml; `is_own` says whether a package was submitted."""
         self.arguments = arguments
         self.names_open: ExpressionFails | Undetermined | None = None  # why a name may be bound that is not known
         self._budget = budget
+        self._is_own = is_own
         self._report = report
         self._globals = {**GLOBALS, **own}
 
@@ -70,19 +78,20 @@ class Texts:
 
     def bind(self, target: Scope, name: str, text: str, scope: Scope, place: Place, attribute: str) -> None:
         """Bind a name to the value that the text of an attribute has in a scope, or to why it has none."""
+        failure: ExpressionFails | Undetermined | None = None
+        value: Value = ""
         try:
-            target.bind(name, self.evaluate(text, scope))
-            return
+            value = self.evaluate(text, scope)
         except OutOfSteps:
             raise
         except Reported as error:
-            failure: ExpressionFails | Undetermined = error
+            failure = error
         except ExpressionFails as error:
             self._report(str(error), place, attribute)
             failure = Reported(str(error))
         except Undetermined as error:
             failure = error
-        target.bind(name, "")
+        target.bind(name, value)
         target.properties[name].failure = failure
 
     def namespace(self, name: str, scope: Scope) -> Namespace:
@@ -115,7 +124,7 @@ class Texts:
         if command not in _SUBSTITUTIONS:
             raise ExpressionFails(f"$({text}): unknown substitution; xacro knows find, arg, env, optenv, eval and cwd")
         found = _SUBSTITUTIONS[command](self, args)
-        return _NESTED_FIND.sub(lambda nested: share_folder(nested[1]), found) if "$(" in found else found
+        return _NESTED_FIND.sub(lambda nested: self.share(nested[1]), found) if "$(" in found else found
 
     def _python(self, expression: str) -> str:
         if "__" in expression:
@@ -132,16 +141,17 @@ class Texts:
 
         return text_of(evaluate(expression, find, self._budget))
 
+    def share(self, package: str) -> str:
+        """Return the text that $(find package) gives."""
+        if not self._is_own(package):
+            raise Undetermined(f"the package {package} is not part of the submission")
+        return f"{INSTALLED}/{package}/share/{package}"
+
     def argument(self, name: str) -> str:
         """Return the value of an argument."""
         if name in self.arguments:
             return self.arguments[name]
         raise Undetermined(f"the argument {name} has no default; give it with --arg {name}=VALUE")
-
-
-def share_folder(package: str) -> str:
-    """Return the text that $(find package) gives."""
-    return f"{INSTALLED}/{package}/share/{package}"
 
 
 def _one(command: str, args: list[str]) -> str:
@@ -159,7 +169,7 @@ def _no_folder(*_: Any) -> str:
 
 
 _SUBSTITUTIONS: dict[str, Callable[[Texts, list[str]], str]] = {
-    "find": lambda _, args: share_folder(_one("find", args)),
+    "find": lambda texts, args: texts.share(_one("find", args)),
     "arg": lambda texts, args: texts.argument(_one("arg", args)),
     "env": lambda _, args: _environment(_one("env", args)),
     "optenv": lambda _, args: _environment(args[0] if args else _one("optenv", args)),

@@ -33,25 +33,25 @@ _PLAIN_START = re.compile(
 
 
 class Unresolved(NamedTuple):
-    """What is not known of an expanded element: attributes that are left as written, with the reason, and its content.
+    """What was not expanded of an element, with the reason why it cannot be determined; empty where xacro refuses it."""
 
-    The reason of an attribute is empty where xacro refuses it, so that nothing about it is unknown.
-    """
-
-    attributes: Mapping[str, str]
-    content: str = ""  # why it may have more attributes and children; empty where it has no more
+    attributes: Mapping[str, str]  # those that are left as they are written
+    content: str | None = None  # why there may be more attributes and children; None if there are no more
 
 
 class XmlDocument(NamedTuple):
     """The root element, and everything that TinyXML2 or XML rejects in the text; `first_tag` is an offset.
 
-    The root is None where TinyXML2 refuses the text, or finds no <robot> at its top level.
+    The root is None where TinyXML2 refuses the text, or finds no <robot> at its top level. If xacro expanded the text,
+    `unresolved` has the elements that are not known completely.
     """
 
     root: Element | None
     source: Source
     problems: list[Problem]
-    first_tag: int
+    first_tag: int = 0
+    unresolved: Mapping[Element, Unresolved] = {}
+    is_expanded: bool = False
 
 
 def parse_xml(data: bytes) -> Element:
