@@ -1,0 +1,92 @@
+"""Compares the grader's expansion of a document with xacro's: the tree of elements, and the robot that ROS 2 reads."""
+
+import posixpath
+from importlib import import_module
+from typing import Any
+
+from lxml import etree
+
+from grader.errors import InputError
+from grader.robot.reader import read_urdf
+from tests.xacro import oracle
+from tests.xacro.documents.document import PACKAGES, Document
+
+Tree = tuple[str, dict[str, str], list[Any]]
+
+
+def expand(document: Document) -> Any:
+    """Return the grader's expansion of a document."""
+    expansion: Any = import_module("grader.xacro.expansion")
+    files = {document.path: document.text, **document.files}
+
+    def read(path: str) -> bytes:
+        content = files.get(posixpath.normpath(path))
+        if content is None:
+            raise InputError(f"{path} does not exist")
+        return content if isinstance(content, bytes) else content.encode()
+
+    workspace = expansion.Workspace(read=read, package=PACKAGES.get)
+    return expansion.expand(read(document.path), document.path, workspace, document.arguments)
+
+
+def difference(document: Document) -> str | None:
+    """Return how the grader's expansion of a document differs from xacro's; None if they agree.
+
+    What xacro accepts is never refused; what it refuses is, unless that depends on what is outside of the submission. Every
+    other document is determined.
+    """
+    expected, found = oracle.expand(document), expand(document)
+    refusals = [problem.message for problem in found.problems if problem.kind.effect == "rejects"]
+    reasons = [undetermined.reason for undetermined in found.undetermined]
+    if isinstance(expected, oracle.Accepted) and refusals:
+        return f"xacro accepts it, the grader refuses it: {refusals[0]}"
+    if document.undetermined == "always" and not reasons:
+        return "it depends on what is outside of the submission, which the grader does not say"
+    if document.undetermined != "never" and reasons:
+        return None
+    if isinstance(expected, oracle.Refused):
+        return None if refusals else f"xacro refuses it, the grader does not: {expected.message}"
+    if reasons:
+        return f"xacro accepts it, the grader cannot determine it: {reasons[0]}"
+    return _difference_of_texts(expected.text.encode(), found.root)
+
+
+def _difference_of_texts(expected: bytes, root: etree._Element) -> str | None:
+    place = _difference_of_trees(tree(etree.fromstring(expected)), tree(root), "")
+    if place is not None:
+        return place
+    readings = [read_urdf(data) for data in (expected, etree.tostring(root, with_tail=False))]
+    robots = [(reading.verdict, repr(reading.robot)) for reading in readings]  # their representation shows every number
+    return None if robots[0] == robots[1] else f"the robots differ: {robots[0]} and {robots[1]}"
+
+
+def tree(element: etree._Element) -> Tree:
+    """Return an element as plain values: tag, attributes, and its elements with the text before, between and after them.
+
+    Comments and processing instructions are left out, white space counts as one space.
+    """
+    content: list[Any] = [element.text or ""]
+    for child in element:
+        if isinstance(child.tag, str):
+            content += [tree(child), ""]
+        content[-1] += child.tail or ""
+    return (
+        element.tag,
+        {str(name): str(value) for name, value in element.attrib.items()},
+        [" ".join(part.split()) if isinstance(part, str) else part for part in content],
+    )
+
+
+def _difference_of_trees(expected: Tree, found: Tree, place: str) -> str | None:
+    """Return the first difference of two trees in document order, with the path of the element."""
+    place = f"{place}/{expected[0]}"
+    if expected[:2] != found[:2]:
+        return f"{place}: expected {expected[0]} {expected[1]}, found {found[0]} {found[1]}"
+    for one, other in zip(expected[2], found[2], strict=False):
+        if isinstance(one, str):
+            if one != other:
+                return f"{place}: expected the text {one!r}, found {other!r}"
+        elif (inner := _difference_of_trees(one, other, place)) is not None:
+            return inner
+    counts = len(expected[2]) // 2, len(found[2]) // 2
+    return None if counts[0] == counts[1] else f"{place}: expected {counts[0]} elements, found {counts[1]}"
