@@ -68,7 +68,9 @@ def _parsed(text: str) -> ast.expr | str:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            return ast.parse(text, mode="eval").body
+            tree = ast.parse(text, mode="eval")
+            compile(tree, "<expression>", "eval", dont_inherit=True)  # never run: finds what the grammar allows
+            return tree.body
     except SyntaxError as error:
         return f"SyntaxError: {error.msg}"
     except (ValueError, RecursionError, MemoryError, OverflowError) as error:

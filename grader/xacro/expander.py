@@ -18,6 +18,7 @@ from grader.xacro.yaml_values import read_yaml_values
 
 _MAX_STEPS = 60_000
 _MAX_LISTED = 100
+STOPS = "xacro stops here, and ROS 2 gets no robot"
 
 
 class TagFails(ExpressionFails):
@@ -93,6 +94,15 @@ class Expander:
             except Undetermined as error:
                 self.leave_open(out, error, place)
 
+    def insert(self, source: Node, out: Node, scopes: Scopes) -> None:
+        """Expand the children of an element that itself is left out, such as <xacro:if>, with attributes set on it."""
+        inside = Node(source.tag, source.place)
+        try:
+            self.content(source, inside, scopes)
+        finally:
+            out.children += inside.children
+            out.open = out.open or inside.open
+
     def start(self, source: Node, scopes: Scopes) -> Node:
         """Return an element with its attributes expanded, without its children."""
         place = source.place
@@ -115,7 +125,7 @@ class Expander:
     ) -> None:
         """List a problem at a place."""
         location = self._placed(place).at(attribute)
-        problem = Problem(kind, f"{message}; xacro stops here, and ROS 2 gets no robot", location)
+        problem = Problem(kind, f"{message}; {STOPS}", location)
         if len(self.problems) < _MAX_LISTED and problem not in self.problems:
             self.problems.append(problem)
 
@@ -160,4 +170,4 @@ class Expander:
         return text
 
     def _load_yaml(self, name: Value) -> Value:
-        return read_yaml_values(self.files.read(self.files.path(str(name))))
+        return read_yaml_values(self.files.read(self.files.path(str(name))), self.texts.constant)

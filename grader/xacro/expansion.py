@@ -11,9 +11,9 @@ from lxml import etree
 
 from grader.problems import Problem
 from grader.source import Location, Source
-from grader.static_python.closed_values import Undetermined
+from grader.static_python.closed_values import ExpressionFails, Undetermined
 from grader.xacro import catalogue
-from grader.xacro.expander import Expander, Open
+from grader.xacro.expander import STOPS, Expander, Open
 from grader.xacro.files import Files, Workspace
 from grader.xacro.nodes import Node, read_nodes
 from grader.xacro.tags import CALL, HANDLERS
@@ -66,15 +66,18 @@ class ExpandedSource(Source):
 def expand(data: bytes, path: str, workspace: Workspace, arguments: Mapping[str, str]) -> Expansion:
     """Return a xacro file as xacro expands it with these arguments; never raises. `path` is that in the submission."""
     plain = Source(path, data.decode("utf-8", "surrogateescape"))
+    at = plain.at(0)
     try:
         source = read_nodes(data, path)
     except XMLSyntaxError as error:
         line, column = error.position
         location = Location(path, max(line or 1, 1), max(column or 1, 1))
-        message = f"xacro needs well-formed XML: {error.msg}; xacro stops here, and ROS 2 gets no robot"
+        message = f"xacro needs well-formed XML: {error.msg}; {STOPS}"
         return Expansion(None, plain, (Problem(catalogue.XACRO_NOT_XML, message, location),), (), {})
+    except ExpressionFails as error:
+        return Expansion(None, plain, (Problem(catalogue.XACRO_NOT_XML, f"{error}; {STOPS}", at),), (), {})
     except Undetermined as error:
-        return Expansion(None, plain, (), (Open(str(error), plain.at(0)),), {})
+        return Expansion(None, plain, (), (Open(str(error), at),), {})
     expander = Expander(Files(workspace, path), arguments, HANDLERS, CALL)
     root = expander.root(source)
     nodes: list[Node] = []
@@ -87,7 +90,7 @@ def expand(data: bytes, path: str, workspace: Workspace, arguments: Mapping[str,
 
 def _element(root: Node, nodes: list[Node], unresolved: dict[Element, Unresolved]) -> Element:
     """Return the elements of lxml for expanded ones; `nodes` becomes the latter in document order."""
-    made = etree.Element(root.tag, root.attributes)
+    made = etree.Element(_name(root.tag), _named(root.attributes))
     pending: list[tuple[Node, Element]] = [(root, made)]
     while pending:
         node, element = pending.pop()
@@ -97,10 +100,21 @@ def _element(root: Node, nodes: list[Node], unresolved: dict[Element, Unresolved
         children: list[tuple[Node, Element]] = []
         for child in node.children:
             if isinstance(child, Node):
-                children.append((child, etree.SubElement(element, child.tag, child.attributes)))
+                children.append((child, etree.SubElement(element, _name(child.tag), _named(child.attributes))))
             elif children:
                 children[-1][1].tail = (children[-1][1].tail or "") + child
             else:
                 element.text = (element.text or "") + child
         pending += reversed(children)
     return made
+
+
+def _name(tag: str) -> str:
+    """Return a name for lxml: a prefix stands for its namespace, because no element with one belongs to a URDF."""
+    prefix, colon, local = tag.partition(":")
+    return f"{{{prefix}}}{local}" if colon else tag
+
+
+def _named(attributes: dict[str, str]) -> dict[str, str]:
+    is_plain = all(":" not in name for name in attributes)
+    return attributes if is_plain else {_name(name): value for name, value in attributes.items()}

@@ -111,8 +111,7 @@ def bind_defaults(macro: Macro, left: list[Parameter], caller: Scope, inner: Sco
     for parameter in left:
         if parameter.is_block or parameter.name in missing:
             continue
-        holder = caller.holder(parameter.name) if parameter.is_forwarded else None
-        if holder is not None:
+        if parameter.is_forwarded and texts.is_bound(parameter.name, caller):
             inner.bind(parameter.name, texts.find(parameter.name, caller))
         elif parameter.default is not None:
             texts.bind(inner, parameter.name, parameter.default, caller, macro.body.place, "params")

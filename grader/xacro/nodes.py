@@ -1,13 +1,21 @@
 """The elements of a xacro file before and after expansion, each with the place in the source that it came from."""
 
+import re
 from dataclasses import replace
 from typing import NamedTuple
 
 from grader.source import Location, Source
-from grader.static_python.closed_values import Undetermined
+from grader.static_python.closed_values import ExpressionFails, Undetermined
 from grader.xml.parsing import Element, parse_xml
 
 Children = list["Node | str"]
+
+
+# xacro reads the file as UTF-8, so that its parser ignores the encoding that the file declares.
+_DECLARATION = re.compile(
+    r"""^\ufeff?<\?xml\s+version\s*=\s*(["'])1\.[0-9]+\1(?:\s+\w+\s*=\s*(?:"[^"<>]*"|'[^'<>]*'))*\s*\?>"""
+)
+_CDATA = re.compile(r"<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
 
 
 class Place(NamedTuple):
@@ -47,11 +55,14 @@ class Node:
 
 def read_nodes(data: bytes, path: str) -> Node:
     """Return the root of an XML file. Raises XMLSyntaxError, and Undetermined for a file with entities of its own."""
-    root = parse_xml(data)
+    text = _decoded(data)
+    root = parse_xml(_DECLARATION.sub(lambda found: " " * len(found[0]), text, count=1).encode())
     definitions = root.getroottree().docinfo.internalDTD
     if definitions is not None and next(definitions.iterentities(), None) is not None:  # type: ignore[attr-defined]
         raise Undetermined("entities of a DOCTYPE are not supported")
-    source = Source(path, data.decode("utf-8", "surrogateescape"))
+    if any("$" in section for section in _CDATA.findall(text)):
+        raise Undetermined("a CDATA section with $ is not supported")
+    source = Source(path, text)
     nodes: dict[Element, Node] = {}
     for index, element in enumerate(root.iter()):
         node = nodes[element] = Node(_tag(element), Place(source, index), _attributes(element))
@@ -62,6 +73,14 @@ def read_nodes(data: bytes, path: str) -> Node:
             children.append(node)
             _add_text(children, element.tail)
     return nodes[root]
+
+
+def _decoded(data: bytes) -> str:
+    """Return the text of a file, which xacro reads as UTF-8 whatever its declaration says."""
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError:
+        raise ExpressionFails("the file is not UTF-8 text") from None
 
 
 def _add_text(children: Children, text: str | None) -> None:

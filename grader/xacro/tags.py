@@ -1,5 +1,6 @@
 """xacro's own tags: one function for each, as `eval_all` of ros/xacro handles it."""
 
+import re
 from collections.abc import Mapping
 from keyword import iskeyword
 
@@ -20,6 +21,7 @@ from grader.xacro.macros import (
 from grader.xacro.nodes import Node
 from grader.xacro.scopes import Reported, Scope
 
+_NAME = re.compile(r"[^\W\d][\w.-]*(?::[^\W\d][\w.-]*)?")
 _MAX_CALLS = 100  # macros that call each other
 
 
@@ -131,7 +133,7 @@ def _call_named(expander: Expander, name: str, node: Node, out: Node, scopes: Sc
     expander.calls = (*before, (name, node.place))
     try:
         expander.start(macro.body, inner)  # xacro evaluates the attributes of <xacro:macro> too
-        expander.content(macro.body, out, inner)
+        expander.insert(macro.body, out, inner)
     finally:
         expander.calls = before
 
@@ -149,7 +151,7 @@ def _insert_block(expander: Expander, node: Node, out: Node, scopes: Scopes) -> 
         raise MacroError(f"there is no block {name} at this place")
     if key.startswith("**"):
         expander.start(block, scopes)
-        expander.content(block, out, scopes)
+        expander.insert(block, out, scopes)
     else:
         new = expander.start(block, scopes)
         out.children.append(new)
@@ -160,7 +162,7 @@ def _if(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
     text = _needed(node, "value")
     keep = _boolean(expander.texts.evaluate(text, scopes.symbols), text)
     if keep == (node.tag == "xacro:if"):
-        expander.content(node, out, scopes)
+        expander.insert(node, out, scopes)
 
 
 def _arg(expander: Expander, node: Node, _: Node, scopes: Scopes) -> None:
@@ -171,8 +173,7 @@ def _arg(expander: Expander, node: Node, _: Node, scopes: Scopes) -> None:
 
 def _element(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
     name = expander.texts.evaluate(_needed(node, "xacro:name"), scopes.symbols)
-    if not name or not isinstance(name, str):
-        raise TagFails("<xacro:element> needs a name that is a text and not empty")
+    _check_name(name, node)
     renamed = Node("", node.place)
     renamed.children.append(_renamed(node, name, "xacro:name"))
     expander.content(renamed, out, scopes)
@@ -180,12 +181,16 @@ def _element(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
 
 def _attribute(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
     name, value = (expander.texts.evaluate(_needed(node, key), scopes.symbols) for key in ("name", "value"))
-    if not name or not isinstance(name, str):
-        raise TagFails("<xacro:attribute> needs a name that is a text and not empty")
+    _check_name(name, node)
     if value and not isinstance(value, str):
         raise TagFails(f"<xacro:attribute> needs a value that is a text: xacro fails with the number {value}")
     out.attributes[name] = value or ""
     out.moved = {**out.moved, name: node.place}
+
+
+def _check_name(name: Value, node: Node) -> None:
+    if not isinstance(name, str) or not _NAME.fullmatch(name):
+        raise TagFails(f"<{node.tag}> needs a name that XML allows, not {str(name)[:60]!r}")
 
 
 def _include(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
@@ -221,7 +226,7 @@ def _insert_file(expander: Expander, path: str, out: Node, scopes: Scopes) -> No
     expander.files.open.append(path)
     try:
         expander.start(root, scopes)
-        expander.content(root, out, scopes)
+        expander.insert(root, out, scopes)
     finally:
         expander.files.open.pop()
 

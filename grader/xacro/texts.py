@@ -141,6 +141,10 @@ class Texts:
 
         return text_of(evaluate(expression, find, self._budget))
 
+    def constant(self, expression: str) -> Value:
+        """Return the value of an expression that uses xacro's own names only."""
+        return evaluate(expression, lambda name: self.find(name, Scope()), self._budget)
+
     def share(self, package: str) -> str:
         """Return the text that $(find package) gives."""
         if not self._is_own(package):

@@ -1,11 +1,11 @@
 """Values from a YAML file, as load_yaml of xacro returns them: plain values, numbers with units, nothing constructed."""
 
+from collections.abc import Callable
 from itertools import islice
-from typing import Any
 
 import yaml
 
-from grader.static_python.closed_values import ExpressionFails, Undetermined, Value, check_size
+from grader.static_python.closed_values import ExpressionFails, Undetermined, Value, check_size, run
 from grader.xacro.functions import dotted
 
 _MAX_EVENTS = 20_000
@@ -17,24 +17,29 @@ _UNITS = {
 
 
 class _Loader(yaml.SafeLoader):
-    """PyYAML's safe loader with xacro's units."""
+    """PyYAML's safe loader with xacro's units, whose numbers are expressions that `number` evaluates."""
+
+    number: Callable[[str], Value]
 
 
-def _with_unit(loader: _Loader, node: yaml.Node) -> float:
-    text = loader.construct_scalar(node)  # type: ignore[arg-type]
-    try:
-        return float(text) * _UNITS[node.tag]
-    except ValueError:  # xacro evaluates it as an expression
-        raise Undetermined(f"the value {str(text)[:40]} with a unit is not supported") from None
+def _with_unit(loader: _Loader, node: yaml.ScalarNode) -> float:
+    value: float = run(float, loader.number(str(loader.construct_scalar(node))))
+    return value * _UNITS[node.tag]
 
 
 for _unit in _UNITS:
     _Loader.add_constructor(_unit, _with_unit)
 
 
-def read_yaml_values(data: bytes) -> Value:
-    """Return the value of a YAML text. Raises ExpressionFails for what is not YAML, Undetermined for what is too large."""
-    text = data.decode("utf-8", "replace")
+def read_yaml_values(data: bytes, number: Callable[[str], Value]) -> Value:
+    """Return the value of a YAML text. `number` evaluates an expression that has a unit, such as !degrees 90.
+
+    Raises ExpressionFails for what is not YAML, Undetermined for what is too large.
+    """
+    try:
+        text = data.decode("utf-8")
+    except UnicodeDecodeError:
+        raise ExpressionFails("the YAML file is not UTF-8 text") from None
     depth = 0
     try:
         events = list(islice(yaml.parse(text, Loader=yaml.SafeLoader), _MAX_EVENTS + 1))
@@ -44,7 +49,9 @@ def read_yaml_values(data: bytes) -> Value:
                 raise Undetermined("the YAML file is too deeply nested")
         if len(events) > _MAX_EVENTS:
             raise Undetermined("the YAML file is too large")
-        value: Any = yaml.load(text, Loader=_Loader)  # noqa: S506  a safe loader
+        loader = _Loader(text)
+        loader.number = number
+        value = loader.get_single_data()
     except (yaml.YAMLError, ValueError) as error:
         raise ExpressionFails(f"the file is not YAML: {' '.join(str(error).split())[:200]}") from None
     check_size(value)

@@ -1,6 +1,7 @@
 """Compares the grader's expansion of a document with xacro's: the tree of elements, and the robot that ROS 2 reads."""
 
 import posixpath
+import re
 from importlib import import_module
 from typing import Any
 
@@ -25,7 +26,7 @@ def expand(document: Document) -> Any:
             raise InputError(f"{path} does not exist")
         return content if isinstance(content, bytes) else content.encode()
 
-    workspace = expansion.Workspace(read=read, package=PACKAGES.get)
+    workspace = expansion.Workspace(read=read, package=PACKAGES.get, paths=tuple(files))
     return expansion.expand(read(document.path), document.path, workspace, document.arguments)
 
 
@@ -48,6 +49,10 @@ def difference(document: Document) -> str | None:
         return None if refusals else f"xacro refuses it, the grader does not: {expected.message}"
     if reasons:
         return f"xacro accepts it, the grader cannot determine it: {reasons[0]}"
+    for name, folder in PACKAGES.items():
+        share = f"/install/{name}/share/{name}"
+        text = etree.tostring(found.root, with_tail=False).replace(share.encode(), f"/{folder}".rstrip("/").encode())
+        found = found._replace(root=etree.fromstring(text))
     return _difference_of_texts(expected.text.encode(), found.root)
 
 
@@ -71,10 +76,18 @@ def tree(element: etree._Element) -> Tree:
             content += [tree(child), ""]
         content[-1] += child.tail or ""
     return (
-        element.tag,
-        {str(name): str(value) for name, value in element.attrib.items()},
+        _name(element, str(element.tag)),
+        {_name(element, str(name)): " ".join(value.split()) for name, value in sorted(element.items())},
         [" ".join(part.split()) if isinstance(part, str) else part for part in content],
     )
+
+
+def _name(element: etree._Element, name: str) -> str:
+    """Return a name with its prefix instead of its namespace; the grader's elements have the prefix as their namespace."""
+    uri, brace, local = name.removeprefix("{").rpartition("}")
+    prefix = next((prefix for prefix, other in element.nsmap.items() if other == uri), None) if brace else None
+    prefix = uri if prefix is not None and re.fullmatch(r"ns\d+", prefix) else prefix
+    return f"{prefix}:{local}" if prefix else local
 
 
 def _difference_of_trees(expected: Tree, found: Tree, place: str) -> str | None:
