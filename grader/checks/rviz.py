@@ -7,7 +7,7 @@ from grader.errors import MissingElement, NotDecided
 from grader.names import did_you_mean
 from grader.package.package import Package
 from grader.submission.submission import Submission
-from grader.submission.urdf import NeedsExpansion, Read
+from grader.submission.urdf import Read
 from grader.text import enumerated
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: s
     actual = rviz.fixed_frame
     if not actual:
         return failed(f"the RViz file sets no Fixed Frame; it should be {frame!r}", rviz.frame_location)
-    robot = submission.urdf.reading.robot if isinstance(submission.urdf, Read | NeedsExpansion) else None
+    robot = submission.urdf.reading.robot if isinstance(submission.urdf, Read) else None
     links = [link.name for link in robot.links] if robot is not None else []
     message, detail = f"the Fixed Frame is {actual!r}", ""
     if actual != frame:

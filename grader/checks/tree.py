@@ -5,6 +5,8 @@ from collections.abc import Mapping
 from grader.checks.outcome import Outcome, failed, passed, pending, place
 from grader.errors import MissingElement
 from grader.names import did_you_mean
+from grader.problems import Problem
+from grader.robot.catalogue import RAW_XACRO
 from grader.robot.joints import JOINT_TYPES, MOVING_TYPES, JointType
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading
@@ -15,6 +17,9 @@ from grader.xacro.catalogue import XACRO_CATALOGUE
 def urdf_loads(urdf: Reading) -> Outcome:
     """ROS 2 loads the URDF, and all links form one tree."""
     problems = [problem for problem in urdf.problems if problem.kind.effect == "rejects" or problem.kind.detaches_links]
+    raw = next((problem for problem in urdf.problems if problem.kind is RAW_XACRO), None)
+    if raw is not None and urdf.verdict != "clean":
+        return _not_expanded(urdf, raw)
     if not problems and urdf.verdict != "rejected":
         return passed("ROS 2 loads the file, and all links form one tree")
     undetermined = [problem for problem in urdf.problems if problem.kind.effect == "undetermined"]
@@ -26,6 +31,13 @@ def urdf_loads(urdf: Reading) -> Outcome:
     others = f" (and {counted(len(problems) - 1, 'more such problem')})" if len(problems) > 1 else ""
     outcome = failed(f"{first.message}{others}", first.location, problem=first.message)
     return outcome._replace(mistake=f"{first.code}: {first.kind.title}")
+
+
+def _not_expanded(urdf: Reading, raw: Problem) -> Outcome:
+    """Return the failure of xacro that is loaded without xacro, with what ROS 2 does about it."""
+    lost = next(problem for problem in urdf.problems if problem.kind.effect in ("rejects", "drops"))
+    outcome = failed(f"{raw.message}: {lost.message}", raw.location, problem=raw.message)
+    return outcome._replace(mistake=f"{raw.code}: {raw.kind.title}")
 
 
 def held_by(robot: Configuration, *, link: str, parent: str, joint_type: JointType) -> Outcome:

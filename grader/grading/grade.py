@@ -14,14 +14,17 @@ from grader.robot.kinematics import Configuration
 from grader.robot.shapes import UnknownShape
 from grader.source import LazyLocation, Location
 from grader.submission.submission import Submission, open_submission
-from grader.submission.urdf import NeedsExpansion, Read
+from grader.submission.urdf import Read
 from grader.text import enumerated
 
 if TYPE_CHECKING:
     from grader.documents.evidence import Exhibit
 
 _MAX_PICTURES = 50
-_EXPANDED = "the URDF is xacro: its properties and expressions were evaluated, as xacro does before ROS 2 reads it"
+_EXPANDED = "the URDF is xacro: it was expanded, as xacro does before ROS 2 reads it"
+_NOT_EXPANDED = (
+    "the URDF is xacro, but is loaded without xacro; all but its loading is graded on what xacro makes of it"
+)
 _ELSEWHERE = "the graded URDF is outside the graded package"
 
 # Problems that explain a measurement at the same place, and those with which ROS 2 drops visuals of a link.
@@ -36,7 +39,7 @@ def grade(rubric: Rubric, submission: Submission, parts: Sequence[str] = ()) -> 
     for criterion in rubric.criteria:
         if criterion.part in chosen:
             grading.decide(criterion)
-    problems = submission.urdf.problems if isinstance(submission.urdf, Read | NeedsExpansion) else ()
+    problems = submission.urdf.problems if isinstance(submission.urdf, Read) else ()
     if submission.package is not None and any(rubric.part(part).needs == "package" for part in chosen):
         from grader.package.problems import package_problems  # a URDF on its own needs none of what reads a package
 
@@ -53,7 +56,7 @@ def _chosen_parts(rubric: Rubric, submission: Submission, named: Sequence[str]) 
             raise InputError(f"{name} needs more than a URDF: give the folder or archive that was submitted")
     parts = [part for part in rubric.parts if not named or part.id in named]
     chosen = tuple(part.id for part in parts if part.needs == "urdf" or not submission.is_single)
-    notes = [_EXPANDED] if isinstance(submission.urdf, Read) and submission.urdf.is_expanded else []
+    notes = _notes_on_xacro(submission)
     package, path = submission.package, submission.path
     if package is not None and path is not None and not path.startswith(f"{package.folder}/" if package.folder else ""):
         notes.append(_ELSEWHERE)
@@ -64,6 +67,12 @@ def _chosen_parts(rubric: Rubric, submission: Submission, named: Sequence[str]) 
             f"a single URDF is graded on {only} only: {enumerated(skipped)} need the folder or archive it is in"
         )
     return chosen, tuple(notes)
+
+
+def _notes_on_xacro(submission: Submission) -> list[str]:
+    if not isinstance(submission.urdf, Read) or not submission.urdf.is_expanded:
+        return []
+    return [_EXPANDED if submission.urdf.as_it_stands is None else _NOT_EXPANDED]
 
 
 def _evidence(
@@ -101,7 +110,7 @@ class _Grading:
             urdf = submission.urdf.reading
             self.problems = urdf.problems
             self.robot = Configuration(urdf.robot) if urdf.robot is not None else None
-            self._subjects |= {"urdf": urdf, "robot": self.robot}
+            self._subjects |= {"urdf": submission.urdf.loaded, "robot": self.robot}
 
     def decide(self, criterion: Criterion) -> None:
         """Run the check of a criterion, or skip it because of another that failed."""

@@ -16,7 +16,7 @@ from grader.text import enumerated
 
 # The readers are imported when they are needed: a URDF on its own needs none of them.
 if TYPE_CHECKING:
-    from grader.package.launch.model import Launch
+    from grader.package.launch.model import Launch, Reference
     from grader.package.manifest import Manifest
     from grader.package.rviz import RvizFile
     from grader.package.setup_py import Setup
@@ -164,11 +164,11 @@ class Package:
             rviz = RvizFile(Source(own, ""), None, None, Location(own, 1, 1), (), unread=str(error))
         return self._rviz_files.setdefault(path, rviz)
 
-    def robot_readers(self, name: str) -> set[str]:
-        """Return the programs with which its launch files read the robot in a file of this name: xacro, cat or open."""
+    def robot_references(self, name: str) -> "list[Reference]":
+        """Return where its launch files read the robot in a file of this name."""
         launches = map(self.launch, self.launch_files[:_MAX_LAUNCHES])
         references = (reference for launch in launches for reference in launch.named("urdf"))
-        return {reference.by for reference in references if (reference.path or "").rpartition("/")[2] == name}
+        return [reference for reference in references if (reference.path or "").rpartition("/")[2] == name]
 
     def rviz_file(self, name: str, launch: "Launch | None") -> str | None:
         """Return the RViz file that the launch file opens; else the one of this name; else any."""

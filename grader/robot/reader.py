@@ -33,6 +33,11 @@ class Reading:
     problems: tuple[Problem, ...]
     source: Source
 
+    @property
+    def undetermined(self) -> str:
+        """Why the robot is not known completely; empty if it is."""
+        return next((problem.message for problem in self.problems if problem.kind.effect == "undetermined"), "")
+
 
 def read_urdf(data: bytes, path: str = "robot.urdf") -> Reading:
     """Read the bytes of a URDF; `path` only appears in locations.

@@ -1,5 +1,6 @@
 """A submission: its files, and which URDF and which package of it are graded."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -12,7 +13,8 @@ from grader.files.tree import Tree, make_tree
 from grader.package.package import MANIFEST, NO_PACKAGE, Package
 from grader.robot.reader import Reading, Verdict
 from grader.source import Source
-from grader.submission.urdf import Absent, NeedsExpansion, OtherCandidate, Read, Unreadable, Urdf, read_as_ros
+from grader.submission.urdf import Absent, OtherCandidate, Read, Unreadable, Urdf, read_as_ros
+from grader.submission.workspace import Surroundings
 from grader.text import printable_path
 
 if TYPE_CHECKING:
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     from grader.documents.evidence import Proof
 
 STANDARD_INPUT = "-"
+_NO_ARGUMENTS: Mapping[str, str] = {}
 # Other files of a lab, which are never meant as a URDF.
 _NO_URDFS = frozenset(
     {".py", ".md", ".rviz", ".yaml", ".yml", ".toml", ".cfg", ".json", ".png", ".jpg", ".jpeg", ".gif", ".pdf", ".docx"}
@@ -62,12 +65,12 @@ class Submission:
     @property
     def sha256(self) -> str | None:
         """The hash of the URDF's bytes."""
-        return sha256_of(self.urdf.data) if isinstance(self.urdf, Read | NeedsExpansion) else None
+        return sha256_of(self.urdf.data) if isinstance(self.urdf, Read) else None
 
     @property
     def has_urdf(self) -> bool:
         """Return whether there is a URDF that could be read, even if ROS 2 rejects it."""
-        return isinstance(self.urdf, Read | NeedsExpansion)
+        return isinstance(self.urdf, Read)
 
     @property
     def unread(self) -> str:
@@ -76,8 +79,8 @@ class Submission:
 
     @property
     def verdict(self) -> Verdict | None:
-        """ROS 2's verdict on the URDF; None if it was not read, or not expanded."""
-        return self.urdf.reading.verdict if isinstance(self.urdf, Read) else None
+        """ROS 2's verdict on the URDF; None if it was not read."""
+        return self.urdf.loaded.verdict if isinstance(self.urdf, Read) else None
 
     @property
     def ignored(self) -> tuple[str, ...]:
@@ -100,8 +103,10 @@ class Submission:
         """Return the URDF that is graded; raises MissingElement without one, NotDecided if it cannot be read statically."""
         match self.urdf:
             case Read(reading=reading):
+                if reading.robot is None and reading.undetermined:
+                    raise NotDecided(reading.undetermined)
                 return reading
-            case Unreadable(reason=reason) | NeedsExpansion(reason=reason):
+            case Unreadable(reason=reason):
                 raise NotDecided(reason)
             case Absent():
                 self._refuse_unopened("URDF")
@@ -117,7 +122,7 @@ class Submission:
 
     def source(self, path: str) -> Source | None:
         """Return the text of one of its files, for quoting; None if it cannot be read."""
-        if isinstance(self.urdf, Read | NeedsExpansion) and path == self.urdf.path:
+        if isinstance(self.urdf, Read) and path == self.urdf.path:
             return self.urdf.source
         file = self.tree.files.get(path)
         try:
@@ -126,30 +131,42 @@ class Submission:
             return None
 
 
-def read_submission(data: bytes, *, identity: str, path: str) -> Submission:
-    """Return the submission that consists of the bytes of one URDF."""
-    return Submission(identity, read_as_ros(data, path, None))
+def read_submission(
+    data: bytes, *, identity: str, path: str, arguments: Mapping[str, str] = _NO_ARGUMENTS
+) -> Submission:
+    """Return the submission that consists of the bytes of one URDF; `arguments` are those of xacro."""
+    return Submission(identity, read_as_ros(data, path, Surroundings(arguments=arguments)))
 
 
-def open_submission(path: str, *, wanted: str, package: str = "", limit: int = URDF_LIMIT) -> Submission:
+def open_submission(
+    path: str,
+    *,
+    wanted: str,
+    package: str = "",
+    limit: int = URDF_LIMIT,
+    arguments: Mapping[str, str] = _NO_ARGUMENTS,
+) -> Submission:
     """Read the submission at a path: a URDF, a folder, an archive, or standard input for `-`.
 
     `wanted` is the URDF's path in its package and `package` the package's name, as the rubric gives them. `limit` is the
-    largest size of a URDF in bytes. Raises InputError, with one sentence, if the path cannot be read.
+    largest size of a URDF in bytes, `arguments` are those of xacro. Raises InputError, with one sentence, if the path cannot be read.
     """
     if path == STANDARD_INPUT:
-        return read_submission(read_standard_input(limit), identity="stdin", path="-")
+        return read_submission(read_standard_input(limit), identity="stdin", path="-", arguments=arguments)
     if not path:
         raise InputError(f"the path is empty: {_WANTED}")
     place = Path(path)
     tree = open_tree(place)
     shown = printable_path(place)
     if tree is not None:
-        return submission_of(tree, tree_name(place), wanted=wanted, package=package, limit=limit, shown=shown)
+        return submission_of(
+            tree, tree_name(place), wanted=wanted, package=package, limit=limit, shown=shown, arguments=arguments
+        )
     if place.suffix.lower() in _NO_URDFS:
         raise InputError(f"{shown} is not a URDF: {_WANTED}")
     identity = printable_path(place.stem)
-    return read_submission(read_capped(place, limit), identity=identity, path=printable_path(place.name))
+    data = read_capped(place, limit)
+    return read_submission(data, identity=identity, path=printable_path(place.name), arguments=arguments)
 
 
 def submission_of(
@@ -161,6 +178,7 @@ def submission_of(
     limit: int = URDF_LIMIT,
     shown: str = "",
     no_documents: str = "",
+    arguments: Mapping[str, str] = _NO_ARGUMENTS,
 ) -> Submission:
     """Return the submission that a file tree makes; raises InputError, which calls it `shown`, if there are no files."""
     if not tree.files and not tree.generated:
@@ -176,7 +194,7 @@ def submission_of(
     urdf: Urdf = Absent()
     if path is not None:
         try:
-            urdf = read_as_ros(tree.files[path].read(limit), path, graded)
+            urdf = read_as_ros(tree.files[path].read(limit), path, Surroundings(tree, packages, arguments))
         except InputError as error:  # the rest of the submission is graded
             urdf = Unreadable(path, str(error))
     return Submission(identity, urdf, others, tree, packages, is_single=False, no_documents=no_documents)

@@ -1,12 +1,14 @@
-"""The URDF of a submission, as one of four states."""
+"""The URDF of a submission, as one of three states, and what ROS 2 makes of it: read as it is, or expanded by xacro."""
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
-from grader.package.package import Package
 from grader.problems import Problem
 from grader.robot.catalogue import RAW_XACRO
-from grader.robot.reader import Reading, read_urdf
+from grader.robot.reader import Reading, read_robot, read_urdf
 from grader.source import Source
+from grader.submission.workspace import Surroundings
+from grader.xml.catalogue import NOT_WELL_FORMED
 
 
 class OtherCandidate(NamedTuple):
@@ -32,32 +34,23 @@ class Unreadable(NamedTuple):
     reason: str
 
 
-class NeedsExpansion(NamedTuple):
-    """The URDF is xacro that could not be expanded here, and `reason` says why; `reading` is of the unexpanded text."""
-
-    path: str
-    data: bytes
-    reading: Reading
-    reason: str
-
-    @property
-    def source(self) -> Source:
-        """The text that the student wrote."""
-        return self.reading.source
-
-    @property
-    def problems(self) -> tuple[Problem, ...]:
-        """The note that the file is xacro: the other problems of the unexpanded text mean nothing."""
-        return tuple(problem for problem in self.reading.problems if problem.kind is RAW_XACRO)
-
-
 class Read(NamedTuple):
-    """The URDF was read, even if ROS 2 rejects it; `reading` is of the expanded text if it is xacro."""
+    """The URDF was read, even if ROS 2 rejects it; `reading` is of the expanded text if it is xacro.
+
+    `as_it_stands` is set for xacro that is loaded without xacro: what ROS 2 makes of the text, while everything else is graded
+    on the expanded text.
+    """
 
     path: str
     data: bytes
     reading: Reading
     is_expanded: bool = False
+    as_it_stands: Reading | None = None
+
+    @property
+    def loaded(self) -> Reading:
+        """What ROS 2 loads."""
+        return self.as_it_stands or self.reading
 
     @property
     def source(self) -> Source:
@@ -66,27 +59,50 @@ class Read(NamedTuple):
 
     @property
     def problems(self) -> tuple[Problem, ...]:
-        """Every problem of the file."""
-        return self.reading.problems
+        """Every problem of the file; of xacro that is loaded without xacro, those of the expanded text."""
+        if self.as_it_stands is None:
+            return self.reading.problems
+        raw = [problem for problem in self.as_it_stands.problems if problem.kind is RAW_XACRO]
+        return (*raw, *self.reading.problems)
 
 
-Urdf = Absent | Unreadable | NeedsExpansion | Read
+Urdf = Absent | Unreadable | Read
+
+NOWHERE = Surroundings()
 
 
-def read_as_ros(data: bytes, path: str, package: Package | None) -> Read | NeedsExpansion:
-    """Read a URDF as ROS 2 gets it: expanded if the package's launch file runs xacro on it, or else if its name says xacro."""
+def read_as_ros(data: bytes, path: str, around: Surroundings = NOWHERE) -> Read:
+    """Read a URDF as ROS 2 gets it: expanded if a launch file runs xacro on it, or else if its name says xacro.
+
+    Other xacro is loaded as it stands; unless that makes no difference, everything but that is graded on its expansion.
+    """
     reading = read_urdf(data, path)
-    if not any(problem.kind is RAW_XACRO for problem in reading.problems):
+    kinds = {problem.kind for problem in reading.problems}
+    if RAW_XACRO not in kinds and NOT_WELL_FORMED not in kinds:
         return Read(path, data, reading)
-    name = path.rpartition("/")[2]
-    readers = package.robot_readers(name) if package is not None else set()
-    is_xacro = readers == {"xacro"} if readers else ".xacro" in name and not name.endswith(".urdf")
-    if not is_xacro:
+    name = path.rpartition("/")[2].lower()
+    launched = around.robot_references(path)
+    programs = {reference.by for reference in launched}
+    is_expanded = programs == {"xacro"} if programs else ".xacro" in name and not name.endswith(".urdf")
+    if not is_expanded and (RAW_XACRO not in kinds or reading.verdict == "clean"):
         return Read(path, data, reading)
-    from grader.xacro.properties import expand  # late: most URDFs are no xacro
+    given = dict(launched[0].arguments) if is_expanded and launched else {}
+    expanded = _expanded(data, path, around, given, reading)
+    if is_expanded:
+        return Read(path, data, expanded, is_expanded=True)
+    if expanded.robot is None:
+        return Read(path, data, reading)
+    return Read(path, data, expanded, is_expanded=True, as_it_stands=reading)
 
-    expanded = expand(reading.source.text)
-    if expanded is None:
-        reason = f"{name} is xacro, which cannot be expanded here: run `ros2 run xacro xacro {name}`"
-        return NeedsExpansion(path, data, reading, reason)
-    return Read(path, data, read_urdf(expanded.encode("utf-8", "surrogateescape"), path), is_expanded=True)
+
+def _expanded(
+    data: bytes, path: str, around: Surroundings, launched: Mapping[str, str | None], raw: Reading
+) -> Reading:
+    """Return the robot that xacro makes of a file; where it cannot be expanded at all, what can be read of the text."""
+    from grader.xacro.expansion import expand  # late: most URDFs are no xacro
+
+    expansion = expand(data, path, around.workspace(path), {**launched, **around.arguments})
+    if expansion.root is None and expansion.problems:
+        problems = [problem for problem in raw.problems if problem.kind not in (RAW_XACRO, NOT_WELL_FORMED)]
+        return Reading("rejected", raw.robot, (*expansion.problems, *problems), raw.source)
+    return read_robot(expansion.document)

@@ -9,7 +9,7 @@ from grader.robot.frames import Position
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading
 from grader.submission.submission import open_submission
-from grader.submission.urdf import Absent, Read, Unreadable
+from grader.submission.urdf import Absent, Unreadable
 from grader.text import printable_path
 from grader.usecases import Warn
 
@@ -27,8 +27,8 @@ def inspect(path: str, joints: Sequence[str], relative_to: str | None, max_size:
     if submission.other_candidates:
         others = ", ".join(file.path for file in submission.other_candidates)
         warn(f"inspecting {urdf.path}; other candidates: {others}")
-    if isinstance(urdf, Read) and urdf.is_expanded:
-        warn(f"{urdf.path} is xacro: its properties and numbers are expanded")
+    if urdf.is_expanded:
+        warn(f"{urdf.path} is xacro: this is what xacro expands it to")
     robot = _configuration(urdf.reading, joints)
     if robot is not None and relative_to is None:
         relative_to = main_root(robot)

@@ -1,6 +1,6 @@
 """The kinds of problems that a xacro file can have. `docs/problems.md` is generated from it."""
 
-from grader.problems import Kind, kinds_in, notes, rejects
+from grader.problems import Kind, kinds_in, rejects
 
 XACRO_NOT_XML = rejects(
     "XACRO001",
@@ -39,11 +39,6 @@ XACRO_UNDETERMINED = Kind(
     "submission, an argument without a default. Criteria that depend on it need manual grading.",
     severity="warning",
     effect="undetermined",
-)
-OTHER_INCLUDE = notes(
-    "XACRO007",
-    "A file included from a package that was not submitted",
-    "The package of an included file is not part of the submission, but a file with this name is. That file is read instead.",
 )
 
 XACRO_CATALOGUE = kinds_in(globals().values())

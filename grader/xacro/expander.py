@@ -53,7 +53,7 @@ class Expander:
     """The state of one expansion. `calls` are the macro calls around the current place."""
 
     def __init__(
-        self, files: Files, arguments: Mapping[str, str], handlers: Mapping[str, Handler], other: Handler
+        self, files: Files, arguments: Mapping[str, str | None], handlers: Mapping[str, Handler], other: Handler
     ) -> None:
         """`handlers` expand xacro's own tags, and `other` every other tag that begins with xacro: a macro call."""
         self.files = files

@@ -63,17 +63,19 @@ class ExpandedSource(Source):
         return next((other for other in others if self._nodes[other].tag == name), index)
 
 
-def expand(data: bytes, path: str, workspace: Workspace, arguments: Mapping[str, str]) -> Expansion:
+def expand(data: bytes, path: str, workspace: Workspace, arguments: Mapping[str, str | None]) -> Expansion:
     """Return a xacro file as xacro expands it with these arguments; never raises. `path` is that in the submission."""
     plain = Source(path, data.decode("utf-8", "surrogateescape"))
     at = plain.at(0)
+    refused: tuple[Problem, ...] = ()
     try:
-        source = read_nodes(data, path)
-    except XMLSyntaxError as error:
-        line, column = error.position
-        location = Location(path, max(line or 1, 1), max(column or 1, 1))
-        message = f"xacro needs well-formed XML: {error.msg}; {STOPS}"
-        return Expansion(None, plain, (Problem(catalogue.XACRO_NOT_XML, message, location),), (), {})
+        try:
+            source = read_nodes(data, path)
+        except XMLSyntaxError as error:
+            refused = (_not_xml(error, path),)
+            source = read_nodes(data, path, is_repaired=True)
+    except XMLSyntaxError:
+        return Expansion(None, plain, refused, (), {})
     except ExpressionFails as error:
         return Expansion(None, plain, (Problem(catalogue.XACRO_NOT_XML, f"{error}; {STOPS}", at),), (), {})
     except Undetermined as error:
@@ -84,8 +86,14 @@ def expand(data: bytes, path: str, workspace: Workspace, arguments: Mapping[str,
     unresolved: dict[Element, Unresolved] = {}
     element = _element(root, nodes, unresolved)
     return Expansion(
-        element, ExpandedSource(plain, nodes), tuple(expander.problems), tuple(expander.undetermined), unresolved
+        element, ExpandedSource(plain, nodes), (*refused, *expander.problems), tuple(expander.undetermined), unresolved
     )
+
+
+def _not_xml(error: XMLSyntaxError, path: str) -> Problem:
+    line, column = error.position
+    location = Location(path, max(line or 1, 1), max(column or 1, 1))
+    return Problem(catalogue.XACRO_NOT_XML, f"xacro needs well-formed XML: {error.msg}; {STOPS}", location)
 
 
 def _element(root: Node, nodes: list[Node], unresolved: dict[Element, Unresolved]) -> Element:

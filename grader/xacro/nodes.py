@@ -15,6 +15,9 @@ Children = list["Node | str"]
 _DECLARATION = re.compile(
     r"""^\ufeff?<\?xml\s+version\s*=\s*(["'])1\.[0-9]+\1(?:\s+\w+\s*=\s*(?:"[^"<>]*"|'[^'<>]*'))*\s*\?>"""
 )
+_MISPLACED = re.compile(r"<\?xml\s[^>]*\?>")
+_UNDECLARED = re.compile(r"(</?\s*)xacro:")
+_STAND_IN = "."  # for the colon of an undeclared prefix; it keeps every column
 _CDATA = re.compile(r"<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
 
 
@@ -53,10 +56,17 @@ class Node:
         return [child for child in self.children if isinstance(child, Node)]
 
 
-def read_nodes(data: bytes, path: str) -> Node:
-    """Return the root of an XML file. Raises XMLSyntaxError, and Undetermined for a file with entities of its own."""
+def read_nodes(data: bytes, path: str, *, is_repaired: bool = False) -> Node:
+    """Return the root of an XML file. Raises XMLSyntaxError, and Undetermined for a file with entities of its own.
+
+    With `is_repaired`, two faults that xacro refuses do not matter: a misplaced declaration, and no xmlns:xacro.
+    """
     text = _decoded(data)
-    root = parse_xml(_DECLARATION.sub(lambda found: " " * len(found[0]), text, count=1).encode())
+    xml = _DECLARATION.sub(lambda found: " " * len(found[0]), text, count=1)
+    if is_repaired:
+        xml = _MISPLACED.sub(lambda found: " " * len(found[0]), xml)
+        xml = xml if "xmlns:xacro" in xml else _UNDECLARED.sub(r"\1xacro" + _STAND_IN, xml)
+    root = parse_xml(xml.encode())
     definitions = root.getroottree().docinfo.internalDTD
     if definitions is not None and next(definitions.iterentities(), None) is not None:  # type: ignore[attr-defined]
         raise Undetermined("entities of a DOCTYPE are not supported")
@@ -90,6 +100,8 @@ def _add_text(children: Children, text: str | None) -> None:
 
 def _tag(element: Element) -> str:
     tag = str(element.tag)
+    if tag.startswith(f"xacro{_STAND_IN}"):
+        return tag.replace(_STAND_IN, ":", 1)
     local = tag.rpartition("}")[2]
     return f"{element.prefix}:{local}" if element.prefix else local
 

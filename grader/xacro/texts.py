@@ -20,11 +20,11 @@ INSTALLED = "/install"  # where the packages are for $(find package): in a folde
 
 
 class Texts:
-    """Evaluates texts. `arguments` are those of $(arg): given ones first, then the defaults of the file."""
+    """Evaluates texts. `arguments` are those of $(arg): given ones first, then the defaults of the file; None if unknown."""
 
     def __init__(
         self,
-        arguments: dict[str, str],
+        arguments: dict[str, str | None],
         budget: Budget,
         report: Report,
         own: dict[str, Value],
@@ -132,7 +132,7 @@ class Texts:
 
         def find(name: str) -> Value:
             if name in self.arguments and name not in GLOBALS:
-                return argument_value(self.arguments[name])
+                return argument_value(known(name, self.arguments[name]))
             if name in ("env", "optenv", "find", "arg", "dirname"):
                 raise Undetermined(f"the function {name} in $(eval ...) is not supported")
             if name in GLOBALS or name in ("true", "false"):
@@ -154,8 +154,15 @@ class Texts:
     def argument(self, name: str) -> str:
         """Return the value of an argument."""
         if name in self.arguments:
-            return self.arguments[name]
+            return known(name, self.arguments[name])
         raise Undetermined(f"the argument {name} has no default; give it with --arg {name}=VALUE")
+
+
+def known(argument: str, value: str | None) -> str:
+    """Return the value of an argument; raise Undetermined if it is unknown."""
+    if value is None:
+        raise Undetermined(f"the launch file gives the argument {argument} a value that is known only at run time")
+    return value
 
 
 def _one(command: str, args: list[str]) -> str:

@@ -14,10 +14,11 @@ Purpose = Literal["urdf", "rviz", "include"]
 
 @dataclass(frozen=True, slots=True)
 class Contents:
-    """The contents of a file, read by open, cat or xacro."""
+    """The contents of a file, read by open, cat or xacro. `arguments` are those of xacro; None for an unknown value."""
 
     path: str
     by: str
+    arguments: tuple[tuple[str, str | None], ...] = ()
 
 
 Resolved = str | Contents | Unknown
@@ -58,6 +59,7 @@ class Reference:
     reason: str = ""  # why the path is unknown, or what is wrong with it
     sure: bool = True  # False where it is unknown
     by: str = ""  # the program that reads it, if there is one: xacro, cat or open
+    arguments: tuple[tuple[str, str | None], ...] = ()  # that xacro gets
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,7 +122,7 @@ class Findings:
             case Unknown(reason=reason):
                 self.references.append(Reference(purpose, None, location, reason, sure=False))
             case Contents():
-                self.references.append(Reference(purpose, path.path, location, by=path.by))
+                self.references.append(Reference(purpose, path.path, location, by=path.by, arguments=path.arguments))
             case _:
                 self.references.append(Reference(purpose, path, location, wrong))
 

@@ -95,7 +95,7 @@ class _Substitution:
                 return self.path(self.call.args)
             case "process_file" | "process" if full.startswith("xacro."):
                 self.needs_texts(f"xacro.{name} takes a path, not a substitution: use Command(['xacro ', ...])", 1)
-                return self.contents("xacro", "input_file_name")
+                return self.contents("xacro", "input_file_name", arguments=self.mappings())
             case "parse":  # xacro.parse(open(path)), or of the contents
                 opened = self.argument()
                 return Contents(opened.path, "xacro") if isinstance(opened, Contents) else opened
@@ -117,9 +117,15 @@ class _Substitution:
     def argument(self, *names: str) -> Resolved:
         return self.resolve(self.call.argument(0, *names))
 
-    def contents(self, by: str, *names: str) -> Resolved:
+    def contents(self, by: str, *names: str, arguments: tuple[tuple[str, str | None], ...] = ()) -> Resolved:
         path = self.argument(*names)
-        return Contents(path, by) if isinstance(path, str) else path
+        return Contents(path, by, arguments) if isinstance(path, str) else path
+
+    def mappings(self) -> tuple[tuple[str, str | None], ...]:
+        """Return the arguments that xacro.process_file gets."""
+        given = self.call.kwargs.get("mappings")
+        values = {name: self.resolve(value) for name, value in given.items()} if isinstance(given, dict) else {}
+        return tuple((name, value if isinstance(value, str) else None) for name, value in values.items())
 
     def needs_texts(self, message: str, count: int | None = None) -> None:
         """Add an error if a function of Python gets a substitution, which has no text before the launch runs."""
@@ -183,7 +189,12 @@ class _Substitution:
         files = [word for word in words[1:] if not word.startswith("-") and ":=" not in word]
         is_read = program in ("xacro", "cat", "type") and "-o" not in words
         if is_read and len(files) == 1 and files[0] and PART_UNKNOWN not in files[0]:
-            return Contents(files[0], "xacro" if program == "xacro" else "cat")
+            if program != "xacro":
+                return Contents(files[0], "cat")
+            given = (word.split(":=", 1) for word in words[1:] if ":=" in word)
+            return Contents(
+                files[0], "xacro", tuple((name, None if PART_UNKNOWN in value else value) for name, value in given)
+            )
         return next(iter(unknown), Unknown("the output of this command is known only at run time", self.call.at))
 
     def expression(self) -> Resolved:

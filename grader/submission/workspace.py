@@ -1,0 +1,72 @@
+"""What is around a URDF in a submission: the packages whose launch files load it, and the files that its xacro includes."""
+
+from __future__ import annotations
+
+import posixpath
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from grader.errors import InputError, NotDecided
+from grader.files.reading import URDF_LIMIT
+from grader.files.tree import Tree, make_tree
+from grader.package.package import Package
+
+if TYPE_CHECKING:
+    from grader.package.launch.model import Reference
+    from grader.xacro.files import Workspace
+
+_NO_FILES = make_tree("", (), ())
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """The files and packages of a submission, the one that is graded first; `arguments` are those that the user gives xacro."""
+
+    tree: Tree = field(default=_NO_FILES, repr=False)
+    packages: tuple[Package, ...] = ()
+    arguments: Mapping[str, str] = field(default_factory=dict)
+
+    def robot_references(self, path: str) -> list[Reference]:
+        """Return where the launch files of the graded package read a URDF."""
+        return self.packages[0].robot_references(path.rpartition("/")[2]) if self.packages else []
+
+    def workspace(self, path: str) -> Workspace:
+        """Return the files as the xacro in a file sees them."""
+        from grader.xacro.files import Workspace  # late: most URDFs are no xacro
+
+        folders = {package.name: package.folder for package in reversed(self.packages)}
+        own = posixpath.dirname(path)
+
+        def package_folder(name: str) -> str | None:
+            # Without any package, the submission is taken for a part of the one that its xacro names.
+            return folders.get(name) if folders or not self.tree.files else own
+
+        return Workspace(self._read, package_folder, tuple(self.tree.files), self._installed)
+
+    def _read(self, path: str) -> bytes:
+        file = self.tree.files.get(path)
+        if file is None and not self.tree.files:
+            raise NotDecided(f"the included file {path} was not submitted: this is a single file")
+        if file is None:
+            raise InputError(f"there is no file {path} in the submission")
+        try:
+            return file.read(URDF_LIMIT)
+        except InputError as error:
+            raise NotDecided(str(error)) from None
+
+    def _installed(self, name: str, inside: str) -> str | None:
+        """Return the file that is at a path in a package once it is built; without any package, the most similar path."""
+        for package in self.packages:
+            if package.name == name:
+                source = package.installed.get(f"share/{name}/{inside}")
+                return package.path(source) if source is not None else None
+        if self.packages:
+            return None
+        steps = inside.split("/")
+        for count in range(len(steps), 0, -1):
+            end = "/" + "/".join(steps[-count:])
+            found = [path for path in self.tree.files if f"/{path}".endswith(end)]
+            if len(found) == 1:
+                return found[0]
+        return None

@@ -1,0 +1,172 @@
+"""Which files are graded as xacro expands them, and what is graded of those that xacro refuses or cannot determine."""
+
+import re
+import shutil
+from pathlib import Path
+
+from grader.grading.grade import grade
+from grader.submission.submission import Submission, read_submission
+from grader.submission.urdf import Read
+from tests.samples import LAB6, opened
+
+REFERENCE = (LAB6.path.parent / LAB6.reference / LAB6.urdf).read_text(encoding="utf-8")
+NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+PLAIN = REFERENCE.replace('rpy="-1.57 0 0"', 'rpy="${-pi/2} 0 0"').replace("<robot ", f"<robot {NAMESPACE} ")
+MACRO = PLAIN.replace("</robot>", '<xacro:macro name="m" params="p"/>\n</robot>')
+
+
+def inserted(text: str, *, at: str = "</robot>", also: str = "") -> str:
+    """Return the reference as xacro, with a text before another one."""
+    assert at in PLAIN
+    return PLAIN.replace(at, f"{text}\n{at}{also}", 1)
+
+
+def statuses(submission: Submission) -> dict[str, str]:
+    """Return the status of each criterion of Task 1."""
+    return {result.criterion.id: result.outcome.status for result in grade(LAB6, submission, ["task1"]).results}
+
+
+def single(text: str, name: str = "my_robot.urdf.xacro") -> Submission:
+    """Return a submission that is one file."""
+    return read_submission(text.encode(), identity="ash", path=name)
+
+
+def package_with(folder: Path, text: str, *, name: str = "my_robot.urdf", command: str = "") -> Submission:
+    """Return the reference package with another URDF, whose launch file runs a command on it, or reads it."""
+    shutil.copytree(LAB6.path.parent / LAB6.reference, folder / "my_robot")
+    (folder / "my_robot" / LAB6.urdf).unlink()
+    (folder / "my_robot" / "urdf" / name).write_text(text)
+    launch = folder / "my_robot" / "launch" / "my_robot_rviz.launch.py"
+    if command:
+        new = f"    from launch.substitutions import Command\n    robot_description = Command([{command}])\n"
+        changed = re.sub(r"    with open.*?read\(\)\n", new, launch.read_text(), flags=re.DOTALL)
+        assert "Command" in changed
+        launch.write_text(changed)
+    return opened(folder)
+
+
+def state(submission: Submission) -> str:
+    """Return how a submission's URDF is read."""
+    urdf = submission.urdf
+    assert isinstance(urdf, Read)
+    return "both" if urdf.as_it_stands is not None else "expanded" if urdf.is_expanded else "read"
+
+
+def test_a_launch_file_that_runs_xacro_means_expansion(tmp_path: Path) -> None:
+    """A .urdf is expanded if the launch file runs xacro on it; else ROS 2 gets the text as it stands."""
+    command = "'xacro ', share + '/my_robot.urdf'"
+    for text in (PLAIN, MACRO):
+        found = package_with(tmp_path / str(len(text)), text, command=command)
+        assert (state(found), found.verdict) == ("expanded", "clean")
+    as_it_stands = package_with(tmp_path / "as-it-stands", PLAIN)
+    assert (state(as_it_stands), as_it_stands.verdict) == ("both", "rejected")
+
+
+def test_a_name_that_says_xacro_means_expansion() -> None:
+    """A name with .xacro in it means expansion, in any case and with anything after it; .urdf at its end does not."""
+    for name in ("a.urdf.xacro", "a.xacro", "urdf.Xacro file.txt", "urdf.xacro file.py", "a.urdf.xacro.txt"):
+        assert state(single(MACRO, name)) == "expanded", name
+    assert state(single(PLAIN, "a.urdf")) == "both"
+    assert state(single(REFERENCE, "a.xacro")) == "read"
+
+
+def test_xacro_that_is_loaded_without_xacro_loses_its_loading_alone() -> None:
+    """ROS 2's verdict on the text as it stands costs urdf-loads; all else is graded on the expansion."""
+    found = single(PLAIN, "my_robot.urdf")
+    lost = {name: status for name, status in statuses(found).items() if status != "passed"}
+    assert lost == {"urdf-loads": "failed"}
+    report = grade(LAB6, found, ["task1"])
+    assert any("loaded without xacro" in note for note in report.notes)
+    message = report.results[0].outcome.message
+    assert "ros2 run xacro" in message
+    assert "${-pi/2}" in message
+
+
+def test_launch_arguments_reach_xacro(tmp_path: Path) -> None:
+    """The arguments that the launch file gives xacro count before the defaults of the file."""
+    text = PLAIN.replace('name="lidar"', 'name="$(arg sensor)"').replace('link="lidar"', 'link="$(arg sensor)"')
+    text = text.replace("</robot>", '<xacro:arg name="other" default="1"/></robot>')
+    text = text.replace(
+        '<link name="base_link">', '<xacro:arg name="sensor" default="scanner"/><link name="base_link">', 1
+    )
+    given = package_with(tmp_path / "a", text, command="'xacro ', share + '/my_robot.urdf', ' sensor:=lidar'")
+    assert set(statuses(given).values()) == {"passed"}
+    default = package_with(tmp_path / "b", text, command="'xacro ', share + '/my_robot.urdf'")
+    assert statuses(default)["lidar-shape"] == "failed"
+
+
+def test_a_missing_include_of_the_submission_fails_its_loading_alone(tmp_path: Path) -> None:
+    """A file of the submission that does not exist fails urdf-loads; what is there is graded."""
+    text = inserted('<xacro:include filename="inertia.xacro"/>')
+    found = package_with(tmp_path, text, name="my_robot.urdf.xacro")
+    lost = {name: status for name, status in statuses(found).items() if status != "passed"}
+    assert lost == {"urdf-loads": "failed"}
+    results = grade(LAB6, found, ["task1"]).results
+    assert "there is no file" in results[0].outcome.message
+    assert results[0].outcome.location is not None
+    assert results[0].outcome.location.path.endswith("my_robot.urdf.xacro")
+
+
+def test_an_include_of_another_package_leaves_only_what_depends_on_it_undecided(tmp_path: Path) -> None:
+    """$(find other_package) leaves urdf-loads undecided, and whatever is missing; a base that is there is graded."""
+    include = '<xacro:include filename="$(find other_robot)/urdf/inertia.xacro"/>'
+    found = package_with(tmp_path / "a", inserted(include), name="my_robot.urdf.xacro")
+    assert {name for name, status in statuses(found).items() if status != "passed"} == {"urdf-loads"}
+    assert statuses(found)["urdf-loads"] == "pending"
+    lidar = re.compile(r'<link name="lidar">.*?</link>|<joint name="base_lidar_joint".*?</joint>', re.DOTALL)
+    without = package_with(tmp_path / "b", lidar.sub("", inserted(include)), name="my_robot.urdf.xacro")
+    undecided = {name for name, status in statuses(without).items() if status == "pending"}
+    assert undecided >= {"urdf-loads", "lidar-shape", "lidar-white", "lidar-fixed", "lidar-frame", "lidar-on-top"}
+    assert statuses(without)["base-box"] == statuses(without)["left-wheel-forward"] == "passed"
+    assert "failed" not in statuses(without).values()
+
+
+def test_an_unknown_macro_of_a_missing_include_hides_nothing_of_its_link(tmp_path: Path) -> None:
+    """A call of a macro from another package inside of a link leaves the link's own visual."""
+    include = '<xacro:include filename="$(find other_robot)/urdf/inertia.xacro"/>'
+    text = inserted(include, at='<link name="base_link">', also='<xacro:inertial_box mass="1"/>')
+    found = package_with(tmp_path, text, name="my_robot.urdf.xacro")
+    assert {name for name, status in statuses(found).items() if status != "passed"} == {"urdf-loads"}
+
+
+def test_an_include_that_a_build_installs_elsewhere_is_found(tmp_path: Path) -> None:
+    """$(find my_robot)/x.xacro is urdf/x.xacro if setup.py installs it there."""
+    text = inserted('<xacro:include filename="$(find my_robot)/more.xacro"/>')
+    found = package_with(tmp_path, text, name="my_robot.urdf.xacro")
+    assert statuses(found)["urdf-loads"] == "failed"
+    (tmp_path / "my_robot" / "urdf" / "more.xacro").write_text("<robot/>")
+    assert set(statuses(opened(tmp_path)).values()) == {"passed"}
+
+
+def test_a_part_of_a_package_includes_its_own_files(tmp_path: Path) -> None:
+    """Without a package.xml, $(find my_robot) is taken for the package that the files are a part of."""
+    (tmp_path / "urdf").mkdir()
+    (tmp_path / "urdf" / "more.xacro").write_text("<robot/>")
+    text = inserted('<xacro:include filename="$(find my_robot)/urdf/more.xacro"/>')
+    (tmp_path / "urdf" / "my_robot.urdf.xacro").write_text(text)
+    assert set(statuses(opened(tmp_path)).values()) == {"passed"}
+
+
+def test_a_refused_expression_costs_what_depends_on_it() -> None:
+    """An undefined property fails urdf-loads and the criteria of its element, all else is graded."""
+    text = PLAIN.replace('<box size="0.6 0.4 0.2"/>', '<box size="${lenght} 0.4 0.2"/>')
+    assert text != PLAIN
+    found = statuses(single(text))
+    assert found["urdf-loads"] == found["base-box"] == "failed"
+    assert found["lidar-frame"] == found["left-wheel-forward"] == found["footprint-root"] == "passed"
+
+
+def test_an_environment_variable_leaves_only_its_element_undecided() -> None:
+    """What an environment variable decides needs manual grading, all else is graded."""
+    found = statuses(single(PLAIN.replace('<box size="0.6 0.4 0.2"/>', '<box size="$(env LENGTH) 0.4 0.2"/>')))
+    assert found["urdf-loads"] == found["base-box"] == "pending"
+    assert found["lidar-frame"] == found["left-wheel-continuous"] == "passed"
+    assert "failed" not in found.values()
+
+
+def test_xml_that_xacro_refuses_hides_nothing_else() -> None:
+    """A blank line before the declaration, or no xmlns:xacro, fails urdf-loads, and all else is graded."""
+    assert PLAIN.startswith("<?xml")
+    for text in ("\n" + PLAIN, MACRO.replace(NAMESPACE, "")):
+        found = {name: status for name, status in statuses(single(text)).items() if status != "passed"}
+        assert found == {"urdf-loads": "failed"}
