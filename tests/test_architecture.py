@@ -32,8 +32,8 @@ LIBRARIES = {
     "typer": {"cli"},
     "rich": {"cli", "report", "usecases"},
     "lxml": {"xml", "report"},  # a report may be XML
-    "yaml": {"package"},
-    "ast": {"static_python", "package", "xacro"},
+    "yaml": {"package", "xacro"},
+    "ast": {"static_python", "package"},
     "docx": {"documents"},
     "pypdf": {"documents"},
     "numpy": {"robot"},

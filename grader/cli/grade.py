@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from grader.cli.options import DEFAULT_RUBRIC, MaxSizeOption, RubricOption, part_ids, save_formats
+from grader.cli.options import DEFAULT_RUBRIC, ArgOption, MaxSizeOption, RubricOption, part_ids, save_formats
 from grader.cli.output import TERMINAL, screen, warn, write_stderr
 from grader.errors import GraderError
 from grader.files.reading import URDF_LIMIT
@@ -34,6 +34,7 @@ def grade(
     ] = None,
     fail_under: Annotated[str | None, typer.Option(metavar="N|N%", help=_FAIL_UNDER)] = None,
     max_size: MaxSizeOption = URDF_LIMIT,
+    arg: ArgOption = None,
     answers: Annotated[
         bool, typer.Option("--answers", help="Also show model answers (terminal, markdown, json).")
     ] = False,
@@ -59,7 +60,16 @@ def grade(
     try:
         saves = read_saves(save or ())
         request = GradeRequest(
-            path, rubric, expect_rubric, tuple(part or ()), output_format, saves, fail_under, max_size, answers
+            path,
+            rubric,
+            expect_rubric,
+            tuple(part or ()),
+            output_format,
+            saves,
+            fail_under,
+            max_size,
+            answers,
+            tuple(arg or ()),
         )
         if watch:
             from grader.usecases.watch import watch as grade_on_change

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from grader.cli.options import FormatOption, MaxSizeOption
+from grader.cli.options import ArgOption, FormatOption, MaxSizeOption
 from grader.cli.output import screen, warn
 from grader.files.reading import URDF_LIMIT
 from grader.report.formats import OutputFormat
@@ -24,10 +24,11 @@ def inspect(
     relative_to: Annotated[str | None, typer.Option(metavar="LINK", help=_RELATIVE)] = None,
     output_format: FormatOption = OutputFormat.TERMINAL,
     max_size: MaxSizeOption = URDF_LIMIT,
+    arg: ArgOption = None,
 ) -> int:
     """Show a URDF as ROS 2 reads it: problems, tree, joints, poses.
 
-    Exits 1 if ROS 2 rejects the file. A planar joint takes x,y,angle and a floating joint x,y,z,roll,pitch,yaw.
+    A xacro file is expanded as xacro does, without running it. Exits 1 if ROS 2 or xacro rejects the file. A planar joint takes x,y,angle and a floating joint x,y,z,roll,pitch,yaw.
 
     Examples:
 
@@ -40,7 +41,7 @@ def inspect(
     from grader.report.inspection import inspection_json, inspection_terminal
     from grader.usecases.inspect import inspect as read
 
-    inspection = read(path, joint or [], relative_to, max_size, warn)
+    inspection = read(path, joint or [], relative_to, max_size, arg or [], warn)
     is_json = output_format is OutputFormat.JSON
     write_stdout(inspection_json(inspection) if is_json else draw(partial(inspection_terminal, inspection), screen()))
     return ExitCode.FAILED if inspection.reading.verdict == "rejected" else ExitCode.PASSED

@@ -54,6 +54,10 @@ RubricOption = Annotated[
 ]
 GradebookOption = Annotated[Path, typer.Option("--gradebook", metavar="FILE", help="The gradebook, a SQLite file.")]
 MaxSizeOption = Annotated[int, typer.Option(metavar="BYTES", min=1, help="Maximum size of a URDF.")]
+ArgOption = Annotated[
+    list[str] | None,
+    typer.Option("--arg", metavar="NAME=VALUE", help="The value of an argument of a xacro file; repeatable."),
+]
 DueOption = Annotated[
     str | None, typer.Option("--due", metavar="TIME", help="The deadline, such as 2026-11-20T23:59+01:00.")
 ]

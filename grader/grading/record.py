@@ -69,7 +69,7 @@ def from_record(text: str, rubric: Rubric, quote: Quote | None = None, template:
         tuple(data["parts"]),
         tuple(_read_result(rubric, same, entry) for entry in data["results"]),
         tuple(
-            Problem(Kind(code, "", "", severity, "other"), message, Location(*place))
+            Problem(Kind(code, "", "", severity, "other"), message, _location(place))
             for code, severity, message, place in data["problems"]
         ),
         tuple(
@@ -99,7 +99,7 @@ def _read_result(rubric: Rubric, same: dict[str, Outcome], entry: Any) -> Result
     if isinstance(entry, int):
         return Result(rubric.criteria[entry], same[rubric.criteria[entry].id])
     index, (status, message, measured, expected, tolerance, unit, place, *problem), *rest = entry
-    location = Location(*place) if place is not None else None
+    location = _location(place) if place is not None else None
     if rubric.criteria[index].check.function is answered:
         expected = None  # records of earlier development versions hold the model answer here
     outcome = Outcome(status, message, _value(measured), _value(expected), tolerance, unit, location, "", *problem)
@@ -108,7 +108,16 @@ def _read_result(rubric: Rubric, same: dict[str, Outcome], entry: Any) -> Result
 
 def _plain(value: Any) -> Any:
     """Return what JSON cannot hold as what it can: a location or exhibit as a list, a read-only mapping as a dictionary."""
-    return astuple(value) if isinstance(value, Location | Exhibit) else dict(value)
+    if isinstance(value, Location):
+        place = (value.path, value.line, value.column)
+        return (*place, value.calls) if value.calls else place
+    return astuple(value) if isinstance(value, Exhibit) else dict(value)
+
+
+def _location(place: list[Any]) -> Location:
+    path, line, column, *rest = place
+    calls = tuple((macro, _location(called)) for macro, called in (rest[0] if rest else ()))
+    return Location(path, line, column, calls)
 
 
 def _value(value: Any) -> Any:

@@ -6,7 +6,7 @@ from rich.console import Console
 from rich.text import Text
 
 from grader.problems import Problem
-from grader.report.locations import excerpt
+from grader.report.locations import calls_text, excerpt
 from grader.source import Location, Source
 from grader.text import first_lines, printable
 
@@ -43,7 +43,7 @@ def show_problems(
         head = Text.assemble("  ", (f"{problem.code} {problem.severity:<7} ", style))
         where = problem.location
         named = f"line {where.line}" if where.path == main else f"{printable(where.path)}:{where.line}"
-        prefix = Text(f"{named}: ", style="dim")
+        prefix = Text(f"{named}{calls_text(where)}: ", style="dim")
         wrapped(console, prefix + Text(printable(problem.message)), len(head), head)
         source = source_of(where.path) if problem.severity == "error" else None
         if source is not None:

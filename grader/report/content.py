@@ -8,6 +8,7 @@ from typing import NamedTuple
 from grader.checks.manual import MANUAL_CHECKS
 from grader.grading.report import Report, Result
 from grader.problems import Problem
+from grader.report.locations import calls_text
 from grader.source import Location
 from grader.text import counted_points, enumerated, first_lines, format_points, printable
 
@@ -60,7 +61,7 @@ def summary(report: Report) -> str:
     path = printable(submission.path or "")
     urdf = f"{path}: not read" if submission.unread else "no URDF was submitted"
     if submission.path is not None and submission.has_urdf:
-        verdict = _VERDICTS[submission.verdict] if submission.verdict else "xacro, which needs manual grading"
+        verdict = _VERDICTS[submission.verdict] if submission.verdict else "xacro that cannot be determined statically"
         urdf = f"{path}: {verdict}"
     statuses = ["marked manually" if result.manual_mark else result.outcome.status for result in report.results]
     counts = (f"{statuses.count(status)} {status}" for status in _STATUSES if status in statuses)
@@ -175,8 +176,8 @@ def sentence(message: str) -> str:
 
 
 def location_text(where: Location) -> str:
-    """Return a location as editors take it: path:line:column."""
-    return f"{printable(where.path)}:{where.line}:{where.column}"
+    """Return a location as editors take it, path:line:column, and the macro calls that led to it."""
+    return f"{printable(where.path)}:{where.line}:{where.column}{calls_text(where)}"
 
 
 def advice(report: Report) -> str:

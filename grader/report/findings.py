@@ -97,8 +97,8 @@ def _undecided(report: Report, base: Base) -> Iterator[Finding]:
 
 
 def _text(lines: tuple[str, ...], where: Location | None, base: Base) -> str:
-    """Return the lines, and the location as well where that is not a file of the repository."""
-    is_file = where is None or not (base.archive or base.is_outside or archive_around(where.path))
+    """Return the lines, and the location as well where that is in a macro, or not in a file of the repository."""
+    is_file = where is None or not (base.archive or base.is_outside or archive_around(where.path) or where.calls)
     inside = () if is_file or where is None else (f"In {location_text(where)}.",)
     return "\n".join((*lines, *inside))
 

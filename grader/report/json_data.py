@@ -62,7 +62,11 @@ def rounded(value: Any) -> Any:
 
 def location(where: Location | None) -> dict[str, Any] | None:
     """Return a location as plain data."""
-    return None if where is None else {"path": where.path, "line": where.line, "column": where.column}
+    if where is None:
+        return None
+    place: dict[str, Any] = {"path": where.path, "line": where.line, "column": where.column}
+    calls = [{"macro": macro, "location": location(called)} for macro, called in where.calls]
+    return {**place, "calls": calls} if calls else place
 
 
 def problem(found: Problem) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from grader.text import printable
 _MEANT = re.compile(r"""[^\s=<>"'/]+\s*=\s*(?:"[^"]*"?|'[^']*'?)|<[^\s>]*[^>]*>?|[\w.]+""")  # attribute, tag, word
 _ARCHIVE = re.compile(r"(?i)(.*?\.(?:zip|tar|tgz|tar\.gz))/", re.DOTALL)
 _MARGIN = 4  # characters before the marked part, if the line is cut
+_MAX_CALLS = 3  # macros of xacro that are named
 _MAX_TEXT = 500  # characters of a line: a whole file may be one line
 
 
@@ -62,6 +63,12 @@ def excerpt(source: Source, where: Location, room: int) -> Excerpt:
     before, meant = printable(line[cut:start]), printable(line[start : start + width])
     text = (before + meant + printable(line[start + width :]))[:room].rstrip()
     return Excerpt(text, len(before), max(1, min(len(meant), room - len(before))))
+
+
+def calls_text(where: Location) -> str:
+    """Return the macro calls of xacro that led to a location, innermost first; empty if there are none."""
+    calls = [f"in macro {printable(macro)}, called at {printable(at.path)}:{at.line}" for macro, at in where.calls]
+    return "".join(f", {call}" for call in reversed(calls[-_MAX_CALLS:]))
 
 
 def archive_around(path: str) -> str:

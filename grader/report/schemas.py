@@ -38,7 +38,9 @@ def _all(schema: dict[str, Any], names: str) -> dict[str, Any]:
 
 _GRADER = _object({"version": _TEXT})
 _RUBRIC = _object({**_all(_TEXT, "id title"), "sha256": _HASH})
-_LOCATION = _object({"path": _TEXT, **_all(_COUNT, "line column")})
+_PLACE = {"path": _TEXT, **_all(_COUNT, "line column")}
+_CALL = _object({"macro": _TEXT, "location": _object(_PLACE)})
+_LOCATION = _object({**_PLACE, "calls": _array(_CALL)}, ("calls",))
 _PROBLEM = _object(
     {
         "code": {"type": "string", "pattern": "^[A-Z]+[0-9]{3}$"},

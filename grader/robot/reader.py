@@ -34,6 +34,11 @@ class Reading:
     source: Source
 
     @property
+    def is_decided(self) -> bool:
+        """Return whether the verdict is certain, although a part of the file may be unknown."""
+        return not self.undetermined or any(problem.kind.effect == "rejects" for problem in self.problems)
+
+    @property
     def undetermined(self) -> str:
         """Why the robot is not known completely; empty if it is."""
         return next((problem.message for problem in self.problems if problem.kind.effect == "undetermined"), "")

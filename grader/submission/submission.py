@@ -79,8 +79,8 @@ class Submission:
 
     @property
     def verdict(self) -> Verdict | None:
-        """ROS 2's verdict on the URDF; None if it was not read."""
-        return self.urdf.loaded.verdict if isinstance(self.urdf, Read) else None
+        """ROS 2's verdict on the URDF; None if it was not read, or cannot be determined."""
+        return self.urdf.loaded.verdict if isinstance(self.urdf, Read) and self.urdf.loaded.is_decided else None
 
     @property
     def ignored(self) -> tuple[str, ...]:

@@ -13,6 +13,7 @@ from grader.errors import GraderError, InputError
 from grader.report.formats import Format, needed, render
 from grader.text import printable, printable_path
 from grader.usecases import Warn
+from grader.usecases.arguments import read_arguments
 from grader.usecases.exit_codes import ExitCode, exit_code, read_threshold
 from grader.usecases.rubrics import load
 from grader.usecases.writing import CHECKOUTS, ROBOT_FILES, is_same_file, refuse_symlinks, remove_previous, save
@@ -39,6 +40,7 @@ class GradeRequest:
     fail_under: str | None
     max_size: int
     answers: bool = False
+    arguments: tuple[str, ...] = ()  # of xacro, as NAME=VALUE
 
     @property
     def threshold(self) -> tuple[Decimal, bool] | None:
@@ -98,7 +100,13 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeResult:
     from grader.submission.submission import open_submission
 
     rubric = requested_rubric(request, warn)
-    submission = open_submission(request.path, wanted=rubric.urdf, package=rubric.package, limit=request.max_size)
+    submission = open_submission(
+        request.path,
+        wanted=rubric.urdf,
+        package=rubric.package,
+        limit=request.max_size,
+        arguments=read_arguments(request.arguments),
+    )
     report = grade(rubric, submission, request.parts)
     for result in report.results:
         if result.traceback:

@@ -12,13 +12,17 @@ from grader.submission.submission import open_submission
 from grader.submission.urdf import Absent, Unreadable
 from grader.text import printable_path
 from grader.usecases import Warn
+from grader.usecases.arguments import read_arguments
 
 _MAX_NAMED = 20
 
 
-def inspect(path: str, joints: Sequence[str], relative_to: str | None, max_size: int, warn: Warn) -> Inspection:
+def inspect(
+    path: str, joints: Sequence[str], relative_to: str | None, max_size: int, arguments: Sequence[str], warn: Warn
+) -> Inspection:
     """Return the inspection of the URDF at a path. Raises GraderError."""
-    submission = open_submission(path, wanted="robot.urdf", limit=max_size)
+    given = read_arguments(arguments)
+    submission = open_submission(path, wanted="robot.urdf", limit=max_size, arguments=given)
     match urdf := submission.urdf:
         case Unreadable(reason=reason):
             raise InputError(reason)

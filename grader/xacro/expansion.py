@@ -7,8 +7,6 @@ same, so that one defect does not hide another.
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from lxml import etree
-
 from grader.problems import Problem
 from grader.source import Location, Source
 from grader.static_python.closed_values import ExpressionFails, Undetermined
@@ -17,7 +15,7 @@ from grader.xacro.expander import STOPS, Expander, Open
 from grader.xacro.files import Files, Workspace
 from grader.xacro.nodes import Node, read_nodes
 from grader.xacro.tags import CALL, HANDLERS
-from grader.xml.parsing import Element, Unresolved, XmlDocument, XMLSyntaxError
+from grader.xml.parsing import Element, Unresolved, XmlDocument, XMLSyntaxError, make_element
 
 __all__ = ("Expansion", "Open", "Workspace", "expand")
 _MAX_ELEMENTS = 50_000
@@ -98,7 +96,7 @@ def _not_xml(error: XMLSyntaxError, path: str) -> Problem:
 
 def _element(root: Node, nodes: list[Node], unresolved: dict[Element, Unresolved]) -> Element:
     """Return the elements of lxml for expanded ones; `nodes` becomes the latter in document order."""
-    made = etree.Element(_name(root.tag), _named(root.attributes))
+    made = make_element(_name(root.tag), _named(root.attributes))
     pending: list[tuple[Node, Element]] = [(root, made)]
     while pending:
         node, element = pending.pop()
@@ -108,7 +106,7 @@ def _element(root: Node, nodes: list[Node], unresolved: dict[Element, Unresolved
         children: list[tuple[Node, Element]] = []
         for child in node.children:
             if isinstance(child, Node):
-                children.append((child, etree.SubElement(element, _name(child.tag), _named(child.attributes))))
+                children.append((child, make_element(_name(child.tag), _named(child.attributes), element)))
             elif children:
                 children[-1][1].tail = (children[-1][1].tail or "") + child
             else:

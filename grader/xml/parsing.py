@@ -59,6 +59,11 @@ def parse_xml(data: bytes) -> Element:
     return etree.fromstring(data, _PARSER)
 
 
+def make_element(tag: str, attributes: dict[str, str], parent: Element | None = None) -> Element:
+    """Return a new element, which becomes the last child of its parent."""
+    return etree.Element(tag, attributes) if parent is None else etree.SubElement(parent, tag, attributes)
+
+
 def read_document(data: bytes, path: str) -> XmlDocument:
     """Read the bytes of a URDF; never raises. Text that lxml may not read as TinyXML2 does is translated first."""
     text = data.decode("utf-8", "surrogateescape")

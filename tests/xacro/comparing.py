@@ -77,7 +77,7 @@ def tree(element: etree._Element) -> Tree:
         content[-1] += child.tail or ""
     return (
         _name(element, str(element.tag)),
-        {_name(element, str(name)): " ".join(value.split()) for name, value in sorted(element.items())},
+        {_name(element, str(name)): " ".join(str(value).split()) for name, value in sorted(element.items())},
         [" ".join(part.split()) if isinstance(part, str) else part for part in content],
     )
 
