@@ -142,17 +142,26 @@ def _check_root_inertia(robot: Robot, links: dict[str, Element], problems: Probl
             problems.add(catalogue.ROOT_INERTIA, message, next(links[link.name].iterchildren("inertial")))
 
 
+def find_xacro(text: str) -> int | None:
+    """Return the offset of the first xacro in a text outside of comments: a tag, ${...} or $(...)."""
+    if "$" not in text and "xacro:" not in text:
+        return None
+    comments = list(_comments(text))
+    outside = zip([0, *(end for _, end in comments)], [*(start for start, _ in comments), len(text)], strict=True)
+    found = next(filter(None, (_XACRO.search(text, *span) for span in outside)), None)
+    return found.start() if found is not None else None
+
+
 def _check_text(problems: Problems, *, is_expanded: bool) -> None:
     text = problems.source.text
-    comments = list(_comments(text))
-    if not is_expanded and ("$" in text or "xacro:" in text):
-        outside = zip([0, *(end for _, end in comments)], [*(start for start, _ in comments), len(text)], strict=True)
-        xacro = next(filter(None, (_XACRO.search(text, *span) for span in outside)), None)
-        if xacro is not None:
-            name = problems.source.path.rpartition("/")[2]
-            message = f"this is xacro, which ROS 2 does not evaluate in a .urdf: run `ros2 run xacro xacro {name}`"
-            problems.listed.append(Problem(catalogue.RAW_XACRO, message, problems.source.at(xacro.start())))
-    for start, end in comments:
+    xacro = find_xacro(text) if not is_expanded else None
+    if xacro is not None:
+        from shlex import quote  # late: most files are no xacro
+
+        name = problems.source.path.rpartition("/")[2]
+        message = f"this is xacro, which ROS 2 does not evaluate in a .urdf: run `ros2 run xacro xacro {quote(name)}`"
+        problems.listed.append(Problem(catalogue.RAW_XACRO, message, problems.source.at(xacro)))
+    for start, end in _comments(text):
         if text.find(": ", start, end) >= 0 or text.find("\t", start, end) >= 0:
             message = "this comment contains a colon and a space, or a tab: it can stop a launch file that passes the URDF as YAML"
             problems.listed.append(Problem(catalogue.COMMENT_TRAP, message, problems.source.at(start)))

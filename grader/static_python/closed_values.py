@@ -19,6 +19,7 @@ _MAX_SMALL = 200  # arguments of factorial and its like
 _VIEWS: tuple[Any, ...] = (type({}.keys()), type({}.values()), type({}.items()))
 _ITERATOR: Any = type(iter([]))
 _CONTAINERS: tuple[Any, ...] = (list, tuple, set, frozenset, dict, *_VIEWS)
+_NUMBERS = (float, int)
 _PLAIN: tuple[Any, ...] = (str, int, float, complex, type(None), range, *_CONTAINERS)
 _SPEC = re.compile(r"[^{}]?[<>=^]?[-+ ]?#?0?(\d{0,3})[,_]?(?:\.\d{1,3})?[a-zA-Z%]?")
 _LONG_NUMBER = re.compile(r"[0-9]{4}")
@@ -87,6 +88,9 @@ def run(function: Callable[..., Value], *args: Value, **kwargs: Value) -> Value:
 
 def operate(op: ast.operator, left: Value, right: Value) -> Value:
     """Return the value of a binary operator."""
+    simple = _SIMPLE.get(type(op))
+    if simple is not None and type(left) in _NUMBERS and type(right) in _NUMBERS:
+        return run(simple, left, right)
     if not (isinstance(left, _PLAIN) and isinstance(right, _PLAIN)):
         raise Undetermined("this operation is not supported")
     match op, left, right:
@@ -243,6 +247,9 @@ _OPERATORS: dict[type[ast.operator], Callable[[Value, Value], Value]] = {
     ast.RShift: operator.rshift, ast.BitOr: operator.or_, ast.BitAnd: operator.and_, ast.BitXor: operator.xor,
     ast.MatMult: operator.matmul,
 }  # fmt: skip
+_SIMPLE: dict[type[ast.operator], Callable[[Value, Value], Value]] = {
+    kind: _OPERATORS[kind] for kind in (ast.Add, ast.Sub, ast.Mult, ast.Div)
+}  # whose results grow slowly
 _COMPARISONS: dict[type[ast.cmpop], Callable[[Value, Value], Value]] = {
     ast.Eq: operator.eq, ast.NotEq: operator.ne, ast.Is: operator.is_, ast.IsNot: operator.is_not,
     ast.In: lambda left, right: left in right, ast.NotIn: lambda left, right: left not in right,

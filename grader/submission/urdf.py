@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from grader.problems import Problem
 from grader.robot.catalogue import RAW_XACRO
-from grader.robot.reader import Reading, read_robot, read_urdf
+from grader.robot.reader import Reading, find_xacro, read_robot, read_urdf
 from grader.source import Source
 from grader.submission.workspace import Surroundings
 from grader.xml.catalogue import NOT_WELL_FORMED
@@ -76,33 +76,37 @@ def read_as_ros(data: bytes, path: str, around: Surroundings = NOWHERE) -> Read:
 
     Other xacro is loaded as it stands; unless that makes no difference, everything but that is graded on its expansion.
     """
-    reading = read_urdf(data, path)
-    kinds = {problem.kind for problem in reading.problems}
-    if RAW_XACRO not in kinds and NOT_WELL_FORMED not in kinds:
-        return Read(path, data, reading)
+    if not _needs_xacro(data):
+        reading = read_urdf(data, path)
+        if NOT_WELL_FORMED not in {problem.kind for problem in reading.problems}:
+            return Read(path, data, reading)
     name = path.rpartition("/")[2].lower()
     launched = around.robot_references(path)
     programs = {reference.by for reference in launched}
-    is_expanded = programs == {"xacro"} if programs else ".xacro" in name and not name.endswith(".urdf")
-    if not is_expanded and (RAW_XACRO not in kinds or reading.verdict == "clean"):
+    if programs == {"xacro"} if programs else ".xacro" in name and not name.endswith(".urdf"):
+        given = dict(launched[0].arguments) if launched else {}
+        return Read(path, data, _expanded(data, path, around, given), is_expanded=True)
+    reading = read_urdf(data, path)
+    if reading.verdict == "clean" or not any(problem.kind is RAW_XACRO for problem in reading.problems):
         return Read(path, data, reading)
-    given = dict(launched[0].arguments) if is_expanded and launched else {}
-    expanded = _expanded(data, path, around, given, reading)
-    if is_expanded:
-        return Read(path, data, expanded, is_expanded=True)
+    expanded = _expanded(data, path, around, {})
     if expanded.robot is None:
         return Read(path, data, reading)
     return Read(path, data, expanded, is_expanded=True, as_it_stands=reading)
 
 
-def _expanded(
-    data: bytes, path: str, around: Surroundings, launched: Mapping[str, str | None], raw: Reading
-) -> Reading:
+def _needs_xacro(data: bytes) -> bool:
+    """Return whether there is xacro in a text, outside of comments."""
+    return (b"$" in data or b"xacro:" in data) and find_xacro(data.decode("utf-8", "replace")) is not None
+
+
+def _expanded(data: bytes, path: str, around: Surroundings, launched: Mapping[str, str | None]) -> Reading:
     """Return the robot that xacro makes of a file; where it cannot be expanded at all, what can be read of the text."""
     from grader.xacro.expansion import expand  # late: most URDFs are no xacro
 
     expansion = expand(data, path, around.workspace(path), {**launched, **around.arguments})
     if expansion.root is None and expansion.problems:
+        raw = read_urdf(data, path)
         problems = [problem for problem in raw.problems if problem.kind not in (RAW_XACRO, NOT_WELL_FORMED)]
         return Reading("rejected", raw.robot, (*expansion.problems, *problems), raw.source)
     return read_robot(expansion.document)

@@ -105,8 +105,7 @@ class Expander:
 
     def start(self, source: Node, scopes: Scopes) -> Node:
         """Return an element with its attributes expanded, without its children."""
-        place = source.place
-        out = Node(source.tag, place if place.calls is not None else place._replace(calls=self.calls))
+        out = Node(source.tag, self._placed(source.place))
         out.moved, out.unresolved = source.moved, dict(source.unresolved)
         for name, text in source.attributes.items():
             is_plain = "$" not in text or name in out.unresolved
@@ -141,7 +140,7 @@ class Expander:
             self.undetermined.append(found)
 
     def _placed(self, place: Place) -> Place:
-        return place if place.calls is not None else place._replace(calls=self.calls)
+        return place if place.calls is not None else Place(place.source, place.tag, self.calls)
 
     def _element(self, node: Node, out: Node, scopes: Scopes) -> None:
         self.budget.spend()
