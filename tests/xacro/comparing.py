@@ -29,13 +29,13 @@ def expand(document: Document) -> Any:
     return expansion.expand(read(document.path), document.path, workspace, document.arguments)
 
 
-def difference(document: Document) -> str | None:
-    """Return how the grader's expansion of a document differs from xacro's; None if they agree.
+def difference(document: Document, expected: oracle.Accepted | oracle.Refused) -> str | None:
+    """Return how the grader's expansion of a document differs from what is expected, xacro's; None if they agree.
 
     What xacro accepts is never refused; what it refuses is, unless that depends on what is outside of the submission. Every
     other document is determined.
     """
-    expected, found = oracle.expand(document), expand(document)
+    found = expand(document)
     refusals = [problem.message for problem in found.problems if problem.kind.effect == "rejects"]
     reasons = [undetermined.reason for undetermined in found.undetermined]
     if isinstance(expected, oracle.Accepted) and refusals:
