@@ -15,12 +15,14 @@ from tests.xacro.documents.document import PACKAGES, Document
 Tree = tuple[str, dict[str, str], list[Any]]
 
 
-def expand(document: Document) -> Any:
-    """Return the grader's expansion of a document."""
+def expand(document: Document, asked: list[str] | None = None) -> Any:
+    """Return the grader's expansion of a document; `asked` receives the paths of the files that it reads."""
     expansion: Any = import_module("grader.xacro.expansion")
     files = {document.path: document.text, **document.files}
 
     def read(path: str) -> bytes:
+        if asked is not None:
+            asked.append(path)
         content = files.get(posixpath.normpath(path))
         if content is None:
             raise InputError(f"{path} does not exist")
