@@ -124,7 +124,8 @@ _EVAL = bodies(
     optenv_without_name=shown("$(optenv)"),
 )
 _EVAL["eval-attribute"] = _EVAL["eval-attribute"]._replace(undetermined="perhaps")  # shows an address in memory
-_EVAL["eval-undefined"] = _EVAL["eval-undefined"]._replace(undetermined="perhaps")
+for _name in ("eval-undefined", "eval-property"):  # the launch file can give an argument of this name
+    _EVAL[_name] = _EVAL[_name]._replace(undetermined="perhaps")
 
 _ENVIRONMENT = bodies(
     "always",

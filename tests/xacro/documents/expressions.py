@@ -80,6 +80,7 @@ _MORE = (
 
 # What a robot does not need: it shows an address in memory, changes values in place, or is a kind of value of its own.
 _BEYOND = {
+    "1 is 1", "1 is not 1", "'a\\tb'.expandtabs(4)", "xacro.arg('missing')",
     "sin", "len", "range(3)", "reversed([1, 2])", "enumerate(['a'])", "(x for x in [1])", "python.enumerate([1])", "python.map(str, [1])", "'abc'.nothing", "math", "abs",
     "python.hash('a')", "python.type(1)", "python.vars", "math.sin", "python.len", "python.issubclass(python.int, python.int)", "1j", "(-1) ** 0.5", "(-8) ** (1/3)", "...",
     "1 @ 2", "(1).real", "(5).bit_length()", "1.5.is_integer()", "(0.5).as_integer_ratio()", "(5.0).hex()", "5 .numerator", "'abc'.encode()", "dict(a=1, b=2).keys()", "dict(a=1).items()",
@@ -88,7 +89,7 @@ _BEYOND = {
     "python.slice(1)", "sin(*[0])", "max(*[1, 2])", "dict(**dict(a=1))", "python.isinstance(1, python.int)", "python.isinstance('a', python.str)", "str(1, 2)", "dict(a=1).a", "'abc'.nothing()",
     "'abc'()", "python.repr('a')", "[*[1, 2], 3]", "list(x for x in [1])",
 }  # fmt: skip
-_BEYOND_USES = {"width.real", "width . real", "n.bit_length()", "name.nothing", "width(2)"}
+_BEYOND_USES = {"width.real", "width . real", "n.bit_length()", "name.nothing", "width(2)", "width is length"}
 
 _VALUES = (
     named("width", "0.4")

@@ -15,10 +15,8 @@ base:
     also_missing: ~
   parts: [{name: a, x: 1}, {name: b, x: 2}]
 angle: !degrees 90
-turn: !radians pi/2
 height: !millimeters 200
 width: !inches 10
-depth: !foot 1 + 1
 plain: !meters 0.5
 text: |
   two
@@ -37,6 +35,7 @@ merged: {<<: *c, l: w}
 """
 _FILES: dict[str, str | bytes] = {
     "config/robot.yaml": _YAML,
+    "urdf/units.yaml": "turn: !radians pi/2\ndepth: !foot 1 + 1\nnegative: !degrees -45.5\n",
     "urdf/near.yaml": "a: 1\n",
     "urdf/list.yaml": "- 1\n- {b: 2}\n- [3, 4]\n",
     "urdf/number.yaml": "3.5\n",
@@ -85,11 +84,10 @@ _VALUES = bodies(
     list_shown=loaded("${y.base.size}", "${y.base.parts}"),
     dict_shown=loaded("${y.wheel}"),
     degrees=loaded("${y.angle}", "${y.angle == pi / 2}"),
-    radians=loaded("${y.turn}"),
-    lengths=loaded("${y.height}", "${y.width}", "${y.depth}", "${y.plain}"),
+    unit_expressions=near("units", "${y.turn}", "${y.depth}", "${y.negative}"),
+    lengths=loaded("${y.height}", "${y.width}", "${y.plain}"),
     lines=loaded("${y.text}"),
     octal=loaded("${y.octal}", "${y.hex}"),
-    date=loaded("${y.date}"),
     key_with_dash=loaded("${y['list-key']}"),
     key_number=loaded("${y[1]}"),
     missing_key=loaded("${y.nothing}"),
@@ -134,12 +132,9 @@ _REFUSED = bodies(
     tabs=near("tabs", "${y}"),
     two_documents=near("two", "${y}"),
     unknown_tag=near("unknown_tag", "${y}"),
-    bad_unit=near("bad_unit", "${y}"),
-    bad_unit_syntax=near("bad_unit_syntax", "${y}"),
     python_tag=near("python_tag", "${y}"),
     without_name=shown("${xacro.load_yaml()}"),
     name_is_number=shown("${xacro.load_yaml(['a'])}"),
-    latin=near("latin", "${y}"),
     number_has_no_key=near("number", "${y.a}"),
     list_has_no_name=near("list", "${y.a}"),
 )
@@ -148,6 +143,10 @@ _OUTSIDE = merged(
     bodies(
         "perhaps",
         _FILES,
+        date=loaded("${y.date}"),
+        bad_unit=near("bad_unit", "${y}"),
+        bad_unit_syntax=near("bad_unit_syntax", "${y}"),
+        latin=near("latin", "${y}"),
         found=loaded("${y.v}", file="$(find arm_parts)/found.yaml"),
         found_root=loaded("${y.wheel.radius}", file="$(find my_robot)/config/robot.yaml"),
         key_like_method_dotted=near("keys", "${y.keys}"),

@@ -1,0 +1,89 @@
+"""Expand every hostile document in this process, and print what happened to each: `python -m tests.xacro.hostile_run`.
+
+A process of its own, because an audit hook cannot be removed, and because a crash or an endless loop then is a failed test.
+"""
+
+import json
+import os
+import resource
+import sys
+import time
+from typing import Any
+
+from tests.processor_time import TooSlow, processor_time
+from tests.xacro.comparing import expand
+from tests.xacro.documents.document import Document, named, robot, shown
+from tests.xacro.hostile import HOSTILE, LARGE
+
+CONTROL = "control"
+"""The name of a harmless document, during which a file is opened."""
+LIMIT = 1.0  # seconds of processor time
+_HARMLESS = {"compile", "object.__getattr__", "sys._getframe", "gc.collect", "signal.signal"}
+
+_events: list[str] = []
+_is_watched = False
+
+
+def _watch(event: str, arguments: tuple[Any, ...]) -> None:
+    if _is_watched and event not in _HARMLESS:
+        _events.append(f"{event} {arguments!r}"[:200])
+
+
+def _memory() -> int:
+    """Return the largest size of this process so far, in megabytes."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024
+
+
+class _Opening(list[str]):
+    """Paths; when one is added a file is opened, as the grader never does."""
+
+    def append(self, path: str, /) -> None:
+        super().append(path)
+        open(os.devnull).close()
+
+
+def _watched(document: Document, paths: list[str]) -> dict[str, Any]:
+    """Return what happened while a document was expanded; `paths` receives those that it reads."""
+    global _is_watched
+    _events.clear()
+    memory, start = _memory(), time.process_time()
+    outcome = "expanded"
+    try:
+        with processor_time(LIMIT):
+            _is_watched = True
+            found = expand(document, paths)
+            _is_watched = False
+        if found.undetermined or any(problem.kind.effect == "rejects" for problem in found.problems):
+            outcome = "refused"
+    except TooSlow:
+        outcome = "too slow"
+    except BaseException as error:  # noqa: BLE001 - MemoryError, RecursionError and SystemExit are results
+        outcome = f"raised {error!r}"[:200]
+    _is_watched = False
+    return {
+        "outcome": outcome,
+        "seconds": time.process_time() - start,
+        "megabytes": _memory() - memory,
+        "events": list(_events),
+        "paths": paths[:100],
+    }
+
+
+def main() -> None:
+    """Print a line of JSON for each document: first its name, then what happened."""
+    files = {"urdf/a.yaml": "a: !degrees 1\n", "urdf/b.xacro": robot("")}
+    warm = (
+        named("y", "${xacro.load_yaml('a.yaml')}")
+        + '<xacro:include filename="b.xacro"/>'
+        + shown("${y.a + sin(1)}", "${1 +}", "$(eval 1)")
+    )
+    expand(Document(robot(warm), files))  # everything is imported before the events count
+    expand(Document("<robot"))
+    sys.addaudithook(_watch)
+    print(json.dumps([CONTROL, _watched(Document(robot(warm), files), _Opening())]), flush=True)
+    for name, document in {**HOSTILE, **LARGE}.items():
+        print(json.dumps([name, _watched(document, [])]), flush=True)
+
+
+if __name__ == "__main__":
+    main()

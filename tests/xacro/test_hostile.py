@@ -1,0 +1,87 @@
+"""Hostile documents are refused within a second: nothing runs, and nothing outside of the submission is read."""
+
+import json
+import sys
+from pathlib import Path
+from subprocess import run as run_program
+from typing import Any
+
+import pytest
+
+from tests.command_line import HANG_TIMEOUT, clean_environment, run
+from tests.xacro.documents.document import part, robot
+from tests.xacro.hostile import HOSTILE, LARGE
+from tests.xacro.hostile_run import CONTROL
+
+MAX_MEGABYTES = 64
+Results = dict[str, dict[str, Any]]
+
+
+@pytest.fixture(scope="module")
+def results() -> Results:
+    """Return what happened to each document, by its name."""
+    pytest.importorskip("grader.xacro.expansion")
+    pytest.importorskip("resource")
+    done = run_program(
+        [sys.executable, "-m", "tests.xacro.hostile_run"],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=HANG_TIMEOUT,
+        cwd=Path(__file__).parents[2],
+        env=clean_environment(),
+    )
+    found = dict(json.loads(line) for line in done.stdout.splitlines())
+    assert (done.returncode, done.stderr) == (0, ""), f"stopped after {list(found)[-1:]}"
+    return found
+
+
+@pytest.mark.slow
+def test_hostile_documents_are_refused_in_time(results: Results) -> None:
+    """Each is refused, or cannot be determined, within a second of processor time; none stops the process."""
+    outcomes = {name: results[name]["outcome"] for name in HOSTILE}
+    assert {name: outcome for name, outcome in outcomes.items() if outcome != "refused"} == {}
+    assert len(outcomes) >= 60
+
+
+def test_large_documents_end_in_time(results: Results) -> None:
+    """A document that is only large is expanded or refused within a second of processor time."""
+    outcomes = {name: results[name]["outcome"] for name in LARGE}
+    assert {name: outcome for name, outcome in outcomes.items() if outcome not in {"refused", "expanded"}} == {}
+
+
+def test_memory_is_bounded(results: Results) -> None:
+    """No document needs much memory."""
+    used = {name: found["megabytes"] for name, found in results.items()}
+    assert {name: megabytes for name, megabytes in used.items() if megabytes > MAX_MEGABYTES} == {}
+
+
+def test_nothing_runs(results: Results) -> None:
+    """Python reports no open file, import, execution or process while a document is expanded; it would report one."""
+    events = {name: found["events"] for name, found in results.items()}
+    assert any(event.startswith("open ") for event in events.pop(CONTROL))
+    assert {name: found for name, found in events.items() if found} == {}
+
+
+def test_nothing_outside_is_read(results: Results) -> None:
+    """Every file that is read is named by its path in the submission; the control reads two."""
+    paths = {name: found["paths"] for name, found in results.items()}
+    assert len(paths[CONTROL]) > 2
+    outside = {
+        name: [path for path in found if path.startswith(("/", "..", "~")) or ":" in path]
+        for name, found in paths.items()
+    }
+    assert {name: found for name, found in outside.items() if found} == {}
+
+
+@pytest.mark.parametrize("target", ["secret.xacro", "../../secret.xacro"])
+def test_a_symlink_out_of_the_submission_is_not_read(tmp_path: Path, target: str) -> None:
+    """A robot includes a symlink to a file outside; nothing of that file is printed."""
+    (tmp_path / "secret.xacro").write_text(part('<link name="TOPSECRET"/>'))
+    urdf = tmp_path / "submission" / "urdf"
+    urdf.mkdir(parents=True)
+    (urdf / "secret.xacro").symlink_to(tmp_path / "secret.xacro")
+    (urdf / "robot.urdf.xacro").write_text(robot(f'<xacro:include filename="{target}"/><link name="base_link"/>'))
+    for command in ("grade", "inspect"):
+        done = run((command, tmp_path / "submission"))
+        assert b"TOPSECRET" not in done.stdout + done.stderr

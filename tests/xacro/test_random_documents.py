@@ -1,0 +1,42 @@
+"""What the grader makes of random documents equals what xacro makes of them."""
+
+import pytest
+
+from tests.xacro import grammar, oracle
+from tests.xacro.compare import compared, summary
+
+PARTS = 4
+PART = 500
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("part", range(PARTS))
+def test_random_documents(part: int) -> None:
+    """Two thousand random documents are expanded, or refused, as xacro does."""
+    pytest.importorskip("grader.xacro.expansion")
+    counted, *differences = summary(map(compared, range(part * PART, (part + 1) * PART)))
+    assert differences == [], counted
+
+
+def test_random_documents_are_the_same_in_every_run_and_mostly_accepted() -> None:
+    """A seed gives one document; xacro accepts most of them and refuses some."""
+    documents = [grammar.document(seed) for seed in range(100)]
+    assert documents == [grammar.document(seed) for seed in range(100)]
+    accepted = sum(isinstance(oracle.expand(document), oracle.Accepted) for document in documents)
+    assert 70 < accepted < 100
+
+
+def test_random_documents_use_every_tag() -> None:
+    """Every tag of xacro is in some random document."""
+    text = "".join(grammar.document(seed).text for seed in range(100))
+    tags = ("property", "macro", "call", "if", "unless", "insert_block", "include", "arg", "element", "attribute")
+    assert [tag for tag in tags if f"<xacro:{tag} " not in text] == []
+
+
+def test_summary() -> None:
+    """Differences are counted, and shown with their seeds in order."""
+    assert summary([(2, True, None), (1, True, "b"), (0, False, "a")]) == [
+        "1 of 3 documents agree; xacro accepts 2",
+        "seed 0: a",
+        "seed 1: b",
+    ]
