@@ -68,9 +68,7 @@ def _parsed(text: str) -> ast.expr | str:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            tree = ast.parse(text, mode="eval")
-            compile(tree, "<expression>", "eval", dont_inherit=True)  # never run: finds what the grammar allows
-            return tree.body
+            return ast.parse(text, mode="eval").body
     except SyntaxError as error:
         return f"SyntaxError: {error.msg}"
     except (ValueError, RecursionError, MemoryError, OverflowError) as error:
@@ -136,6 +134,8 @@ class _Evaluator:
                 return self._sized("".join(self._piece(piece, local) for piece in pieces))
             case ast.Lambda(args=parameters, body=body):
                 return self._function(parameters, body, local)
+            case ast.Await() | ast.Yield() | ast.YieldFrom():
+                raise ExpressionFails("SyntaxError: await and yield belong into functions")
             case _:
                 raise Undetermined("an expression of this kind is not supported")
 
@@ -168,7 +168,10 @@ class _Evaluator:
         kwargs: dict[str, Value] = {}
         for keyword in node.keywords:
             value = self.value(keyword.value, local)
-            kwargs |= {keyword.arg: value} if keyword.arg is not None else run(dict, value)
+            more = {keyword.arg: value} if keyword.arg is not None else run(dict, value)
+            if repeated := kwargs.keys() & more.keys():
+                raise ExpressionFails(f"SyntaxError: keyword argument repeated: {min(repeated)}")
+            kwargs |= more
         self._budget.spend(check_size([args, list(kwargs.values())]) // 16)
         return self._sized(call(function, args, kwargs))
 

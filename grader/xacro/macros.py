@@ -10,9 +10,10 @@ from grader.xacro.texts import Texts
 
 # A parameter with a default, as xacro reads it: name, := or =, perhaps ^ or ^|, and the default's text up to a space.
 _WITH_DEFAULT = re.compile(
-    r"""\s*([^\s:=]+?)\s*:?=\s*(\^\|?)?(\$\{.*?\}|\$\(.*?\)|(?:'.*?'|\".*?\"|[^\s'\"]+)+|)(?:\s+|$)(.*)""", re.ASCII
+    r"""\s*([^\s:=]+?)\s*:?=\s*(\^\|?)?(\$\{.*?\}|\$\(.*?\)|(?:'.*?'|\".*?\"|[^\s'\"]++)+|)(?:\s+|$)(.*)""", re.ASCII
 )
 _MAX_PARAMETERS = 200
+_MAX_QUOTES = 30  # in the parameters of one macro: the time to match them doubles with each
 
 
 class MacroError(ExpressionFails):
@@ -43,6 +44,8 @@ class Macro(NamedTuple):
 def read_parameters(text: str) -> tuple[Parameter, ...]:
     """Return the parameters in the attribute params of a macro."""
     parameters: list[Parameter] = []
+    if text.count("'") + text.count('"') > _MAX_QUOTES:
+        raise Undetermined("the parameters of a macro have too many quotes")
     while text:
         found = _WITH_DEFAULT.match(text)
         if found is None:

@@ -10,6 +10,7 @@ from grader.xacro.functions import dotted
 
 _MAX_EVENTS = 20_000
 _MAX_DEPTH = 100
+_MAX_MERGES = 20  # of mappings into each other with <<
 _UNITS = {
     "!radians": 1.0, "!degrees": 3.141592653589793 / 180.0, "!meters": 1.0, "!millimeters": 0.001, "!foot": 0.3048,
     "!inches": 0.0254,
@@ -40,13 +41,14 @@ def read_yaml_values(data: bytes, number: Callable[[str], Value]) -> Value:
         text = data.decode("utf-8")
     except UnicodeDecodeError:
         raise ExpressionFails("the YAML file is not UTF-8 text") from None
-    depth = 0
+    depth = merges = 0
     try:
         events = list(islice(yaml.parse(text, Loader=yaml.SafeLoader), _MAX_EVENTS + 1))
         for event in events:
             depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
-            if depth > _MAX_DEPTH:
-                raise Undetermined("the YAML file is too deeply nested")
+            merges += isinstance(event, yaml.ScalarEvent) and event.value == "<<"
+            if depth > _MAX_DEPTH or merges > _MAX_MERGES:
+                raise Undetermined("the YAML file is nested too deeply, or merges too many mappings")
         if len(events) > _MAX_EVENTS:
             raise Undetermined("the YAML file is too large")
         loader = _Loader(text)
