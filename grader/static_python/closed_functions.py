@@ -13,6 +13,7 @@ from grader.static_python.closed_values import (
     text_of,
 )
 
+_MAX_DIGITS = 400
 _TYPES: Mapping[str, type] = {
     kind.__name__: kind for kind in (list, dict, str, float, int, bool, complex, set, frozenset, tuple, range)
 }
@@ -78,6 +79,12 @@ def _isinstance(value: Value, kinds: Value) -> bool:
     return isinstance(value, tuple(_TYPES[name] for name in named))
 
 
+def _round(number: Value, *digits: Value) -> Value:
+    if digits and isinstance(digits[0], int) and abs(digits[0]) > _MAX_DIGITS:
+        _refuse("a number of digits of this size")
+    return round(number, *digits)
+
+
 def _range(*bounds: int) -> range:
     numbers = range(*bounds)
     check_size(numbers)
@@ -88,7 +95,7 @@ _FUNCTIONS: dict[str, Callable[..., Any]] = {
     "list": lambda *args: list(*map(_items, args)), "tuple": lambda *args: tuple(*map(_items, args)),
     "set": lambda *args: set(*map(_items, args)), "frozenset": lambda *args: frozenset(*map(_items, args)),
     "dict": _dict, "str": lambda *args: text_of(*args) if args else "", "repr": lambda value: text_of([value])[1:-1],
-    "float": float, "int": int, "bool": bool, "complex": complex, "len": len, "abs": abs, "round": round, "ord": ord,
+    "float": float, "int": int, "bool": bool, "complex": complex, "len": len, "abs": abs, "round": _round, "ord": ord,
     "divmod": divmod, "range": _range, "min": _with_key(min), "max": _with_key(max), "sorted": _with_key(sorted),
     "sum": _of_items(sum), "all": _of_items(all), "any": _of_items(any), "map": _map, "filter": _filter,
     "zip": lambda *lists: iter(list(zip(*map(_items, lists), strict=False))),

@@ -63,6 +63,7 @@ class Expander:
         self.problems: list[Problem] = []
         self.undetermined: list[Open] = []
         self.calls: tuple[tuple[str, Place], ...] = ()
+        self._listed: set[tuple[str, str, int, str | None]] = set()
         self._handlers = handlers
         self._other = other
 
@@ -123,10 +124,9 @@ class Expander:
         self, message: str, place: Place, attribute: str | None, kind: Kind = catalogue.XACRO_EXPRESSION
     ) -> None:
         """List a problem at a place."""
-        location = self._placed(place).at(attribute)
-        problem = Problem(kind, f"{message}; {STOPS}", location)
-        if len(self.problems) < _MAX_LISTED and problem not in self.problems:
-            self.problems.append(problem)
+        if self._is_new(message, place, attribute):
+            location = self._placed(place).at(attribute)
+            self.problems.append(Problem(kind, f"{message}; {STOPS}", location))
 
     def leave_open(self, out: Node, error: Undetermined, place: Place) -> None:
         """Note that an expanded element may have more content than is known."""
@@ -135,9 +135,15 @@ class Expander:
 
     def note(self, error: Undetermined, place: Place, attribute: str | None = None) -> None:
         """List something that cannot be determined."""
-        found = Open(str(error), self._placed(place).at(attribute))
-        if len(self.undetermined) < _MAX_LISTED and found not in self.undetermined:
-            self.undetermined.append(found)
+        if self._is_new(str(error), place, attribute):
+            self.undetermined.append(Open(str(error), self._placed(place).at(attribute)))
+
+    def _is_new(self, message: str, place: Place, attribute: str | None) -> bool:
+        """Return whether something is to be listed: once for each place in the source, however often a macro is called."""
+        known = len(self._listed)
+        if known < _MAX_LISTED:
+            self._listed.add((message, place.source.path, place.tag, attribute))
+        return len(self._listed) > known
 
     def _placed(self, place: Place) -> Place:
         return place if place.calls is not None else Place(place.source, place.tag, self.calls)

