@@ -20,13 +20,16 @@ class TooSlow(AssertionError):
 def processor_time(limit: float) -> Iterator[None]:
     """Fail if the block takes more than so many seconds; without timers in the system, only at its end.
 
-    The seconds are those of an idle machine.
+    The seconds are those of an idle machine. A block that catches the exception fails at its end.
     """
     limit *= BUSY
     start = process_time()
+    stopped = False
     if hasattr(signal, "setitimer") and current_thread() is main_thread():
 
         def stop(_number: int, _frame: FrameType | None) -> None:
+            nonlocal stopped
+            stopped = True
             raise TooSlow(f"more than {limit} s of processor time")
 
         before = signal.signal(signal.SIGVTALRM, stop)
@@ -38,5 +41,5 @@ def processor_time(limit: float) -> Iterator[None]:
             signal.signal(signal.SIGVTALRM, before)
     else:
         yield
-    if process_time() - start > limit:
+    if stopped or process_time() - start > limit:
         raise TooSlow(f"{process_time() - start:.1f} s of processor time, allowed are {limit} s")

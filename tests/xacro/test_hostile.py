@@ -2,6 +2,7 @@
 
 import json
 import sys
+from contextlib import suppress
 from pathlib import Path
 from subprocess import run as run_program
 from typing import Any
@@ -9,6 +10,7 @@ from typing import Any
 import pytest
 
 from tests.command_line import HANG_TIMEOUT, clean_environment, run
+from tests.processor_time import TooSlow, processor_time
 from tests.xacro.documents.document import part, robot
 from tests.xacro.hostile import HOSTILE, LARGE
 from tests.xacro.hostile_run import CONTROL
@@ -68,6 +70,13 @@ def test_nothing_outside_is_read(results: Results) -> None:
     assert len(paths[CONTROL]) > 2
     outside = {name: [path for path in found if path.startswith(("/", "..", "~"))] for name, found in paths.items()}
     assert {name: found for name, found in outside.items() if found} == {}
+
+
+def test_a_document_that_hides_the_limit_is_too_slow() -> None:
+    """Code that catches every exception, also that of the limit, fails at its end."""
+    with pytest.raises(TooSlow), processor_time(0.02), suppress(Exception):
+        while True:
+            pass
 
 
 @pytest.mark.parametrize("target", ["secret.xacro", "../../secret.xacro"])
