@@ -10,19 +10,16 @@ from collections.abc import Callable, Iterator, Mapping
 from functools import lru_cache
 
 from grader.static_python.closed_functions import call
+from grader.static_python.closed_methods import attribute, format_value
+from grader.static_python.closed_operators import compare, operate, subscript
 from grader.static_python.closed_values import (
     ExpressionFails,
     Function,
     Undetermined,
     Value,
-    attribute,
     check_size,
-    compare,
-    format_value,
     items_of,
-    operate,
     run,
-    subscript,
 )
 
 _MAX_LENGTH = 4_000  # characters of an expression

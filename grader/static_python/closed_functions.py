@@ -1,9 +1,11 @@
-"""Python's built-in functions, as a closed expression may call them."""
+"""Python's built-in functions and those of math, as a closed expression may call them."""
 
+import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from grader.static_python.closed_values import (
+    CONTAINERS,
     Function,
     Undetermined,
     Value,
@@ -11,9 +13,11 @@ from grader.static_python.closed_values import (
     items_of,
     run,
     text_of,
+    too_large,
 )
 
-_MAX_DIGITS = 400
+_MAX_DIGITS = 400  # that round leaves
+_MAX_SMALL = 200  # arguments of factorial and its like
 _TYPES: Mapping[str, type] = {
     kind.__name__: kind for kind in (list, dict, str, float, int, bool, complex, set, frozenset, tuple, range)
 }
@@ -85,6 +89,18 @@ def _round(number: Value, *digits: Value) -> Value:
     return round(number, *digits)
 
 
+def _small(function: Callable[..., Value]) -> Callable[..., Value]:
+    """Return a function of integers whose results grow fast, for small arguments only."""
+
+    def bounded(*args: Value, **kwargs: Value) -> Value:
+        parts = [part for value in args for part in (items_of(value) if isinstance(value, CONTAINERS) else [value])]
+        if len(parts) > _MAX_SMALL or any(isinstance(part, int) and abs(part) > _MAX_SMALL for part in parts):
+            too_large("number")
+        return function(*args, **kwargs)
+
+    return bounded
+
+
 def _range(*bounds: int) -> range:
     numbers = range(*bounds)
     check_size(numbers)
@@ -104,3 +120,11 @@ _FUNCTIONS: dict[str, Callable[..., Any]] = {
     **{name: _unsupported(name) for name in ("hash", "issubclass", "slice", "type", "vars")},
 }  # fmt: skip
 BUILTINS: Mapping[str, Function] = {name: Function(name, function) for name, function in _FUNCTIONS.items()}
+MATH: Mapping[str, Value] = {
+    **{name: getattr(math, name) for name in ("pi", "e", "tau", "inf", "nan")},
+    **{
+        name: Function(name, _small(value) if name in ("factorial", "comb", "perm", "prod", "lcm") else value)
+        for name, value in vars(math).items()
+        if callable(value) and not name.startswith("_")
+    },
+}

@@ -1,12 +1,11 @@
 """The value of any Python expression, also of one given as text, without running it and without statements or files."""
 
 import ast
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 
-from grader.static_python.evaluation import EvaluationStopped, ExitFlow, FunctionTable
 from grader.static_python.inspection import MAX_ITEMS, distinct, items_of, truth
 from grader.static_python.operators import store
-from grader.static_python.parse import START, Position, SyntaxFault, parse, position_of
+from grader.static_python.parse import Position, position_of
 from grader.static_python.simple_expressions import SimpleEvaluator
 from grader.static_python.values import BoundMethod, Function, QualifiedName, Scope, Unknown, Value
 
@@ -103,20 +102,3 @@ class ExpressionEvaluator(SimpleEvaluator):
                     yield False
                 elif all(conditions):
                     yield from self._rounds(nested, scope, unknown)
-
-
-def evaluate_text(text: str, functions: FunctionTable, names: Mapping[str, Value]) -> Value:
-    """Return the value of an expression with these functions and names; Unknown if it has an error. Never raises."""
-    if len(text) > _MAX_LENGTH:
-        return Unknown("the expression is too long", START)
-    code = parse(text.strip().encode("utf-8", "replace"), "")
-    if isinstance(code, SyntaxFault):
-        return Unknown(code.message, START)
-    if len(code.tree.body) != 1 or not isinstance(code.tree.body[0], ast.Expr):
-        return Unknown("this is not one expression", START)
-    evaluator = ExpressionEvaluator(functions, names)
-    try:
-        value = evaluator.evaluate(code.tree.body[0].value, evaluator.module)
-    except (EvaluationStopped, ExitFlow, RecursionError):
-        return Unknown("the expression takes too long to evaluate", START)
-    return Unknown(evaluator.errors[0].message, evaluator.errors[0].at) if evaluator.errors else value

@@ -3,9 +3,8 @@
 import re
 from collections.abc import Callable, Mapping
 
-from grader.static_python.closed_functions import BUILTINS
+from grader.static_python.closed_functions import BUILTINS, MATH
 from grader.static_python.closed_values import (
-    MATH,
     DottedDict,
     ExpressionFails,
     Function,

@@ -4,32 +4,15 @@ import re
 from collections.abc import Mapping
 from keyword import iskeyword
 
-from grader.names import did_you_mean
 from grader.static_python.closed import OutOfSteps
 from grader.static_python.closed_values import Undetermined, Value
 from grader.xacro.expander import Expander, Handler, Scopes, TagFails
 from grader.xacro.files import FileFails
-from grader.xacro.macros import (
-    Macro,
-    MacroError,
-    bind_blocks,
-    bind_defaults,
-    bind_values,
-    find_macro,
-    read_parameters,
-)
+from grader.xacro.macro_tags import call_dynamically, call_macro, define_macro, insert_block, needed
 from grader.xacro.nodes import Node
 from grader.xacro.scopes import Reported, Scope
 
 _NAME = re.compile(r"[^\W\d][\w.-]*(?::[^\W\d][\w.-]*)?")
-_MAX_CALLS = 100  # macros that call each other
-
-
-def _needed(node: Node, name: str) -> str:
-    """Return an attribute that xacro requires."""
-    if name not in node.attributes:
-        raise TagFails(f"<{node.tag}> has no attribute {name}")
-    return node.attributes[name]
 
 
 def _boolean(value: Value, text: str) -> bool:
@@ -51,7 +34,7 @@ def _flag(node: Node, name: str, default: str, expander: Expander, scopes: Scope
 
 def _property(expander: Expander, node: Node, _: Node, scopes: Scopes) -> None:
     symbols, texts, given = scopes.symbols, expander.texts, node.attributes
-    name = texts.text(_needed(node, "name"), symbols)
+    name = texts.text(needed(node, "name"), symbols)
     if not name.isidentifier() or iskeyword(name):
         raise TagFails(f"the name of a property must be a Python identifier, not {name!r}")
     if name.startswith("__"):
@@ -92,95 +75,29 @@ def _outer(symbols: Scope) -> Scope:
     return outer
 
 
-def _macro(_expander: Expander, node: Node, _: Node, scopes: Scopes) -> None:
-    name = _needed(node, "name").removeprefix("xacro:")
-    if name == "call" or "." in name:
-        raise TagFails(f"a macro cannot have the name {name}")
-    scopes.macros.bind(name, Macro(name, node, read_parameters(node.attributes.get("params", ""))))
-
-
-def _call(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
-    """Expand a call of a macro by its name: <xacro:wheel prefix="left"/>."""
-    _call_named(expander, node.tag.removeprefix("xacro:"), node, out, scopes)
-
-
-def _dynamic_call(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
-    name = expander.texts.text(_needed(node, "macro"), scopes.symbols)
-    if not name:
-        raise TagFails("<xacro:call> has an empty attribute macro")
-    call = _renamed(node, f"xacro:{name}", "macro")
-    _call_named(expander, name, call, out, scopes)
-
-
-def _call_named(expander: Expander, name: str, node: Node, out: Node, scopes: Scopes) -> None:
-    found = find_macro(name, *scopes)
-    if found is None:
-        if expander.texts.names_open is not None:
-            raise expander.texts.names_open
-        raise MacroError(f"there is no macro {name} at this place{did_you_mean(name, scopes.macros.names())}")
-    macro, outer_macros, outer_symbols = found
-    if len(expander.calls) >= _MAX_CALLS:
-        raise Undetermined(f"macros call each other more than {_MAX_CALLS} deep")
-    inner = Scopes(Scope(outer_macros), Scope(outer_symbols))
-    left = bind_values(macro, node, scopes.symbols, inner.symbols, expander.texts)
-    arguments = Node(node.tag, node.place)
-    expander.content(node, arguments, scopes)
-    if arguments.open and not arguments.elements:
-        raise Undetermined(arguments.open)
-    bind_blocks(macro, arguments.elements, left, inner.symbols)
-    bind_defaults(macro, left, scopes.symbols, inner.symbols, expander.texts)
-    before = expander.calls
-    expander.calls = (*before, (name, node.place))
-    try:
-        expander.start(macro.body, inner)  # xacro evaluates the attributes of <xacro:macro> too
-        expander.insert(macro.body, out, inner)
-    finally:
-        expander.calls = before
-
-
-def _insert_block(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
-    name = _needed(node, "name")
-    for key in (f"**{name}", f"*{name}"):
-        holder = scopes.symbols.holder(key)
-        if holder is not None:
-            block = holder.properties[key].value
-            break
-    else:
-        if expander.texts.names_open is not None:
-            raise expander.texts.names_open
-        raise MacroError(f"there is no block {name} at this place")
-    if key.startswith("**"):
-        expander.start(block, scopes)
-        expander.insert(block, out, scopes)
-    else:
-        new = expander.start(block, scopes)
-        out.children.append(new)
-        expander.content(block, new, scopes)
-
-
 def _if(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
-    text = _needed(node, "value")
+    text = needed(node, "value")
     keep = _boolean(expander.texts.evaluate(text, scopes.symbols), text)
     if keep == (node.tag == "xacro:if"):
         expander.insert(node, out, scopes)
 
 
 def _arg(expander: Expander, node: Node, _: Node, scopes: Scopes) -> None:
-    name, default = _needed(node, "name"), _needed(node, "default")
+    name, default = needed(node, "name"), needed(node, "default")
     if name not in expander.texts.arguments:
         expander.texts.arguments[name] = expander.texts.text(default, scopes.symbols)
 
 
 def _element(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
-    name = expander.texts.evaluate(_needed(node, "xacro:name"), scopes.symbols)
+    name = expander.texts.evaluate(needed(node, "xacro:name"), scopes.symbols)
     _check_name(name, node)
     renamed = Node("", node.place)
-    renamed.children.append(_renamed(node, name, "xacro:name"))
+    renamed.children.append(renamed(node, name, "xacro:name"))
     expander.content(renamed, out, scopes)
 
 
 def _attribute(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
-    name, value = (expander.texts.evaluate(_needed(node, key), scopes.symbols) for key in ("name", "value"))
+    name, value = (expander.texts.evaluate(needed(node, key), scopes.symbols) for key in ("name", "value"))
     _check_name(name, node)
     if value and not isinstance(value, str):
         raise TagFails(f"<xacro:attribute> needs a value that is a text: xacro fails with the number {value}")
@@ -206,7 +123,7 @@ def _include(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
     optional = node.attributes.get("optional")
     is_optional = optional is not None and _boolean(optional, optional)
     try:
-        for path in expander.files.named(texts.text(_needed(node, "filename"), scopes.symbols)):
+        for path in expander.files.named(texts.text(needed(node, "filename"), scopes.symbols)):
             _insert_file(expander, path, out, inner)
     except FileFails as error:
         if is_optional:
@@ -231,18 +148,11 @@ def _insert_file(expander: Expander, path: str, out: Node, scopes: Scopes) -> No
         expander.files.open.pop()
 
 
-def _renamed(node: Node, tag: str, without: str) -> Node:
-    """Return an element with another tag and without an attribute."""
-    renamed = Node(tag, node.place, {name: text for name, text in node.attributes.items() if name != without})
-    renamed.children, renamed.unresolved = node.children, node.unresolved
-    return renamed
-
-
 HANDLERS: Mapping[str, Handler] = {
     "xacro:property": _property,
-    "xacro:macro": _macro,
-    "xacro:call": _dynamic_call,
-    "xacro:insert_block": _insert_block,
+    "xacro:macro": define_macro,
+    "xacro:call": call_dynamically,
+    "xacro:insert_block": insert_block,
     "xacro:if": _if,
     "xacro:unless": _if,
     "xacro:arg": _arg,
@@ -250,4 +160,4 @@ HANDLERS: Mapping[str, Handler] = {
     "xacro:attribute": _attribute,
     "xacro:include": _include,
 }
-CALL: Handler = _call
+CALL: Handler = call_macro

@@ -10,7 +10,9 @@ from pathlib import PurePosixPath
 from grader.package.launch.booleans import BOOLEAN_SUBSTITUTIONS, boolean_substitution, operands_of
 from grader.package.launch.model import Contents, Context, Resolved
 from grader.package.launch.places import HOME, PREFIX, SHARE
-from grader.static_python.expressions import evaluate_text
+from grader.static_python.closed import Budget, evaluate
+from grader.static_python.closed_functions import BUILTINS
+from grader.static_python.closed_values import ExpressionFails, Undetermined, text_of
 from grader.static_python.inspection import MAX_TEXT, as_text
 from grader.static_python.parse import START
 from grader.static_python.values import Call, Unknown, Value
@@ -18,6 +20,7 @@ from grader.static_python.values import Call, Unknown, Value
 PART_UNKNOWN = "\0"  # stands in a command for a part that is unknown
 COMMAND_LINE = "launch.frontend.command line"  # a line that is split into words, as in XML and YAML
 _MAX_DEPTH = 40
+_MAX_STEPS = 10_000  # of an expression
 # Methods whose result is the text, or the contents, of the object that they are called on.
 _OF_OWNER = ("perform", "read", "toxml", "toprettyxml", "documentElement", "decode", "strip")
 _PACKAGE_FOLDERS = (
@@ -200,12 +203,19 @@ class _Substitution:
     def expression(self) -> Resolved:
         """Return the value of a Python expression that contains plain values only."""
         text = self.argument("expression")
-        value = evaluate_text(text, {}, {}) if isinstance(text, str) else None
-        plain = as_text(value) if value is not None else None
-        if plain is not None:
-            return plain
-        reason = "the value of this expression is known only at run time"
-        return text if isinstance(text, Unknown) else Unknown(reason, self.call.at)
+        if not isinstance(text, str):
+            reason = "the value of this expression is known only at run time"
+            return text if isinstance(text, Unknown) else Unknown(reason, self.call.at)
+        try:
+            return text_of(evaluate(text, _builtin, Budget(_MAX_STEPS)))
+        except (ExpressionFails, Undetermined):
+            return Unknown("the value of this expression is known only at run time", self.call.at)
+
+
+def _builtin(name: str) -> Value:
+    if name not in BUILTINS:
+        raise Undetermined(f"the name {name} is known only at run time")
+    return BUILTINS[name]
 
 
 _METHODS: dict[str, Callable[[_Substitution], Resolved]] = {

@@ -1,0 +1,98 @@
+"""The tags of xacro that define macros and call them, and that insert the elements which a call gives."""
+
+from grader.names import did_you_mean
+from grader.static_python.closed_values import Undetermined
+from grader.xacro.expander import Expander, Scopes, TagFails
+from grader.xacro.macros import (
+    Macro,
+    MacroError,
+    bind_blocks,
+    bind_defaults,
+    bind_values,
+    find_macro,
+    read_parameters,
+)
+from grader.xacro.nodes import Node
+from grader.xacro.scopes import Scope
+
+_MAX_CALLS = 100  # macros that call each other
+
+
+def needed(node: Node, name: str) -> str:
+    """Return an attribute that xacro requires."""
+    if name not in node.attributes:
+        raise TagFails(f"<{node.tag}> has no attribute {name}")
+    return node.attributes[name]
+
+
+def renamed(node: Node, tag: str, without: str) -> Node:
+    """Return an element with another tag and without an attribute."""
+    renamed = Node(tag, node.place, {name: text for name, text in node.attributes.items() if name != without})
+    renamed.children, renamed.unresolved = node.children, node.unresolved
+    return renamed
+
+
+def define_macro(_expander: Expander, node: Node, _: Node, scopes: Scopes) -> None:
+    name = needed(node, "name").removeprefix("xacro:")
+    if name == "call" or "." in name:
+        raise TagFails(f"a macro cannot have the name {name}")
+    scopes.macros.bind(name, Macro(name, node, read_parameters(node.attributes.get("params", ""))))
+
+
+def call_macro(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
+    """Expand a call of a macro by its name: <xacro:wheel prefix="left"/>."""
+    _call_named(expander, node.tag.removeprefix("xacro:"), node, out, scopes)
+
+
+def call_dynamically(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
+    name = expander.texts.text(needed(node, "macro"), scopes.symbols)
+    if not name:
+        raise TagFails("<xacro:call> has an empty attribute macro")
+    call = renamed(node, f"xacro:{name}", "macro")
+    _call_named(expander, name, call, out, scopes)
+
+
+def _call_named(expander: Expander, name: str, node: Node, out: Node, scopes: Scopes) -> None:
+    found = find_macro(name, *scopes)
+    if found is None:
+        if expander.texts.names_open is not None:
+            raise expander.texts.names_open
+        raise MacroError(f"there is no macro {name} at this place{did_you_mean(name, scopes.macros.names())}")
+    macro, outer_macros, outer_symbols = found
+    if len(expander.calls) >= _MAX_CALLS:
+        raise Undetermined(f"macros call each other more than {_MAX_CALLS} deep")
+    inner = Scopes(Scope(outer_macros), Scope(outer_symbols))
+    left = bind_values(macro, node, scopes.symbols, inner.symbols, expander.texts)
+    given = Node(node.tag, node.place)
+    expander.content(node, given, scopes)
+    if given.open and not given.elements:
+        raise Undetermined(given.open)
+    bind_blocks(macro, given.elements, left, inner.symbols)
+    bind_defaults(macro, left, scopes.symbols, inner.symbols, expander.texts)
+    before = expander.calls
+    expander.calls = (*before, (name, node.place))
+    try:
+        expander.start(macro.body, inner)  # xacro evaluates the attributes of <xacro:macro> too
+        expander.insert(macro.body, out, inner)
+    finally:
+        expander.calls = before
+
+
+def insert_block(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
+    name = needed(node, "name")
+    for key in (f"**{name}", f"*{name}"):
+        holder = scopes.symbols.holder(key)
+        if holder is not None:
+            block = holder.properties[key].value
+            break
+    else:
+        if expander.texts.names_open is not None:
+            raise expander.texts.names_open
+        raise MacroError(f"there is no block {name} at this place")
+    if key.startswith("**"):
+        expander.start(block, scopes)
+        expander.insert(block, out, scopes)
+    else:
+        new = expander.start(block, scopes)
+        out.children.append(new)
+        expander.content(block, new, scopes)

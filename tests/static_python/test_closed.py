@@ -1,0 +1,131 @@
+"""A closed expression has Python's value, fails as Python fails, or is undetermined; nothing outside the allow-list is reached."""
+
+import math
+from contextlib import suppress
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from grader.static_python.closed import Budget, OutOfSteps, evaluate
+from grader.static_python.closed_functions import BUILTINS, MATH
+from grader.static_python.closed_values import ExpressionFails, Undetermined, Value
+
+NAMES: dict[str, Value] = {**BUILTINS, **MATH, "size": 4, "text": "wheel", "table": {"a": [1, 2]}, "flag": True}
+PLAIN = {name: NAMES[name] for name in ("size", "text", "table", "flag", "pi")}
+
+
+def find(name: str) -> Value:
+    """Return the value of a name."""
+    if name not in NAMES:
+        raise ExpressionFails(f"name {name!r} is not defined")
+    return NAMES[name]
+
+
+def value(text: str, steps: int = 10_000) -> Value:
+    """Return the value of an expression."""
+    return evaluate(text, find, Budget(steps))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "1 + 2 * 3 ** 2 // 4 % 5 - -1",
+        "0.1 + 0.2",
+        "size == 4 and 'a' in 'abc'",
+        "1 < size <= 4 != 5",
+        "'big' if size > 3 else missing",
+        "not text or size",
+        "'a,b'.upper().split(',')",
+        "f'{text}_{size:03d}{pi!r:.5}'",
+        "'%s_%.3f %%' % (size, pi)",
+        "'{} {0}'.format(1) if False else '{0:>5}|{n}'.format(text, n=size)",
+        "[item + 1 for item in (1, 2, 3) if item != 2]",
+        "{name: n for name, n in [('a', 1), ('b', 2)]}",
+        "sorted({3, 1, 2}, key=lambda n: -n)",
+        "table['a'][-1] + len(table)",
+        "text[::-1][1:3]",
+        "sum(x * y for x in range(3) for y in (1, 2))",
+        "max(1, 2) + min([3, 4]) + abs(-2) + round(2.675, 2)",
+        "list(map(str, filter(None, [0, 1, 2])))",
+        "dict(zip('ab', enumerate('xy')))",
+        "int('12') + float('.5') + bool(text)",
+        "isinstance(size, (int, float)), divmod(7, 2), all([flag]), any([])",
+        "{'a', *'bc'} == set('abc')",
+        "'-'.join(reversed('abc')).replace('b', 'x').center(9, '*')",
+        "(lambda a, b: a - b)(5, size)",
+        "table.get('b', 'none'), list(table.items())",
+        " size ",
+        "~size & 0xff | 1 << 3",
+    ],
+)
+def test_the_value_is_pythons(text: str) -> None:
+    """Operators, strings, containers, comprehensions, lambdas and functions have Python's values, of the same type."""
+    expected = eval(text.strip(), {**PLAIN})
+    found = value(text)
+    assert (found, type(found)) == (expected, type(expected))
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["1 +", "missing", "1 / 0", "'a' + 1", "[][0]", "{}['a']", "size.missing", "float('x')", "5(3)", "len(5)", "1\n2",
+     "x = 1", "sqrt(-1)", "max()", "dict(a=1, a=2)", "await 1", "''.join([1])", "sorted([1, 'a'])", "-text", ""],
+)  # fmt: skip
+def test_what_python_refuses_fails(text: str) -> None:
+    """An expression for which Python raises an error fails with its message."""
+    with pytest.raises(ExpressionFails, match=r"\w"):
+        value(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["().__class__", "__import__('os')", "text.__class__", "'{0.__class__}'.format(1)", "f'{text.__len__}'",
+     "(lambda: 0).__globals__", "[x.__class__ for x in (1,)]", "open('a')", "type(1)", "vars()", "table.update(a=1)",
+     "table.pop('a')", "str(len)", "hash('a')", "'%*d' % (10**9, 1)", "'{:9999999}'.format(1)", "9**9**9", "1 << 10**9",
+     "'a' * 10**9", "[0] * 10**9", "10**9 * 'a'", "range(10**9)", "factorial(10**6)", "round(1, -10**9)",
+     "'a'.ljust(10**9)", "[[[0] * 99] * 99] * 99", "size is 4", "(a := 1)", "[]" + "()" * 400, "-" * 3000 + "1"],
+)  # fmt: skip
+def test_what_is_dangerous_or_unknown_has_no_value(text: str) -> None:
+    """Attributes with underscores, formats that reach them, huge values and everything else outside the list are refused."""
+    with pytest.raises((ExpressionFails, Undetermined)):
+        value(text)
+
+
+def test_steps_are_bounded() -> None:
+    """A loop that takes too long ends with its own exception."""
+    with pytest.raises(OutOfSteps):
+        value("[[0 for i in range(1000)] for j in range(1000)]")
+
+
+NUMBERS = st.one_of(st.integers(-50, 50), st.floats(-1e3, 1e3, allow_nan=False)).map(lambda number: f"({number!r})")
+ARITHMETIC = st.recursive(
+    NUMBERS,
+    lambda inner: st.one_of(
+        st.tuples(inner, st.sampled_from(["+", "-", "*", "/", "//", "%", "<", "==", "and", "or"]), inner).map(
+            lambda parts: f"({' '.join(parts)})"
+        ),
+        st.tuples(st.sampled_from(["sin", "abs", "-", "not ", "radians"]), inner).map(
+            lambda parts: f"({parts[0]}({parts[1]}))"
+        ),
+    ),
+    max_leaves=12,
+)
+
+
+@given(text=ARITHMETIC)
+def test_any_arithmetic_is_pythons(text: str) -> None:
+    """Arithmetic of any numbers has exactly Python's value, or fails with Python's error."""
+    try:
+        expected = eval(text, {**vars(math), "abs": abs})
+    except (ArithmeticError, ValueError) as error:
+        with pytest.raises(ExpressionFails, match=type(error).__name__):
+            value(text)
+        return
+    assert repr(value(text)) == repr(expected)
+
+
+@given(text=st.text(alphabet="()[]{}'\"%.,:+-*/=<>!&|~ \\\n0123456789abcdefpisz_xlnmort", max_size=60))
+def test_no_text_raises_anything_else(text: str) -> None:
+    """Any text has a value, fails or is undetermined."""
+    with suppress(ExpressionFails, Undetermined):
+        value(text)
