@@ -27,12 +27,13 @@ def needed(node: Node, name: str) -> str:
 
 def renamed(node: Node, tag: str, without: str) -> Node:
     """Return an element with another tag and without an attribute."""
-    renamed = Node(tag, node.place, {name: text for name, text in node.attributes.items() if name != without})
-    renamed.children, renamed.unresolved = node.children, node.unresolved
-    return renamed
+    other = Node(tag, node.place, {name: text for name, text in node.attributes.items() if name != without})
+    other.children, other.unresolved = node.children, node.unresolved
+    return other
 
 
 def define_macro(_expander: Expander, node: Node, _: Node, scopes: Scopes) -> None:
+    """Bind a macro to its name; <xacro:macro> itself writes nothing."""
     name = needed(node, "name").removeprefix("xacro:")
     if name == "call" or "." in name:
         raise TagFails(f"a macro cannot have the name {name}")
@@ -45,6 +46,7 @@ def call_macro(expander: Expander, node: Node, out: Node, scopes: Scopes) -> Non
 
 
 def call_dynamically(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
+    """Expand a call of a macro whose name is a value: <xacro:call macro="${name}"/>."""
     name = expander.texts.text(needed(node, "macro"), scopes.symbols)
     if not name:
         raise TagFails("<xacro:call> has an empty attribute macro")
@@ -79,6 +81,7 @@ def _call_named(expander: Expander, name: str, node: Node, out: Node, scopes: Sc
 
 
 def insert_block(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
+    """Insert an element that a macro call gives, or the children of a property."""
     name = needed(node, "name")
     for key in (f"**{name}", f"*{name}"):
         holder = scopes.symbols.holder(key)

@@ -91,9 +91,9 @@ def _arg(expander: Expander, node: Node, _: Node, scopes: Scopes) -> None:
 def _element(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
     name = expander.texts.evaluate(needed(node, "xacro:name"), scopes.symbols)
     _check_name(name, node)
-    renamed = Node("", node.place)
-    renamed.children.append(renamed(node, name, "xacro:name"))
-    expander.content(renamed, out, scopes)
+    holder = Node("", node.place)
+    holder.children.append(renamed(node, name, "xacro:name"))
+    expander.content(holder, out, scopes)
 
 
 def _attribute(expander: Expander, node: Node, out: Node, scopes: Scopes) -> None:
