@@ -8,7 +8,7 @@ from grader.static_python.closed import OutOfSteps
 from grader.static_python.closed_values import Undetermined, Value
 from grader.xacro.expander import Expander, Handler, Scopes, TagFails
 from grader.xacro.files import FileFails
-from grader.xacro.macro_tags import call_dynamically, call_macro, define_macro, insert_block, needed
+from grader.xacro.macro_tags import call_dynamically, call_macro, define_macro, insert_block, needed, renamed
 from grader.xacro.nodes import Node
 from grader.xacro.scopes import Reported, Scope
 
