@@ -10,11 +10,13 @@ from grader.names import did_you_mean
 from grader.package.catalogue import PACKAGE_CATALOGUE
 from grader.robot.catalogue import CATALOGUE
 from grader.text import counted_points, format_points, printable
+from grader.xacro.catalogue import XACRO_CATALOGUE
 
 _WIDTH = 80
-EVERY_KIND = (*CATALOGUE, *PACKAGE_CATALOGUE)
+EVERY_KIND = (*CATALOGUE, *XACRO_CATALOGUE, *PACKAGE_CATALOGUE)
 EFFECTS = {
     "rejects": "ROS 2 rejects the file.",
+    "undetermined": "The criteria that depend on it need manual grading.",
     "drops": "ROS 2 loads the file, but drops content of it.",
     "loads": "ROS 2 loads the file.",
     "other": "",
