@@ -31,15 +31,15 @@ def inspect(
     if submission.other_candidates:
         others = ", ".join(file.path for file in submission.other_candidates)
         warn(f"inspecting {urdf.path}; other candidates: {others}")
-    if urdf.is_expanded:
+    if urdf.is_expanded and urdf.as_it_stands is None:
         warn(f"{urdf.path} is xacro: this is what xacro expands it to")
-    robot = _configuration(urdf.reading, joints)
+    robot = _configuration(urdf.loaded, joints)
     if robot is not None and relative_to is None:
         relative_to = main_root(robot)
     elif robot is not None and relative_to is not None and not robot.robot.has_link(relative_to):
         known = ", ".join(repr(link.name) for link in robot.robot.links[:_MAX_NAMED])
         raise GraderError(f"--relative-to: there is no link {relative_to!r}; the file has: {known}")
-    return Inspection(urdf.path, urdf.reading, robot, relative_to)
+    return Inspection(urdf.path, urdf.loaded, robot, relative_to)
 
 
 def _configuration(urdf: Reading, joints: Sequence[str]) -> Configuration | None:

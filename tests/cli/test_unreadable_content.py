@@ -63,10 +63,10 @@ def test_with_a_threshold_only_the_score_counts(tmp_path: Path) -> None:
         assert run(("grade", str(REFERENCE), "--fail-under", odd)).returncode == 2, odd
 
 
-def test_xacro_that_cannot_be_expanded_is_not_green(tmp_path: Path) -> None:
+def test_xacro_that_cannot_be_determined_is_not_green(tmp_path: Path) -> None:
     """Nothing of it is decided: exit code 1, and standard error and the annotation name the undecided criteria."""
-    macro = '<xacro:macro name="m" params="x"><link name="${x}"/></xacro:macro><xacro:m x="base_link"/>'
-    text = f'<robot name="my_robot" xmlns:xacro="http://www.ros.org/wiki/xacro">{macro}</robot>'
+    include = '<xacro:include filename="$(find course_parts)/urdf/robot.xacro"/>'
+    text = f'<robot name="my_robot" xmlns:xacro="http://www.ros.org/wiki/xacro">{include}</robot>'
     (tmp_path / "my_robot.urdf.xacro").write_text(text)
     done = run(("grade", str(tmp_path / "my_robot.urdf.xacro")))
     assert done.returncode == 1
