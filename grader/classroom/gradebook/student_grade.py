@@ -54,7 +54,7 @@ class StudentGrade:
 
     `score` includes manual marks, but not the late penalty. `faults` counts criteria on which the grader failed, `older_marks` marks
     that were given for an earlier submission or result, `over_marks` marks above the criterion's current maximum. `is_gone` means
-    that the newest run did not find the submission, `is_outdated` that the rubric has changed since it was graded.
+    that the newest run did not find the submission, `is_outdated` that the rubric, or the parts that are graded, have changed since it was graded.
     """
 
     id: int
@@ -96,7 +96,10 @@ class StudentGrade:
             (self.faults, "the grader failed on a criterion"),
             (self.verdict == "unreadable" and self.pending, f"it could not be graded: {self.reason}"),
             (self.is_gone, "it is no longer in the class folder"),
-            (self.is_outdated, "it was graded with an earlier version of the rubric: run `grader batch` again"),
+            (
+                self.is_outdated,
+                "it was graded with an earlier version of the rubric or on other parts: run `grader batch` again",
+            ),
             (self.over_marks, "a manual mark exceeds the criterion's maximum"),
             (self.pending, f"{counted_points(self.pending)} need{'s' * (self.pending == 1)} manual grading"),
         )
@@ -110,7 +113,7 @@ class StudentGrade:
         reasons = (
             (is_ungraded, self.why_not_final or "it could not be graded, and was marked manually"),
             (self.is_gone, "no longer in the class folder"),
-            (self.is_outdated, "graded with an earlier version of the rubric"),
+            (self.is_outdated, "graded with an earlier version of the rubric or on other parts"),
             (self.over_marks, "a manual mark exceeds the criterion's maximum"),
             (self.is_on_roster is False, "not on the roster"),
             (self.older_marks, f"{older} from before the submission or the points changed"),

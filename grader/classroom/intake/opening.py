@@ -49,6 +49,7 @@ class OpenedSubmission(NamedTuple):
             self.name,
             wanted=rubric.urdf,
             package=rubric.package,
+            folders=rubric.folders,
             limit=self.limit,
             shown=self.shown,
             no_documents=no_documents,
