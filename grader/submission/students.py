@@ -117,7 +117,9 @@ def _is_numbered(words: list[str]) -> bool:
 
 
 def _words(name: str) -> list[str]:
-    return _WORD.findall(_CAMEL.sub(" ", _DATE.sub(" ", without_archive(name)[:100])).casefold())
+    """Return the words of a name without dates; of an email address those before the @."""
+    plain = without_archive(name)[:100].partition("@")[0]
+    return _WORD.findall(_CAMEL.sub(" ", _DATE.sub(" ", plain)).casefold())
 
 
 def _owners(folder: str, packages: Mapping[str, str], lab: Collection[str], wanted: str) -> Iterator[tuple[str, str]]:

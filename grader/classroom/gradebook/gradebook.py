@@ -120,7 +120,7 @@ class Gradebook(AbstractContextManager["Gradebook"]):
         """Yield the newest submission of each student, in the order of the keys, unaffected by later writes."""
         with self.input_errors(), closing(sqlite3.connect(self.path, timeout=_BUSY_TIMEOUT)) as snapshot:
             for row in snapshot.execute(STORED_SUBMISSIONS):
-                yield StoredSubmission._make((*row[:12], row[12:]))
+                yield StoredSubmission._make((*row[:13], row[13:]))
 
     def rubric(self, sha256: str, *, answers: bool = False) -> Rubric:
         """Return a stored rubric, with or without model answers; raises RubricError if this grader cannot read it."""

@@ -56,6 +56,7 @@ class Grades:
         self._newest_sha256 = newest.rubric if newest is not None else ""
         self._deadline = read_time(newest.deadline) if newest and newest.deadline and deadline is None else deadline
         self.rubric = cache(partial(book.rubric, answers=answers))
+        self._parts_of = cache(lambda rubric, statuses: graded_on(self.rubric(rubric), statuses))
         self._template = cache(lambda rubric, text: Template(text, self.rubric(rubric)))
 
     def newest_rubric(self) -> Rubric:
@@ -153,6 +154,7 @@ class Grades:
         extension = float(values["extension"] or 0)
         times = SubmissionTimes(is_late, texts["submitted"], values["deadline"], extension, values["days_late"])
         paths, names, attempt, earlier = json.loads(values["files"])
+        is_outdated = bool(rubric) and rubric != self._newest_sha256
         key, fingerprint = values["key"], values["fingerprint"] or ""
         return StudentGrade(
             **{**counts, **points, **texts, "faults": counts["faults"] or 0},
@@ -160,8 +162,10 @@ class Grades:
             is_on_roster=None if is_on_roster is None else bool(is_on_roster),
             is_gone=bool(values["is_gone"]),
             is_late=is_late,
-            is_outdated=bool(rubric)
-            and (rubric != self._newest_sha256 or graded_on(self.rubric(rubric), texts["statuses"]) != self.parts),
+            is_outdated=is_outdated,
+            has_other_parts=bool(rubric)
+            and not is_outdated
+            and self._parts_of(rubric, texts["statuses"]) != self.parts,
             files=SubmissionFiles(values["source"] or "", tuple(paths), tuple(names), key, fingerprint),
             attempt=attempt,
             earlier=tuple(earlier),

@@ -54,7 +54,8 @@ class StudentGrade:
 
     `score` includes manual marks, but not the late penalty. `faults` counts criteria on which the grader failed, `older_marks` marks
     that were given for an earlier submission or result, `over_marks` marks above the criterion's current maximum. `is_gone` means
-    that the newest run did not find the submission, `is_outdated` that the rubric, or the parts that are graded, have changed since it was graded.
+    that the newest run did not find the submission, `is_outdated` that the rubric has changed since it was graded, `has_other_parts` that
+    the parts have that a submission is graded on.
     """
 
     id: int
@@ -77,6 +78,7 @@ class StudentGrade:
     is_gone: bool
     is_late: bool
     is_outdated: bool
+    has_other_parts: bool
     files: SubmissionFiles
     attempt: int
     earlier: tuple[str, ...]
@@ -98,8 +100,9 @@ class StudentGrade:
             (self.is_gone, "it is no longer in the class folder"),
             (
                 self.is_outdated,
-                "it was graded with an earlier version of the rubric or on other parts: run `grader batch` again",
+                "it was graded with an earlier version of the rubric: run `grader batch` again",
             ),
+            (self.has_other_parts, "it was graded on other parts: run `grader batch` again"),
             (self.over_marks, "a manual mark exceeds the criterion's maximum"),
             (self.pending, f"{counted_points(self.pending)} need{'s' * (self.pending == 1)} manual grading"),
         )
@@ -113,7 +116,7 @@ class StudentGrade:
         reasons = (
             (is_ungraded, self.why_not_final or "it could not be graded, and was marked manually"),
             (self.is_gone, "no longer in the class folder"),
-            (self.is_outdated, "graded with an earlier version of the rubric or on other parts"),
+            (self.is_outdated, "graded with an earlier version of the rubric"),
             (self.over_marks, "a manual mark exceeds the criterion's maximum"),
             (self.is_on_roster is False, "not on the roster"),
             (self.older_marks, f"{older} from before the submission or the points changed"),
