@@ -55,13 +55,13 @@ def package_around(packages: tuple[Package, ...], path: str | None) -> Package |
     return max(around, key=lambda package: len(package.folder), default=None)
 
 
-def why_none(packages: tuple[Package, ...], wanted: str) -> str:
-    """Return why none of these packages is graded."""
-    if not packages:
-        return NO_PACKAGE
-    names = [f"{quoted(package.name)} in {package.folder or 'the submission'}" for package in packages]
+def why_none(packages: tuple[Package, ...], elsewhere: tuple[Package, ...], wanted: str) -> tuple[str, str]:
+    """Return why none of these packages is graded, nor one `elsewhere`, outside of the lab; and which there are."""
+    names = [f"{quoted(package.name)} in {package.folder or 'the submission'}" for package in packages or elsewhere]
     there = f"; there {'are' if len(names) > 1 else 'is'} {enumerated(names, _MAX_NAMED)}"
-    return f"no package is named {wanted!r}, and none contains the graded URDF{there}"
+    if packages:
+        return f"no package is named {wanted!r}, and none contains the graded URDF", there
+    return ("no package was submitted for this lab", there) if names else (NO_PACKAGE, "")
 
 
 def why_not(graded: Package | None, other: Package, urdf: str) -> str:

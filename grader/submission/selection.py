@@ -22,7 +22,7 @@ _ELSEWHERE = {
 class Selection(NamedTuple):
     """The files of the lab, the URDF and the package that are graded, the other candidates, and notes on the choice.
 
-    `packages` are all of the lab, and `no_package` says why none of them is graded. `students` are the folders of several students, if
+    `packages` are all of the lab, and `no_package` says why none of them is graded, and which there are. `students` are the folders of several students, if
     the submission holds theirs.
     """
 
@@ -30,7 +30,7 @@ class Selection(NamedTuple):
     urdf: str | None
     package: Package | None
     packages: tuple[Package, ...]
-    no_package: str
+    no_package: tuple[str, str]
     others: tuple[OtherCandidate, ...]
     notes: tuple[str, ...]
     students: tuple[str, ...]
@@ -46,7 +46,9 @@ def select(tree: Tree, wanted: str, package: str, folders: Sequence[str], limit:
     roots = [path for path in tree.files if path.rpartition("/")[2] in (MANIFEST, SETUP)]
     scope = _Scope(tree, robots, roots, wanted, folders)
     lab_of_robots, lab_of_packages = scope.nearest(robot.path for robot in robots), scope.nearest(roots)
-    candidates = tuple(robot for robot in robots if scope.lab(robot.path) == lab_of_robots)
+    candidates = tuple(
+        robot for robot in robots if lab_of_robots is not None and scope.lab(robot.path) == lab_of_robots
+    )
     packages = read_packages(scope.only(lab_of_packages), package, wanted) if lab_of_packages is not None else ()
     named = best_named(packages, package)
     preferred = named or next(iter(packages), None)
@@ -55,15 +57,18 @@ def select(tree: Tree, wanted: str, package: str, folders: Sequence[str], limit:
     others += tuple(
         OtherCandidate(it.path(MANIFEST), why_not(graded, it, wanted)) for it in packages if it is not graded
     )
-    elsewhere = [robot.path for robot in robots if scope.lab(robot.path) != lab_of_robots]
-    elsewhere += [path for path in roots if path.endswith(MANIFEST) and scope.lab(path) != lab_of_packages]
+    elsewhere = [robot.path for robot in robots if lab_of_robots is None or scope.lab(robot.path) != lab_of_robots]
+    passed = [path for path in roots if lab_of_packages is None or scope.lab(path) != lab_of_packages]
+    elsewhere += [path for path in passed if path.rpartition("/")[2] == MANIFEST]
     others += tuple(OtherCandidate(path, scope.why_not(path)) for path in elsewhere[:_MAX_ELSEWHERE])
     names = {it.folder: it.name for it in packages}
     works = [Work(it.path.rpartition("/")[0], is_wanted(it, wanted)) for it in candidates if it.size]
     works += [Work(folder, is_wanted=True) for folder, name in names.items() if name == package]
     lab = {word for name in folders for word in lab_words(name)}
     students = students_in(works, names, lab, package) if len(works) > 1 else ()
-    no_package = why_none(packages, package) + (_built_package(scope.tree) if not packages else "")
+    of_other_labs = read_packages(tree, package, wanted) if passed and not packages else ()
+    reason, which = why_none(packages, of_other_labs, package)
+    no_package = reason, which + (_built_package(scope.tree) if not packages else "")
     return Selection(scope.documents, urdf, graded, packages, no_package, others, scope.notes(urdf), students)
 
 

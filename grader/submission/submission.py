@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -31,7 +31,7 @@ _WANTED = "give a .urdf file, or the folder or archive that was submitted"
 
 @dataclass(frozen=True)
 class Submission:
-    """The work that a student submitted. `package` is the one that is graded; `no_package` says why none is.
+    """The work that a student submitted. `package` is the one that is graded; `no_package` says why none is, and which there are.
 
     `tree` has the files of the lab, and `everything` those around it as well. `students` are the folders of several students whose
     work it holds, and `notes` say how it was read.
@@ -43,7 +43,7 @@ class Submission:
     tree: Tree = field(default=_NO_FILES, repr=False)
     packages: tuple[Package, ...] = field(default=(), repr=False)
     package: Package | None = field(default=None, repr=False)
-    no_package: str = NO_PACKAGE
+    no_package: tuple[str, str] = (NO_PACKAGE, "")
     everything: Tree = field(default=_NO_FILES, repr=False)
     students: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
@@ -99,7 +99,8 @@ class Submission:
         if self.package is not None:
             return self.package
         self._refuse_unopened("package")
-        raise MissingElement("package", "", message=self.no_package)
+        message, detail = self.no_package
+        raise MissingElement("package", "", message=message, detail=detail)
 
     def needed_urdf(self) -> Reading:
         """Return the URDF that is graded; raises MissingElement without one, NotDecided if it cannot be read statically."""
@@ -150,7 +151,7 @@ def open_submission(
     if not path:
         raise InputError(f"the path is empty: {_WANTED}")
     place = Path(path)
-    tree = open_tree(place)
+    tree = open_tree(place, partial(_is_lab, folders))
     shown = printable_path(place)
     if tree is not None:
         identity = tree_name(place)
@@ -163,6 +164,13 @@ def open_submission(
     return read_submission(
         read_capped(place, limit), identity=printable_path(place.stem), path=printable_path(place.name)
     )
+
+
+def _is_lab(folders: Sequence[str], name: str) -> bool:
+    """Return whether an archive is named like the lab's folder."""
+    from grader.submission.labs import LabFolders  # late: a URDF on its own needs no search
+
+    return LabFolders(folders).is_lab(name)
 
 
 def submission_of(
