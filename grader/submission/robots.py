@@ -19,6 +19,7 @@ _PROLOG = re.compile(
 _ROBOT = re.compile(rb"<\s*robot(?=[\s/>])([^>]*)")
 _NAME = re.compile(rb"(?<![\w:])name\s*=\s*[\"']([^\"']*)")
 _INCLUDE = re.compile(rb"<xacro:include\s[^>]*filename\s*=\s*[\"'](?:[^\"']*/)?([^\"'/]+)[\"']")
+_LIKELY = re.compile("urdf|xacro|robot")  # in names of files that are read first
 # Files that are no text, and need not be read.
 _BINARY = frozenset(
     {
@@ -55,7 +56,10 @@ def find_robots(tree: Tree, wanted: str = "", limit: int = URDF_LIMIT) -> tuple[
     """
     found: list[RobotFile] = []
     by_content = read = 0
-    for file in tree.files.values():
+    files = tree.files.values()
+    for file in (
+        files if len(files) <= _MAX_READ else sorted(files, key=lambda file: not _LIKELY.search(file.name.lower()))
+    ):
         is_urdf = file.suffix == ".urdf" or file.name == wanted
         if not is_urdf:
             if file.suffix in _BINARY or not 0 < file.size <= limit or read >= _MAX_READ or by_content >= _MAX_ROBOTS:
@@ -65,7 +69,7 @@ def find_robots(tree: Tree, wanted: str = "", limit: int = URDF_LIMIT) -> tuple[
         if start is not None or is_urdf:
             by_content += not is_urdf
             found.append(RobotFile(file.path, file.size, is_urdf, *(_described(start) if start else ())))
-    return tuple(found)
+    return tuple(sorted(found))
 
 
 def is_robot(data: bytes) -> bool:

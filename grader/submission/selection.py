@@ -9,10 +9,13 @@ from grader.submission.labs import Belonging, LabFolders, lab_words
 from grader.submission.packages import best_named, package_around, read_packages, why_none, why_not
 from grader.submission.robots import RobotFile, find_robots
 from grader.submission.search import find_urdf, is_wanted
-from grader.submission.students import Work, students_in
+from grader.submission.students import Work, students_beside, students_in
 from grader.submission.urdf import OtherCandidate
+from grader.text import enumerated
 
 _MAX_ELSEWHERE = 40
+_MAX_NAMED = 5  # folders in a note
+_BESIDE = "{others} may be of other students, but were read as well: grade {own} to leave them out"
 _ELSEWHERE = {
     Belonging.OTHER_LAB: "it is in the folder of another lab",
     Belonging.NO_LAB: "it is outside the folder of this lab",
@@ -69,7 +72,11 @@ def select(tree: Tree, wanted: str, package: str, folders: Sequence[str], limit:
     of_other_labs = read_packages(tree, package, wanted) if passed and not packages else ()
     reason, which = why_none(packages, of_other_labs, package)
     no_package = reason, which + (_built_package(scope.tree) if not packages else "")
-    return Selection(scope.documents, urdf, graded, packages, no_package, others, scope.notes(urdf), students)
+    notes = list(scope.notes(urdf))
+    if urdf is not None and not students:
+        own, beside = students_beside(urdf.rpartition("/")[0], scope.documents.folders, names, lab, package)
+        notes += [_BESIDE.format(others=enumerated(beside, _MAX_NAMED), own=own)] if beside else []
+    return Selection(scope.documents, urdf, graded, packages, no_package, others, tuple(notes), students)
 
 
 class _Scope:

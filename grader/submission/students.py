@@ -90,6 +90,23 @@ def students_in(
     return tuple(sorted(min(entries)[0] for entries in chosen)) if len(chosen) > 1 else ()
 
 
+def students_beside(
+    folder: str, folders: Collection[str], packages: Mapping[str, str], lab: Collection[str], wanted: str
+) -> tuple[str, tuple[str, ...]]:
+    """Return the folder of the student whose work is in a folder, and those beside it that may be other students'; none if none are.
+
+    `folders` are all of the submission; the other arguments are those of `students_in`.
+    """
+    for person, own in _owners(folder, packages, lab, wanted):
+        parent = own.rpartition("/")[0]
+        names = [path.rpartition("/")[2] for path in folders if path != own and path.rpartition("/")[0] == parent]
+        known = {name: person_in(name, lab).rstrip("0123456789") for name in names}
+        others = [name for name, other in known.items() if other and other != person.rstrip("0123456789")]
+        if others:
+            return own, tuple(sorted(f"{parent}/{name}" if parent else name for name in others))
+    return "", ()
+
+
 def is_part(name: str, lab: Collection[str] = ()) -> bool:
     """Return whether a folder's name is that of a part or version of a submission. `lab` are words to ignore."""
     words = _words(name)

@@ -233,6 +233,14 @@ def test_many_texts() -> None:
     assert len(found.others) == 400
 
 
+def test_likely_files_are_read_first() -> None:
+    """Of very many files, those are read whose names say that they may be robots."""
+    tree = make_tree(
+        "", [*(_file(f"a/{n:04}.txt", b"text") for n in range(3000)), _file("z/urdf.xacro file", ROBOT)], ()
+    )
+    assert find_urdf(tree, EXPECTED).path == "z/urdf.xacro file"
+
+
 @given(
     st.lists(st.sampled_from(["my_robot", "urdf", "a", "b", "lab6"]), max_size=3).map("/".join),
     st.permutations(["my_robot.urdf", "x.urdf", "my_robot.txt", "y.xml"]),

@@ -93,3 +93,18 @@ def test_several_students(files: Mapping[str, bytes], students: tuple[str, ...])
 def test_one_student(files: Mapping[str, bytes]) -> None:
     """Versions, parts, other packages, and robots that nobody asked for are of one student."""
     assert submission(files).students == ()
+
+
+def test_folders_of_others_who_submitted_no_robot() -> None:
+    """They are named in a note: their pictures and answers are read, because nothing proves whose they are."""
+    files = {
+        **package("Lab6/Ash/my_robot"),
+        "Lab6/Birch/step.png": PICTURE,
+        "Lab6/Cedar/a.md": b"",
+        "Lab6/Pictures/b.png": PICTURE,
+    }
+    found = submission({**files, "Lab7/Elm/a.png": PICTURE, "Lab6/Ash2/a.png": PICTURE})
+    note = "Lab6/Birch and Lab6/Cedar may be of other students, but were read as well: grade Lab6/Ash to leave them out"
+    assert found.notes == (note,)
+    assert submission(package("Lab6/Ash/my_robot")).notes == ()
+    assert submission({**package("Lab6/my_robot"), "Lab6/Birch/step.png": PICTURE}).notes == ()
