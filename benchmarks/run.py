@@ -97,7 +97,9 @@ def warm_packages(runs: int = 15) -> None:
     rubric = load_rubric("lab6")
 
     def grading(path: Path) -> Callable[[], object]:
-        return lambda: grade(rubric, open_submission(str(path), wanted=rubric.urdf, package=rubric.package))
+        return lambda: grade(
+            rubric, open_submission(str(path), wanted=rubric.urdf, package=rubric.package, folders=rubric.folders)
+        )
 
     submitted = {"the URDF alone": URDF, "package": PACKAGE, "workspace": WORKSPACE, "zip": ZIPPED}
     times = in_turn({name: repeated(grading(path), 10) for name, path in submitted.items()}, runs)

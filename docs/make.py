@@ -85,7 +85,9 @@ def checks() -> str:
 def picture() -> str:
     """Return the report on a sample submission as a drawing of a terminal, in SVG."""
     rubric = load_rubric("lab6")
-    report = grade(rubric, open_submission(str(SAMPLE), wanted=rubric.urdf, package=rubric.package))
+    report = grade(
+        rubric, open_submission(str(SAMPLE), wanted=rubric.urdf, package=rubric.package, folders=rubric.folders)
+    )
     console = Console(
         record=True, width=80, file=StringIO(), force_terminal=True, color_system="truecolor", highlight=False
     )

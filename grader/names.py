@@ -31,3 +31,8 @@ def did_you_mean(name: str, known: Iterable[str]) -> str:
     """Return `; did you mean 'x'?` for the end of a message, or nothing if no known name is close."""
     match = closest(name, known)
     return f"; did you mean {quoted(match)}?" if match else ""
+
+
+def folded(name: str) -> str:
+    """Return the letters and digits of a name in lower case: my_robot, My-Robot and MYROBOT are one name."""
+    return "".join(filter(str.isalnum, name.casefold()))

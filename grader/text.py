@@ -43,6 +43,13 @@ def printable_path(path: Path | str) -> str:
     return "".join(c if c.isprintable() else f"\\x{ord(c):02x}" for c in text)
 
 
+def shell_quoted(path: Path | str) -> str:
+    """Return a path as a word of a command that a message suggests: with quotes where a shell needs them."""
+    from shlex import quote  # late: most messages suggest no command
+
+    return quote(printable_path(path))
+
+
 def quoted(name: str) -> str:
     """Return a name between quotes, cut if it is very long."""
     return repr(name) if len(name) <= _MAX_NAME else repr(name[: _MAX_NAME - 3] + "...")

@@ -43,7 +43,7 @@ class Sample:
 
 def opened(path: Path | str, rubric: Rubric = LAB6) -> Submission:
     """Return the submission at a path relative to the project's root, opened as the command line does."""
-    return open_submission(str(ROOT / path), wanted=rubric.urdf, package=rubric.package)
+    return open_submission(str(ROOT / path), wanted=rubric.urdf, package=rubric.package, folders=rubric.folders)
 
 
 def _read(folder: Path) -> Sample:

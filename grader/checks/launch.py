@@ -36,7 +36,7 @@ def launch_found(package: Package, *, name: str) -> Outcome:
     detail = f"; the package has {path}"
     if not path.endswith(_ENDINGS["include"]):
         detail += ", which ros2 launch cannot start without an ending such as .launch.py"
-    return failed(f"there is no launch file {name!r}", detail=detail)
+    return failed(f"there is no launch file {name!r}", detail=detail + package.built("launch", name))
 
 
 def launch_starts(package: Package, *, name: str, nodes: list[str]) -> Outcome:
@@ -109,7 +109,7 @@ def launch_finds_files(package: Package, *, name: str) -> Outcome:
 def _path(package: Package, name: str) -> str:
     path = package.launch_file(name)
     if path is None:
-        raise MissingElement("launch file in the package", "", message=package.missing_message("launch"))
+        raise package.missing("launch")
     return path
 
 

@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
 FileKind = Literal["urdf", "launch", "rviz"]
 
-_WORDS: dict[FileKind, str] = {"urdf": "URDF", "launch": "launch file", "rviz": "RViz file"}
 _ENDINGS: dict[FileKind, tuple[str, ...]] = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",)}
 
 
@@ -56,7 +55,7 @@ def build_installs(package: Package, *, kind: FileKind, name: str) -> Outcome:
     """
     files = files_of(package, kind, name)
     if not files:
-        raise MissingElement(f"{_WORDS[kind]} in the package", "", message=package.missing_message(kind))
+        raise package.missing(kind)
     return _installed(package, files, kind)
 
 

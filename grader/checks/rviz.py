@@ -25,7 +25,7 @@ def rviz_found(package: Package, *, name: str, launch: str = "") -> Outcome:
         return passed(f"the RViz file is {path}")
     if opened is not None and (opened.syntax or opened.unknown or not all(file.sure for file in opened.named("rviz"))):
         return pending(f"cannot determine statically whether the launch file opens {path}; needs manual grading")
-    return failed(f"there is no RViz file {name!r}", detail=f"; the package has {path}")
+    return failed(f"there is no RViz file {name!r}", detail=f"; the package has {path}{package.built('rviz', name)}")
 
 
 def rviz_fixed_frame(submission: Submission, *, name: str, frame: str, launch: str = "") -> Outcome:
@@ -119,7 +119,7 @@ def _launch(package: Package, launch: str) -> "Launch | None":
 def _path(package: Package, name: str, opened: "Launch | None") -> str:
     path = package.rviz_file(name, opened)
     if path is None:
-        raise MissingElement("RViz file in the package", "", message=package.missing_message("rviz"))
+        raise package.missing("rviz")
     return path
 
 

@@ -12,8 +12,8 @@ import typer
 from grader import __version__
 from grader.cli.options import SHELLS
 from grader.cli.output import warn
-from grader.errors import GraderError, RubricError
-from grader.text import printable
+from grader.errors import GraderError
+from grader.text import shell_quoted
 from grader.usecases.exit_codes import ExitCode
 from grader.usecases.writing import write_stdout
 
@@ -99,12 +99,9 @@ def run(arguments: Sequence[str]) -> int:
         result = app(_points_last(arguments), standalone_mode=False, prog_name="grader")
         if isinstance(result, str):
             write_stdout(result)
-    except RubricError as error:
-        for line in error.complaints:
-            warn(line)
-        return ExitCode.NOT_GRADED
     except GraderError as error:
-        warn(str(error))
+        for line in str(error).split("\n"):
+            warn(line)
         return ExitCode.NOT_GRADED
     except KeyboardInterrupt:
         return ExitCode.INTERRUPTED
@@ -122,7 +119,7 @@ def _command(arguments: Sequence[str]) -> list[str]:
     if first in COMMANDS:
         return [first]
     if not first.startswith("-") and os.path.lexists(first):
-        raise GraderError(f"there is no command {first!r}; to grade it, use `grader grade {printable(first)}`")
+        raise GraderError(f"there is no command {first!r}; to grade it, use `grader grade {shell_quoted(first)}`")
     return []
 
 

@@ -5,7 +5,15 @@ from typing import Annotated, Literal, get_args
 
 import typer
 
-from grader.cli.options import DEFAULT_RUBRIC, DueOption, FormatOption, GradebookOption, MaxSizeOption, RubricOption
+from grader.cli.options import (
+    DEFAULT_RUBRIC,
+    DueOption,
+    FormatOption,
+    GradebookOption,
+    MaxSizeOption,
+    PartOption,
+    RubricOption,
+)
 from grader.cli.output import screen, warn
 from grader.errors import GraderError
 from grader.files.reading import URDF_LIMIT
@@ -21,6 +29,7 @@ def batch(
     path: Annotated[Path, typer.Argument(metavar="PATH", help=_PATH)],
     gradebook: GradebookOption,
     rubric: RubricOption = DEFAULT_RUBRIC,
+    part: PartOption = None,
     jobs: Annotated[
         int | None, typer.Option(metavar="N", min=1, help="Worker processes; default: one per processor.")
     ] = None,
@@ -63,6 +72,7 @@ def batch(
         if kind.needs == "identity":
             raise GraderError(f"{kind} is for one repository: use `grader grade` there")
     request = ClassRequest(
-        path, gradebook, rubric, jobs, timeout, roster, layout, assignment, due, force, cluster, add, max_size, reports, formats, csv
+        path, gradebook, rubric, jobs, timeout, roster, layout, assignment, due, force, cluster, add, max_size, tuple(part or ()),
+        reports, formats, csv
     )  # fmt: skip
     return grade_class(request, output_format, screen(), progress_display(), warn)

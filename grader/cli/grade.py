@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from grader.cli.options import DEFAULT_RUBRIC, ArgOption, MaxSizeOption, RubricOption, part_ids, save_formats
+from grader.cli.options import DEFAULT_RUBRIC, ArgOption, MaxSizeOption, PartOption, RubricOption, save_formats
 from grader.cli.output import TERMINAL, screen, warn, write_stderr
 from grader.errors import GraderError
 from grader.files.reading import URDF_LIMIT
@@ -23,9 +23,7 @@ def grade(
     path: Annotated[str, typer.Argument(metavar="PATH", help=_PATH)],
     rubric: RubricOption = DEFAULT_RUBRIC,
     expect_rubric: Annotated[str | None, typer.Option(metavar="SHA256", help=_EXPECT)] = None,
-    part: Annotated[
-        list[str] | None, typer.Option(metavar="ID", help="Grade only this part; repeatable.", autocompletion=part_ids)
-    ] = None,
+    part: PartOption = None,
     output_format: Annotated[
         Format, typer.Option("--format", metavar="FORMAT", help=f"Output format: {', '.join(Format)}.")
     ] = Format.TERMINAL,

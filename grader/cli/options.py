@@ -49,6 +49,10 @@ def _rubric(context: typer.Context) -> "Rubric":
     return load_rubric(context.params.get("rubric") or default)
 
 
+PartOption = Annotated[
+    list[str] | None,
+    typer.Option("--part", metavar="ID", help="Grade only this part; repeatable.", autocompletion=part_ids),
+]
 RubricOption = Annotated[
     str, typer.Option(metavar="ID|FILE", help="The rubric: an id or a .toml file.", autocompletion=rubric_ids)
 ]

@@ -14,7 +14,7 @@ from grader.files.reading import advice_for, read_capped, read_start, shown_belo
 from grader.files.tree import File, IgnoredFile, Tree, make_tree, parents
 from grader.text import printable_path
 
-_MAX_GENERATED = 10_000  # files of builds that are looked through for URDFs
+_MAX_GENERATED = 10_000  # files of builds that are looked through for those of packages
 _IS_SYMLINK = "is a symlink, and was not followed"
 
 
@@ -146,7 +146,7 @@ def file_at(path: Path, name: str, top: str) -> File:
 
 
 def _generated(folder: Path, path: str) -> list[str]:
-    """Return the URDFs below a build folder: they are named in the report, never read."""
+    """Return the files of packages below a build folder: they are named in the report, never read."""
     found: list[str] = []
     seen = 0
     with suppress(RecursionError):  # os.walk raises it for folders nested a thousand deep

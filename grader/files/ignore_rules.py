@@ -3,6 +3,8 @@
 BUILD_FOLDERS = frozenset({"build", "install", "log"})
 # And those with a pyvenv.cfg.
 IGNORED_FOLDERS = BUILD_FOLDERS | {"node_modules", "site-packages", "__pycache__", "__MACOSX"}
+# The ends of the names of files that a build copies, and that a submission may lack.
+_COPIED = (".urdf", ".xacro", ".rviz", "launch.py", "launch.xml", "launch.yaml", "launch.yml", "/package.xml")
 _LITTER = frozenset({"Thumbs.db", "desktop.ini", "Icon\r", "AMENT_IGNORE", "COLCON_IGNORE"})
 
 
@@ -16,5 +18,5 @@ def ignored_part(path: str) -> str | None:
 
 
 def is_generated(path: str) -> bool:
-    """Return whether a path is that of a URDF which a build has copied."""
-    return path.lower().endswith(".urdf") and not BUILD_FOLDERS.isdisjoint(path.split("/")[:-1])
+    """Return whether a path is that of a file of a package which a build has copied."""
+    return path.lower().endswith(_COPIED) and not BUILD_FOLDERS.isdisjoint(path.split("/")[:-1])

@@ -2,6 +2,7 @@
 
 import os
 import tempfile
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path, PurePosixPath
@@ -31,10 +32,13 @@ def archive_kind(start: bytes) -> str | None:
     return next((kind for signature, kind in _SIGNATURES.items() if start.startswith(signature)), tar)
 
 
-def open_tree(path: Path) -> Tree | None:
-    """Return the files at a path, including those in its archives; None for a single file that is not an archive."""
+def open_tree(path: Path, is_wanted: Callable[[str], bool] = lambda _: False) -> Tree | None:
+    """Return the files at a path, including those in its archives; None for a single file that is not an archive.
+
+    `is_wanted` is that of `with_inner`.
+    """
     tree = outer_tree(path)
-    return with_inner(tree) if tree is not None else None
+    return with_inner(tree, is_wanted) if tree is not None else None
 
 
 def outer_tree(path: Path, top: str = "") -> Tree | None:
@@ -74,12 +78,19 @@ def tree_name(path: Path) -> str:
     return printable_path(without_endings(str(path)))
 
 
-def with_inner(tree: Tree, allowance: limits.Allowance | None = None, depth: int = 0) -> Tree:
-    """Return the tree with what is in its archives, unless a package and a URDF are beside them."""
+def with_inner(
+    tree: Tree,
+    is_wanted: Callable[[str], bool] = lambda _: False,
+    allowance: limits.Allowance | None = None,
+    depth: int = 0,
+) -> Tree:
+    """Return the tree with what is in its archives; if a package and a URDF are beside them, only of those whose names are wanted."""
     files = tree.files.values()
     archives = [file for file in files if file.suffix in ARCHIVES]
     has_package = any(file.name in ("package.xml", "setup.py") for file in files)
-    if not archives or (has_package and any(file.suffix == ".urdf" for file in files)):
+    if has_package and any(file.suffix == ".urdf" for file in files):
+        archives = [file for file in archives if is_wanted(file.name)]
+    if not archives:
         return tree
     allowance = allowance or limits.Allowance()
     parts = [("", tree)]
@@ -122,7 +133,7 @@ def _inner(archive: File, allowance: limits.Allowance, depth: int) -> Tree:
     allowance.spend(archive.path, unpacked=archive.size)
     stored = tempfile.TemporaryFile()  # noqa: SIM115  its tree closes it
     stored.write(archive.read(limits.MAX_FILE_SIZE))
-    return with_inner(read_archive(stored, kind, archive.path, allowance), allowance, depth + 1)
+    return with_inner(read_archive(stored, kind, archive.path, allowance), allowance=allowance, depth=depth + 1)
 
 
 def without_endings(path: str) -> str:

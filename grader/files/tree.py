@@ -1,6 +1,6 @@
 """The file tree of a submission: a folder or an archive looks the same from here on."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import NamedTuple, Protocol
@@ -52,7 +52,7 @@ class File:
 class Tree:
     """The files of a submission by path, in alphabetical order, and its folders, empty ones included.
 
-    `generated` names URDFs that a build has copied. `unseen` are folders that exist, but were not looked into. `kept` are the
+    `generated` names files of packages that a build has copied. `unseen` are folders that exist, but were not looked into. `kept` are the
     archives that have to stay open.
     """
 
@@ -68,6 +68,13 @@ class Tree:
     def unopened(self) -> tuple[IgnoredFile, ...]:
         """The archives in it that could not be opened."""
         return tuple(file for file in self.ignored if file.is_archive)
+
+    def only(self, belongs: Callable[[str], bool]) -> "Tree":
+        """Return the tree without the files, folders and notes whose paths do not belong to it."""
+        files = {path: file for path, file in self.files.items() if belongs(path)}
+        folders, unseen = (frozenset(filter(belongs, paths)) for paths in (self.folders, self.unseen))
+        ignored = tuple(file for file in self.ignored if belongs(file.path))
+        return Tree(self.name, files, folders, ignored, tuple(filter(belongs, self.generated)), unseen, (self,))
 
     def below(self, folder: str) -> "Tree":
         """Return the files of one folder as a separate tree; their paths are relative to it."""

@@ -32,9 +32,14 @@ _EXPLAINING = (catalogue.BAD_COLOUR, catalogue.COLOUR_COUNT, catalogue.DEGREES, 
 _DROPPING = (catalogue.BAD_VISUAL, catalogue.BAD_INERTIAL)
 
 
-def grade(rubric: Rubric, submission: Submission, parts: Sequence[str] = ()) -> Report:
-    """Return the report on a submission for all parts of the rubric, or for the named ones; raise InputError for others."""
-    chosen, notes = _chosen_parts(rubric, submission, parts)
+def grade(
+    rubric: Rubric, submission: Submission, parts: Sequence[str] = (), *, is_one_of_class: bool = False
+) -> Report:
+    """Return the report on a submission for all parts of the rubric, or for the named ones; raise InputError for others.
+
+    A single URDF is graded only on parts that need no more, unless it `is_one_of_class`: a class is graded on the same parts.
+    """
+    chosen, notes = _chosen_parts(rubric, submission, parts, is_whole=is_one_of_class or not submission.is_single)
     grading = _Grading(submission)
     for criterion in rubric.criteria:
         if criterion.part in chosen:
@@ -44,19 +49,21 @@ def grade(rubric: Rubric, submission: Submission, parts: Sequence[str] = ()) -> 
         from grader.package.problems import package_problems  # a URDF on its own needs none of what reads a package
 
         problems += package_problems(submission.package)
-    evidence = _evidence(rubric, submission, chosen)
+    evidence = _evidence(rubric, submission, chosen) if is_one_of_class or not submission.is_single else ((), ())
     results = tuple(grading.results.values())
     return Report(GradedSubmission.of(submission), rubric, chosen, results, problems, *evidence, notes)
 
 
-def _chosen_parts(rubric: Rubric, submission: Submission, named: Sequence[str]) -> tuple[tuple[str, ...], ...]:
-    """Return the graded parts, and notes for the report: a single URDF is graded only on parts that need no package."""
+def _chosen_parts(
+    rubric: Rubric, submission: Submission, named: Sequence[str], *, is_whole: bool
+) -> tuple[tuple[str, ...], ...]:
+    """Return the graded parts, and notes for the report: what is not whole is graded only on parts that need a URDF."""
     for name in named:
-        if rubric.part(name).needs != "urdf" and submission.is_single:
+        if rubric.part(name).needs != "urdf" and not is_whole:
             raise InputError(f"{name} needs more than a URDF: give the folder or archive that was submitted")
     parts = [part for part in rubric.parts if not named or part.id in named]
-    chosen = tuple(part.id for part in parts if part.needs == "urdf" or not submission.is_single)
-    notes = _notes_on_xacro(submission)
+    chosen = tuple(part.id for part in parts if part.needs == "urdf" or is_whole)
+    notes = [*submission.notes, *_notes_on_xacro(submission)]
     package, path = submission.package, submission.path
     if package is not None and path is not None and not path.startswith(f"{package.folder}/" if package.folder else ""):
         notes.append(_ELSEWHERE)
@@ -80,7 +87,7 @@ def _evidence(
 ) -> "tuple[tuple[Exhibits, ...], tuple[Exhibit, ...]]":
     """Return the evidence that the lab asks for, and the other pictures of the submission."""
     wanted = [evidence for evidence in rubric.evidence if evidence.part in chosen]
-    if not wanted or submission.is_single:
+    if not wanted:
         return (), ()
     from grader.documents.evidence import describe, find_evidence  # a URDF on its own has none
 
@@ -93,7 +100,7 @@ def _evidence(
 def grade_reference(rubric: Rubric) -> Report:
     """Return the report on a rubric's own reference solution; raise InputError where it cannot be read."""
     path = rubric.path.parent / rubric.reference
-    return grade(rubric, open_submission(str(path), wanted=rubric.urdf, package=rubric.package))
+    return grade(rubric, open_submission(str(path), wanted=rubric.urdf, package=rubric.package, folders=rubric.folders))
 
 
 class _Grading:

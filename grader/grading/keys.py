@@ -84,6 +84,13 @@ _TIME = simple_type(
 _FILE = constrained(
     _TEXT, Constraint("the path of a file", lambda path: path.strip().rstrip("/").split("/")[-1] not in ("", ".", ".."))
 )
+_FOLDERS = constrained(
+    toml_type(tuple[str, ...]),
+    Constraint(
+        "a list of names of folders, each with a letter or digit and without a slash",
+        lambda names: all("/" not in name and any(map(str.isalnum, name)) for name in names),
+    ),
+)
 _ANSWERS = constrained(_TEXT, Constraint("a .toml file in the rubric's folder", _is_below, {"pattern": r"\.toml$"}))
 
 PART = KeyTable(
@@ -122,6 +129,7 @@ RUBRIC = KeyTable(
         "reference": _TEXT,
         "urdf": _FILE,
         "package": _TEXT,
+        "folders": _FOLDERS,
         "points": _POINTS,
         "answers": _ANSWERS,
         "part": _rows(PART),
@@ -129,7 +137,7 @@ RUBRIC = KeyTable(
         "evidence": _rows(EVIDENCE),
         "late": _table(LATE.schema),
     },
-    optional=("reference", "urdf", "package", "points", "answers", "evidence", "late"),
+    optional=("reference", "urdf", "package", "folders", "points", "answers", "evidence", "late"),
 )
 
 

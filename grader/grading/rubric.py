@@ -16,7 +16,7 @@ from grader.grading.toml_lines import Path as TomlPath
 from grader.grading.toml_lines import key_lines, line_of
 from grader.grading.validation import TomlRow, Validation
 from grader.names import did_you_mean
-from grader.text import printable_path
+from grader.text import printable_path, shell_quoted
 
 _MAX_COMPLAINTS = 1000  # lines about one rubric
 _ANSWERS = ".answers.toml"  # the ending of files with model answers next to the shipped rubrics
@@ -77,7 +77,10 @@ class Late:
 
 @dataclass(frozen=True, slots=True)
 class Rubric:
-    """A lab as data. Criteria run in file order. `answers` is the path of the file with the model answers, if there is one."""
+    """A lab as data. Criteria run in file order. `answers` is the path of the file with the model answers, if there is one.
+
+    `folders` are the names of the lab's folder in a repository of several labs.
+    """
 
     id: str
     title: str
@@ -91,6 +94,7 @@ class Rubric:
     evidence: tuple[Evidence, ...] = ()
     late: Late | None = None
     answers: str = ""
+    folders: tuple[str, ...] = ()
 
     @property
     def sha256(self) -> str:
@@ -110,7 +114,7 @@ class Rubric:
     @property
     def shown_by(self) -> str:
         """The command that shows its parts and criteria."""
-        return f"grader rubric show {self.id if self.is_shipped else printable_path(self.path)}"
+        return f"grader rubric show {self.id if self.is_shipped else shell_quoted(self.path)}"
 
     def part(self, name: str) -> Part:
         """Return the part with this id; raise InputError, which lists the parts."""
@@ -175,6 +179,7 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
         tuple(Evidence(**row) for row in valid.evidence),
         Late(**valid.late) if valid.late is not None else None,
         rubric.get("answers", ""),
+        rubric.get("folders", ()),
     )
 
 

@@ -7,7 +7,7 @@ from functools import cached_property
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
-from grader.errors import InputError
+from grader.errors import InputError, MissingElement
 from grader.files.tree import Tree
 from grader.names import closest, did_you_mean
 from grader.package.launch.places import ENDINGS, PREFIX, SHARE, is_in_launch_folder, is_launch_named, launch_stem
@@ -28,6 +28,8 @@ PYTHON_LIMIT = 128 * 1024  # bytes; a syntax tree takes several hundred times as
 _RVIZ_LIMIT = 512 * 1024
 _MAX_LAUNCHES = 10
 _MAX_NAMED = 3  # files that a message names
+# What a file of a kind is called in messages, and how its name ends.
+_KINDS = {"urdf": ("URDF", (".urdf", ".xacro")), "rviz": ("RViz file", (".rviz",)), "launch": ("launch file", ENDINGS)}
 
 
 @dataclass(frozen=True)
@@ -38,12 +40,19 @@ class Package:
     tree: Tree = field(repr=False)
     manifest: "Manifest | None" = field(repr=False)
     packages: dict[str, "Package"] = field(repr=False, compare=False)  # all of the submission, by their names
+    generated: tuple[str, ...] = field(
+        default=(), repr=False
+    )  # files that a build has copied, by their paths in the submission
     _launches: "dict[str, Launch]" = field(default_factory=dict, init=False, repr=False, compare=False)
     _rviz_files: "dict[str, RvizFile]" = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def path(self, path: str) -> str:
         """Return a path of the package as one of the submission."""
         return f"{self.folder}/{path}" if self.folder else path
+
+    def holds(self, path: str) -> bool:
+        """Return whether a path of the submission is in the package."""
+        return path.startswith(self.path(""))
 
     @property
     def name(self) -> str:
@@ -100,16 +109,22 @@ class Package:
         """The paths of its RViz files."""
         return tuple(path for path in self.tree.files if path.lower().endswith(".rviz"))
 
-    def missing_message(self, kind: str) -> str:
-        """Return the message for a package without a file of a kind: urdf, launch or rviz."""
+    def built(self, kind: str, name: str = "") -> str:
+        """Return the end of a message on a missing file of a kind if a build of the package has such a file, or the one of a name."""
+        shares = [f"/{folder}/{self.name}/" for folder in ("build", "install", "share")]
+        for path in self.generated:
+            is_meant = path.rpartition("/")[2] == name if name else path.lower().endswith(_KINDS[kind][1])
+            if is_meant and any(share in f"/{path}" for share in shares):
+                return was_not_committed(path)
+        return ""
+
+    def missing(self, kind: str) -> MissingElement:
+        """Return the error for a package without a file of a kind: urdf, launch or rviz."""
         has_folder = any(folder.rpartition("/")[2] == "launch" for folder in self.tree.folders)
-        name, endings = {
-            "urdf": ("URDF", ".urdf or .xacro"),
-            "rviz": ("RViz file", ".rviz"),
-            "launch": ("launch file", ".launch.py, .launch.xml or .launch.yaml"),
-        }[kind]
+        word, endings = _KINDS[kind]
         folder = ", and there is no folder launch" if kind == "launch" and not has_folder else ""
-        return f"the package has no {name}: no file ends in {endings}{folder}"
+        message = f"the package has no {word}: no file ends in {enumerated(endings[:3], word='or')}{folder}"
+        return MissingElement(f"{word} in the package", "", message=message, detail=self.built(kind))
 
     def pattern_hint(self, pattern: str) -> str:
         """Return the end of a message on a pattern that matches no file: why, or which files there are."""
@@ -200,3 +215,8 @@ class Package:
             with suppress(InputError):
                 return package.tree.files[source].read(PYTHON_LIMIT), package.path(source)
         return None
+
+
+def was_not_committed(path: str) -> str:
+    """Return the end of a message on a missing file that a build has copied to a path."""
+    return f"; a build contains {path}: was the source not committed?"

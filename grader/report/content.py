@@ -10,7 +10,7 @@ from grader.grading.report import Report, Result
 from grader.problems import Problem
 from grader.report.locations import calls_text
 from grader.source import Location
-from grader.text import counted_points, enumerated, first_lines, format_points, printable
+from grader.text import counted_points, enumerated, first_lines, format_points, printable, shell_quoted
 
 _VERDICTS = {
     "clean": "ROS 2 loads the file",
@@ -194,4 +194,4 @@ def explain_command(name: str, report: Report) -> str:
     if report.rubric.is_shipped:
         return f"grader explain {name}"
     path = report.rubric.path
-    return f"grader explain {name} --rubric {printable(path.name if path.is_absolute() else str(path))}"
+    return f"grader explain {name} --rubric {shell_quoted(path.name if path.is_absolute() else path)}"

@@ -1,16 +1,16 @@
 """A submission: its files, and which URDF and which package of it are graded."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from grader.errors import InputError, MissingElement, NotDecided
 from grader.files.opening import open_tree, tree_name
-from grader.files.reading import URDF_LIMIT, read_capped, read_standard_input, sha256_of
+from grader.files.reading import URDF_LIMIT, read_capped, read_standard_input, read_start, sha256_of
 from grader.files.tree import Tree, make_tree
-from grader.package.package import MANIFEST, NO_PACKAGE, Package
+from grader.package.package import NO_PACKAGE, Package, was_not_committed
 from grader.robot.reader import Reading, Verdict
 from grader.source import Source
 from grader.submission.urdf import Absent, OtherCandidate, Read, Unreadable, Urdf, read_as_ros
@@ -33,13 +33,22 @@ _WANTED = "give a .urdf file, or the folder or archive that was submitted"
 
 @dataclass(frozen=True)
 class Submission:
-    """The work that a student submitted. `packages` begins with the one that is graded."""
+    """The work that a student submitted. `package` is the one that is graded; `no_package` says why none is, and which there are.
+
+    `tree` has the files of the lab, and `everything` those around it as well. `students` are the folders of several students whose
+    work it holds, and `notes` say how it was read.
+    """
 
     id: str
     urdf: Urdf
     other_candidates: tuple[OtherCandidate, ...] = ()
     tree: Tree = field(default=_NO_FILES, repr=False)
     packages: tuple[Package, ...] = field(default=(), repr=False)
+    package: Package | None = field(default=None, repr=False)
+    no_package: tuple[str, str] = (NO_PACKAGE, "")
+    everything: Tree = field(default=_NO_FILES, repr=False)
+    students: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
     is_single: bool = True  # whether it is a URDF on its own, not a folder or archive
     no_documents: str = ""  # why no document is read, where grading ran out of memory with them
 
@@ -87,17 +96,13 @@ class Submission:
         """The files that are not read, and why, in one line each."""
         return tuple(map(str, self.tree.ignored))
 
-    @property
-    def package(self) -> Package | None:
-        """The package that is graded."""
-        return self.packages[0] if self.packages else None
-
     def needed_package(self) -> Package:
         """Return the package that is graded; raises MissingElement without one, NotDecided if one may be in an unopened archive."""
         if self.package is not None:
             return self.package
         self._refuse_unopened("package")
-        raise MissingElement("package", "", message=NO_PACKAGE)
+        message, detail = self.no_package
+        raise MissingElement("package", "", message=message, detail=detail)
 
     def needed_urdf(self) -> Reading:
         """Return the URDF that is graded; raises MissingElement without one, NotDecided if it cannot be read statically."""
@@ -113,7 +118,8 @@ class Submission:
         count = len(self.tree.files)
         files = f"none of the {count} files contains a <robot>" if count > 1 else "the only file contains no <robot>"
         message = f"no URDF was submitted: {files}" if count else "no URDF was submitted"
-        raise MissingElement("URDF", "", message=message)
+        built = next((path for path in self.tree.generated if path.lower().endswith((".urdf", ".xacro"))), "")
+        raise MissingElement("URDF", "", message=message, detail=was_not_committed(built) if built else "")
 
     def _refuse_unopened(self, wanted: str) -> None:
         if self.tree.unopened:
@@ -124,7 +130,7 @@ class Submission:
         """Return the text of one of its files, for quoting; None if it cannot be read."""
         if isinstance(self.urdf, Read) and path == self.urdf.path:
             return self.urdf.source
-        file = self.tree.files.get(path)
+        file = self.everything.files.get(path)
         try:
             return Source(path, file.read(URDF_LIMIT).decode("utf-8", "replace")) if file is not None else None
         except InputError:
@@ -143,30 +149,49 @@ def open_submission(
     *,
     wanted: str,
     package: str = "",
+    folders: Sequence[str] = (),
     limit: int = URDF_LIMIT,
     arguments: Mapping[str, str] = _NO_ARGUMENTS,
 ) -> Submission:
     """Read the submission at a path: a URDF, a folder, an archive, or standard input for `-`.
 
-    `wanted` is the URDF's path in its package and `package` the package's name, as the rubric gives them. `limit` is the
-    largest size of a URDF in bytes, `arguments` are those of xacro. Raises InputError, with one sentence, if the path cannot be read.
+    `wanted` is the URDF's path in its package, `package` the package's name and `folders` the names of the lab's folder, as the
+    rubric gives them. `limit` is the largest size of a URDF in bytes, `arguments` are those of xacro. Raises InputError, with one
+    sentence, if the path cannot be read.
     """
     if path == STANDARD_INPUT:
         return read_submission(read_standard_input(limit), identity="stdin", path="-", arguments=arguments)
     if not path:
         raise InputError(f"the path is empty: {_WANTED}")
     place = Path(path)
-    tree = open_tree(place)
+    tree = open_tree(place, partial(_is_lab, folders))
     shown = printable_path(place)
     if tree is not None:
         return submission_of(
-            tree, tree_name(place), wanted=wanted, package=package, limit=limit, shown=shown, arguments=arguments
+            tree,
+            tree_name(place),
+            wanted=wanted,
+            package=package,
+            folders=folders,
+            limit=limit,
+            shown=shown,
+            arguments=arguments,
         )
     if place.suffix.lower() in _NO_URDFS:
-        raise InputError(f"{shown} is not a URDF: {_WANTED}")
-    identity = printable_path(place.stem)
+        from grader.submission.robots import START, is_robot  # late: most URDFs are called .urdf
+
+        if not is_robot(read_start(place, START)):
+            raise InputError(f"{shown} is not a URDF: {_WANTED}")
     data = read_capped(place, limit)
+    identity = printable_path(place.stem)
     return read_submission(data, identity=identity, path=printable_path(place.name), arguments=arguments)
+
+
+def _is_lab(folders: Sequence[str], name: str) -> bool:
+    """Return whether an archive is named like the lab's folder."""
+    from grader.submission.labs import LabFolders  # late: a URDF on its own needs no search
+
+    return LabFolders(folders).is_lab(name)
 
 
 def submission_of(
@@ -175,6 +200,7 @@ def submission_of(
     *,
     wanted: str,
     package: str = "",
+    folders: Sequence[str] = (),
     limit: int = URDF_LIMIT,
     shown: str = "",
     no_documents: str = "",
@@ -184,17 +210,27 @@ def submission_of(
     if not tree.files and not tree.generated:
         reason = f": {tree.ignored[0]}" if tree.ignored else " (hidden files and build folders are ignored)"
         raise InputError(f"{shown or identity} is empty{reason}")
-    # Late: a URDF on its own needs no search.
-    from grader.submission.search import find_urdf, read_packages, why_not
+    from grader.submission.selection import select  # late: a URDF on its own needs no search
 
-    packages = read_packages(tree, package, wanted)
-    graded = packages[0] if packages else None
-    path, others = find_urdf(tree, wanted, graded.folder if graded else None)
-    others += tuple(OtherCandidate(it.path(MANIFEST), why_not(packages[0], it, wanted)) for it in packages[1:])
+    chosen = select(tree, wanted, package, folders, limit)
     urdf: Urdf = Absent()
-    if path is not None:
+    if chosen.urdf is not None:
         try:
-            urdf = read_as_ros(tree.files[path].read(limit), path, Surroundings(tree, packages, arguments))
+            around = Surroundings(tree, chosen.package, chosen.packages, arguments)
+            urdf = read_as_ros(tree.files[chosen.urdf].read(limit), chosen.urdf, around)
         except InputError as error:  # the rest of the submission is graded
-            urdf = Unreadable(path, str(error))
-    return Submission(identity, urdf, others, tree, packages, is_single=False, no_documents=no_documents)
+            urdf = Unreadable(chosen.urdf, str(error))
+    return Submission(
+        identity,
+        urdf,
+        chosen.others,
+        chosen.tree,
+        chosen.packages,
+        chosen.package,
+        chosen.no_package,
+        tree,
+        chosen.students,
+        chosen.notes,
+        is_single=False,
+        no_documents=no_documents,
+    )

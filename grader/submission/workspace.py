@@ -21,15 +21,16 @@ _NO_FILES = make_tree("", (), ())
 
 @dataclass(frozen=True)
 class Surroundings:
-    """The files and packages of a submission, the one that is graded first; `arguments` are those that the user gives xacro."""
+    """The files and packages of a submission; `arguments` are those that the user gives xacro."""
 
     tree: Tree = field(default=_NO_FILES, repr=False)
+    graded: Package | None = None
     packages: tuple[Package, ...] = ()
     arguments: Mapping[str, str] = field(default_factory=dict)
 
     def robot_references(self, path: str) -> list[Reference]:
         """Return where the launch files of the graded package read a URDF."""
-        return self.packages[0].robot_references(path.rpartition("/")[2]) if self.packages else []
+        return self.graded.robot_references(path.rpartition("/")[2]) if self.graded is not None else []
 
     def workspace(self, path: str) -> Workspace:
         """Return the files as the xacro in a file sees them."""

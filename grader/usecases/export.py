@@ -18,7 +18,7 @@ from grader.classroom.lms.spreadsheet import write_table
 from grader.classroom.lms.tables import SIZE_LIMIT
 from grader.errors import GraderError
 from grader.files.reading import read_capped
-from grader.grading.rubric import Rubric
+from grader.grading.rubric import Criterion
 from grader.report.formats import OutputFormat
 from grader.text import printable, printable_path
 from grader.usecases import Warn
@@ -93,19 +93,19 @@ def _refuse_files(request: ExportRequest) -> None:
 
 def grades_csv(grades: Grades) -> str:
     """Return a row for each student: the grade, the late penalty, and the points of each criterion that is decided."""
-    rubric = grades.newest_rubric()
-    header = [*_STUDENT_COLUMNS, "total", "not_final_because", *(criterion.id for criterion in rubric.criteria)]
-    return write_table(header, (_row(grades, grade, rubric) for grade in grades.all()))
+    criteria = grades.criteria
+    header = [*_STUDENT_COLUMNS, "total", "not_final_because", *(criterion.id for criterion in criteria)]
+    return write_table(header, (_row(grades, grade, criteria) for grade in grades.all()))
 
 
-def _row(grades: Grades, grade: StudentGrade, rubric: Rubric) -> list[Cell]:
+def _row(grades: Grades, grade: StudentGrade, criteria: Sequence[Criterion]) -> list[Cell]:
     student = grade.student
     about: list[Cell] = [student.key, student.name, student.email, student.login, student.sis, grade.verdict]
     if grade.result is None:
-        return [*about, *[None] * 6, grade.why_not_final, *[None] * len(rubric.criteria)]
+        return [*about, *[None] * 6, grade.why_not_final, *[None] * len(criteria)]
     numbers: list[Cell] = [grade.score, grade.out_of, grade.pending, grade.late.days, grade.late.points, grade.total]
     points = grades.points(grade)
-    return [*about, *numbers, grade.why_not_final, *(points.get(criterion.id) for criterion in rubric.criteria)]
+    return [*about, *numbers, grade.why_not_final, *(points.get(criterion.id) for criterion in criteria)]
 
 
 def lms_grades(grades: Grades, *, feedback: bool, pending_as_zero: bool) -> Iterator[LmsGrade]:
@@ -128,7 +128,7 @@ def _fill(request: ExportRequest, file: Path, grades: Grades) -> Filled:
     rubric, is_moodle = grades.newest_rubric(), request.target == "moodle"
     rows = list(lms_grades(grades, feedback=is_moodle, pending_as_zero=request.pending_as_zero))
     options: dict[str, Any] = {"column": request.column, "any_maximum": request.any_maximum}
-    options |= {"out_of": rubric.points, "shown": printable_path(file)}
+    options |= {"out_of": sum((row.points for row in grades.criteria), Decimal(0)), "shown": printable_path(file)}
     if is_moodle:
         return fill_worksheet(data, rows, feedback_column=request.feedback_column, **options)
     return fill_gradebook(data, rows, rubric_names=(rubric.id, rubric.title), **options)

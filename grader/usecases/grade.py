@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import GraderError, InputError
 from grader.report.formats import Format, needed, render
-from grader.text import printable, printable_path
+from grader.text import printable, printable_path, shell_quoted
 from grader.usecases import Warn
 from grader.usecases.arguments import read_arguments
 from grader.usecases.exit_codes import ExitCode, exit_code, read_threshold
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from grader.grading.rubric import Rubric
     from grader.report.locations import Base
 
+_DEFAULT_RUBRIC = "lab6"  # of the command line
 _SHA256 = re.compile(r"[0-9a-fA-F]{64}")
 Saves = tuple[tuple[Format, Path], ...]
 
@@ -46,6 +47,13 @@ class GradeRequest:
     def threshold(self) -> tuple[Decimal, bool] | None:
         """The threshold of `--fail-under`, if there is one. Raises GraderError."""
         return read_threshold(self.fail_under) if self.fail_under is not None else None
+
+    @property
+    def choice(self) -> str:
+        """The options that choose the rubric and its parts, as a shell reads them."""
+        words = [("--rubric", self.rubric)] if self.rubric != _DEFAULT_RUBRIC else []
+        words += [("--part", part) for part in self.parts]
+        return "".join(f" {option} {shell_quoted(value)}" for option, value in words)
 
 
 class GradeResult(NamedTuple):
@@ -104,9 +112,14 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeResult:
         request.path,
         wanted=rubric.urdf,
         package=rubric.package,
+        folders=rubric.folders,
         limit=request.max_size,
         arguments=read_arguments(request.arguments),
     )
+    if submission.students:
+        from grader.usecases.several_students import refusal  # late: few submissions are several
+
+        raise refusal(request.path, submission.students, rubric, request.choice)
     report = grade(rubric, submission, request.parts)
     for result in report.results:
         if result.traceback:

@@ -49,6 +49,7 @@ class ClassRequest:
     cluster: str | None
     add: bool
     max_size: int
+    parts: tuple[str, ...]
     reports: Path | None
     report_formats: tuple[Format, ...]
     csv: Path | None
@@ -67,16 +68,18 @@ def grade_class(
     if not isfinite(request.timeout):
         raise InputError(f"--timeout takes a number of seconds, not {request.timeout}")
     rubric = load_with_answers(request.rubric)  # for the gradebook, so that `review` has the answers on any machine
+    for name in request.parts:
+        rubric.part(name)
     deadline = read_deadline(request.due)
     roster = _roster(request.roster, request.gradebook)
     _refuse_targets(request)
-    intake = read_class(request.path, roster, request.layout, request.assignment, rubric.id)
+    intake = read_class(request.path, roster, request.layout, request.assignment, rubric.id, rubric.folders)
     _warn_of_intake(intake, warn)
     with Gradebook(request.gradebook, create=True) as book:
         with _executor(request) as (executor, workers):
             due = deadline.isoformat() if deadline is not None else ""
             settings = RunSettings(
-                str(request.root), intake.layout, len(intake), workers, request.force, roster, due, request.add, request.max_size
+                str(request.root), intake.layout, len(intake), workers, request.force, roster, due, request.add, request.max_size, request.parts
             )  # fmt: skip
             with progress as show:
                 batch = Batch(book, rubric, settings, executor, show)

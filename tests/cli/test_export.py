@@ -73,13 +73,14 @@ def mark(top: Path, key: str, **points: str) -> None:
 def test_csv(top: Path) -> None:
     """There is a row for every student, undecided cells are empty, and a grade that is not final has its reason."""
     mark(top, "anna", essay="3.5", picture="1")
+    mark(top, "ben", essay="0", picture="0")
     mark(top, "emil", box="1.25")
     done = export(top, "csv")
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.splitlines() == [
         f"{HEADER},loads,box,tall,essay,picture",
         "anna,Anna Ek,anna@example.org,ae1,anna,graded,10.5,11,0,0,0,10.5,,3,2.5,0.5,3.5,1",
-        "ben,Ben Oh,ben@example.org,bo2,ben,graded,6,6,0,0,0,6,,3,2.5,0.5,,",
+        "ben,Ben Oh,ben@example.org,bo2,ben,graded,6,11,0,0,0,6,,3,2.5,0.5,0,0",
         f"cleo,Cleo Ray,cleo@example.org,cr3,cleo,unreadable,0,11,11,0,0,0,{BROKEN},,,,,",
         "dora,Dora Fi,dora@example.org,df4,dora,missing,,,,,,,nothing was submitted,,,,,",
         "emil,Ben Oh,emil@example.org,eo5,emil,graded,4.25,11,5,0,0,4.25,5 points need manual grading,3,1.25,0,,",
@@ -210,6 +211,7 @@ EVERYONE = {"anna": "101", "ben": "102", "cleo": "103", "dora": "104", "emil": "
 def test_who_gets_a_grade_in_canvas(top: Path) -> None:
     """Pending, unreadable and missing submissions are omitted with the reason."""
     mark(top, "anna", essay="3.5", picture="1")
+    mark(top, "ben", essay="0", picture="0")
     (top / "canvas.csv").write_text(canvas(**EVERYONE))
     done = export(top, "canvas", "--into", top / "canvas.csv", "--strict")
     assert done.returncode == 0
@@ -239,6 +241,7 @@ def test_only_pending_criteria_count_as_zero(top: Path) -> None:
 def test_strict_writes_nothing(top: Path) -> None:
     """If a row has no student or a student no row, nothing is written; without the option the rest is."""
     mark(top, "anna", essay="3.5", picture="1")
+    mark(top, "ben", essay="0", picture="0")
     (top / "canvas.csv").write_text(canvas(anna="101", zoe="999"))
     (top / "out.csv").write_text("as it was")
     arguments = ("canvas", "--into", top / "canvas.csv", "--output", top / "out.csv")
@@ -340,6 +343,7 @@ def test_no_symlink_of_a_submission_is_followed(top: Path) -> None:
 
 def test_another_maximum_is_refused(top: Path) -> None:
     """Nothing is written unless the points are confirmed; then a warning says what the LMS makes of them."""
+    mark(top, "ben", essay="0", picture="0")
     (top / "canvas.csv").write_text(canvas("100", ben="102"))
     arguments = ("canvas", "--into", top / "canvas.csv", "--output", top / "out.csv")
     assert refusal(export(top, *arguments)) == (

@@ -32,11 +32,11 @@ def test_at_a_glance(top: Path) -> None:
     text = stats(top / "book.db")
     assert text.startswith(
         "A small lab\n3 graded, 1 could not be graded, 1 without a submission\n\n"
-        "Grades out of 11: mean 6.0, standard deviation 1.2, lowest 4.5, median 6,\nhighest 7.5; 2 need manual grading\n"
+        "Grades out of 11: mean 6.0, standard deviation 1.2, lowest 4.5, median 6,\nhighest 7.5; 3 need manual grading\n"
     )
     assert "criterion  points  passed  manual  of  share  discrimination\n" in text
     assert "box           2.5       2       0   3    67%           -0.19\n" in text
-    assert "essay           4       0       2   2    38%                \n" in text
+    assert "essay           4       0       2   3    38%                \n" in text
     assert "     1  box: 'base' shows a box 1 1 2 m; it should be 1 1 1 m (x, y, z)\n" in text
     assert "Needs attention\n  cleo: it could not be graded: " in text
     assert "  dora: nothing was submitted\n" in text

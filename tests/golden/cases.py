@@ -65,7 +65,7 @@ GOLDEN = (
     Golden("launch-home-path", ("grade", "submissions/launch-home-path", "--part", "task2"), 1),
     Golden("setup-syntax-error", ("grade", "submissions/setup-syntax-error", "--part", "task2"), 1),
     Golden("pictures-only", ("grade", "submissions/pictures-only"), 1),
-    Golden("team-of-two-json", ("grade", "submissions/equivalent-team-of-two", "--format", "json"), 0),
+    Golden("team-of-two-json", ("grade", "submissions/equivalent-team-of-two/Lab6/Ash", "--format", "json"), 0),
     Golden("zipped", ("grade", "submissions/equivalent-zipped-with-wrapper/lab6.zip", "--part", "questions"), 0),
     Golden("inspect-raw-xacro", ("inspect", "submissions/raw-xacro/my_robot.urdf"), 1),
     Golden("inspect-reference", ("inspect", "submissions/reference", "--relative-to", "base_link"), 0),

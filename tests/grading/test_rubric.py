@@ -67,6 +67,7 @@ id = "lab0"
 title = "Lab 0"
 reference = "solution"
 urdf = "urdf/robot.urdf"
+folders = ["Lab 0", "lab-zero"]
 points = 7.5
 
 [[part]]
@@ -100,6 +101,7 @@ feedback = "Look at its size."
 """
     rubric = loaded(tmp_path, text)
     assert (rubric.id, rubric.title, rubric.reference, rubric.urdf) == ("lab0", "Lab 0", "solution", "urdf/robot.urdf")
+    assert rubric.folders == ("Lab 0", "lab-zero")
     assert rubric.parts == (Part("a", "Part A", "urdf"), Part("b", "Part B", "urdf"))
     assert rubric.points == Decimal("7.5")
     assert len(rubric.sha256) == 64
@@ -115,7 +117,7 @@ feedback = "Look at its size."
 def test_optional_keys_have_defaults(tmp_path: Path) -> None:
     """A rubric needs ids, titles, points and checks; everything else has a default."""
     rubric = loaded(tmp_path, GOOD)
-    assert (rubric.urdf, rubric.reference) == ("robot.urdf", "")
+    assert (rubric.urdf, rubric.reference, rubric.folders) == ("robot.urdf", "", ())
     assert rubric.part("a") == Part("a", "Part A", "urdf")
 
 
@@ -156,6 +158,7 @@ def test_an_id_is_one_word_and_a_title_one_line(tmp_path: Path) -> None:
 
 # --- Many mistakes at once --------------------------------------------------------------------------------------------
 
+NAMES = "a list of names of folders, each with a letter or digit and without a slash"
 EVERY_KIND_OF_MISTAKE = """\
 id = ""  # !! id must be one printable word, not ''
 titel = "Lab 0"  # !! a rubric has no key 'titel'; did you mean 'title'?
@@ -247,6 +250,11 @@ def test_every_mistake_is_reported_at_once(tmp_path: Path) -> None:
         GOOD.replace('id = "a"', "id = \"\\t \"  # !! id must be one printable word, not '\\t '").replace(
             'part = "a"', r'part = "\t "'
         ),
+        "folders = \"Lab0\"  # !! folders must be a list of strings, not 'Lab0'\n" + GOOD,
+        "folders = []  # !! folders must be a list of strings, not []\n" + GOOD,
+        "folders = ['Lab0', 3]  # !! folders must be a list of strings, not ['Lab0', 3]\n" + GOOD,
+        f"folders = ['Lab0', '-']  # !! folders must be {NAMES}, not ['Lab0', '-']\n" + GOOD,
+        f"folders = ['labs/Lab0']  # !! folders must be {NAMES}, not ['labs/Lab0']\n" + GOOD,
         GOOD.replace('check = "urdf_loads"', "check = 3  # !! check must be a string, not 3"),
         GOOD.replace('part = "a"', "part = 1.5  # !! part must be a string, not 1.5"),
         GOOD.replace(

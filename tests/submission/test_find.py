@@ -9,7 +9,9 @@ from hypothesis import strategies as st
 from grader.errors import InputError
 from grader.files.tree import File, Tree, make_tree
 from grader.package.package import Package
-from grader.submission.search import UrdfChoice, find_packages, find_urdf, read_packages
+from grader.submission.packages import find_packages, read_packages
+from grader.submission.robots import find_robots
+from grader.submission.search import UrdfChoice, find_urdf
 from grader.submission.submission import submission_of
 from grader.submission.urdf import OtherCandidate
 from tests.processor_time import processor_time
@@ -109,13 +111,69 @@ def test_pairs(better: str, worse: str, reason: str) -> None:
 
 
 def test_files_that_are_no_robot() -> None:
-    """A file without <robot at its beginning, of another kind, or with another known purpose is no robot."""
+    """A file whose first element is not <robot>, or that is no text, is no robot, whatever it is called."""
     tree = tree_of(
-        "package.xml", "CMakeLists.txt", "notes.md", "robot.png", "late.xml", "other.xml", "empty.xml",
-        late=b" " * 5000 + ROBOT, other=b"<robots/>", empty=b"",
+        "package.xml", "notes.md", "my_robot.launch.py", "robot.png", "late.xml", "other.xml", "empty.xml", "macros.txt",
+        package=manifest("x"), notes=b"# My robot\n" + ROBOT, my_robot=b"TEXT = '''" + ROBOT, late=b"text" + ROBOT,
+        other=b"<robots/>", empty=b"", macros=b"<?xml?><!-- <robot> --><launch><robot/></launch>",
     )  # fmt: skip
     assert find_urdf(tree, EXPECTED) == UrdfChoice(None, ())
-    assert find_urdf(tree_of("a.xml", a=b"< robot>"), EXPECTED).path == "a.xml"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        b"<robot name='a'/>",
+        b"< robot>",
+        b"\xef\xbb\xbf \r\n<?xml version = 1.0>\n<robot>",
+        b"<?xml version='1.0'?><!-- <launch> -- > --><!DOCTYPE robot [<!ENTITY a 'b'>]>\n<!-- -->\t<robot/>",
+        b"<!--" + b"-" * 50_000 + b"-->" + ROBOT,
+        b" " * 5000 + ROBOT,
+        b"<robot name='a'><parent='b'/></robot> text",
+    ],
+)
+@pytest.mark.parametrize(
+    "name", ["urdf.xacro file", "urdf.xacro file.py", "urdf.Xacro file.txt", "my_robot", "CMakeLists.txt", "a.md"]
+)
+def test_a_robot_is_recognised_by_its_first_element(name: str, text: bytes) -> None:
+    """Whatever the file is called, after a declaration, comments, a byte-order mark, a DOCTYPE and white space, however broken."""
+    assert find_urdf(make_tree("", [_file(f"a/{name}", text)], ()), EXPECTED).path == f"a/{name}"
+
+
+def test_a_hostile_beginning_is_read_in_linear_time() -> None:
+    """Thousands of comments, declarations and brackets without an end take no time."""
+    open_brackets = [b"<!DOCTYPE a [" * 5000, b"<!DOCTYPE a [" + b"]" * 60_000]
+    starts = [b"<!--a-->" * 8000, b"<!--" * 16_000, b"<?a>" * 16_000, *open_brackets]
+    with processor_time(1):
+        for start in starts:
+            assert find_urdf(make_tree("", [_file("a.xml", start)], ()), EXPECTED).path is None
+
+
+def test_the_size_limit() -> None:
+    """Only files that may be read as a URDF are searched for a robot; one with the ending is named all the same."""
+    large = ROBOT + b" " * 5000
+    tree = make_tree("", [_file("a.txt", large), _file("b.urdf", large)], ())
+    assert [robot.path for robot in find_robots(tree, limit=5000)] == ["b.urdf"]
+    assert [robot.path for robot in find_robots(tree)] == ["a.txt", "b.urdf"]
+
+
+def test_the_name_of_the_robot_counts() -> None:
+    """A file with an odd name that holds the wanted robot is better than a .urdf with another one, such as the box of a prelab."""
+    box = b"<robot name='box'/>"
+    odd = b"<robot xmlns:xacro='http://www.ros.org/wiki/xacro' name = 'my_robot'>"
+    for name in ("a/urdf.xacro file", "z"):
+        found = find_urdf(tree_of(name, "box.urdf", box=box, urdf=odd, z=odd), EXPECTED)
+        assert found == UrdfChoice(name, (OtherCandidate("box.urdf", "its robot is not named 'my_robot'"),))
+
+
+def test_a_file_that_another_one_includes_is_a_part() -> None:
+    """The file that includes others is graded, not the macros and materials that it includes."""
+    includes = ("$(find my_robot)/urdf/materials.xacro", "a.xacro")
+    main = b"<robot name='r'>" + b"".join(b"<xacro:include filename='%s'/>" % name.encode() for name in includes)
+    tree = tree_of("a.xacro", "materials.xacro", "z/robot.xacro", a=b"<robot/>", materials=b"<robot/>", robot=main)
+    part = "another candidate includes it"
+    others = (OtherCandidate("a.xacro", part), OtherCandidate("materials.xacro", part))
+    assert find_urdf(tree, EXPECTED) == UrdfChoice("z/robot.xacro", others)
 
 
 def test_a_file_of_the_right_name_needs_no_content() -> None:
@@ -173,6 +231,14 @@ def test_many_texts() -> None:
         found = find_urdf(tree, EXPECTED)
     assert found.path == "z/robot.urdf"
     assert len(found.others) == 400
+
+
+def test_likely_files_are_read_first() -> None:
+    """Of very many files, those are read whose names say that they may be robots."""
+    tree = make_tree(
+        "", [*(_file(f"a/{n:04}.txt", b"text") for n in range(3000)), _file("z/urdf.xacro file", ROBOT)], ()
+    )
+    assert find_urdf(tree, EXPECTED).path == "z/urdf.xacro file"
 
 
 @given(
@@ -267,27 +333,15 @@ def team(first: list[str], second: list[str]) -> Tree:
     return tree_of(*paths, package=manifest("my_robot"))
 
 
-def test_a_team_of_two() -> None:
-    """The first member's package and URDF are graded; the other's are listed."""
-    tree = team(["package.xml", "urdf/my_robot.urdf"], ["package.xml", "urdf/my_robot.urdf"])
-    found = submission_of(tree, "team", wanted=EXPECTED, package="my_robot")
-    assert found.path == "Lab6/Adams/my_robot/urdf/my_robot.urdf"
-    assert found.package is not None
-    assert found.package.folder == "Lab6/Adams/my_robot"
-    assert {candidate.path: candidate.reason for candidate in found.other_candidates} == {
-        "Lab6/Brown/my_robot/urdf/my_robot.urdf": OUTSIDE,
-        "Lab6/Brown/my_robot/package.xml": LATER,
-    }
-
-
 def test_a_team_is_not_mixed_up() -> None:
-    """One member's package is not graded with the other's URDF, even if that has a better name."""
+    """One member's package is not graded with the other's URDF, even if that has a better name: they are two students."""
     found = submission_of(
         team(["package.xml", "robot.urdf"], ["package.xml", "urdf/my_robot.urdf"]),
         "team",
         wanted=EXPECTED,
         package="my_robot",
     )
+    assert found.students == ("Lab6/Adams", "Lab6/Brown")
     assert found.path == "Lab6/Brown/my_robot/urdf/my_robot.urdf"
     assert found.package is not None
     assert found.package.folder == "Lab6/Brown/my_robot"

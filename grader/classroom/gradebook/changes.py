@@ -9,6 +9,7 @@ from typing import NamedTuple
 from grader.classroom.gradebook.gradebook import Gradebook, Run
 from grader.classroom.gradebook.result import UNITS_PER_POINT, criterion_points
 from grader.errors import InputError
+from grader.text import shell_quoted
 
 _STATES = """
 SELECT student.id, student.key, result.statuses, result.verdict, result.digest, result.rubric, result.version
@@ -78,7 +79,7 @@ def last_two(book: Gradebook, before: int | None = None, after: int | None = Non
     """
     runs = {run.id: run for run in book.runs()}
     if len(runs) < 2:
-        again = f"grader batch PATH --gradebook {book.shown}"
+        again = f"grader batch PATH --gradebook {shell_quoted(book.shown)}"
         raise InputError(f"there are not two runs to compare: run `{again}` again, or name a second gradebook")
     for run in (before, after):
         if run is not None and run not in runs:

@@ -14,7 +14,7 @@ from grader.classroom.students import Student
 from grader.errors import GraderError, InputError
 from grader.grading.answers import with_answers
 from grader.grading.rubric import Rubric, read_rubric
-from grader.text import printable_path
+from grader.text import printable_path, shell_quoted
 
 _BUSY_TIMEOUT = 60.0  # seconds in which another process may finish its transaction
 
@@ -43,12 +43,12 @@ class Gradebook(AbstractContextManager["Gradebook"]):
         self.path = path
         self.shown = printable_path(path)
         if not create and not path.exists():
-            command = f"grader batch PATH --gradebook {self.shown}"
+            command = f"grader batch PATH --gradebook {shell_quoted(self.shown)}"
             raise InputError(f"there is no gradebook {self.shown}: create it with `{command}`")
         if not path.parent.exists():
             folder = printable_path(path.parent)
             raise InputError(
-                f"cannot create the gradebook {self.shown}: there is no folder {folder} (create it with `mkdir -p {folder}`)"
+                f"cannot create the gradebook {self.shown}: there is no folder {folder} (create it with `mkdir -p {shell_quoted(folder)}`)"
             )
         with self.input_errors():
             self.connection = sqlite3.connect(path, timeout=_BUSY_TIMEOUT, isolation_level=None)
@@ -93,7 +93,7 @@ class Gradebook(AbstractContextManager["Gradebook"]):
 
     def nothing_graded(self) -> InputError:
         """Return the error for a gradebook without a run."""
-        command = f"grader batch PATH --gradebook {self.shown}"
+        command = f"grader batch PATH --gradebook {shell_quoted(self.shown)}"
         return InputError(f"nothing has been graded into {self.shown} yet: run `{command}`")
 
     def runs(self) -> list[Run]:
@@ -120,7 +120,7 @@ class Gradebook(AbstractContextManager["Gradebook"]):
         """Yield the newest submission of each student, in the order of the keys, unaffected by later writes."""
         with self.input_errors(), closing(sqlite3.connect(self.path, timeout=_BUSY_TIMEOUT)) as snapshot:
             for row in snapshot.execute(STORED_SUBMISSIONS):
-                yield StoredSubmission._make((*row[:12], row[12:]))
+                yield StoredSubmission._make((*row[:13], row[13:]))
 
     def rubric(self, sha256: str, *, answers: bool = False) -> Rubric:
         """Return a stored rubric, with or without model answers; raises RubricError if this grader cannot read it."""

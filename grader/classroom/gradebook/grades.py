@@ -5,13 +5,13 @@ from collections.abc import Iterator
 from dataclasses import replace
 from datetime import datetime
 from decimal import Decimal
-from functools import cache, partial
+from functools import cache, cached_property, partial
 from typing import Any, NamedTuple
 
 from grader.checks.outcome import Outcome
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.lateness import Lateness, SubmissionTimes, lateness, read_time
-from grader.classroom.gradebook.result import UNITS_PER_POINT, criterion_points
+from grader.classroom.gradebook.result import UNITS_PER_POINT, criterion_points, graded_on
 from grader.classroom.gradebook.stored import STUDENT_COLUMNS, storable
 from grader.classroom.gradebook.student_grade import StudentGrade, SubmissionFiles, SubmissionSources
 from grader.classroom.matching import People, clues_of
@@ -19,8 +19,9 @@ from grader.classroom.students import Student
 from grader.errors import InputError
 from grader.grading.record import Template, from_record
 from grader.grading.report import ManualMark, Report, Result
-from grader.grading.rubric import Rubric
+from grader.grading.rubric import Criterion, Rubric
 from grader.names import did_you_mean
+from grader.text import shell_quoted
 
 _MAX_NAMED = 5
 _MAX_SUGGESTED_FROM = 5_000  # students whose names are compared with a misspelt one
@@ -55,6 +56,7 @@ class Grades:
         self._newest_sha256 = newest.rubric if newest is not None else ""
         self._deadline = read_time(newest.deadline) if newest and newest.deadline and deadline is None else deadline
         self.rubric = cache(partial(book.rubric, answers=answers))
+        self._parts_of = cache(lambda rubric, statuses: graded_on(self.rubric(rubric), statuses))
         self._template = cache(lambda rubric, text: Template(text, self.rubric(rubric)))
 
     def newest_rubric(self) -> Rubric:
@@ -63,6 +65,20 @@ class Grades:
         if run is None:
             raise self.book.nothing_graded()
         return self.rubric(run.rubric)
+
+    @cached_property
+    def parts(self) -> tuple[str, ...]:
+        """The parts that the newest run has graded every submission on."""
+        rubric = self.newest_rubric()
+        newest = "SELECT statuses FROM grade WHERE rubric = ? AND result IS NOT NULL ORDER BY result DESC LIMIT 1"
+        for (statuses,) in list(self.book.rows(newest, rubric.sha256)):
+            return graded_on(rubric, statuses)
+        return tuple(part.id for part in rubric.parts)
+
+    @property
+    def criteria(self) -> tuple[Criterion, ...]:
+        """The criteria of these parts."""
+        return tuple(row for row in self.newest_rubric().criteria if row.part in self.parts)
 
     def points(self, grade: StudentGrade) -> dict[str, Decimal]:
         """Return the points of each criterion that has a result or a manual mark."""
@@ -103,7 +119,7 @@ class Grades:
             raise InputError(f"{name!r} is ambiguous: it may be {listed}; use one of these ids")
         some = students[:_MAX_SUGGESTED_FROM]
         guess = did_you_mean(name, {word for student in some for word in (student.key, student.login, student.name)})
-        advice = guess or f"; `grader export csv --gradebook {self.book.shown}` lists all students"
+        advice = guess or f"; `grader export csv --gradebook {shell_quoted(self.book.shown)}` lists all students"
         raise InputError(f"there is no student {name!r} in the gradebook{advice}")
 
     def report(self, grade: StudentGrade) -> Report:
@@ -138,6 +154,7 @@ class Grades:
         extension = float(values["extension"] or 0)
         times = SubmissionTimes(is_late, texts["submitted"], values["deadline"], extension, values["days_late"])
         paths, names, attempt, earlier = json.loads(values["files"])
+        is_outdated = bool(rubric) and rubric != self._newest_sha256
         key, fingerprint = values["key"], values["fingerprint"] or ""
         return StudentGrade(
             **{**counts, **points, **texts, "faults": counts["faults"] or 0},
@@ -145,7 +162,10 @@ class Grades:
             is_on_roster=None if is_on_roster is None else bool(is_on_roster),
             is_gone=bool(values["is_gone"]),
             is_late=is_late,
-            is_outdated=bool(rubric) and rubric != self._newest_sha256,
+            is_outdated=is_outdated,
+            has_other_parts=bool(rubric)
+            and not is_outdated
+            and self._parts_of(rubric, texts["statuses"]) != self.parts,
             files=SubmissionFiles(values["source"] or "", tuple(paths), tuple(names), key, fingerprint),
             attempt=attempt,
             earlier=tuple(earlier),

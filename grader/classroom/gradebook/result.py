@@ -29,6 +29,13 @@ class GradingResult(NamedTuple):
     reason: str = ""
 
 
+def graded_on(rubric: Rubric, statuses: str) -> tuple[str, ...]:
+    """Return the parts that a submission was graded on, given the statuses of its criteria."""
+    rows = zip(rubric.criteria, statuses, strict=True)
+    graded = {criterion.part for criterion, status in rows if status != NOT_GRADED}
+    return tuple(part.id for part in rubric.parts if part.id in graded)
+
+
 def criterion_points(rubric: Rubric, statuses: str, marks: Mapping[str, Decimal]) -> dict[str, Decimal | None]:
     """Return the points of each criterion: the manual mark, else the automatic points, else None."""
     return {

@@ -101,9 +101,12 @@ def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
     graded = scores.total()
     mean = sum(score * count for score, count in values) / graded / UNITS_PER_POINT if graded else 0.0
     squares = sum((score / UNITS_PER_POINT - mean) ** 2 * count for score, count in values)
+    graded_letters = {(index, status) for pattern in patterns for index, status in enumerate(pattern.statuses)}
+    criteria = [row for row in rubric.criteria if any((row.position, letter) in graded_letters for letter in "pfs?!")]
+    out_of = sum((row.points for row in criteria), Decimal(0)) if patterns else rubric.points
     return ClassStatistics(
         verdicts={str(verdict): int(count) for verdict, count in book.rows(_VERDICTS)},
-        out_of=rubric.points,
+        out_of=out_of,
         graded=graded,
         pending=sum(pattern.students * pattern.is_pending for pattern in patterns),
         mean=mean,
@@ -111,8 +114,8 @@ def statistics(book: Gradebook, rubric: Rubric) -> ClassStatistics:
         lowest=_ranked_score(values, 0),
         median=(_ranked_score(values, (graded - 1) // 2) + _ranked_score(values, graded // 2)) / 2,
         highest=_ranked_score(values, graded - 1),
-        bins=_bins(values, rubric.points),
-        criteria=tuple(_criterion(criterion, patterns) for criterion in rubric.criteria),
+        bins=_bins(values, out_of),
+        criteria=tuple(_criterion(criterion, patterns) for criterion in criteria or rubric.criteria),
         failures=tuple(Failure(rubric.criteria[index], message, count) for (index, message), count in ranked),
     )
 

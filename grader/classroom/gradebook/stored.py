@@ -23,7 +23,7 @@ PROFILE_COLUMNS = (*STUDENT_COLUMNS, *Enrolment._fields)
 _COUNT = len(STUDENT_COLUMNS)
 _VALUES = attrgetter(*STUDENT_COLUMNS)
 STORED_SUBMISSIONS = f"""
-SELECT student.id, result.id, result.rubric, result.version, result.digest, result.verdict, submission.fingerprint,
+SELECT student.id, result.id, result.rubric, result.version, result.digest, result.verdict, result.statuses, submission.fingerprint,
     submission.files, submission.is_late, submission.submitted, submission.is_gone, run.source,
     {", ".join(f"student.{name}" for name in PROFILE_COLUMNS)}
 FROM student JOIN submission ON submission.student = student.id AND submission.run =
@@ -43,6 +43,7 @@ class StoredSubmission(NamedTuple):
     version: str
     digest: str
     verdict: str
+    statuses: str
     fingerprint: str
     files: str  # JSON, see files_json
     is_late: int

@@ -54,7 +54,8 @@ class StudentGrade:
 
     `score` includes manual marks, but not the late penalty. `faults` counts criteria on which the grader failed, `older_marks` marks
     that were given for an earlier submission or result, `over_marks` marks above the criterion's current maximum. `is_gone` means
-    that the newest run did not find the submission, `is_outdated` that the rubric has changed since it was graded.
+    that the newest run did not find the submission, `is_outdated` that the rubric has changed since it was graded, `has_other_parts` that
+    the parts have that a submission is graded on.
     """
 
     id: int
@@ -77,6 +78,7 @@ class StudentGrade:
     is_gone: bool
     is_late: bool
     is_outdated: bool
+    has_other_parts: bool
     files: SubmissionFiles
     attempt: int
     earlier: tuple[str, ...]
@@ -96,7 +98,11 @@ class StudentGrade:
             (self.faults, "the grader failed on a criterion"),
             (self.verdict == "unreadable" and self.pending, f"it could not be graded: {self.reason}"),
             (self.is_gone, "it is no longer in the class folder"),
-            (self.is_outdated, "it was graded with an earlier version of the rubric: run `grader batch` again"),
+            (
+                self.is_outdated,
+                "it was graded with an earlier version of the rubric: run `grader batch` again",
+            ),
+            (self.has_other_parts, "it was graded on other parts: run `grader batch` again"),
             (self.over_marks, "a manual mark exceeds the criterion's maximum"),
             (self.pending, f"{counted_points(self.pending)} need{'s' * (self.pending == 1)} manual grading"),
         )

@@ -12,9 +12,11 @@ from grader.files.class_zip import ClassZip
 from grader.files.folder import file_at
 from grader.files.ignore_rules import ignored_part, is_generated
 from grader.files.opening import outer_tree, tree_name, with_inner, without_endings
-from grader.files.reading import URDF_LIMIT, open_regular, read_capped
+from grader.files.reading import URDF_LIMIT, open_regular, read_capped, read_start
 from grader.files.tree import Tree, make_tree
 from grader.grading.rubric import Rubric
+from grader.submission.labs import LabFolders
+from grader.submission.robots import START, is_robot
 from grader.submission.submission import Submission, read_submission, submission_of
 from grader.text import printable_path
 
@@ -45,10 +47,11 @@ class OpenedSubmission(NamedTuple):
         if self.tree is None:
             return read_submission(self.data or b"", identity=self.name, path=self.shown)
         return submission_of(
-            with_inner(self.tree),
+            with_inner(self.tree, LabFolders(rubric.folders).is_lab),
             self.name,
             wanted=rubric.urdf,
             package=rubric.package,
+            folders=rubric.folders,
             limit=self.limit,
             shown=self.shown,
             no_documents=no_documents,
@@ -77,7 +80,10 @@ def _open_on_disk(root: str, path: str, limit: int) -> OpenedSubmission:
     place = Path(root, path)
     tree = outer_tree(place, root)
     if tree is None:
-        raise InputError(f"{printable_path(place.name)} {_UNSUPPORTED}")
+        shown = printable_path(place.name)
+        if not is_robot(read_start(place, START, shown, root)):
+            raise InputError(f"{shown} {_UNSUPPORTED}")
+        return _lone_urdf(shown, read_capped(place, limit, shown=shown, top=root), limit)
     name = tree_name(place)
     digest = _digest_of_tree(name, tree, limit) if place.is_dir() else _digest_of_file(name, place, root, limit)
     return OpenedSubmission(name, printable_path(path), digest, None, tree, limit)
@@ -95,14 +101,17 @@ def _open_in_zip(root: str, path: str, limit: int) -> OpenedSubmission:
     digest = _digest(name, limit)
     archive = None if last.lower().endswith(".xml") else class_zip.archive(path, digest)
     if archive is None:
-        raise InputError(f"{last} {_UNSUPPORTED}")
+        data = class_zip.read(path, limit)
+        if not is_robot(data):
+            raise InputError(f"{last} {_UNSUPPORTED}")
+        return _lone_urdf(last, data, limit)
     return OpenedSubmission(name, path, digest.hexdigest(), None, archive, limit)
 
 
 def _lone_urdf(name: str, data: bytes, limit: int) -> OpenedSubmission:
     digest = _digest(name, limit)
     digest.update(data)
-    return OpenedSubmission(name.rpartition(".")[0], name, digest.hexdigest(), data, None)
+    return OpenedSubmission(name.rpartition(".")[0] or name, name, digest.hexdigest(), data, None)
 
 
 @lru_cache(maxsize=2)

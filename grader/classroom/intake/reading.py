@@ -16,7 +16,7 @@ from grader.classroom.intake.roster import Roster
 from grader.errors import InputError
 from grader.files.opening import archive_kind
 from grader.files.reading import not_there, read_start
-from grader.text import printable_path
+from grader.text import printable_path, shell_quoted
 
 LAYOUTS: dict[str, Callable[[ClassFolder], Submissions]] = {
     "folders": FolderSubmissions,
@@ -59,11 +59,17 @@ def _is_one_submission(children: Children) -> bool:
 
 
 def read_class(
-    path: Path, roster: Roster | None = None, layout: str = "auto", assignment: str = "", rubric_id: str = "lab6"
+    path: Path,
+    roster: Roster | None = None,
+    layout: str = "auto",
+    assignment: str = "",
+    rubric_id: str = "lab6",
+    lab_folders: tuple[str, ...] = (),
 ) -> Intake:
     """Return the submissions in a class folder or zip; raises InputError if there are none.
 
-    `assignment` is the one to grade in nbgrader; `rubric_id` is the name of the lab in names of folders.
+    `assignment` is the one to grade in nbgrader; `rubric_id` is the name of the lab in names of folders, and `lab_folders`
+    are the names of its own (default: its id).
     """
     if layout not in ("auto", *LAYOUTS):
         raise InputError(f"there is no layout {layout!r}; the layouts are: auto, {', '.join(LAYOUTS)}")
@@ -71,7 +77,10 @@ def read_class(
     listing, name = _listing(path), path.name
     with suppress(OSError):
         name = path.resolve().name
-    folder = ClassFolder(listing, listing.children(""), "", IgnoredFiles(), name, rubric_id, roster, assignment)
+    lab_folders = lab_folders or (rubric_id,)
+    folder = ClassFolder(
+        listing, listing.children(""), "", IgnoredFiles(), name, rubric_id, roster, assignment, lab_folders=lab_folders
+    )
     if isinstance(listing, ZipListing):
         folder = _only_folder(folder)
     if not any(folder.children):
@@ -84,7 +93,7 @@ def read_class(
         )
     if layout == "auto" and chosen == "folders" and "package.xml" in folder.children.files:
         raise InputError(
-            f"{shown} is one submission and not a class: it contains a package.xml (grade it with `grader grade {shown}`)"
+            f"{shown} is one submission and not a class: it contains a package.xml (grade it with `grader grade {shell_quoted(path)}`)"
         )
     submissions = LAYOUTS[chosen](replace(folder, is_explicit=layout != "auto"))
     ignored = folder.ignored.lines()

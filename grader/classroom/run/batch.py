@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from grader import __version__
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.result import GradingResult
+from grader.classroom.gradebook.result import GradingResult, graded_on
 from grader.classroom.gradebook.run_writer import RunWriter, save_student
 from grader.classroom.gradebook.stored import Enrolment, StoredSubmission
 from grader.classroom.intake.fingerprint import fingerprint
@@ -52,7 +52,7 @@ class RunSettings(NamedTuple):
     """The settings of a run.
 
     `root` is the absolute path of the class, `max_size` the limit for a URDF in bytes. With `add` the class is added to whatever the
-    gradebook holds.
+    gradebook holds. `parts` are the ids of those that every submission is graded on; default: all.
     """
 
     root: str
@@ -64,6 +64,7 @@ class RunSettings(NamedTuple):
     deadline: str = ""
     add: bool = False
     max_size: int = URDF_LIMIT
+    parts: tuple[str, ...] = ()
 
 
 class Batch:
@@ -79,6 +80,9 @@ class Batch:
     ) -> None:
         self._book, self._rubric, self._settings, self._listener = book, rubric, settings, listener
         self._sha256 = rubric.sha256  # which is computed
+        used = {criterion.part for criterion in rubric.criteria}
+        wanted = settings.parts or used
+        self._parts = tuple(part.id for part in rubric.parts if part.id in wanted and part.id in used)
         self._queue = Queue(executor, settings.workers, self._context, rubric)
         self._at_work: dict[str, tuple[ClassSubmission, StoredSubmission | None]] = {}
         self._writer: RunWriter | None = None
@@ -142,11 +146,12 @@ class Batch:
         with suppress(InputError):  # most records resemble that of the reference solution
             template = to_record(grade_reference(rubric)) if rubric.reference else ""
         self._writer.use_template(template)
-        return ClassContext(settings.root, rubric.data, str(rubric.path), template, settings.max_size)
+        return ClassContext(settings.root, rubric.data, str(rubric.path), template, settings.max_size, settings.parts)
 
     def _is_valid(self, stored: StoredSubmission) -> bool:
-        """Return whether a result may be kept: it is of the same rubric and grader, and not errored."""
+        """Return whether a result may be kept: it is of the same rubric, parts and grader, and not errored."""
         is_same = (stored.rubric, stored.version) == (self._sha256, __version__)
+        is_same = is_same and graded_on(self._rubric, stored.statuses) == self._parts
         return is_same and stored.verdict != "errored" and not self._settings.force
 
     def _is_unchanged(self, submission: ClassSubmission, stored: StoredSubmission) -> bool:

@@ -99,5 +99,5 @@ class Queue:
                 self._alone.append((tasks[0]._replace(no_documents=str(error)), 1))
             else:
                 reason = str(error) if is_lost else f"{type(error).__name__}: {error}"
-                return [failed(self._rubric, tasks[0], "errored", reason)]
+                return [failed(self._rubric, self._context().parts, tasks[0], "errored", reason)]
             return []

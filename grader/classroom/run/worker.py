@@ -22,7 +22,9 @@ from grader.grading.report import GradedSubmission, Report, Result
 from grader.grading.rubric import Rubric, read_rubric
 from grader.submission.submission import Submission
 from grader.submission.urdf import Absent, Unreadable
+from grader.text import enumerated
 
+_MAX_NAMED = 10  # students in a message
 MAX_MISTAKE = 200  # characters of a mistake that statistics count
 
 
@@ -34,6 +36,7 @@ class ClassContext(NamedTuple):
     rubric_path: str
     template: str = ""  # records are stored as differences from this one
     max_size: int = URDF_LIMIT  # bytes of a URDF
+    parts: tuple[str, ...] = ()  # ids; default: all
 
 
 class Task(NamedTuple):
@@ -64,16 +67,18 @@ def _grade_one(context: ClassContext, task: Task) -> GradingResult:
         if digest == task.graded:
             return GradingResult(task.key, "unchanged", digest, seen)
         submission = opened.submission(rubric, task.no_documents)
-        report = grade(rubric, submission)
+        if submission.students:
+            return failed(rubric, context.parts, task, "unreadable", several_students(submission), digest, seen)
+        report = grade(rubric, submission, context.parts, is_one_of_class=True)
     except InputError as error:
-        return failed(rubric, task, "unreadable", str(error), digest, seen)
+        return failed(rubric, context.parts, task, "unreadable", str(error), digest, seen)
     except MemoryError:
         if not task.no_documents:
             return _grade_one(context, task._replace(no_documents=NO_MEMORY))
-        return failed(rubric, task, "errored", NO_MEMORY, digest, seen)
+        return failed(rubric, context.parts, task, "errored", NO_MEMORY, digest, seen)
     except (Exception, SystemExit) as error:  # noqa: BLE001  a fault of the grader affects only this submission
         reason = f"the grader itself failed: {type(error).__name__}: {error}"
-        return failed(rubric, task, "errored", reason, digest, seen)
+        return failed(rubric, context.parts, task, "errored", reason, digest, seen)
     for result in report.results:
         if result.outcome.status == "errored":
             return result_of(report, task, "errored", result.outcome.message, digest, seen, template)
@@ -101,15 +106,24 @@ def _why_unreadable(submission: Submission) -> str:
     return ""
 
 
+def several_students(submission: Submission) -> str:
+    """Return why a submission is left unassigned that contains those of several students."""
+    named = enumerated(submission.students, _MAX_NAMED)
+    count = len(submission.students)
+    return f"it contains the submissions of {count} students, {named}: left unassigned (--layout teams grades each)"
+
+
 def failed(
-    rubric: Rubric, task: Task, verdict: Verdict, reason: str, digest: str = "", seen: str = ""
+    rubric: Rubric, parts: tuple[str, ...], task: Task, verdict: Verdict, reason: str, digest: str = "", seen: str = ""
 ) -> GradingResult:
     """Return the result of a submission that could not be graded: every criterion is undecided, and says why."""
     status: Status = "errored" if verdict == "errored" else "pending"
     message = reason if status == "errored" else f"{reason}; needs manual grading"
-    results = tuple(Result(criterion, Outcome(status, message)) for criterion in rubric.criteria)
+    chosen = tuple(part.id for part in rubric.parts if not parts or part.id in parts)
+    criteria = [criterion for criterion in rubric.criteria if criterion.part in chosen]
+    results = tuple(Result(criterion, Outcome(status, message)) for criterion in criteria)
     name = Path(task.paths[0]).name if len(task.paths) == 1 else task.key
-    report = Report(GradedSubmission(name), rubric, tuple(part.id for part in rubric.parts), results)
+    report = Report(GradedSubmission(name), rubric, chosen, results)
     return result_of(report, task, verdict, reason, digest, seen)
 
 

@@ -157,9 +157,9 @@ def test_a_criterion_without_points_still_has_a_share(tmp_path: Path) -> None:
     assert found[-1].discrimination == pytest.approx(float(np.corrcoef([1, 0, 0], [10, 10, 7])[0, 1]))
 
 
-@pytest.mark.parametrize(("score", "bin_of_it"), [("ppppp", 9), ("fffff", 0), ("ppp-f", 5)])
+@pytest.mark.parametrize(("score", "bin_of_it"), [("ppppp", 9), ("fffff", 0), ("pppff", 5), ("ppp-f", 8)])
 def test_all_points_are_in_the_last_tenth(score: str, bin_of_it: int, tmp_path: Path) -> None:
-    """A mark at a boundary is in the upper tenth; full marks are in the last."""
+    """A mark at a boundary is in the upper tenth; full marks are in the last. The tenths are those of the graded parts."""
     assert of(tmp_path, score).bins.index(1) == bin_of_it
 
 
@@ -193,7 +193,7 @@ def test_names_do_not_split_a_group(tmp_path: Path) -> None:
     (tmp_path / "class").mkdir()
     for key, joint in (("anna", "base_lidar_joint"), ("ben", "lidar's joint")):
         (tmp_path / "class" / f"{key}.urdf").write_text(text.replace("base_lidar_joint", joint))
-    grader("batch", tmp_path / "class", "--gradebook", tmp_path / "book.db", "--jobs", 1)
+    grader("batch", tmp_path / "class", "--gradebook", tmp_path / "book.db", "--jobs", 1, "--part", "task1")
     found = json.loads(grader("stats", "--gradebook", tmp_path / "book.db", "--format", "json").stdout)
     counts = {failure["criterion"]: failure["count"] for failure in found["statistics"]["failures"]}
     assert counts == {"lidar-frame": 2, "lidar-on-top": 2, "joint-names": 1}

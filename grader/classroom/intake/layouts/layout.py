@@ -73,8 +73,8 @@ def is_path_key(key: str) -> bool:
 class ClassFolder:
     """The folder that holds the submissions of a class: its names, and its path in the listing, `start`, empty or with a slash.
 
-    `rubric_id` is the name of the lab in names of folders, `assignment` that in nbgrader, if the user has named it; `is_explicit` if
-    the user has named the layout.
+    `rubric_id` is the name of the lab in names of folders, `lab_folders` what its own folder is called, `assignment` the name in
+    nbgrader, if the user has named it; `is_explicit` if the user has named the layout.
     """
 
     listing: ClassListing
@@ -86,6 +86,7 @@ class ClassFolder:
     roster: Roster | None = None
     assignment: str = ""
     is_explicit: bool = False
+    lab_folders: tuple[str, ...] = ()
 
 
 class IgnoredFiles:

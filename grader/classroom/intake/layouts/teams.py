@@ -1,7 +1,7 @@
 """The teams layout: `<team>/Lab6/<Surname>/...` or `<team>/lab6/<login>/lab/...`, a lab folder with one folder for each student.
 
 A lab folder may also contain a package or a workspace, so only folders that cannot be part of one count as students. A team without
-such a lab folder is one submission.
+such a lab folder is one submission. If the layout was named, the class folder may itself be a team's repository.
 """
 
 import re
@@ -12,6 +12,8 @@ from grader.classroom.intake.layouts.layout import ClassFolder, Submissions
 from grader.classroom.intake.listing import Children, ClassListing
 from grader.classroom.intake.names import stems_of
 from grader.classroom.students import ClassSubmission
+from grader.submission.labs import LabFolders, lab_words
+from grader.submission.students import is_part
 
 _MAX_TEAMS = 10_000  # with more folders, the layout has to be named
 _MAX_NAMES = 1_000  # in one folder
@@ -29,26 +31,23 @@ _PART = re.compile(
     r"(?:(?:task|part|step|exercise|ex|(?:pre|post)?[ _-]?lab|question|q|version|v|attempt|submission|try)[ _-]?\d*"
     r"|my_?robot.*|.*_(?:ws|description|bringup|gazebo|interfaces|msgs|pkg|package|robot|sim|control))"
 )
+_ROBOT = re.compile(r"\.urdf$|xacro|urdf\b")  # in names of files
 _PACKAGE = frozenset({"package.xml", "setup.py", "CMakeLists.txt"})
 
 
-def lab_folder(rubric_id: str) -> re.Pattern[str]:
-    """Return a pattern for the names of a lab's folder: of `lab6` it matches Lab6, lab_6 and Lab 06."""
-    words = re.findall(r"[^\W\d_]+|\d+", rubric_id.casefold())
-    parts = [f"0*{int(word)}" if word.isdecimal() else re.escape(word) for word in words]
-    return re.compile(r"[\s_-]*".join(parts) or r"(?!)", re.IGNORECASE)
-
-
 def find_labs(folder: ClassFolder) -> dict[str, str]:
-    """Return the lab folders that hold students' folders, each with its team."""
+    """Return the lab folders that hold students' folders, each with its team; empty for the repository of a single team."""
     labs: dict[str, str] = {}
-    pattern = lab_folder(folder.rubric_id)
-    if len(folder.children.folders) > _MAX_TEAMS and not folder.is_explicit:
+    names = LabFolders(folder.lab_folders)
+    for name in sorted(folder.children.folders) if folder.is_explicit else ():
+        if names.is_lab(name) and _holds_students(folder, folder.start + name):
+            labs[folder.start + name] = ""
+    if labs or (len(folder.children.folders) > _MAX_TEAMS and not folder.is_explicit):
         return labs
     for team in sorted(folder.children.folders):
         for name in sorted(folder.listing.children(folder.start + team, _MAX_NAMES).folders):
             lab = f"{folder.start}{team}/{name}"
-            if pattern.fullmatch(name) and _holds_students(folder, lab):
+            if names.is_lab(name) and _holds_students(folder, lab):
                 labs[lab] = team
     return labs
 
@@ -56,14 +55,20 @@ def find_labs(folder: ClassFolder) -> dict[str, str]:
 def find_submissions(folder: ClassFolder) -> Submissions:
     """Return the submissions of the students in lab folders, and of the teams without one."""
     labs = find_labs(folder)
-    teams = set(labs.values())
+    teams = {path.removeprefix(folder.start).partition("/")[0] for path in labs}
     rest = folder.children._replace(folders=[name for name in folder.children.folders if name not in teams])
+    if "" in labs.values():
+        outside = "is outside the folder of the lab"
+        folder.ignored.add_all(folder.start, ((name, outside) for name in (*rest.folders, *rest.files)))
+        rest = Children([], [], rest.refused)
     alone = FolderSubmissions(replace(folder, children=rest))
     found = [alone.submission(index) for index in range(len(alone))]
     for lab, team in labs.items():
-        members = FolderSubmissions(
-            ClassFolder(folder.listing, folder.listing.children(lab), f"{lab}/", folder.ignored)
-        )
+        inner = folder.listing.children(lab)
+        parts = [name for name in inner.folders if _is_part(folder, name)]
+        folder.ignored.add_all(f"{lab}/", ((name, "is named like a part of a submission") for name in parts))
+        inner = inner._replace(folders=[name for name in inner.folders if name not in parts])
+        members = FolderSubmissions(ClassFolder(folder.listing, inner, f"{lab}/", folder.ignored))
         found += (_of_team(members.submission(index), team) for index in range(len(members)))
     return Submissions(found, contested=alone.contested)
 
@@ -72,7 +77,8 @@ def _of_team(submission: ClassSubmission, team: str) -> ClassSubmission:
     """Return a submission in a team's folder with the team in its key, so that no other team can take it over."""
     student = submission.student
     name = student.login or student.key
-    return replace(submission, student=replace(student, key=f"{team}/{name}", name=name, login=name, team=team))
+    key = f"{team}/{name}" if team else name
+    return replace(submission, student=replace(student, key=key, name=name, login=name, team=team))
 
 
 def is_package(children: Children) -> bool:
@@ -85,15 +91,21 @@ def is_package(children: Children) -> bool:
 def _holds_students(folder: ClassFolder, lab: str) -> bool:
     inner = folder.listing.children(lab, _MAX_NAMES)
     names = stems_of(inner.folders, inner.files)
-    if not names or is_package(inner):
+    if not names or not _PACKAGE.isdisjoint(inner.files) or (is_package(inner) and not folder.is_explicit):
         return False
     known = sum(map(folder.roster.knows_surname, names)) if folder.roster is not None else 0
     if known and known >= min(len(names), 2):
         return True
     if folder.is_explicit:
-        return bool(inner.folders)
+        return not all(_is_part(folder, name) for name in inner.folders)
     within = [_has_robot(folder.listing, f"{lab}/{name}") for name in inner.folders]
     return within.count(True) >= 2 and None not in within
+
+
+def _is_part(folder: ClassFolder, name: str) -> bool:
+    """Return whether a folder beside those of students is none of them."""
+    lab = {word for own in folder.lab_folders for word in lab_words(own)}
+    return is_part(name, lab) and not (folder.roster is not None and folder.roster.knows_surname(name))
 
 
 def _has_robot(listing: ClassListing, top: str) -> bool | None:
@@ -106,7 +118,7 @@ def _has_robot(listing: ClassListing, top: str) -> bool | None:
         left -= len(children.folders) + len(children.files) + 1
         if "package.xml" in children.files:
             return True if folder != top else None
-        if any(name.lower().endswith(".urdf") for name in children.files):
+        if any(_ROBOT.search(name.lower()) for name in children.files):
             return True
         waiting += [f"{folder}/{name}" for name in sorted(children.folders)]
     return False

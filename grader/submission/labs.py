@@ -1,0 +1,95 @@
+"""The folder of a lab in a repository that holds several labs."""
+
+import re
+from collections.abc import Iterable, Sequence
+from enum import IntEnum
+
+from grader.files.opening import ARCHIVES
+from grader.files.tree import parents
+
+_WORD = re.compile(r"[^\W\d_]+|\d+")
+_NUMBER = re.compile(r"\d+")
+_FINAL = re.compile(r"(?:final|course|term|semester|capstone)projects?|capstone")
+_PACKAGE_FILES = frozenset({"package.xml", "setup.py"})
+
+
+class Belonging(IntEnum):
+    """Where a file is, the best place first."""
+
+    THIS_LAB = 0
+    NO_LAB = 1
+    OTHER_LAB = 2
+
+
+class LabFolders:
+    """Tells the folders of a lab, by the names that a rubric gives, from those of other labs.
+
+    Case, spaces, hyphens, underscores and leading zeros do not matter. Another lab has the same name with another number, or is a
+    final project. A name that contains more, such as Lab6_Ash, counts if no folder of this lab has exactly its name, and if it has a
+    number; the folder of a package never counts by such a name.
+    """
+
+    def __init__(self, names: Sequence[str], paths: Iterable[str] = ()) -> None:
+        self._own = {"".join(lab_words(name)): lab_words(name) for name in names}
+        self._shapes = {_NUMBER.sub("#", own) for own in self._own if _NUMBER.search(own)}
+        self._known: dict[str, Belonging] = {}
+        self._packages: set[str] = set()
+        names_of_folders: set[str] = set()
+        for path in paths if self._own else ():
+            folder, _, name = path.rpartition("/")
+            names_of_folders.update(folder.split("/"))
+            if name in _PACKAGE_FILES:
+                self._packages.add(folder)
+        self._has_exact = any(map(self.is_lab, names_of_folders))
+
+    def is_lab(self, name: str) -> bool:
+        """Return whether a folder has exactly the name of this lab."""
+        return "".join(lab_words(without_archive(name))) in self._own
+
+    def belonging(self, path: str) -> Belonging:
+        """Return where a file is. Of the folders around it the nearest that names a lab decides."""
+        if not self._own:
+            return Belonging.NO_LAB
+        return self._of_folder(path.rpartition("/")[0])
+
+    def around(self, path: str) -> str:
+        """Return the outermost folder around a file that names a lab; empty if there is none."""
+        if not self._own:
+            return ""
+        named = (folder for folder in parents(path) if self._named(folder) is not Belonging.NO_LAB)
+        return next(reversed(list(named)), "")
+
+    def _of_folder(self, folder: str) -> Belonging:
+        if not folder:
+            return Belonging.NO_LAB
+        if folder not in self._known:
+            own = self._named(folder)
+            self._known[folder] = own if own is not Belonging.NO_LAB else self._of_folder(folder.rpartition("/")[0])
+        return self._known[folder]
+
+    def _named(self, folder: str) -> Belonging:
+        words = lab_words(without_archive(folder.rpartition("/")[2]))
+        name = "".join(words)
+        if name in self._own:
+            return Belonging.THIS_LAB
+        if _NUMBER.sub("#", name) in self._shapes or _FINAL.fullmatch(name):
+            return Belonging.OTHER_LAB
+        if folder in self._packages:
+            return Belonging.NO_LAB
+        spans = {"".join(words[i:j]) for i in range(len(words)) for j in range(i + 1, len(words) + 1)}
+        if any(_NUMBER.search(own) for own in spans & self._own.keys()):
+            return Belonging.NO_LAB if self._has_exact else Belonging.THIS_LAB
+        is_other = any(_NUMBER.sub("#", span) in self._shapes or _FINAL.fullmatch(span) for span in spans)
+        return Belonging.OTHER_LAB if is_other else Belonging.NO_LAB
+
+
+def lab_words(name: str) -> tuple[str, ...]:
+    """Return the words and numbers of a name: lab and 6 of Lab_06."""
+    words = _WORD.findall(name[:100].casefold())
+    return tuple(str(int(word)) if word.isdecimal() else word for word in words)
+
+
+def without_archive(name: str) -> str:
+    """Return a name without the ending of an archive."""
+    stem, dot, ending = name.rpartition(".")
+    return without_archive(stem) if dot and f".{ending.lower()}" in ARCHIVES else name

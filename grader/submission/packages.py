@@ -1,0 +1,109 @@
+"""The package of a submission that is graded, and the reasons against the others."""
+
+from grader.errors import InputError
+from grader.files.tree import Tree
+from grader.names import closest, folded
+from grader.package.manifest import Manifest, read_manifest
+from grader.package.package import MANIFEST, NO_PACKAGE, SETUP, Package
+from grader.source import Location, Source
+from grader.text import enumerated, quoted
+
+_MAX_PACKAGES = 40
+_MAX_NAMED = 5  # packages in a message
+_MAX_MANIFEST_SIZE = 256 * 1024  # bytes
+_NAMED, _IN_NAMED_FOLDER, _SIMILAR, _OTHER = range(4)
+DEEPER = "it matches equally well, but is deeper in the folders"
+LATER = "it matches equally well, but comes later in alphabetical order"
+
+
+def find_packages(tree: Tree, wanted: str) -> list[str]:
+    """Return the folders of packages: those with a package.xml, and those of the wanted name with at least a setup.py."""
+    with_manifest, with_setup = (
+        [path.rpartition("/")[0] for path in tree.files if path.rpartition("/")[2] == name]
+        for name in (MANIFEST, SETUP)
+    )
+    named = [folder for folder in with_setup if folder not in with_manifest and folder.rpartition("/")[2] == wanted]
+    if not with_manifest and not named:
+        named = with_setup
+    return sorted([*with_manifest, *named], key=_depth)[:_MAX_PACKAGES]
+
+
+def read_packages(tree: Tree, wanted: str, urdf: str = "") -> tuple[Package, ...]:
+    """Return the packages of a submission, the one that matches best first: that of the wanted name.
+
+    Among packages of one name it is the one with most of the files that a lab asks for, above all the URDF at its path; then
+    the least deep, then the first in alphabetical order.
+    """
+    known: dict[str, Package] = {}
+    found = [_read_package(tree, folder, known) for folder in find_packages(tree, wanted)]
+    found.sort(key=lambda package: (_distance(package, wanted), _missing(package, urdf), _depth(package.folder)))
+    for package in found:
+        known.setdefault(package.name, package)
+    return tuple(found)
+
+
+def best_named(packages: tuple[Package, ...], wanted: str) -> Package | None:
+    """Return the package that has the wanted name, or is in a folder of that name; any if no name is wanted."""
+    for package in packages[:1]:
+        return package if not wanted or _distance(package, wanted) <= _IN_NAMED_FOLDER else None
+    return None
+
+
+def package_around(packages: tuple[Package, ...], path: str | None) -> Package | None:
+    """Return the innermost package that holds a file."""
+    around = [package for package in packages if path is not None and package.holds(path)]
+    return max(around, key=lambda package: len(package.folder), default=None)
+
+
+def why_none(packages: tuple[Package, ...], elsewhere: tuple[Package, ...], wanted: str) -> tuple[str, str]:
+    """Return why none of these packages is graded, nor one `elsewhere`, outside of the lab; and which there are."""
+    names = [f"{quoted(package.name)} in {package.folder or 'the submission'}" for package in packages or elsewhere]
+    there = f"; there {'are' if len(names) > 1 else 'is'} {enumerated(names, _MAX_NAMED)}"
+    if packages:
+        return f"no package is named {wanted!r}, and none contains the graded URDF", there
+    return ("no package was submitted for this lab", there) if names else (NO_PACKAGE, "")
+
+
+def why_not(graded: Package | None, other: Package, urdf: str) -> str:
+    """Return why another package than this one is graded, or none."""
+    if graded is None:
+        return f"the package {other.name!r} has another name, and does not contain the graded URDF"
+    if other.name != graded.name:
+        return f"the package {graded.name!r} is graded, not {other.name!r}"
+    if _missing(other, urdf) != _missing(graded, urdf):
+        return "the package that is graded has more of the files that the lab asks for"
+    return DEEPER if other.folder.count("/") != graded.folder.count("/") else LATER
+
+
+def _depth(folder: str) -> tuple[int, str]:
+    return folder.count("/") + bool(folder), folder
+
+
+def _missing(package: Package, urdf: str) -> tuple[int, bool]:
+    """Return how many of its usual files a package lacks, and whether it lacks the wanted URDF."""
+    files = package.tree.files
+    has_urdf = urdf in files and files[urdf].size > 0
+    usual = (has_urdf, MANIFEST in files, SETUP in files, package.launch_files, package.rviz_files)
+    return sum(not present for present in usual), not has_urdf
+
+
+def _distance(package: Package, wanted: str) -> int:
+    if package.manifest is not None and package.manifest.name == wanted:
+        return _NAMED
+    own = package.manifest.name if package.manifest is not None else package.name
+    if package.folder.rpartition("/")[2] == wanted or (own is not None and folded(own) == folded(wanted)):
+        return _IN_NAMED_FOLDER
+    return _SIMILAR if package.manifest is not None and closest(package.name, [wanted]) else _OTHER
+
+
+def _read_package(tree: Tree, folder: str, known: dict[str, Package]) -> Package:
+    own = tree.below(folder)
+    path = f"{folder}/{MANIFEST}" if folder else MANIFEST
+    start = Location(path, 1, 1)
+    manifest = None
+    try:
+        if MANIFEST in own.files:
+            manifest = read_manifest(own.files[MANIFEST].read(_MAX_MANIFEST_SIZE), path)
+    except InputError as error:
+        manifest = Manifest(Source(path, ""), None, "", (), start, start, unread=str(error))
+    return Package(folder, own, manifest, known, tree.generated)

@@ -1,0 +1,112 @@
+"""Files that hold a robot: recognised by their content, whatever they are called. Nothing is parsed."""
+
+import re
+from typing import NamedTuple
+
+from grader.errors import InputError
+from grader.files.reading import URDF_LIMIT
+from grader.files.tree import File, Tree
+
+START = 4096  # bytes that are read of a file
+_LONG_START = 64 * 1024  # bytes that are read if these are comments only
+_MAX_READ = 2000  # files without .urdf in their names
+_MAX_ROBOTS = 400  # found by their content alone
+
+# What may come before the first element of XML, also where a declaration ends in > instead of ?>. Possessive: always linear.
+_PROLOG = re.compile(
+    rb"(?:\xef\xbb\xbf)?(?>\s+|<\?[^>]*>|<!--.*?-->|<!DOCTYPE[^<>\[]*(?>\[.*?\]\s*)?>)*+", re.DOTALL | re.IGNORECASE
+)
+_ROBOT = re.compile(rb"<\s*robot(?=[\s/>])([^>]*)")
+_NAME = re.compile(rb"(?<![\w:])name\s*=\s*[\"']([^\"']*)")
+_INCLUDE = re.compile(rb"<xacro:include\s[^>]*filename\s*=\s*[\"'](?:[^\"']*/)?([^\"'/]+)[\"']")
+_LIKELY = re.compile("urdf|xacro|robot")  # in names of files that are read first
+# Files that are no text, and need not be read.
+_BINARY = frozenset(
+    {
+        ".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".heic", ".svg", ".ico", ".pdf", ".doc", ".docx",
+        ".odt", ".pages", ".xls", ".xlsx", ".ppt", ".pptx", ".mp3", ".mp4", ".mov", ".webm", ".mkv", ".avi", ".zip", ".tar",
+        ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar", ".stl", ".dae", ".obj", ".ply", ".glb", ".blend", ".pyc", ".so", ".a",
+        ".o", ".exe", ".dll", ".bin", ".db", ".db3",
+    }
+)  # fmt: skip
+
+
+class RobotFile(NamedTuple):
+    """A file that may be graded as the URDF: it is called .urdf, or its first element is <robot>.
+
+    `robot` is the name of the robot, and `includes` the names of the files that it includes, as far as its beginning tells.
+    """
+
+    path: str
+    size: int
+    is_urdf: bool  # by its name
+    robot: str = ""
+    includes: frozenset[str] = frozenset()
+
+    @property
+    def name(self) -> str:
+        """The last part of its path."""
+        return self.path.rpartition("/")[2]
+
+
+def find_robots(tree: Tree, wanted: str = "", limit: int = URDF_LIMIT) -> tuple[RobotFile, ...]:
+    """Return the files of a tree that may be the URDF; `wanted` is the name of a file that is one whatever it contains.
+
+    Of other files only those of at most `limit` bytes are read, and of these the first bytes.
+    """
+    found: list[RobotFile] = []
+    by_content = read = 0
+    files = tree.files.values()
+    for file in (
+        files if len(files) <= _MAX_READ else sorted(files, key=lambda file: not _LIKELY.search(file.name.lower()))
+    ):
+        is_urdf = file.suffix == ".urdf" or file.name == wanted
+        if not is_urdf:
+            if file.suffix in _BINARY or not 0 < file.size <= limit or read >= _MAX_READ or by_content >= _MAX_ROBOTS:
+                continue
+            read += 1
+        start = _robot_start(file)
+        if start is not None or is_urdf:
+            by_content += not is_urdf
+            found.append(RobotFile(file.path, file.size, is_urdf, *(_described(start) if start else ())))
+    return tuple(sorted(found))
+
+
+def is_robot(data: bytes) -> bool:
+    """Return whether a text is a robot: its first element is <robot>."""
+    return _ROBOT.match(data, _end_of_prolog(data)) is not None
+
+
+def is_part(robot: RobotFile, robots: tuple[RobotFile, ...]) -> bool:
+    """Return whether another of these files includes this one."""
+    return any(robot.name in other.includes for other in robots if other is not robot)
+
+
+def _robot_start(file: File) -> bytes | None:
+    """Return the beginning of a file from its <robot> on; None if its first element is another."""
+    if not file.size:
+        return None
+    for count in (START, _LONG_START):
+        try:
+            data = file.read(count, first=True)
+        except InputError:
+            return None
+        end = _end_of_prolog(data)
+        if _ROBOT.match(data, end):
+            return data[end:]
+        # Only comments so far, the last of which may have been cut.
+        if len(data) < count or (end < len(data) and not data.startswith((b"<!", b"<?"), end)):
+            return None
+    return None
+
+
+def _end_of_prolog(data: bytes) -> int:
+    found = _PROLOG.match(data)
+    return found.end() if found is not None else 0
+
+
+def _described(start: bytes) -> tuple[str, frozenset[str]]:
+    tag = _ROBOT.match(start)
+    name = _NAME.search(tag[1]) if tag is not None else None
+    includes = frozenset(found.decode("utf-8", "replace") for found in _INCLUDE.findall(start))
+    return name[1].decode("utf-8", "replace").strip() if name is not None else "", includes
