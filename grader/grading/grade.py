@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from grader.documents.evidence import Exhibit
 
 _MAX_PICTURES = 50
+_MAX_UNREAD = 4
 _EXPANDED = "the URDF is xacro: its properties and expressions were evaluated, as xacro does before ROS 2 reads it"
 _ELSEWHERE = "the graded URDF is outside the graded package"
 
@@ -32,7 +33,7 @@ _DROPPING = (catalogue.BAD_VISUAL, catalogue.BAD_INERTIAL)
 def grade(rubric: Rubric, submission: Submission, parts: Sequence[str] = ()) -> Report:
     """Return the report on a submission for all parts of the rubric, or for the named ones; raise InputError for others."""
     chosen, notes = _chosen_parts(rubric, submission, parts)
-    grading = _Grading(submission)
+    grading = _Grading(submission, is_manual=rubric.without_urdf == "manual")
     for criterion in rubric.criteria:
         if criterion.part in chosen:
             grading.decide(criterion)
@@ -42,6 +43,7 @@ def grade(rubric: Rubric, submission: Submission, parts: Sequence[str] = ()) -> 
 
         problems += package_problems(submission.package)
     evidence = _evidence(rubric, submission, chosen)
+    notes += _not_searched(submission, evidence[0])
     results = tuple(grading.results.values())
     return Report(GradedSubmission.of(submission), rubric, chosen, results, problems, *evidence, notes)
 
@@ -75,10 +77,22 @@ def _evidence(
         return (), ()
     from grader.documents.evidence import describe, find_evidence  # a URDF on its own has none
 
-    found = tuple(Exhibits(evidence, find_evidence(submission.proofs, evidence.names)) for evidence in wanted)
-    listed = {exhibit.path for exhibits in found for exhibit in exhibits.files}
+    proofs, documents = submission.proofs, submission.readable_documents
+    found = tuple(Exhibits(evidence, *find_evidence(proofs, evidence.names, documents)) for evidence in wanted)
+    listed = {exhibit.path for exhibits in found for exhibit in (*exhibits.files, *exhibits.perhaps)}
     others = [proof for proof in submission.proofs if proof.file.path not in listed]
     return found, describe(others[:_MAX_PICTURES])
+
+
+def _not_searched(submission: Submission, exhibits: "Sequence[Exhibits]") -> tuple[str, ...]:
+    """Return a note on the documents that may have evidence, but were not read."""
+    documents = submission.readable_documents
+    if documents is None or all(found.files for found in exhibits):
+        return ()
+    from grader.documents.evidence import DOCUMENTS
+
+    unread = documents.named(DOCUMENTS)[1]
+    return (f"not searched for evidence: {enumerated(list(map(str, unread)), _MAX_UNREAD)}",) if unread else ()
 
 
 def grade_reference(rubric: Rubric) -> Report:
@@ -90,8 +104,9 @@ def grade_reference(rubric: Rubric) -> Report:
 class _Grading:
     """The criteria decided so far, and which of them was the first that misses a thing."""
 
-    def __init__(self, submission: Submission) -> None:
+    def __init__(self, submission: Submission, *, is_manual: bool) -> None:
         self.submission = submission
+        self._is_manual = is_manual and submission.has_evidence_only
         self.problems: tuple[Problem, ...] = ()
         self.robot: Configuration | None = None
         self.results: dict[str, Result] = {}
@@ -146,6 +161,8 @@ class _Grading:
         """Return the package; raise MissingElement or NotDecided for any other subject that the submission does not have."""
         if name == "package":
             return self.submission.needed_package()
+        if self._is_manual:
+            raise NotDecided("no URDF was submitted, but there are pictures or documents")
         self.submission.needed_urdf()
         raise MissingElement("robot", "", message="ROS 2 cannot read the file, so there is no robot")
 

@@ -124,12 +124,13 @@ RUBRIC = KeyTable(
         "package": _TEXT,
         "points": _POINTS,
         "answers": _ANSWERS,
+        "without_urdf": toml_type(Literal["failed", "manual"]),
         "part": _rows(PART),
         "criterion": _rows(CRITERION),
         "evidence": _rows(EVIDENCE),
         "late": _table(LATE.schema),
     },
-    optional=("reference", "urdf", "package", "points", "answers", "evidence", "late"),
+    optional=("reference", "urdf", "package", "points", "answers", "without_urdf", "evidence", "late"),
 )
 
 

@@ -77,7 +77,11 @@ class Late:
 
 @dataclass(frozen=True, slots=True)
 class Rubric:
-    """A lab as data. Criteria run in file order. `answers` is the path of the file with the model answers, if there is one."""
+    """A lab as data. Criteria run in file order. `answers` is the path of the file with the model answers, if there is one.
+
+    `without_urdf` says what the criteria of the URDF are if there is evidence, but no URDF: "failed", or "manual" for manual
+    grading. It is empty where the rubric does not say, which means "failed".
+    """
 
     id: str
     title: str
@@ -91,6 +95,7 @@ class Rubric:
     evidence: tuple[Evidence, ...] = ()
     late: Late | None = None
     answers: str = ""
+    without_urdf: str = ""
 
     @property
     def sha256(self) -> str:
@@ -175,6 +180,7 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
         tuple(Evidence(**row) for row in valid.evidence),
         Late(**valid.late) if valid.late is not None else None,
         rubric.get("answers", ""),
+        rubric.get("without_urdf", ""),
     )
 
 

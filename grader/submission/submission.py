@@ -47,12 +47,24 @@ class Submission:
 
         return DocumentCollection(self.tree)
 
+    @property
+    def readable_documents(self) -> "DocumentCollection | None":
+        """The documents in it; None where they must not be read."""
+        return None if self.no_documents else self.documents
+
     @cached_property
     def proofs(self) -> "tuple[Proof, ...]":
         """The pictures, films and PDF files in it."""
         from grader.documents.evidence import read_proofs
 
         return read_proofs(self.tree)
+
+    @property
+    def has_evidence_only(self) -> bool:
+        """Return whether it has pictures, films or documents that may show the work, but no URDF."""
+        return isinstance(self.urdf, Absent) and (
+            bool(self.proofs) or any(file.suffix == ".docx" for file in self.tree.files.values())
+        )
 
     @property
     def path(self) -> str | None:
