@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from grader.checks.outcome import Outcome, fault_of, location_of, pending
 from grader.checks.registry import Check, Subject
 from grader.errors import InputError, MissingElement, NotDecided
+from grader.files.tree import File
 from grader.grading.report import Exhibits, GradedSubmission, Report, Result
 from grader.grading.rubric import Criterion, Rubric
 from grader.problems import Problem
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from grader.documents.evidence import Exhibit
 
 _MAX_PICTURES = 50
-_MAX_UNREAD = 4
+_MAX_UNREAD, _MAX_LISTED = 4, 6
 _EXPANDED = "the URDF is xacro: its properties and expressions were evaluated, as xacro does before ROS 2 reads it"
 _ELSEWHERE = "the graded URDF is outside the graded package"
 
@@ -106,7 +107,7 @@ class _Grading:
 
     def __init__(self, submission: Submission, *, is_manual: bool) -> None:
         self.submission = submission
-        self._is_manual = is_manual and submission.has_evidence_only
+        self._by_evidence = _by_evidence(submission.evidence) if is_manual and submission.has_evidence_only else None
         self.problems: tuple[Problem, ...] = ()
         self.robot: Configuration | None = None
         self.results: dict[str, Result] = {}
@@ -138,6 +139,8 @@ class _Grading:
     def _check(self, criterion: Criterion) -> Result:
         try:
             name = criterion.check.subject
+            if self._by_evidence is not None and name in ("urdf", "robot"):
+                return Result(criterion, self._by_evidence)
             subject = self._subjects.get(name) or self._missing(name)
             outcome = criterion.check.function(subject, **criterion.arguments)
             fault = fault_of(outcome) if criterion.check.distribution else ""
@@ -161,8 +164,6 @@ class _Grading:
         """Return the package; raise MissingElement or NotDecided for any other subject that the submission does not have."""
         if name == "package":
             return self.submission.needed_package()
-        if self._is_manual:
-            raise NotDecided("no URDF was submitted, but there are pictures or documents")
         self.submission.needed_urdf()
         raise MissingElement("robot", "", message="ROS 2 cannot read the file, so there is no robot")
 
@@ -191,6 +192,13 @@ class _Grading:
                 message = f"{outcome.message} ({problem.code}: {problem.message})"
                 return outcome._replace(message=message, mistake=mistake, problem=problem.message)
         return outcome
+
+
+def _by_evidence(files: Sequence[File]) -> Outcome:
+    """Return the outcome of a criterion of the URDF, where there is none, but evidence."""
+    paths = tuple(file.path for file in files[:_MAX_PICTURES])
+    message = f"no URDF was submitted, but {enumerated(paths, _MAX_LISTED)}; needs manual grading"
+    return Outcome("pending", message, paths)
 
 
 def _skipped(cause: str) -> Outcome:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from grader.errors import InputError, MissingElement, NotDecided
 from grader.files.opening import open_tree, tree_name
 from grader.files.reading import URDF_LIMIT, read_capped, read_standard_input, sha256_of
-from grader.files.tree import Tree, make_tree
+from grader.files.tree import File, Tree, make_tree
 from grader.package.package import MANIFEST, NO_PACKAGE, Package
 from grader.robot.reader import Reading, Verdict
 from grader.source import Source
@@ -60,11 +60,15 @@ class Submission:
         return read_proofs(self.tree)
 
     @property
+    def evidence(self) -> tuple[File, ...]:
+        """The files that may show the work: pictures, films, PDF and Word files."""
+        named = {proof.file.path for proof in self.proofs}
+        return tuple(file for path, file in self.tree.files.items() if path in named or file.suffix == ".docx")
+
+    @property
     def has_evidence_only(self) -> bool:
-        """Return whether it has pictures, films or documents that may show the work, but no URDF."""
-        return isinstance(self.urdf, Absent) and (
-            bool(self.proofs) or any(file.suffix == ".docx" for file in self.tree.files.values())
-        )
+        """Return whether it has evidence, but no URDF."""
+        return isinstance(self.urdf, Absent) and bool(self.evidence)
 
     @property
     def path(self) -> str | None:
