@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from grader.documents.collection import Document, DocumentCollection
 from grader.documents.converter import PICTURE
-from grader.documents.headings import Heading, has_words
+from grader.documents.headings import Heading, Pattern, has_words, question_of
 from grader.documents.labels import KEYWORDS, WORDS, Label, matches, read_label, stem
 from grader.documents.questions import Answer, Match, Ordinal, match_answer, read_ordinal
 from grader.source import Location
@@ -112,13 +112,12 @@ class _Search:
         return passage._replace(how=how, is_certain=False) if is_other else passage
 
     def _in_order(self, wanted: Ordinal) -> Passage | None:
-        """Return the passage below a heading that several questions share, if it can be told which."""
+        """Return the passage below a heading that several questions share, or in a file of that name, if it can be told which."""
         found: list[Passage] = []
-        for document in self._read:
-            heads = [head for head in self._headings(document) if head.pattern == wanted.pattern]
-            if wanted.pattern == ("question",):  # also those that say which: "REQUIRED Question"
-                heads = [head for head in self._headings(document) if "question" in head.pattern]
-            cut = ((head, self._cut(document, head)) for head in heads[:_MAX_MATCHES])
+        headings = [[(document, head) for head in self._headings(document)] for document in self._read]
+        for group in (*headings, [(document, _of_file(document, wanted.pattern)) for document in self._read]):
+            heads = [(document, head) for document, head in group if _is_shared(wanted.pattern, head)]
+            cut = ((head, self._cut(document, head)) for document, head in heads[:_MAX_MATCHES])
             pairs = [(head, passage) for head, passage in cut if passage is not None]
             answers = [
                 Answer(_shown(head), head.number, head.section, passage.is_empty, "\n" not in passage.text)
@@ -168,6 +167,19 @@ def _is_about(wanted: Label, head: Heading) -> bool:
     if not wanted.steps and wanted.task is None:  # plain words, which begin the heading or are in one that is marked
         return head.pattern == wanted.words or (bool(head.level) and matches(wanted, read_label(head.text)))
     return matches(wanted, head.label, head.task)
+
+
+def _of_file(document: Document, pattern: Pattern) -> Heading:
+    """Return a heading for a whole document: its name may be that of a question."""
+    name = stem(document.file.name)
+    task = read_label(stem(document.file.path)).task
+    found, number = question_of(name.replace("_", " "), (pattern,))
+    return Heading(0, len(document.lines), name, read_label(name), section=task, pattern=found, number=number)
+
+
+def _is_shared(pattern: Pattern, head: Heading) -> bool:
+    """Return whether a heading has this pattern; "question" means also those that say which: "REQUIRED Question"."""
+    return "question" in head.pattern if pattern == ("question",) else head.pattern == pattern
 
 
 def _joined(match: Match, passages: list[Passage]) -> Passage:

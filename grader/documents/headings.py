@@ -1,13 +1,12 @@
 """The headings of a document: lines that name a task, a step or a question, and where the passage below each of them ends."""
 
-import itertools
 import re
 from bisect import bisect_right
 from collections.abc import Collection, Iterable
 from itertools import islice
 from typing import NamedTuple
 
-from grader.documents.labels import KEYWORDS, QUESTION_WORDS, WORDS, Label, read_label
+from grader.documents.labels import QUESTION_WORDS, STEPS, TASKS, WORDS, Label, read_label
 
 Pattern = tuple[str, ...]  # the words of a heading, such as ("required", "question")
 
@@ -23,9 +22,13 @@ _SPACED = re.compile(r"#+\s")
 _DOTTED = re.compile(r"^\(?([1-9])\.(\d{1,2})\b[.):]?\s*")
 _NUMBERED = re.compile(r"^\(?([1-9]\d)[.):][*_]*(?:\s+|$)")
 _ITEM = re.compile(r"^\(?([1-9])[.):][*_]*(?:\s+|$)")
-_FILLERS = frozenset({"of", "the", "in", "to", "for", "and", "required", "optional"})
-_LEADING = frozenset({"answer", "answers", "to", "the", "my", "for"})  # before the words of a question
-_ADJECTIVES = frozenset({"required", "mandatory", "optional"})
+_LEADING = frozenset({"to", "the", "my", "for", "lab"})  # before the words of a question
+_ANSWERS = frozenset({"answer", "answers"})
+_TASK = rf"(?:{'|'.join(sorted(TASKS))})(?:[\W_]*\d{{1,4}}(?!\d))+"
+_STEP = rf"(?:{'|'.join(sorted(STEPS))})[\W_]*\d{{1,4}}(?!\d)(?:(?:\s*[,&+/]?\s*|[-_])\d{{1,4}}(?!\d))*"
+_FILLERS = r"[\W_]*(?:(?:of|the|in|to|for|and|required|optional|question|answer)\b[\W_]*)*"
+# "Step 15: see task 2" names no task, and "Step 26: 0.6" no step 6.
+_LABEL = re.compile(rf"(?<![^\W\d_])(?:{_TASK}|{_STEP})(?:{_FILLERS}(?:{_TASK}|{_STEP}))*")
 
 
 class Heading(NamedTuple):
@@ -96,7 +99,7 @@ def _read(
     text = plain.rstrip(" *_|`#\t")
     words = _first_words(plain)
     label = _label(words)
-    pattern, number = _question(words, plain, patterns)
+    pattern, number = question_of(plain, patterns)
     is_bold = line.lstrip().startswith(("**", "__")) and line.rstrip(" :.").endswith(("**", "__"))
     level = len(marked[1]) if marked else 0
     heading = Heading(index, index, text, label, level, pattern=pattern, number=number, is_bold=is_bold)
@@ -114,41 +117,49 @@ def _read(
 
 def _is_task(heading: Heading) -> bool:
     """Return whether a heading names a task as a whole."""
-    return heading.label.task is not None and not heading.label.steps and not heading.is_mention
+    return heading.label.task is not None and not (heading.label.steps or heading.is_mention or heading.pattern)
 
 
 def _first_words(plain: str) -> list[str]:
     plain = _DOTTED.sub(r"task \1 step \2 ", plain)
     plain = _NUMBERED.sub(r"step \1 ", plain)
-    return [word for word in plain.split(None, _MAX_SPLIT) if any(map(str.isalnum, word))]
+    return [word for word in plain.split(None, _MAX_SPLIT) if has_words(word)]
 
 
 def _label(words: list[str]) -> Label:
-    """Return the label among the first words of a line: "Step 15: see task 2" names no task."""
-    tokens = WORDS.findall(" ".join(words[:_MAX_WORDS]).lower())
-    pairs = enumerate(itertools.pairwise(tokens))
-    first = last = next(
-        (index for index, (word, next_) in pairs if word in KEYWORDS and next_.isdecimal()), len(tokens)
-    )
-    while last < len(tokens) and (tokens[last] in KEYWORDS or tokens[last] in _FILLERS or tokens[last].isdecimal()):
-        last += 1
-    return read_label(" ".join(tokens[first:last]))
+    """Return the first label in the first words of a line."""
+    found = _LABEL.search(" ".join(words[:_MAX_WORDS]).lower())
+    return read_label(found[0] if found else "")
 
 
-def _question(words: list[str], plain: str, patterns: Collection[Pattern]) -> tuple[Pattern, int | None]:
-    """Return the pattern that a line begins with, in any order of its words, and the number beside them."""
-    tokens = WORDS.findall(" ".join(words[: _MAX_WORDS + 2]).lower())
-    while tokens and tokens[0] in _LEADING:
-        tokens.pop(0)
-    tokens = ["question" if token in QUESTION_WORDS else token for token in tokens]
+def question_of(text: str, patterns: Collection[Pattern]) -> tuple[Pattern, int | None]:
+    """Return the pattern that a line or name begins with, in any order of its words, and the number after or between them."""
+    words = [word for word in text.split(None, _MAX_SPLIT) if has_words(word)]
+    tokens = _question_words(" ".join(words[: _MAX_WORDS + 2]))
     for pattern in patterns:
         count = len(pattern)
-        number = next((int(token) for token in tokens[: count + 1] if token.isdecimal() and len(token) < 5), None)
+        number = next((int(token) for token in tokens[1 : count + 1] if token.isdecimal() and len(token) < 5), None)
         first = [token for token in tokens[: count + (number is not None)] if not token.isdecimal()]
-        is_short = count > 1 or number is not None or len(words) <= _MAX_WORDS or ":" in " ".join(plain.split()[:2])
+        is_short = count > 1 or number is not None or len(words) <= _MAX_WORDS or ":" in " ".join(text.split()[:2])
         if sorted(first) == sorted(pattern) and is_short:
             return pattern, number
     return (), None
+
+
+def _question_words(text: str) -> list[str]:
+    """Return the words of a heading from those on that may name a question: "2. Task 1 - Answer to Q3" begins with "question"."""
+    tokens = WORDS.findall(text.lower())
+    while tokens:
+        has_number = len(tokens) > 1 and tokens[1].isdecimal()
+        if tokens[0] in _ANSWERS and has_number:
+            tokens[0] = "question"
+        elif read_label(" ".join(tokens[:2])).task is not None:
+            del tokens[:2]
+        elif tokens[0] in _LEADING or tokens[0] in _ANSWERS or tokens[0].isdecimal():
+            del tokens[0]
+        else:
+            break
+    return ["question" if token in QUESTION_WORDS else token for token in tokens]
 
 
 def _end(heading: Heading, later: Iterable[Heading], lines: list[str]) -> int:

@@ -9,9 +9,9 @@ from grader.names import closest
 WORDS = re.compile(r"[^\W\d_]+|\d+")
 QUESTION_WORDS = frozenset({"question", "q", "que", "frage"})
 _NUMBER = re.compile(r"\d{1,4}")
-_TASKS = frozenset({"task", "tasks", "t", "tsk", "tast", "aufgabe", "teil"})
-_STEPS = {"step", "steps", "s", "st", "stp", "questions", "no", "nr", "schritt", "answer", "antwort"} | QUESTION_WORDS
-KEYWORDS = _TASKS | _STEPS
+TASKS = frozenset({"task", "tasks", "t", "tsk", "tast", "aufgabe", "teil"})
+STEPS = {"step", "steps", "s", "st", "stp", "questions", "no", "nr", "schritt", "answer", "antwort"} | QUESTION_WORDS
+KEYWORDS = TASKS | STEPS
 _OTHER_TASKS = frozenset({"part", "section", "exercise", "ex", "problem"})  # which students write for a task
 _MAX_LENGTH = 300
 
@@ -72,9 +72,9 @@ def _numbers(words: list[str], *, loosely: bool) -> tuple[int | None, set[int]]:
         if not numbers:
             continue
         keyword = _keyword(word) if loosely else word
-        if keyword in _TASKS:
+        if keyword in TASKS:
             task, steps = numbers[0], (steps if task is None else set()) | set(numbers[1:])
-        elif keyword in _STEPS:
+        elif keyword in STEPS:
             steps |= set(numbers)
     return task, steps
 

@@ -62,8 +62,13 @@ def match_answer(wanted: Ordinal, task: int | None, answers: Sequence[Answer]) -
         hits = [index for index, number in enumerate(numbers) if number == wanted.number]
         if len(hits) > 1:  # a table of contents, a list of the questions
             hits = [index for index in hits if index in written] or hits
-        if len(hits) <= 1:
-            return Match(tuple(hits), True, f"by the number in {_shown(answers, hits)}") if hits else None
+        if not hits:
+            return None
+        if len(hits) == 1:
+            section = answers[hits[0]].section
+            is_other = len(wanted.pattern) == 1 and None not in (section, task) and section != task
+            where = f", but below the heading of task {section}" if is_other else ""
+            return Match(tuple(hits), not is_other, f"by the number in {_shown(answers, hits)}{where}")
         return Match(tuple(hits), False, f"{len(hits)} headings like {_shown(answers, hits)}")
     for indices in (list(range(len(answers))), written, _repeated(answers, wanted.total)):
         in_order = all(answers[index].number in (None, place) for place, index in enumerate(indices, start=1))

@@ -30,6 +30,11 @@ HEADINGS = [
     ("## Required Question", "## Required Question"),
     ("Question 1:", "Question 2:"),
     ("Question 1 (required)", "Question 2 (required)"),
+    ("Answer 1:", "Answer 2:"),
+    ("Task 1 REQUIRED Question:", "Task 2 REQUIRED Question:"),
+    ("## Task 1 - Required question", "## Task 2 - Required question"),
+    ("1. REQUIRED Question:", "2. REQUIRED Question:"),
+    ("| Task 1 Step 15 |", "| Task 2 Step 2 |"),
     ("Q1", "Q2"),
     ("- Q1:", "- Q2:"),
     ("Answer to required question 1:", "Answer to required question 2:"),
@@ -169,8 +174,18 @@ def test_questions_by_their_task() -> None:
         f"REQUIRED Question:\nno\nREQUIRED Question:\n{VANISHES}\nREQUIRED Question:\n{NODES}\n",
         f"Question 1:\nno\nQuestion 2:\n{VANISHES}\nQuestion 3:\n{NODES}\n",
         f"Required question 1:\n{VANISHES}\nRequired question 1:\n{NODES}\n",
+        f"# Task 2\nQuestion 1:\n{VANISHES}\nQuestion 2:\n{NODES}\n",
+        f"Question 1: units?\nm\nQuestion 2: what?\n{VANISHES}\nQuestion 3: -0.15?\nhalf\nQuestion 4: nodes\n{NODES}\n",
     ],
-    ids=["one-of-two", "one-after-a-picture", "three-for-two", "numbers-of-others", "number-twice"],
+    ids=[
+        "one-of-two",
+        "one-after-a-picture",
+        "three-for-two",
+        "numbers-of-others",
+        "number-twice",
+        "other-task",
+        "four",
+    ],
 )
 def test_an_ambiguous_heading_is_no_certain_answer(text: str) -> None:
     """If it cannot be told which question a heading belongs to, the message says so, and all that may be meant is shown."""
@@ -242,6 +257,30 @@ def test_a_mentioned_task_changes_no_task() -> None:
     """A sentence about another task is no heading of it."""
     text = f"Task 1\nThis is as in task 2 of the lab before.\nStep 15\n{VANISHES}\n"
     assert ask({"a.txt": text}, FIRST).measured == f"Step 15\n{VANISHES}"
+
+
+@pytest.mark.parametrize(
+    ("one", "two"),
+    [
+        ("Task1/Question.txt", "Task2/Question.txt"),
+        ("required_question_1.txt", "required_question_2.txt"),
+        ("Q1.md", "Q2.md"),
+        ("Task1_Step15.md", "Task2_Step2.md"),
+    ],
+)
+def test_files_named_for_a_question(one: str, two: str) -> None:
+    """A file with the name of a question is the answer, matched as a heading is."""
+    first, second = both({one: VANISHES, two: NODES})
+    assert (is_certain(first), first.measured) == (True, VANISHES)
+    assert (is_certain(second), second.measured) == (True, NODES)
+
+
+def test_numbers_of_a_text_are_no_steps() -> None:
+    """A value after the number of a step is not another step."""
+    text = f"# Task 1\nStep 26: 0.15 as half\nno\nStep 15: {VANISHES}\nStep 29: see task 2\nStep 18: no\n"
+    one = ask({"a.md": text}, FIRST)
+    assert one.measured == f"Step 15: {VANISHES}"
+    assert ask({"a.md": text}, SECOND).measured is None
 
 
 @pytest.mark.parametrize(
