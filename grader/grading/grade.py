@@ -1,13 +1,12 @@
 """Grade a submission: run the rubric's checks in order, and attribute each failure."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from grader.checks.outcome import Outcome, fault_of, location_of, pending
 from grader.checks.registry import Check, Subject
 from grader.errors import InputError, MissingElement, NotDecided
-from grader.files.tree import File
-from grader.grading.report import Exhibits, GradedSubmission, Report, Result
+from grader.grading.exhibits import by_evidence, exhibits_of, not_searched
+from grader.grading.report import GradedSubmission, Report, Result
 from grader.grading.rubric import Criterion, Rubric
 from grader.problems import Problem
 from grader.robot import catalogue
@@ -18,11 +17,6 @@ from grader.submission.submission import Submission, open_submission
 from grader.submission.urdf import NeedsExpansion, Read
 from grader.text import enumerated
 
-if TYPE_CHECKING:
-    from grader.documents.evidence import Exhibit
-
-_MAX_PICTURES = 50
-_MAX_UNREAD, _MAX_LISTED = 4, 6
 _EXPANDED = "the URDF is xacro: its properties and expressions were evaluated, as xacro does before ROS 2 reads it"
 _ELSEWHERE = "the graded URDF is outside the graded package"
 
@@ -43,8 +37,8 @@ def grade(rubric: Rubric, submission: Submission, parts: Sequence[str] = ()) -> 
         from grader.package.problems import package_problems  # a URDF on its own needs none of what reads a package
 
         problems += package_problems(submission.package)
-    evidence = _evidence(rubric, submission, chosen)
-    notes += _not_searched(submission, evidence[0])
+    evidence = exhibits_of(rubric, submission, chosen)
+    notes += not_searched(submission, evidence[0])
     results = tuple(grading.results.values())
     return Report(GradedSubmission.of(submission), rubric, chosen, results, problems, *evidence, notes)
 
@@ -69,33 +63,6 @@ def _chosen_parts(rubric: Rubric, submission: Submission, named: Sequence[str]) 
     return chosen, tuple(notes)
 
 
-def _evidence(
-    rubric: Rubric, submission: Submission, chosen: Sequence[str]
-) -> "tuple[tuple[Exhibits, ...], tuple[Exhibit, ...]]":
-    """Return the evidence that the lab asks for, and the other pictures of the submission."""
-    wanted = [evidence for evidence in rubric.evidence if evidence.part in chosen]
-    if not wanted or submission.is_single:
-        return (), ()
-    from grader.documents.evidence import describe, find_evidence  # a URDF on its own has none
-
-    proofs, documents = submission.proofs, submission.readable_documents
-    found = tuple(Exhibits(evidence, *find_evidence(proofs, evidence.names, documents)) for evidence in wanted)
-    listed = {exhibit.path for exhibits in found for exhibit in (*exhibits.files, *exhibits.perhaps)}
-    others = [proof for proof in submission.proofs if proof.file.path not in listed]
-    return found, describe(others[:_MAX_PICTURES])
-
-
-def _not_searched(submission: Submission, exhibits: "Sequence[Exhibits]") -> tuple[str, ...]:
-    """Return a note on the documents that may have evidence, but were not read."""
-    documents = submission.readable_documents
-    if documents is None or all(found.files for found in exhibits):
-        return ()
-    from grader.documents.evidence import DOCUMENTS
-
-    unread = documents.named(DOCUMENTS)[1]
-    return (f"not searched for evidence: {enumerated(list(map(str, unread)), _MAX_UNREAD)}",) if unread else ()
-
-
 def grade_reference(rubric: Rubric) -> Report:
     """Return the report on a rubric's own reference solution; raise InputError where it cannot be read."""
     path = rubric.path.parent / rubric.reference
@@ -107,7 +74,7 @@ class _Grading:
 
     def __init__(self, submission: Submission, *, is_manual: bool) -> None:
         self.submission = submission
-        self._by_evidence = _by_evidence(submission.evidence) if is_manual and submission.has_evidence_only else None
+        self._by_evidence = by_evidence(submission.evidence) if is_manual and submission.has_evidence_only else None
         self.problems: tuple[Problem, ...] = ()
         self.robot: Configuration | None = None
         self.results: dict[str, Result] = {}
@@ -192,13 +159,6 @@ class _Grading:
                 message = f"{outcome.message} ({problem.code}: {problem.message})"
                 return outcome._replace(message=message, mistake=mistake, problem=problem.message)
         return outcome
-
-
-def _by_evidence(files: Sequence[File]) -> Outcome:
-    """Return the outcome of a criterion of the URDF, where there is none, but evidence."""
-    paths = tuple(file.path for file in files[:_MAX_PICTURES])
-    message = f"no URDF was submitted, but {enumerated(paths, _MAX_LISTED)}; needs manual grading"
-    return Outcome("pending", message, paths)
 
 
 def _skipped(cause: str) -> Outcome:
