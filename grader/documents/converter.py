@@ -13,7 +13,7 @@ import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from typing import Any
+from typing import Any, NamedTuple
 
 MISSING = 3  # exit code where the package that reads the format is not installed
 MAX_PAGES = 100
@@ -102,14 +102,12 @@ def _docx(data: bytes) -> str:
     lists = _Lists(document)
     lines: list[str] = []
     for block in document.iter_inner_content():  # paragraphs and tables in their order
-        marks = _marks(_element(block))
+        before, after = _marks(_element(block))
         if hasattr(block, "rows"):
-            lines += ["\t".join(cell.text for cell in row.cells) for row in block.rows]
-            lines += marks
+            shown = ["\t".join(cell.text for cell in row.cells) for row in block.rows]
         else:
-            is_top = PAGE_BREAK in marks and not _has_text_before_break(_element(block))
-            head = marks[: marks.index(PAGE_BREAK) + 1] if is_top else []
-            lines += [*head, _markdown(block, _without_marks(block.text), lists), *marks[len(head) :]]
+            shown = [_markdown(block, _without_marks(block.text), lists)]
+        lines += [*before, *shown, *after]
     return "\n".join(lines)
 
 
@@ -118,21 +116,20 @@ def _element(block: Any) -> Any:
     return block._element  # noqa: SLF001
 
 
-def _marks(element: Any) -> list[str]:
-    """Return the breaks between pages that Word has rendered, and the pictures, in their order."""
-    marks = {"lastRenderedPageBreak": PAGE_BREAK, "drawing": PICTURE, "pict": PICTURE}
-    names = (str(child.tag).rpartition("}")[2] for child in element.iter())
-    return [marks[name] for name in names if name in marks]
-
-
-def _has_text_before_break(paragraph: Any) -> bool:
-    for child in paragraph.iter():
+def _marks(element: Any) -> tuple[list[str], list[str]]:
+    """Return the breaks between pages that Word has rendered before the text; those after its beginning, and the pictures."""
+    before: list[str] = []
+    after: list[str] = []
+    has_text = False
+    for child in element.iter():
         match str(child.tag).rpartition("}")[2]:
             case "lastRenderedPageBreak":
-                return False
-            case "t" if child.text:
-                return True
-    return False
+                (after if has_text else before).append(PAGE_BREAK)
+            case "drawing" | "pict":
+                after.append(PICTURE)
+            case "t":
+                has_text = has_text or bool(child.text)
+    return before, after
 
 
 def _without_marks(text: str) -> str:
@@ -150,52 +147,57 @@ def _markdown(paragraph: Any, text: str, lists: "_Lists") -> str:
     return f"{lists.number(paragraph)}{f'**{text}**' if is_bold and paragraph.runs else text}"
 
 
+class _Level(NamedTuple):
+    """A level of a numbered list: what counts its items, the first number, and the text, such as `Step %1.`."""
+
+    key: str
+    first: int
+    text: str
+
+
 class _Lists:
     """The numbers of the items of numbered lists, which are not part of the text of a Word file."""
 
     def __init__(self, document: Any) -> None:
-        from docx.oxml.ns import qn
-
-        self._qn = qn
-        self._counts: dict[tuple[str, str], int] = {}
-        self._abstract: dict[str, Any] = {}
-        self._lists: dict[str, Any] = {}
+        self._counts: dict[str, dict[int, int]] = {}
+        self._levels: dict[tuple[int, int], _Level | None] = {}
+        self._root: Any = None
         with suppress(Exception):  # most documents have no lists
-            root = document.part.numbering_part.element
-            self._abstract = {item.get(qn("w:abstractNumId")): item for item in root.findall(qn("w:abstractNum"))}
-            self._lists = {item.get(qn("w:numId")): item for item in root.findall(qn("w:num"))}
+            self._root = document.part.numbering_part.element
 
     def number(self, paragraph: Any) -> str:
-        """Return "15. " for the fifteenth item of a numbered list; empty for other paragraphs."""
-        own, style = _element(paragraph).pPr, paragraph.style
-        found = own.numPr if own is not None else None
-        if found is None and style is not None and style.element.pPr is not None:
-            found = style.element.pPr.numPr
-        if found is None or found.numId is None:
-            return ""
-        level = str(found.ilvl.val if found.ilvl is not None else 0)
-        form, start, key = self._level(str(found.numId.val), level)
-        if form != "decimal":
-            return ""
-        count = self._counts.get((key, level), start - 1) + 1
-        self._counts = {place: n for place, n in self._counts.items() if place[0] != key or place[1] < level}
-        self._counts[key, level] = count
-        return f"{count}. "
+        """Return "15. " for the fifteenth item of a numbered list; empty for other paragraphs and damaged lists."""
+        with suppress(Exception):
+            places = (_element(paragraph).pPr, paragraph.style.element.pPr)
+            found = next(place.numPr for place in places if place is not None and place.numPr is not None)
+            number, depth = found.numId.val, found.ilvl.val if found.ilvl is not None else 0
+            if (number, depth) not in self._levels:
+                self._levels[number, depth] = self._level(number, depth)
+            level = self._levels[number, depth]
+            return f"{self._counted(level, depth)} " if level is not None else ""
+        return ""
 
-    def _level(self, name: str, level: str) -> tuple[str, int, str]:
-        """Return the number format and the first number of a level of a list, and what counts its items."""
-        qn, item = self._qn, self._lists.get(name)
-        if item is None:
-            return "", 1, name
-        key = item.find(qn("w:abstractNumId")).get(qn("w:val"))
-        levels = {it.get(qn("w:ilvl")): it for it in self._abstract[key].findall(qn("w:lvl"))}
-        if level not in levels:
-            return "", 1, name
-        form, start = levels[level].find(qn("w:numFmt")), levels[level].find(qn("w:start"))
-        first = int(start.get(qn("w:val"))) if start is not None else 1
-        for override in item.findall(f"{qn('w:lvlOverride')}/{qn('w:startOverride')}"):
-            first, key = int(override.get(qn("w:val"))), f"{key}/{name}"  # a list that begins anew
-        return form.get(qn("w:val")) if form is not None else "decimal", first, key
+    def _counted(self, level: _Level, depth: int) -> str:
+        counts = self._counts.setdefault(level.key, {})
+        counts[depth] = counts.get(depth, level.first - 1) + 1
+        for deeper in [other for other in counts if other > depth]:
+            del counts[deeper]
+        text = level.text
+        for other in range(depth + 1):
+            text = text.replace(f"%{other + 1}", str(counts.get(other, 1)))
+        return text
+
+    def _level(self, number: int, depth: int) -> _Level | None:
+        """Return a level of a list; None if its items have no numbers."""
+        (key,) = self._root.xpath(f'w:num[@w:numId="{number}"]/w:abstractNumId/@w:val')
+        level = f'w:abstractNum[@w:abstractNumId="{key}"]/w:lvl[@w:ilvl="{depth}"]'
+        form, text, start = (
+            next(iter(self._root.xpath(f"{level}/w:{name}/@w:val")), "") for name in ("numFmt", "lvlText", "start")
+        )
+        again = self._root.xpath(f'w:num[@w:numId="{number}"]/w:lvlOverride[@w:ilvl="{depth}"]/w:startOverride/@w:val')
+        if form != "decimal":
+            return None
+        return _Level(f"{key}/{number}" if again else key, int(again[0] if again else start or 1), text)
 
 
 def _pdf(data: bytes) -> str:
