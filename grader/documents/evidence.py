@@ -107,13 +107,13 @@ def _may_match(wanted: Label, proof: Proof) -> bool:
 
 
 def _below_headings(documents: DocumentCollection, wanted: Sequence[Label]) -> Iterator[tuple[Exhibit, bool]]:
-    """Yield the headings of documents with the first of the labels that any has, and whether there is a picture below."""
+    """Yield the headings of documents with the first of the labels that any has, and whether each is certain."""
     read, _ = documents.named(DOCUMENTS)
     heads = [(document, head) for document in read for head in _step_headings(documents, document)]
     for label in wanted:
         found = [(document, head) for document, head in heads if _is_about(label, head)]
         if found:
-            yield from ((_below(document, head), document.has_picture(head)) for document, head in found)
+            yield from ((_below(document, head), _is_certain(label, document, head)) for document, head in found)
             return
 
 
@@ -129,6 +129,13 @@ def _whole_documents(documents: DocumentCollection) -> Iterator[File]:
 
 def _step_headings(documents: DocumentCollection, document: Document) -> list[Heading]:
     return [head for head in documents.headings(document) if not (head.is_mention or head.is_item or head.pattern)]
+
+
+def _is_certain(wanted: Label, document: Document, head: Heading) -> bool:
+    """Return whether there is a picture below a heading, which names a step in words: "18." may be a line of the handout."""
+    names = read_label(head.text[:_MAX_SHOWN])
+    is_named = bool(names.steps) or names.task is not None or not (wanted.steps or wanted.task is not None)
+    return is_named and document.has_picture(head)
 
 
 def _is_about(wanted: Label, head: Heading) -> bool:

@@ -1,6 +1,7 @@
 """Answers and evidence in documents, as the command line shows them, and submissions that have evidence only."""
 
 import json
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -210,6 +211,17 @@ def test_a_batch_counts_evidence_without_a_urdf(tmp_path: Path) -> None:
     for key in ("failed", "manual"):
         assert NO_URDF not in batch(key)
         assert json.loads(batch(key, "--format", "json"))["evidence_without_urdf"] == 2
+
+
+def test_the_key_is_checked(tmp_path: Path) -> None:
+    """The rubric's key has two values; the schema for editors and the loader agree."""
+    schema = json.loads(run(("schema", "rubric")).stdout)
+    for key, is_valid in (("failed", True), ("manual", True), ("maybe", False), (True, False)):
+        data = {**tomllib.loads(EVIDENCE_LAB), "without_urdf": key}
+        assert jsonschema.Draft202012Validator(schema).is_valid(data) is is_valid
+    done = grader("rubric", "check", rubric(tmp_path, "maybe"))
+    assert done.returncode == 2
+    assert "smallmaybe.toml:1: without_urdf must be one of failed, manual, not 'maybe'" in done.stderr
 
 
 def test_one_submission_with_evidence_only(tmp_path: Path) -> None:

@@ -106,13 +106,15 @@ def test_a_heading_in_a_word_file_is_named() -> None:
 
 
 def test_a_heading_without_a_picture_is_perhaps_meant() -> None:
-    """A heading without a picture below it may be a table of contents, or an answer."""
+    """A heading without a picture below it may be a table of contents or an answer, and a plain number one of the handout."""
     assert words({"a.docx": docx("Task 1: Step 8", "See below.", "Task 1: Step 18", PICTURE)}, STEP_8) == (
         [],
         ["Task 1: Step 8 in a.docx"],
     )
     contents = pdf(["Task 1: Step 8 ..... 2", "Task 1: Step 18 ..... 3"], ["Task 1: Step 8", PICTURE])
     assert words({"a.pdf": contents}, STEP_8) == (["Task 1: Step 8, page 2 of a.pdf"], [])
+    handout = pdf(["Task 1", "18. Put the lidar on the box.", PICTURE])
+    assert words({"a.pdf": handout}, ["task 1 step 18"]) == ([], ["18. Put the lidar on the box., page 1 of a.pdf"])
     mentioned = pdf(["As you can see in the picture of task 1 step 8 it stands.", PICTURE, "Task 1: Step 18"])
     assert words({"a.pdf": mentioned}, STEP_8) == ([], [])
 
