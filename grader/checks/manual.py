@@ -1,8 +1,13 @@
 """Checks that need manual grading: the grader finds answers and pictures, and a person marks them."""
 
+from typing import TYPE_CHECKING
+
 from grader.checks.outcome import Outcome, pending
 from grader.submission.submission import Submission
 from grader.text import enumerated
+
+if TYPE_CHECKING:
+    from grader.documents.evidence import Exhibit
 
 _DOCUMENTS = ("*.md", "*.txt", "*.docx", "*.pdf", "*.rst", "*.doc", "*.odt", "*.rtf", "*.pages", "*.ipynb")
 _MAX_LISTED = 6  # files in one message
@@ -22,32 +27,47 @@ def answered(
 
     if submission.no_documents:
         return pending(f"{question} The documents cannot be read: {submission.no_documents}; needs manual grading")
-    found = find_answer(submission.documents, files, places)
+    found = find_answer(submission.documents, files, places, question)
     unread = f" (not read: {'; '.join(found.unread[:4])})" if found.unread else ""
-    if found.passage is None:
+    passage = found.passage
+    if passage is None:
         searched = f" in {enumerated(found.read, _MAX_LISTED)}" if found.read else ""
         labels = enumerated([repr(label) for label in places[:3]], word="or")
         return pending(f"{question} No answer was found under {labels}{searched}; needs manual grading{unread}")
-    at = found.passage.location
-    message = f"{question} The answer in {at.path}, from line {at.line}, needs manual grading{unread}"
-    return Outcome("pending", message, found.passage.text, location=at)
+    how = f" ({passage.how})" if passage.how else ""
+    if passage.is_empty:
+        message = f"No answer was found {passage.where}: only the question is there{how}; needs manual grading"
+    elif passage.is_certain:
+        message = f"The answer {passage.where}{how}, needs manual grading"
+    else:
+        message = f"Perhaps the answer {passage.where}{how}; needs manual grading"
+    return Outcome("pending", f"{question} {message}{unread}", passage.text, location=passage.location)
 
 
 def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
-    """A picture or PDF shows what the lab asks for; needs manual grading.
+    """A picture or document shows what the lab asks for; needs manual grading.
 
-    Always pending. `names` are labels in the file's name, in any spelling: "task 3 step 3", or words such as "webcam".
+    Always pending. `names` are labels in the file's name, in any spelling: "task 3 step 3", or words such as "webcam". Without such
+    a file they are searched among the headings of Word and PDF files.
     """
     from grader.documents.evidence import find_evidence
 
-    found = find_evidence(submission.proofs, names)
-    if found:
-        listed = enumerated([exhibit.words for exhibit in found], _MAX_LISTED)
-        return Outcome("pending", f"needs manual grading: {listed}", tuple(exhibit.path for exhibit in found))
+    found = find_evidence(submission.proofs, names, submission.readable_documents)
+    if found.files:
+        return _pictures("needs manual grading: ", found.files)
+    labels = enumerated([repr(name) for name in names[:3]], word="or")
+    if found.perhaps:
+        return _pictures(
+            f"no picture or document is certain to be {labels}; needs manual grading, perhaps: ", found.perhaps
+        )
     paths = [proof.file.path for proof in submission.proofs]
     others = enumerated(paths, _MAX_LISTED) or "no pictures"
-    labels = enumerated([repr(name) for name in names[:3]], word="or")
     return pending(f"no picture or PDF is named {labels}; the submission has {others}; needs manual grading")
+
+
+def _pictures(start: str, exhibits: "tuple[Exhibit, ...]") -> Outcome:
+    listed = enumerated([exhibit.words for exhibit in exhibits], _MAX_LISTED)
+    return Outcome("pending", start + listed, tuple(dict.fromkeys(exhibit.path for exhibit in exhibits)))
 
 
 MANUAL_CHECKS = (answered, evidence_shown)

@@ -1,22 +1,38 @@
 """Written answers: the passage of a document about a question. A person grades it."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 from grader.documents.collection import Document, DocumentCollection
-from grader.documents.evidence import stem
-from grader.documents.labels import Label, matches, read_label
+from grader.documents.converter import PICTURE
+from grader.documents.headings import Heading, Pattern, has_words, question_of
+from grader.documents.labels import KEYWORDS, WORDS, Label, matches, read_label, stem
+from grader.documents.questions import Answer, Match, Ordinal, match_answer, read_ordinal
 from grader.source import Location
 
 _MAX_LINES, _MAX_TEXT = 60, 4000
 _MAX_HEADING_WORDS = 6  # a passage of so few words is a heading without a text
+_MAX_MATCHES = 50  # headings of one document that are compared
+_MAX_SHOWN = 40  # characters of a heading
+_COPIED = frozenset(
+    {"required", "optional", "question", "answer", "task", "step"}
+)  # words of a question, besides its own
 
 
 class Passage(NamedTuple):
-    """The part of a document about a question; `location` is its beginning."""
+    """The part of a document about a question; `location` is its beginning, and `where` says it for a person.
+
+    `how` says why this is the passage, unless it is headed by the task and step. If that is not certain, it may belong to another
+    question. It is empty if it holds only the question.
+    """
 
     text: str
     location: Location
+    where: str
+    how: str = ""
+    is_certain: bool = True
+    is_empty: bool = False
 
 
 class AnswerSearch(NamedTuple):
@@ -27,43 +43,166 @@ class AnswerSearch(NamedTuple):
     unread: tuple[str, ...]
 
 
-def find_answer(documents: DocumentCollection, files: Sequence[str], places: Sequence[str]) -> AnswerSearch:
+def find_answer(
+    documents: DocumentCollection, files: Sequence[str], places: Sequence[str], question: str = ""
+) -> AnswerSearch:
     """Search for the passage about one of `places`, such as `task 1 step 15`, in the documents whose names match `files`.
 
-    An earlier place wins over a later one, and for the same place a passage over a heading without a text.
+    A passage with a text wins over a heading without one, a certain one over another, and then an earlier place over a later one.
     """
     read, unread = documents.named(files)
-    passage = _best(read, [read_label(place) for place in places])
-    return AnswerSearch(passage, tuple(document.file.path for document in read), tuple(unread))
+    search = _Search(documents, read, [read_ordinal(place) or read_label(place) for place in places], question)
+    found = sorted(filter(None, search.passages()), key=lambda passage: (passage.is_empty, not passage.is_certain))
+    return AnswerSearch(
+        found[0] if found else None, tuple(document.file.path for document in read), tuple(map(str, unread))
+    )
 
 
-def _best(documents: list[Document], wanted: list[Label]) -> Passage | None:
-    best: Passage | None = None
-    rank = (len(wanted), False)  # the index of its place, and whether it is a heading only
-    for document in documents:
-        own = read_label(stem(document.file.name))
-        for index, label in enumerate(wanted):
-            if (index, False) >= rank:
-                break
-            spans = [(head.start, head.end) for head in document.headings if matches(label, head.label, head.task)]
-            if matches(label, own):  # the file is named for the place
-                spans = [(0, len(document.lines))]
-            for passage in filter(None, (_cut(document, start, end) for start, end in spans)):
-                found = (index, len(passage.text.split()) <= _MAX_HEADING_WORDS)
-                if found < rank:
-                    best, rank = passage, found
-    return best
+class _Search:
+    """The search for one answer in some documents."""
+
+    def __init__(
+        self, documents: DocumentCollection, read: list[Document], wanted: list[Label | Ordinal], question: str
+    ) -> None:
+        self._documents, self._read, self._wanted = documents, read, wanted
+        self._copied = _COPIED | set(WORDS.findall(question.lower()))
+        self._task = next((label.task for label in wanted if isinstance(label, Label) and label.task is not None), None)
+        plain = [label for label in wanted if isinstance(label, Label) and not label.steps and label.task is None]
+        ordinals = [place for place in wanted if isinstance(place, Ordinal)]
+        self._patterns = {place.pattern for place in ordinals} | {label.words for label in plain if label.words}
+
+    def passages(self) -> Iterator[Passage | None]:
+        """Yield the best passage for each place."""
+        for wanted in self._wanted:
+            yield self._in_order(wanted) if isinstance(wanted, Ordinal) else self._labelled(wanted)
+
+    def _headings(self, document: Document) -> tuple[Heading, ...]:
+        return self._documents.headings(document, self._patterns)
+
+    def _labelled(self, wanted: Label) -> Passage | None:
+        """Return the passage whose heading, or whose file, is labelled so."""
+        best: Passage | None = None
+        rank = (True, True, True, True)
+        for document in self._read:
+            if matches(wanted, read_label(stem(document.file.name))):  # the file is named for the place
+                spans = [Heading(0, len(document.lines), "", wanted)]
+            else:
+                spans = [head for head in self._headings(document) if _is_about(wanted, head)][:_MAX_MATCHES]
+            for head in spans:
+                passage = self._cut(document, head)
+                if passage is None:
+                    continue
+                is_short = len(passage.text.split()) <= _MAX_HEADING_WORDS
+                found = (passage.is_empty, is_short, head.is_item, head.is_mention)
+                if best is None or found < rank:
+                    best, rank = self._explained(passage, document, head, wanted), found
+        return best
+
+    def _explained(self, passage: Passage, document: Document, head: Heading, wanted: Label) -> Passage:
+        """Return a passage with what makes its heading less than certain."""
+        if head.is_item:
+            items = [item for item in self._headings(document) if item.is_item and item.section == head.section]
+            if len(items) > 1 and min(min(item.label.steps) for item in items) == 1:  # perhaps the points of one answer
+                whole = self._cut(document, items[0]._replace(end=items[-1].end)) or passage
+                how = f"a numbered list below the heading of task {head.task}, whose items may be steps or not"
+                return whole._replace(how=how, is_certain=False)
+            return passage._replace(how=f"item {min(wanted.steps)} below the heading of task {head.task}")
+        is_other = None not in (self._task, head.task) and head.task != self._task
+        how = f"below a heading of task {head.task}: it may answer another question"
+        return passage._replace(how=how, is_certain=False) if is_other else passage
+
+    def _in_order(self, wanted: Ordinal) -> Passage | None:
+        """Return the passage below a heading that several questions share, or in a file of that name, if it can be told which."""
+        found: list[Passage] = []
+        headings = [[(document, head) for head in self._headings(document)] for document in self._read]
+        for group in (*headings, [(document, _of_file(document, wanted.pattern)) for document in self._read]):
+            heads = [(document, head) for document, head in group if _is_shared(wanted.pattern, head)]
+            cut = ((head, self._cut(document, head)) for document, head in heads[:_MAX_MATCHES])
+            pairs = [(head, passage) for head, passage in cut if passage is not None]
+            answers = [
+                Answer(_shown(head), head.number, head.section, passage.is_empty, "\n" not in passage.text)
+                for head, passage in pairs
+            ]
+            match = match_answer(wanted, self._task, answers)
+            if match is not None:
+                found.append(_joined(match, [pairs[index][1] for index in match.indices]))
+        found.sort(key=lambda passage: (passage.is_empty, not passage.is_certain))
+        return found[0] if found else None
+
+    def _cut(self, document: Document, head: Heading) -> Passage | None:
+        lines, start, end = document.lines, head.start, head.end
+        while start < end and not has_words(lines[start]):
+            start += 1
+        kept = [
+            "[picture]" if line == PICTURE else line.rstrip() for line in lines[start : min(end, start + _MAX_LINES)]
+        ]
+        while kept and not kept[-1]:
+            kept.pop()
+        text = "\n".join(kept)
+        if not text.strip():
+            return None
+        is_cut = len(text) > _MAX_TEXT or end > start + _MAX_LINES
+        text = text[:_MAX_TEXT] + (" [...]" if is_cut else "")
+        at = Location(document.file.path, start + 1, 1)
+        return Passage(text, at, _where(document, head, at), is_empty=self._is_question_only(text))
+
+    def _is_question_only(self, text: str) -> bool:
+        """Return whether a passage holds no word besides the question's; one that ends in "?" may be worded differently."""
+        if "[picture]" in text:
+            return False
+        asked, mark, rest = text.lower().rpartition("?")
+        others = [word not in self._copied for word in _own_words(asked)]
+        is_asked = mark != "" and 2 * sum(others) <= len(others)
+        return self._copied.issuperset(_own_words(rest if is_asked else text.lower()))
 
 
-def _cut(document: Document, start: int, end: int) -> Passage | None:
-    lines = document.lines
-    while start < end and not lines[start].strip():
-        start += 1
-    kept = [line.rstrip() for line in lines[start : min(end, start + _MAX_LINES)]]
-    while kept and not kept[-1]:
-        kept.pop()
-    text = "\n".join(kept)
-    if not text.strip():
-        return None
-    is_cut = len(text) > _MAX_TEXT or end > start + _MAX_LINES
-    return Passage(text[:_MAX_TEXT] + (" [...]" if is_cut else ""), Location(document.file.path, start + 1, 1))
+def _own_words(text: str) -> list[str]:
+    """Return the words of a text without those of labels."""
+    words = WORDS.findall(text)
+    pairs = pairwise([*words, ""])
+    return [word for word, after in pairs if not word.isdecimal() and not (word in KEYWORDS and after.isdecimal())]
+
+
+def _is_about(wanted: Label, head: Heading) -> bool:
+    if not wanted.steps and wanted.task is None:  # plain words, which begin the heading or are in one that is marked
+        return head.pattern == wanted.words or (bool(head.level) and matches(wanted, read_label(head.text)))
+    return matches(wanted, head.label, head.task)
+
+
+def _of_file(document: Document, pattern: Pattern) -> Heading:
+    """Return a heading for a whole document: its name may be that of a question."""
+    name = stem(document.file.name)
+    task = read_label(stem(document.file.path)).task
+    found, number = question_of(name.replace("_", " "), (pattern,))
+    return Heading(0, len(document.lines), name, read_label(name), section=task, pattern=found, number=number)
+
+
+def _is_shared(pattern: Pattern, head: Heading) -> bool:
+    """Return whether a heading has this pattern; "question" means also those that say which: "REQUIRED Question"."""
+    return "question" in head.pattern if pattern == ("question",) else head.pattern == pattern
+
+
+def _joined(match: Match, passages: list[Passage]) -> Passage:
+    text = "\n\n".join(passage.text for passage in passages)[:_MAX_TEXT]
+    return passages[0]._replace(
+        text=text,
+        how=match.how,
+        is_certain=match.is_certain,
+        is_empty=all(passage.is_empty for passage in passages),
+    )
+
+
+def _shown(head: Heading) -> str:
+    """Return the beginning of a heading; of a question the words before its colon."""
+    text = " ".join((head.text.partition(":")[0] if head.pattern else head.text).split())
+    return text if len(text) <= _MAX_SHOWN else text[: _MAX_SHOWN - 3] + "..."
+
+
+def _where(document: Document, head: Heading, at: Location) -> str:
+    """Return where a passage is: its page, or its heading, or its line where editors count lines."""
+    page = document.page(head.start)
+    if page is not None:
+        return f"on page {page} of {at.path}"
+    if document.file.suffix == ".docx":
+        return f'in {at.path}, below "{_shown(head)}"' if head.text else f"in {at.path}"
+    return f"in {at.path}, from line {at.line}"

@@ -5,14 +5,15 @@ import re
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
+from bisect import bisect_right
+from collections.abc import Collection, Sequence
 from fnmatch import translate
 from math import ceil
 from typing import NamedTuple
 
 from grader.documents import converter
-from grader.documents.evidence import stem
-from grader.documents.labels import Heading, find_headings
+from grader.documents.headings import Heading, Pattern, find_headings
+from grader.documents.labels import stem
 from grader.errors import InputError
 from grader.files.tree import File, Tree
 
@@ -20,6 +21,7 @@ MAX_SECONDS = 20.0  # for all Word and PDF files of a submission
 MAX_LINES = 2000  # of one document
 _TEXT_LIMIT, _DOCUMENT_LIMIT = 1024 * 1024, 32 * 1024 * 1024  # bytes
 _MAX_FILES, _MAX_CONVERTED = 40, 8
+_CONVERTED = (".docx", ".pdf")
 _NO_ANSWERS = {"CMakeLists.txt", "requirements.txt", "LICENSE.txt", "LICENSE.md", "top_level.txt", "SOURCES.txt"}
 # The beginning of a file without answers: of another format, or a report of the grader, which repeats questions and answers.
 _OTHER = re.compile(
@@ -28,61 +30,93 @@ _OTHER = re.compile(
 
 
 class Document(NamedTuple):
-    """The first lines of a document and the headings among them; `is_cut` is whether there are more lines."""
+    """The first lines of a document. `pages` has the index of the first line of each page, and is empty where that is not known.
+
+    `limit` says what was not read of a document that is too long.
+    """
 
     file: File
     lines: list[str]
-    headings: tuple[Heading, ...]
-    is_cut: bool
+    pages: tuple[int, ...] = ()
+    limit: str = ""
+
+    def page(self, line: int) -> int | None:
+        """Return the page of a line, counted from 1, if it is known."""
+        return bisect_right(self.pages, line) or None
+
+    def has_picture(self, heading: Heading | None = None) -> bool:
+        """Return whether there is a picture, below a heading or, in a PDF, on one of its pages."""
+        if heading is None:
+            return converter.PICTURE in self.lines
+        start, end = heading.start, heading.end
+        if self.file.suffix == ".pdf":
+            first, last = self.page(start) or 1, self.page(max(start, end - 1)) or 1
+            start, end = self.pages[first - 1], (*self.pages, len(self.lines))[last]
+        return converter.PICTURE in self.lines[start:end]
+
+
+class Unread(NamedTuple):
+    """A document that was not read, or not to its end, and why; the path is empty where several are meant."""
+
+    path: str
+    reason: str
+
+    def __str__(self) -> str:
+        return self.reason
 
 
 class DocumentCollection:
     """The documents of a submission. Each is read once; Word and PDF files share one budget of time."""
 
     def __init__(self, tree: Tree) -> None:
-        self._tree = tree
+        self.tree = tree
         self._seconds = MAX_SECONDS
         self._converted = 0
-        self._read_files: dict[str, Document | str | None] = {}
+        self._read_files: dict[str, Document | Unread | None] = {}
+        self._headings: dict[tuple[str, frozenset[Pattern]], tuple[Heading, ...]] = {}
 
-    def named(self, patterns: Sequence[str]) -> tuple[list[Document], list[str]]:
+    def headings(self, document: Document, patterns: Collection[Pattern] = ()) -> tuple[Heading, ...]:
+        """Return the headings of a document; `patterns` are the words of headings besides the usual ones."""
+        key = (document.file.path, frozenset(patterns))
+        if key not in self._headings:
+            self._headings[key] = find_headings(document.lines, stem(document.file.name), sorted(key[1]))
+        return self._headings[key]
+
+    def named(self, patterns: Sequence[str]) -> tuple[list[Document], list[Unread]]:
         """Return the documents whose names match one of the patterns, and what of them was not read, and why."""
         read: list[Document] = []
-        unread: list[str] = []
+        unread: list[Unread] = []
         wanted = re.compile("|".join(translate(pattern.lower()) for pattern in patterns))
-        files = self._tree.files.values()
+        files = self.tree.files.values()
         chosen = [file for file in files if file.name not in _NO_ANSWERS and wanted.match(file.name.lower())]
         for file in chosen[:_MAX_FILES]:
             if file.path not in self._read_files:
                 self._read_files[file.path] = self._read(file)
             document = self._read_files[file.path]
-            if isinstance(document, str):
+            if isinstance(document, Unread):
                 unread.append(document)
             elif document is not None:
                 read.append(document)
-                if document.is_cut:
-                    unread.append(f"{file.path} after line {MAX_LINES}, the limit for a document")
+                if document.limit:
+                    unread.append(Unread(file.path, f"{file.path} after {document.limit}, the limit for a document"))
         if len(chosen) > _MAX_FILES:
-            unread.append(f"{len(chosen) - _MAX_FILES} documents after the first {_MAX_FILES}, the limit")
+            rest = f"{len(chosen) - _MAX_FILES} documents after the first {_MAX_FILES}, the limit"
+            unread.append(Unread("", rest))
         return read, unread
 
-    def _read(self, file: File) -> Document | str | None:
+    def _read(self, file: File) -> Document | Unread | None:
         """Return a document, the reason why it was not read, or None for a file that contains no answers."""
         try:
             text = self._text(file)
         except InputError as error:
-            return str(error)
+            return Unread(file.path, str(error))
         if _OTHER.match(text):
             return None
-        # Lines as git and editors count them: `splitlines` also breaks at form feeds and separators of Unicode.
-        text = text.replace("\r\n", "\n").replace("\r", "\n").removesuffix("\n")
-        lines = text.split("\n", MAX_LINES)
-        is_cut = len(lines) > MAX_LINES
-        return Document(file, lines[:MAX_LINES], find_headings(lines[:MAX_LINES], stem(file.name)), is_cut)
+        return _document(file, text)
 
     def _text(self, file: File) -> str:
         match file.suffix:
-            case ".docx" | ".pdf":
+            case suffix if suffix in _CONVERTED:
                 return self._convert(file)
             case ".doc" | ".odt" | ".rtf" | ".pages" | ".ipynb":
                 raise InputError(f"{file.path} has a format that is not supported: open it yourself")
@@ -132,3 +166,18 @@ class DocumentCollection:
         if done.returncode:
             raise InputError(f"{file.path} cannot be read; it may be damaged: open it yourself")
         return done.stdout.decode("utf-8", "replace")
+
+
+def _document(file: File, text: str) -> Document:
+    # Lines as git and editors count them: `splitlines` also breaks at form feeds and separators of Unicode.
+    text = text.replace("\r\n", "\n").replace("\r", "\n").removesuffix("\n")
+    lines = text.split("\n", MAX_LINES)
+    limit = f"line {MAX_LINES}" if len(lines) > MAX_LINES else ""
+    del lines[MAX_LINES:]
+    if file.suffix not in _CONVERTED or not (file.suffix == ".pdf" or converter.PAGE_BREAK in text):
+        return Document(file, lines, (), limit)
+    # The converter begins every page but the first with a line that is a page break.
+    breaks = [index for index, line in enumerate(lines) if line == converter.PAGE_BREAK]
+    if len(breaks) >= converter.MAX_PAGES:
+        limit = f"page {converter.MAX_PAGES}"
+    return Document(file, ["" if line == converter.PAGE_BREAK else line for line in lines], (0, *breaks), limit)

@@ -1,5 +1,6 @@
 """Convert a Word or PDF file from standard input to text on standard output, in a separate process.
 
+Pages and pictures are marked, and headings, bold paragraphs and numbered lists of Word are written as in Markdown.
 A crafted file of either format can use unlimited time or memory, so the grader stops the process after a time. The converter
 limits itself as well, and ends with the process that started it, however that ends.
 """
@@ -12,11 +13,14 @@ import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
+from typing import Any, NamedTuple
 
 MISSING = 3  # exit code where the package that reads the format is not installed
-MAX_TEXT = 1024 * 1024
+MAX_PAGES = 100
+PAGE_BREAK = "\f"  # a line of its own before every page but the first
+PICTURE = "\ufffc"  # a line of its own after the text that a picture is below, or at the end of its page
+_MAX_TEXT = 1024 * 1024
 _MAX_MEMORY = 1024 * 1024 * 1024
-_MAX_PAGES = 100
 _MAX_UNPACKED = 64 * 1024 * 1024
 _PR_SET_PDEATHSIG = 1
 _POLL_INTERVAL = 0.2  # seconds between two checks whether the parent is alive
@@ -35,7 +39,7 @@ def main() -> int:
         return MISSING
     except Exception:  # noqa: BLE001  a damaged file can raise anything
         return 1
-    sys.stdout.buffer.write(text[:MAX_TEXT].encode("utf-8", "replace"))
+    sys.stdout.buffer.write(text[:_MAX_TEXT].encode("utf-8", "replace"))
     return 0
 
 
@@ -95,20 +99,120 @@ def _docx(data: bytes) -> str:
         if sum(info.file_size for info in archive.infolist()) > _MAX_UNPACKED:
             raise ValueError("it unpacks to more than a text document")
     document = docx.Document(io.BytesIO(data))
+    lists = _Lists(document)
     lines: list[str] = []
     for block in document.iter_inner_content():  # paragraphs and tables in their order
+        before, after = _marks(_element(block))
         if hasattr(block, "rows"):
-            lines += ["\t".join(cell.text for cell in row.cells) for row in block.rows]
+            shown = ["\t".join(cell.text for cell in row.cells) for row in block.rows]
         else:
-            lines.append(block.text)
+            shown = [_markdown(block, _without_marks(block.text), lists)]
+        lines += [*before, *shown, *after]
     return "\n".join(lines)
+
+
+def _element(block: Any) -> Any:
+    """Return the XML of a paragraph or table, for what python-docx has no name for."""
+    return block._element  # noqa: SLF001
+
+
+def _marks(element: Any) -> tuple[list[str], list[str]]:
+    """Return the breaks between pages that Word has rendered before the text; those after its beginning, and the pictures."""
+    before: list[str] = []
+    after: list[str] = []
+    has_text = False
+    for child in element.iter():
+        match str(child.tag).rpartition("}")[2]:
+            case "lastRenderedPageBreak":
+                (after if has_text else before).append(PAGE_BREAK)
+            case "drawing" | "pict":
+                after.append(PICTURE)
+            case "t":
+                has_text = has_text or bool(child.text)
+    return before, after
+
+
+def _without_marks(text: str) -> str:
+    return text.replace(PAGE_BREAK, " ").replace(PICTURE, " ")
+
+
+def _markdown(paragraph: Any, text: str, lists: "_Lists") -> str:
+    """Return a paragraph with the mark of its style: a heading, an item of a numbered list, or bold."""
+    if not text.strip():
+        return str(text)
+    style = (paragraph.style.name or "").lower().split() if paragraph.style is not None else []
+    if style[:1] == ["heading"] and style[-1].isdecimal():
+        return f"{'#' * min(6, int(style[-1]))} {lists.number(paragraph)}{text}"
+    is_bold = all(run.bold for run in paragraph.runs if run.text.strip())
+    return f"{lists.number(paragraph)}{f'**{text}**' if is_bold and paragraph.runs else text}"
+
+
+class _Level(NamedTuple):
+    """A level of a numbered list: what counts its items, the first number, and the text, such as `Step %1.`."""
+
+    key: str
+    first: int
+    text: str
+
+
+class _Lists:
+    """The numbers of the items of numbered lists, which are not part of the text of a Word file."""
+
+    def __init__(self, document: Any) -> None:
+        self._counts: dict[str, dict[int, int]] = {}
+        self._levels: dict[tuple[int, int], _Level | None] = {}
+        self._root: Any = None
+        with suppress(Exception):  # most documents have no lists
+            self._root = document.part.numbering_part.element
+
+    def number(self, paragraph: Any) -> str:
+        """Return "15. " for the fifteenth item of a numbered list; empty for other paragraphs and damaged lists."""
+        with suppress(Exception):
+            places = (_element(paragraph).pPr, paragraph.style.element.pPr)
+            found = next(place.numPr for place in places if place is not None and place.numPr is not None)
+            number, depth = found.numId.val, found.ilvl.val if found.ilvl is not None else 0
+            if (number, depth) not in self._levels:
+                self._levels[number, depth] = self._level(number, depth)
+            level = self._levels[number, depth]
+            return f"{self._counted(level, depth)} " if level is not None else ""
+        return ""
+
+    def _counted(self, level: _Level, depth: int) -> str:
+        counts = self._counts.setdefault(level.key, {})
+        counts[depth] = counts.get(depth, level.first - 1) + 1
+        for deeper in [other for other in counts if other > depth]:
+            del counts[deeper]
+        text = level.text
+        for other in range(depth + 1):
+            text = text.replace(f"%{other + 1}", str(counts.get(other, 1)))
+        return text
+
+    def _level(self, number: int, depth: int) -> _Level | None:
+        """Return a level of a list; None if its items have no numbers."""
+        (key,) = self._root.xpath(f'w:num[@w:numId="{number}"]/w:abstractNumId/@w:val')
+        level = f'w:abstractNum[@w:abstractNumId="{key}"]/w:lvl[@w:ilvl="{depth}"]'
+        form, text, start = (
+            next(iter(self._root.xpath(f"{level}/w:{name}/@w:val")), "") for name in ("numFmt", "lvlText", "start")
+        )
+        again = self._root.xpath(f'w:num[@w:numId="{number}"]/w:lvlOverride[@w:ilvl="{depth}"]/w:startOverride/@w:val')
+        if form != "decimal":
+            return None
+        return _Level(f"{key}/{number}" if again else key, int(again[0] if again else start or 1), text)
 
 
 def _pdf(data: bytes) -> str:
     import pypdf
 
-    reader = pypdf.PdfReader(io.BytesIO(data))
-    return "\n".join(page.extract_text() for page in reader.pages[:_MAX_PAGES])
+    pages = pypdf.PdfReader(io.BytesIO(data)).pages
+    texts = []
+    for page in pages[:MAX_PAGES]:
+        text = _without_marks(page.extract_text())
+        with suppress(Exception):  # a damaged picture does not hide the text
+            text += f"\n{PICTURE}" if page.images.keys() else ""
+        texts.append(text)
+    if len(pages) > MAX_PAGES:
+        texts.append("")
+    return f"\n{PAGE_BREAK}\n".join(texts)
 
 
 if __name__ == "__main__":

@@ -1,54 +1,91 @@
-"""Pictures and other evidence in a submission: found by name and described, never graded."""
+"""Pictures and other evidence in a submission: found by name or by headings in documents, and described, never graded."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from grader.documents.collection import Document, DocumentCollection
+from grader.documents.headings import Heading
 from grader.documents.image_size import image_size
-from grader.documents.labels import Label, matches, read_label
+from grader.documents.labels import Label, matches, read_label, stem
 from grader.errors import InputError
 from grader.files.tree import File, Tree
+from grader.names import closest
 
 _PICTURES = frozenset({".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".heic", ".svg"})
 _EVIDENCE = _PICTURES | {".pdf", ".mp4", ".mov", ".webm", ".mkv", ".avi"}
+DOCUMENTS = ("*.pdf", "*.docx")  # which may have evidence below their headings
 _MAX_HEADER = 256 * 1024  # bytes in which the size of a picture is found
 _MAX_OPENED = 50  # files at once whose dimensions are read
+_MAX_SHOWN = 60  # characters of a heading
 
 
 @dataclass(frozen=True, slots=True)
 class Exhibit:
-    """One file of evidence: its size in bytes, and width and height of a picture in pixels, if they are known."""
+    """One file of evidence: its size in bytes, and width and height of a picture in pixels, if they are known.
+
+    Of evidence inside a document, `heading` is what it is below, and `page` where that is, if it is known.
+    """
 
     path: str
     size: int
     width: int | None = None
     height: int | None = None
+    heading: str = ""
+    page: int | None = None
 
     @property
     def words(self) -> str:
-        """The file with its dimensions and size, for a message."""
+        """The file with its dimensions and size, or the heading and page in it, for a message."""
+        if self.heading:
+            return f"{self.heading}{f', page {self.page} of' if self.page else ' in'} {self.path}"
         dimensions = f"{self.width} x {self.height} pixels, " if self.width else ""
         size = f"{self.size / 1e6:.1f} MB" if self.size >= 1e6 else f"{self.size / 1e3:.0f} kB"
         return f"{self.path} ({dimensions}{size if self.size >= 1000 else f'{self.size} bytes'})"
 
 
 class Proof(NamedTuple):
-    """A picture, video or PDF, and the task and step that its path names."""
+    """A picture, video or PDF, and the task and step that its path names: as it is written, and read loosely."""
 
     file: File
     label: Label
+    loose: Label
+
+
+class Found(NamedTuple):
+    """The files of a piece of evidence, and those that may be meant, but are not certain."""
+
+    files: tuple[Exhibit, ...]
+    perhaps: tuple[Exhibit, ...] = ()
 
 
 def read_proofs(tree: Tree) -> tuple[Proof, ...]:
-    """Return every picture, video and PDF of a submission, with its label."""
-    return tuple(Proof(file, read_label(stem(file.path))) for file in tree.files.values() if file.suffix in _EVIDENCE)
+    """Return every picture, video and PDF of a submission, with its labels."""
+    return tuple(_proof(file) for file in tree.files.values() if file.suffix in _EVIDENCE)
 
 
-def find_evidence(proofs: Sequence[Proof], names: Sequence[str]) -> tuple[Exhibit, ...]:
-    """Return the evidence whose path contains one of these names: `task 1 step 8`, or plain words such as `webcam`."""
+def find_evidence(proofs: Sequence[Proof], names: Sequence[str], documents: DocumentCollection | None = None) -> Found:
+    """Return the evidence that one of these names labels: `task 1 step 8`, or plain words such as `webcam`.
+
+    Files with the label come first. Without one, files count that have a misspelt label with task and step, and headings of Word
+    and PDF files with a picture below them. Not certain are labels without a task, headings without a picture, and documents that
+    were not read or have pictures without headings.
+    """
     wanted = [read_label(name) for name in names]
-    return describe([proof for proof in proofs if any(matches(label, proof.label) for label in wanted)])
+    exact = [proof for proof in proofs if any(matches(label, proof.label) for label in wanted)]
+    if exact:
+        return Found(describe(exact))
+    others = [proof for proof in proofs if not proof.label.is_complete]
+    meant = [proof for proof in others if proof.loose.is_complete and any(matches(it, proof.loose) for it in wanted)]
+    perhaps = [proof for proof in others if proof not in meant and any(_may_match(it, proof) for it in wanted)]
+    inside = [*_below_headings(documents, wanted)] if documents is not None else []
+    certain = tuple(exhibit for exhibit, is_certain in inside if is_certain)
+    if meant or certain:
+        return Found((*describe(meant), *certain))
+    listed = {proof.file.path for proof in perhaps}
+    whole = [file for file in _whole_documents(documents) if file.path not in listed] if documents is not None else []
+    return Found((), (*describe(perhaps), *(it for it, _ in inside), *(Exhibit(it.path, it.size) for it in whole)))
 
 
 def describe(proofs: Sequence[Proof]) -> tuple[Exhibit, ...]:
@@ -56,10 +93,62 @@ def describe(proofs: Sequence[Proof]) -> tuple[Exhibit, ...]:
     return tuple(_exhibit(proof.file, is_opened=index < _MAX_OPENED) for index, proof in enumerate(proofs))
 
 
-def stem(path: str) -> str:
-    """Return a path without its suffix."""
-    folder, slash, name = path.rpartition("/")
-    return folder + slash + (name.rpartition(".")[0] or name)
+def _proof(file: File) -> Proof:
+    label = read_label(stem(file.path))
+    return Proof(file, label, label if label.is_complete else read_label(stem(file.path), loosely=True))
+
+
+def _may_match(wanted: Label, proof: Proof) -> bool:
+    """Return whether a file may be meant: it names the step without a task, or a word that is misspelt."""
+    if wanted.steps:
+        return proof.loose.task is None and wanted.steps <= proof.loose.steps
+    is_word = wanted.task is None and len(wanted.words) == 1
+    return is_word and any(closest(word, wanted.words) for word in proof.label.words if len(word) > 3)
+
+
+def _below_headings(documents: DocumentCollection, wanted: Sequence[Label]) -> Iterator[tuple[Exhibit, bool]]:
+    """Yield the headings of documents with the first of the labels that any has, and whether each is certain."""
+    read, _ = documents.named(DOCUMENTS)
+    heads = [(document, head) for document in read for head in _step_headings(documents, document)]
+    for label in wanted:
+        found = [(document, head) for document, head in heads if _is_about(label, head)]
+        if found:
+            yield from ((_below(document, head), _is_certain(label, document, head)) for document, head in found)
+            return
+
+
+def _whole_documents(documents: DocumentCollection) -> Iterator[File]:
+    """Yield the documents that may hold any evidence: those that were not read, and those with pictures without headings."""
+    read, unread = documents.named(DOCUMENTS)
+    for document in read:
+        has_steps = any(head.label.steps for head in _step_headings(documents, document))
+        if document.has_picture() and not has_steps and not read_label(stem(document.file.path)).is_complete:
+            yield document.file
+    yield from (documents.tree.files[it.path] for it in unread if it.path)
+
+
+def _step_headings(documents: DocumentCollection, document: Document) -> list[Heading]:
+    return [head for head in documents.headings(document) if not (head.is_mention or head.is_item or head.pattern)]
+
+
+def _is_certain(wanted: Label, document: Document, head: Heading) -> bool:
+    """Return whether there is a picture below a heading, which names a step in words: "18." may be a line of the handout."""
+    names = read_label(head.text[:_MAX_SHOWN])
+    is_named = bool(names.steps) or names.task is not None or not (wanted.steps or wanted.task is not None)
+    return is_named and document.has_picture(head)
+
+
+def _is_about(wanted: Label, head: Heading) -> bool:
+    if not wanted.steps and wanted.task is None:  # plain words, in a line that is marked as a heading
+        return bool(head.level) and matches(wanted, read_label(head.text))
+    return matches(wanted, head.label, head.task)
+
+
+def _below(document: Document, head: Heading) -> Exhibit:
+    text = " ".join(head.text.split())
+    shown = text if len(text) <= _MAX_SHOWN else f"{text[: _MAX_SHOWN - 3]}..."
+    file = document.file
+    return Exhibit(file.path, file.size, heading=shown, page=document.page(head.start))
 
 
 def _exhibit(file: File, *, is_opened: bool) -> Exhibit:

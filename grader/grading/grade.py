@@ -1,12 +1,12 @@
 """Grade a submission: run the rubric's checks in order, and attribute each failure."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from grader.checks.outcome import Outcome, fault_of, location_of, pending
 from grader.checks.registry import Check, Subject
 from grader.errors import InputError, MissingElement, NotDecided
-from grader.grading.report import Exhibits, GradedSubmission, Report, Result
+from grader.grading.exhibits import by_evidence, exhibits_of, not_searched
+from grader.grading.report import GradedSubmission, Report, Result
 from grader.grading.rubric import Criterion, Rubric
 from grader.problems import Problem
 from grader.robot import catalogue
@@ -17,10 +17,6 @@ from grader.submission.submission import Submission, open_submission
 from grader.submission.urdf import Read
 from grader.text import enumerated
 
-if TYPE_CHECKING:
-    from grader.documents.evidence import Exhibit
-
-_MAX_PICTURES = 50
 _EXPANDED = "the URDF is xacro: it was expanded, as xacro does before ROS 2 reads it"
 _NOT_EXPANDED = (
     "the URDF is xacro, but is loaded without xacro; all but its loading is graded on what xacro makes of it"
@@ -40,7 +36,7 @@ def grade(
     A single URDF is graded only on parts that need no more, unless it `is_one_of_class`: a class is graded on the same parts.
     """
     chosen, notes = _chosen_parts(rubric, submission, parts, is_whole=is_one_of_class or not submission.is_single)
-    grading = _Grading(submission)
+    grading = _Grading(submission, is_manual=rubric.without_urdf == "manual")
     for criterion in rubric.criteria:
         if criterion.part in chosen:
             grading.decide(criterion)
@@ -49,7 +45,8 @@ def grade(
         from grader.package.problems import package_problems  # a URDF on its own needs none of what reads a package
 
         problems += package_problems(submission.package)
-    evidence = _evidence(rubric, submission, chosen) if is_one_of_class or not submission.is_single else ((), ())
+    evidence = exhibits_of(rubric, submission, chosen)
+    notes += not_searched(submission, evidence[0])
     results = tuple(grading.results.values())
     return Report(GradedSubmission.of(submission), rubric, chosen, results, problems, *evidence, notes)
 
@@ -82,21 +79,6 @@ def _notes_on_xacro(submission: Submission) -> list[str]:
     return [_EXPANDED if submission.urdf.as_it_stands is None else _NOT_EXPANDED]
 
 
-def _evidence(
-    rubric: Rubric, submission: Submission, chosen: Sequence[str]
-) -> "tuple[tuple[Exhibits, ...], tuple[Exhibit, ...]]":
-    """Return the evidence that the lab asks for, and the other pictures of the submission."""
-    wanted = [evidence for evidence in rubric.evidence if evidence.part in chosen]
-    if not wanted:
-        return (), ()
-    from grader.documents.evidence import describe, find_evidence  # a URDF on its own has none
-
-    found = tuple(Exhibits(evidence, find_evidence(submission.proofs, evidence.names)) for evidence in wanted)
-    listed = {exhibit.path for exhibits in found for exhibit in exhibits.files}
-    others = [proof for proof in submission.proofs if proof.file.path not in listed]
-    return found, describe(others[:_MAX_PICTURES])
-
-
 def grade_reference(rubric: Rubric) -> Report:
     """Return the report on a rubric's own reference solution; raise InputError where it cannot be read."""
     path = rubric.path.parent / rubric.reference
@@ -106,8 +88,9 @@ def grade_reference(rubric: Rubric) -> Report:
 class _Grading:
     """The criteria decided so far, and which of them was the first that misses a thing."""
 
-    def __init__(self, submission: Submission) -> None:
+    def __init__(self, submission: Submission, *, is_manual: bool) -> None:
         self.submission = submission
+        self._by_evidence = by_evidence(submission.evidence) if is_manual and submission.has_evidence_only else None
         self.problems: tuple[Problem, ...] = ()
         self.robot: Configuration | None = None
         self.results: dict[str, Result] = {}
@@ -139,6 +122,8 @@ class _Grading:
     def _check(self, criterion: Criterion) -> Result:
         try:
             name = criterion.check.subject
+            if self._by_evidence is not None and name in ("urdf", "robot"):
+                return Result(criterion, self._by_evidence)
             subject = self._subjects.get(name) or self._missing(name)
             outcome = criterion.check.function(subject, **criterion.arguments)
             fault = fault_of(outcome) if criterion.check.distribution else ""

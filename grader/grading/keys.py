@@ -132,12 +132,13 @@ RUBRIC = KeyTable(
         "folders": _FOLDERS,
         "points": _POINTS,
         "answers": _ANSWERS,
+        "without_urdf": toml_type(Literal["failed", "manual"]),
         "part": _rows(PART),
         "criterion": _rows(CRITERION),
         "evidence": _rows(EVIDENCE),
         "late": _table(LATE.schema),
     },
-    optional=("reference", "urdf", "package", "folders", "points", "answers", "evidence", "late"),
+    optional=("reference", "urdf", "package", "folders", "points", "answers", "without_urdf", "evidence", "late"),
 )
 
 

@@ -39,12 +39,13 @@ def to_record(report: Report, template: Template | None = None) -> str:
         "submission": [
             submission.id, submission.path, submission.sha256, submission.package,
             submission.other_candidates, submission.ignored, submission.has_urdf, submission.verdict, submission.is_single,
-            submission.unread,
+            submission.unread, submission.has_evidence_only,
         ],
         "parts": report.parts,
         "results": [_result(same, result) for result in report.results],
         "problems": [(problem.code, problem.severity, problem.message, problem.location) for problem in report.problems],
         "exhibits": [exhibits.files for exhibits in report.exhibits],
+        "perhaps": [exhibits.perhaps for exhibits in report.exhibits],
         "evidence": [exhibits.evidence.id for exhibits in report.exhibits],
         "others": report.others,
         "notes": report.notes,
@@ -56,13 +57,25 @@ def from_record(text: str, rubric: Rubric, quote: Quote | None = None, template:
     """Return the report that a record was made from, with the same rubric and template."""
     same = template.outcomes if template is not None else {}
     data = json.loads(text)
-    identity, path, sha256, package, others, ignored, has_urdf, verdict, is_single, unread = data["submission"]
+    identity, path, sha256, package, others, ignored, has_urdf, verdict, is_single, unread, *rest = data["submission"]
     package = GradedPackage(*package) if package is not None else None
     others = tuple(OtherCandidate(*file) for file in others)
     submission = GradedSubmission(
-        identity, path, sha256, package, others, tuple(ignored), has_urdf, verdict, is_single, unread, quote
+        identity,
+        path,
+        sha256,
+        package,
+        others,
+        tuple(ignored),
+        has_urdf,
+        verdict,
+        is_single,
+        unread,
+        rest == [True],
+        quote,
     )
     evidence = {proof.id: proof for proof in rubric.evidence}
+    uncertain = data.get("perhaps") or [()] * len(data["evidence"])  # records of earlier versions have none
     return Report(
         submission,
         rubric,
@@ -73,13 +86,22 @@ def from_record(text: str, rubric: Rubric, quote: Quote | None = None, template:
             for code, severity, message, place in data["problems"]
         ),
         tuple(
-            Exhibits(evidence[name], tuple(Exhibit(*file) for file in files))
-            for name, files in zip(data["evidence"], data["exhibits"], strict=True)
+            Exhibits(evidence[name], _exhibits(files), _exhibits(perhaps))
+            for name, files, perhaps in zip(data["evidence"], data["exhibits"], uncertain, strict=True)
         ),
-        tuple(Exhibit(*file) for file in data["others"]),
+        _exhibits(data["others"]),
         tuple(data["notes"]),
         data["version"],
     )
+
+
+def has_evidence_only(text: str) -> bool:
+    """Return whether a record is of a submission with pictures or documents, but without a URDF."""
+    return json.loads(text)["submission"][-1] is True  # records of earlier versions end with a text
+
+
+def _exhibits(files: Any) -> tuple[Exhibit, ...]:
+    return tuple(Exhibit(*file) for file in files)
 
 
 def _result(same: dict[str, Outcome], result: Result) -> Any:

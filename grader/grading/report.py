@@ -53,10 +53,11 @@ class Result(NamedTuple):
 
 
 class Exhibits(NamedTuple):
-    """A piece of evidence and the files that were found for it."""
+    """A piece of evidence, the files that were found for it, and those that are perhaps meant."""
 
     evidence: Evidence
     files: "tuple[Exhibit, ...]"
+    perhaps: "tuple[Exhibit, ...]" = ()
 
 
 class GradedPackage(NamedTuple):
@@ -70,8 +71,9 @@ class GradedPackage(NamedTuple):
 class GradedSubmission:
     """The submission part of a report. `path`, `sha256` and `verdict` are those of the URDF.
 
-    `is_single` distinguishes a single URDF from a folder or archive; `unread` says why the URDF could not be read. `quote` returns
-    the text of one of the files, or None where it cannot be read.
+    `is_single` distinguishes a single URDF from a folder or archive; `unread` says why the URDF could not be read; with
+    `has_evidence_only` there are pictures or documents, but no URDF. `quote` returns the text of one of the files, or None where it
+    cannot be read.
     """
 
     id: str
@@ -84,6 +86,7 @@ class GradedSubmission:
     verdict: Verdict | None = None
     is_single: bool = False
     unread: str = ""
+    has_evidence_only: bool = False
     quote: Quote | None = field(default=None, repr=False, compare=False)
 
     @classmethod
@@ -101,6 +104,7 @@ class GradedSubmission:
             submission.verdict,
             submission.is_single,
             submission.unread,
+            submission.has_evidence_only,
             submission.source,
         )
 

@@ -80,6 +80,8 @@ class Rubric:
     """A lab as data. Criteria run in file order. `answers` is the path of the file with the model answers, if there is one.
 
     `folders` are the names of the lab's folder in a repository of several labs.
+    `without_urdf` says what the criteria of the URDF are if there is evidence, but no URDF: "failed", or "manual" for manual
+    grading. It is empty where the rubric does not say, which means "failed".
     """
 
     id: str
@@ -95,6 +97,7 @@ class Rubric:
     late: Late | None = None
     answers: str = ""
     folders: tuple[str, ...] = ()
+    without_urdf: str = ""
 
     @property
     def sha256(self) -> str:
@@ -180,6 +183,7 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
         Late(**valid.late) if valid.late is not None else None,
         rubric.get("answers", ""),
         rubric.get("folders", ()),
+        rubric.get("without_urdf", ""),
     )
 
 

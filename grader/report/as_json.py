@@ -40,6 +40,7 @@ def report_data(report: Report) -> dict[str, Any]:
                 "part": found.evidence.part,
                 "title": found.evidence.title,
                 "files": list(map(asdict, found.files)),
+                "perhaps": list(map(asdict, found.perhaps)),
             }
             for found in report.exhibits
         ],

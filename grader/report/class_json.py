@@ -17,8 +17,12 @@ def render_class_json(
     grades: Iterable[StudentGrade],
     looks: AttentionList,
     run: dict[str, int] | None,
+    evidence_only: int,
 ) -> str:
-    """Return the statistics and all current grades; `run` counts what a batch has just done."""
+    """Return the statistics and all current grades; `run` counts what a batch has just done.
+
+    `evidence_only` counts the submissions with pictures or documents, but without a URDF.
+    """
     return to_json(
         {
             "schema": "grader/class/v1",
@@ -27,6 +31,7 @@ def render_class_json(
             **({"run": run} if run is not None else {}),
             "statistics": _statistics(statistics),
             "needs_a_look": looks.total,
+            "evidence_without_urdf": evidence_only,
             "students": [_grade(grade) for grade in grades],
         }
     )

@@ -17,8 +17,13 @@ _MAX_FAILURES = 10
 _LOW_DISCRIMINATION = 0.2
 
 
-def render_class(title: str, statistics: ClassStatistics, looks: AttentionList, console: Console) -> None:
-    """Print the summary of a class. Text of submissions is never interpreted as markup or control codes."""
+def render_class(
+    title: str, statistics: ClassStatistics, looks: AttentionList, evidence_only: int, console: Console
+) -> None:
+    """Print the summary of a class. Text of submissions is never interpreted as markup or control codes.
+
+    `evidence_only` counts the submissions without a URDF for which the rubric may ask for manual grading.
+    """
     verdicts = statistics.verdicts
     counted = [
         (verdicts.get("graded", 0), "graded"),
@@ -47,6 +52,17 @@ def render_class(title: str, statistics: ClassStatistics, looks: AttentionList, 
             wrapped(console, Text(printable(f"{look.who}: {look.why}")), 4, Text("  "))
     if looks.total > len(looks.listed):
         wrapped(console, Text(f"... and {looks.total - len(looks.listed)} more", style="dim"), 2)
+    if evidence_only:
+        console.print()
+        wrapped(console, Text(_without_urdf(evidence_only)), 0)
+
+
+def _without_urdf(count: int) -> str:
+    have = "submission has" if count == 1 else "submissions have"
+    return (
+        f"{count} {have} pictures or documents, but no URDF: the criteria of the URDF are failed. "
+        'Set `without_urdf = "manual"` in the rubric to grade them manually, or "failed" to keep this'
+    )
 
 
 def _print_marks(statistics: ClassStatistics, console: Console) -> None:

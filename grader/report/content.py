@@ -6,7 +6,7 @@ from itertools import groupby
 from typing import NamedTuple
 
 from grader.checks.manual import MANUAL_CHECKS
-from grader.grading.report import Report, Result
+from grader.grading.report import Exhibits, Report, Result
 from grader.problems import Problem
 from grader.report.locations import calls_text
 from grader.source import Location
@@ -158,13 +158,16 @@ def evidence(report: Report) -> Iterator[tuple[str, list[tuple[str, bool]]]]:
     """Yield the title of each part with its pieces of evidence, and whether files were found; then the other pictures."""
     parts = {part.id: part.title for part in report.rubric.parts}
     for part, exhibits in groupby(report.exhibits, key=lambda exhibits: exhibits.evidence.part):
-        listed = [(found, ", ".join(exhibit.words for exhibit in found.files)) for found in exhibits]
-        yield (
-            printable(parts[part]),
-            [(printable(f"{found.evidence.title}: {files or 'missing'}"), bool(files)) for found, files in listed],
-        )
+        yield printable(parts[part]), [(_exhibits_text(found), bool(found.files)) for found in exhibits]
     if report.others:
         yield "Other pictures and documents", [(printable(exhibit.words), True) for exhibit in report.others]
+
+
+def _exhibits_text(found: Exhibits) -> str:
+    """Return a piece of evidence with its files, or with those that are perhaps meant."""
+    files = ", ".join(exhibit.words for exhibit in found.files)
+    perhaps = enumerated([exhibit.words for exhibit in found.perhaps], _MAX_LISTED, "or")
+    return printable(f"{found.evidence.title}: {files or (f'perhaps {perhaps}' if perhaps else 'missing')}")
 
 
 def sentence(message: str) -> str:

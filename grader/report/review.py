@@ -10,6 +10,7 @@ from grader.report.console import wrapped
 from grader.text import counted_points, printable
 
 _INDENT = 2
+_WITHOUT_LINES = (".pdf", ".docx")  # the message names the page or the heading
 
 
 def render_pending(pending: PendingCriterion, position: str, console: Console) -> None:
@@ -28,8 +29,9 @@ def render_pending(pending: PendingCriterion, position: str, console: Console) -
     if criterion.answer:
         _print_block("Model answer", criterion.answer, console)
     if outcome.location is not None:
-        place = f"in {_where(pending, outcome.location.path)}, line {outcome.location.line}"
-        wrapped(console, Text(printable(place), "dim"), 0)
+        path = outcome.location.path
+        line = "" if path.lower().endswith(_WITHOUT_LINES) else f", line {outcome.location.line}"
+        wrapped(console, Text(printable(f"in {_where(pending, path)}{line}"), "dim"), 0)
 
 
 def mark_text(mark: Mark) -> str:

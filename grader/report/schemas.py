@@ -64,7 +64,7 @@ _RESULT = _object(
     },
     optional=("mark",),
 )
-_EXHIBIT = _object({"path": _TEXT, "size": _TOTAL, **_all(_nullable(_COUNT), "width height")})
+_EXHIBIT = _object({**_all(_TEXT, "path heading"), "size": _TOTAL, **_all(_nullable(_COUNT), "width height page")})
 _SUBMISSION = _object(
     {
         "id": _TEXT,
@@ -85,7 +85,7 @@ REPORT_SCHEMA = _document(
         **_all(_POINTS, "score max_score pending"),
         "problems": _array(_PROBLEM),
         "results": _array(_RESULT),
-        "evidence": _array(_object({**_all(_TEXT, "id part title"), "files": _array(_EXHIBIT)})),
+        "evidence": _array(_object({**_all(_TEXT, "id part title"), **_all(_array(_EXHIBIT), "files perhaps")})),
         "other_pictures": _array(_EXHIBIT),
     },
 )
@@ -148,6 +148,7 @@ CLASS_SCHEMA = _document(
         "run": _object(_all(_TOTAL, "total graded unchanged errored")),
         "statistics": _STATISTICS,
         "needs_a_look": _TOTAL,
+        "evidence_without_urdf": _TOTAL,
         "students": _array(_STUDENT),
     },
     optional=("run",),

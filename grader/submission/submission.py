@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from grader.errors import InputError, MissingElement, NotDecided
 from grader.files.opening import open_tree, tree_name
 from grader.files.reading import URDF_LIMIT, read_capped, read_standard_input, read_start, sha256_of
-from grader.files.tree import Tree, make_tree
+from grader.files.tree import File, Tree, make_tree
 from grader.package.package import NO_PACKAGE, Package, was_not_committed
 from grader.robot.reader import Reading, Verdict
 from grader.source import Source
@@ -59,12 +59,28 @@ class Submission:
 
         return DocumentCollection(self.tree)
 
+    @property
+    def readable_documents(self) -> "DocumentCollection | None":
+        """The documents in it; None where they must not be read."""
+        return None if self.no_documents else self.documents
+
     @cached_property
     def proofs(self) -> "tuple[Proof, ...]":
         """The pictures, films and PDF files in it."""
         from grader.documents.evidence import read_proofs
 
         return read_proofs(self.tree)
+
+    @property
+    def evidence(self) -> tuple[File, ...]:
+        """The files that may show the work: pictures, films, PDF and Word files."""
+        named = {proof.file.path for proof in self.proofs}
+        return tuple(file for path, file in self.tree.files.items() if path in named or file.suffix == ".docx")
+
+    @property
+    def has_evidence_only(self) -> bool:
+        """Return whether it has evidence, but no URDF."""
+        return isinstance(self.urdf, Absent) and bool(self.evidence)
 
     @property
     def path(self) -> str | None:

@@ -5,6 +5,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from grader.classroom.gradebook.evidence_only import count_evidence_only
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.lateness import read_time
@@ -36,13 +37,15 @@ def class_summary(
     rubric = grades.newest_rubric()
     found = statistics(grades.book, rubric)
     looks = grades.needing_attention(_MAX_LISTED)
+    evidence_only = count_evidence_only(grades.book, rubric)
     if kind is OutputFormat.JSON:
         from grader.report.class_json import render_class_json
 
         run = None
         if done is not None:
             run = {"total": done.total, "graded": done.graded, "unchanged": done.unchanged, "errored": done.errored}
-        return render_class_json(rubric, found, grades.all(), looks, run)
+        return render_class_json(rubric, found, grades.all(), looks, run, evidence_only)
     from grader.report.class_summary import render_class
 
-    return draw(partial(render_class, rubric.title, found, looks), screen)
+    shown = 0 if rubric.without_urdf else evidence_only
+    return draw(partial(render_class, rubric.title, found, looks, shown), screen)

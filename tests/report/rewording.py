@@ -48,7 +48,7 @@ def _submission(old: GradedSubmission, words: Words, path: Words) -> GradedSubmi
         old.verdict,
         old.is_single,
         "unread" if old.unread else "",
-        lambda path: Source(path, text),
+        quote=lambda path: Source(path, text),
     )
 
 

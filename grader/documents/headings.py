@@ -1,0 +1,185 @@
+"""The headings of a document: lines that name a task, a step or a question, and where the passage below each of them ends."""
+
+import re
+from bisect import bisect_right
+from collections.abc import Collection, Iterable
+from itertools import islice
+from typing import NamedTuple
+
+from grader.documents.labels import QUESTION_WORDS, STEPS, TASKS, WORDS, Label, read_label
+
+Pattern = tuple[str, ...]  # the words of a heading, such as ("required", "question")
+
+_QUESTIONS: tuple[Pattern, ...] = (("required", "question"), ("optional", "question"), ("question",))
+_MAX_LINE = 1000  # characters of a line in which a label is searched
+_MAX_WORDS = 6  # the first words of a line, which contain the label of a heading
+_MAX_SPLIT = 12  # words and signs at the beginning of a line that are looked at
+_MARKUP = re.compile(r"^[\s#>*\-_+|`]+")
+_MARKED = re.compile(r"(#{1,6})(?!#)")
+_FENCE = re.compile(r"\s*(?:```|~~~)")
+_SPACED = re.compile(r"#+\s")
+# Numbers that name a step: 1.15, and 15) or 15. with two digits, because one digit also numbers the items of a list.
+_DOTTED = re.compile(r"^\(?([1-9])\.(\d{1,2})\b[.):]?\s*")
+_NUMBERED = re.compile(r"^\(?([1-9]\d)[.):][*_]*(?:\s+|$)")
+_ITEM = re.compile(r"^\(?([1-9])[.):][*_]*(?:\s+|$)")
+_LEADING = frozenset({"to", "the", "my", "for", "lab"})  # before the words of a question
+_ANSWERS = frozenset({"answer", "answers"})
+_TASK = rf"(?:{'|'.join(sorted(TASKS))})(?:[\W_]*\d{{1,4}}(?!\d))+"
+_STEP = rf"(?:{'|'.join(sorted(STEPS))})[\W_]*\d{{1,4}}(?!\d)(?:(?:\s*[,&+/]?\s*|[-_])\d{{1,4}}(?!\d))*"
+_FILLERS = r"[\W_]*(?:(?:of|the|in|to|for|and|required|optional|question|answer)\b[\W_]*)*"
+# "Step 15: see task 2" names no task, and "Step 26: 0.6" no step 6.
+_LABEL = re.compile(rf"(?<![^\W\d_])(?:{_TASK}|{_STEP})(?:{_FILLERS}(?:{_TASK}|{_STEP}))*")
+
+
+class Heading(NamedTuple):
+    """A line that begins a passage, and the index of the line that ends it.
+
+    `level` is the number of `#` before it. `task` is that of the label, or of the headings above; `section` the task of the
+    heading without a step above. `pattern` are the words of a question and `number` its number, if it has one. An item is one of a
+    numbered list right below the heading of a task; a mention is a sentence that begins a passage, but ends none.
+    """
+
+    start: int
+    end: int
+    text: str
+    label: Label
+    level: int = 0
+    task: int | None = None
+    section: int | None = None
+    pattern: Pattern = ()
+    number: int | None = None
+    is_bold: bool = False
+    is_item: bool = False
+    is_mention: bool = False
+
+
+def find_headings(lines: list[str], name: str, patterns: Collection[Pattern] = ()) -> tuple[Heading, ...]:
+    """Return the headings among the lines of a document.
+
+    `name` is that of the file, which may name a task. `patterns` are the words of further headings, besides those of questions.
+    """
+    found: list[Heading] = []
+    known = (*patterns, *_QUESTIONS)
+    words = "|".join(sorted({re.escape(word) for pattern in known for word in pattern} | QUESTION_WORDS))
+    candidate = re.compile(rf"\d|#|\b(?:{words})", re.IGNORECASE)
+    task = section = read_label(name).task
+    is_fenced = False
+    for index, line in enumerate(lines):
+        is_fenced ^= _FENCE.match(line) is not None
+        if not candidate.search(line, 0, _MAX_LINE):
+            continue
+        above = found[-1] if found else None
+        heading = _read(line[:_MAX_LINE], index, known, above, is_marked=not is_fenced)
+        if heading is None:
+            continue
+        own = heading.label.task
+        if own is not None and not heading.is_mention:
+            section = own if not heading.label.steps else section if own == section else None
+            task = own
+        found.append(heading._replace(task=own if own is not None else task, section=section))
+    ending = [heading for heading in found if not heading.is_mention]
+    starts = [heading.start for heading in ending]
+    return tuple(
+        heading._replace(end=_end(heading, islice(ending, bisect_right(starts, heading.start), None), lines))
+        for heading in found
+    )
+
+
+def has_words(line: str) -> bool:
+    """Return whether a line contains text, not only markup or a picture."""
+    return any(map(str.isalnum, line))
+
+
+def _read(
+    line: str, index: int, patterns: Collection[Pattern], above: Heading | None, *, is_marked: bool
+) -> Heading | None:
+    """Return what a line begins, if it begins anything; its end and its tasks are not known yet."""
+    marked = _MARKED.match(line) if is_marked else None
+    plain = _MARKUP.sub("", line)
+    text = plain.rstrip(" *_|`#\t")
+    words = _first_words(plain)
+    label = _label(words)
+    pattern, number = question_of(plain, patterns)
+    is_bold = line.lstrip().startswith(("**", "__")) and line.rstrip(" :.").endswith(("**", "__"))
+    level = len(marked[1]) if marked else 0
+    heading = Heading(index, index, text, label, level, pattern=pattern, number=number, is_bold=is_bold)
+    if label.steps or label.task is not None:
+        begins = _label(words[:2])
+        is_short = len(words) <= _MAX_WORDS or begins.steps or begins.task is not None
+        return heading._replace(is_mention=not (is_short or marked or pattern))
+    if pattern or (marked and _SPACED.match(line) and has_words(line)):
+        return heading
+    item = _ITEM.match(plain)
+    if item and above is not None and not marked and (above.is_item or _is_task(above)):
+        return heading._replace(label=read_label(f"step {item[1]}"), is_item=True)
+    return None
+
+
+def _is_task(heading: Heading) -> bool:
+    """Return whether a heading names a task as a whole."""
+    return heading.label.task is not None and not (heading.label.steps or heading.is_mention or heading.pattern)
+
+
+def _first_words(plain: str) -> list[str]:
+    plain = _DOTTED.sub(r"task \1 step \2 ", plain)
+    plain = _NUMBERED.sub(r"step \1 ", plain)
+    return [word for word in plain.split(None, _MAX_SPLIT) if has_words(word)]
+
+
+def _label(words: list[str]) -> Label:
+    """Return the first label in the first words of a line."""
+    found = _LABEL.search(" ".join(words[:_MAX_WORDS]).lower())
+    return read_label(found[0] if found else "")
+
+
+def question_of(text: str, patterns: Collection[Pattern]) -> tuple[Pattern, int | None]:
+    """Return the pattern that a line or name begins with, in any order of its words, and the number after or between them."""
+    words = [word for word in text.split(None, _MAX_SPLIT) if has_words(word)]
+    tokens = _question_words(" ".join(words[: _MAX_WORDS + 2]))
+    for pattern in patterns:
+        count = len(pattern)
+        number = next((int(token) for token in tokens[1 : count + 1] if token.isdecimal() and len(token) < 5), None)
+        first = [token for token in tokens[: count + (number is not None)] if not token.isdecimal()]
+        is_short = count > 1 or number is not None or len(words) <= _MAX_WORDS or ":" in " ".join(text.split()[:2])
+        if sorted(first) == sorted(pattern) and is_short:
+            return pattern, number
+    return (), None
+
+
+def _question_words(text: str) -> list[str]:
+    """Return the words of a heading from those on that may name a question: "2. Task 1 - Answer to Q3" begins with "question"."""
+    tokens = WORDS.findall(text.lower())
+    while tokens:
+        has_number = len(tokens) > 1 and tokens[1].isdecimal()
+        if tokens[0] in _ANSWERS and has_number:
+            tokens[0] = "question"
+        elif read_label(" ".join(tokens[:2])).task is not None:
+            del tokens[:2]
+        elif tokens[0] in _LEADING or tokens[0] in _ANSWERS or tokens[0].isdecimal():
+            del tokens[0]
+        else:
+            break
+    return ["question" if token in QUESTION_WORDS else token for token in tokens]
+
+
+def _end(heading: Heading, later: Iterable[Heading], lines: list[str]) -> int:
+    return next((other.start for other in later if _ends(heading, other, lines)), len(lines))
+
+
+def _ends(heading: Heading, other: Heading, lines: list[str]) -> bool:
+    """Return whether a later heading ends the passage.
+
+    Below a heading that is marked as one, only such a heading does, or a line that is bold or names task and step at once. A heading without a
+    step, such as "Answer" or "REQUIRED Question:" below "Step 15", does not end a passage without text.
+    """
+    if other.is_item:
+        return heading.is_item
+    if heading.pattern and other.pattern and not (heading.level and not other.level):
+        return True
+    if (other.label.steps and not other.pattern) or other.label.task is not None:
+        return not heading.level or other.level > 0 or other.is_bold or other.label.is_complete
+    if heading.level and (not other.level or (other.level > heading.level and not other.pattern)):
+        return False
+    between = lines[heading.start + 1 : other.start]
+    is_title = heading.level or ":" not in heading.text or heading.text.endswith(":")
+    return any(map(has_words, between)) or not is_title

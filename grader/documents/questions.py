@@ -1,0 +1,91 @@
+"""Headings that several questions share, such as "REQUIRED Question:": which of them belongs to which question."""
+
+import re
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from grader.documents.headings import Pattern
+from grader.documents.labels import WORDS
+
+_ORDINAL = re.compile(r"\s*(\S.*?)\s+(\d{1,3})\s+of\s+(\d{1,3})\s*")
+
+
+class Ordinal(NamedTuple):
+    """A question by its place among all: "required question 1 of 2"."""
+
+    pattern: Pattern
+    number: int
+    total: int
+
+
+class Answer(NamedTuple):
+    """A passage below a heading that questions share: the number of the heading, and the task that it is below.
+
+    The passage is empty if it holds only the question, and a line if it ends with the heading's own.
+    """
+
+    heading: str
+    number: int | None
+    section: int | None
+    is_empty: bool
+    is_line: bool
+
+
+class Match(NamedTuple):
+    """The answers that belong to a question, by their index: exactly one, unless it is not certain. `how` says why."""
+
+    indices: tuple[int, ...]
+    is_certain: bool
+    how: str
+
+
+def read_ordinal(place: str) -> Ordinal | None:
+    """Return the place among all questions that a text such as "required question 1 of 2" names; None for other texts."""
+    found = _ORDINAL.fullmatch(place.lower())
+    return Ordinal(tuple(WORDS.findall(found[1])), int(found[2]), int(found[3])) if found else None
+
+
+def match_answer(wanted: Ordinal, task: int | None, answers: Sequence[Answer]) -> Match | None:
+    """Return which of the answers in one document belongs to a question of a task; None if there is none for it.
+
+    In this order: the only one below the heading of the task; the one with its number; the one at its place, if there are as many
+    as questions. Anything else is not certain.
+    """
+    if not answers:
+        return None
+    below = [index for index, answer in enumerate(answers) if answer.section == task]
+    if task is not None and len(below) == 1 and all(answer.section is not None for answer in answers):
+        return Match(tuple(below), True, f"the only {_shown(answers, below)} below the heading of task {task}")
+    written = [index for index, answer in enumerate(answers) if not answer.is_empty]
+    numbers = [answer.number for answer in answers]
+    if None not in numbers and max(filter(None, numbers), default=0) <= wanted.total:
+        hits = [index for index, number in enumerate(numbers) if number == wanted.number]
+        if len(hits) > 1:  # a table of contents, a list of the questions
+            hits = [index for index in hits if index in written] or hits
+        if not hits:
+            return None
+        if len(hits) == 1:
+            section = answers[hits[0]].section
+            is_other = len(wanted.pattern) == 1 and None not in (section, task) and section != task
+            where = f", but below the heading of task {section}" if is_other else ""
+            return Match(tuple(hits), not is_other, f"by the number in {_shown(answers, hits)}{where}")
+        return Match(tuple(hits), False, f"{len(hits)} headings like {_shown(answers, hits)}")
+    for indices in (list(range(len(answers))), written, _repeated(answers, wanted.total)):
+        in_order = all(answers[index].number in (None, place) for place, index in enumerate(indices, start=1))
+        if len(indices) == wanted.total and in_order:
+            index = indices[wanted.number - 1]
+            how = f"in order: heading {wanted.number} of {wanted.total} like {_shown(answers, [index])}"
+            return Match((index,), True, how)
+    indices = written or list(range(len(answers)))
+    count = f"{len(indices)} heading{'' if len(indices) == 1 else 's'} like {_shown(answers, indices)}"
+    return Match(tuple(indices), False, f"{count} for {wanted.total} questions: it may answer another question")
+
+
+def _repeated(answers: Sequence[Answer], total: int) -> list[int]:
+    """Return the answers that follow a list of all questions; none without such a list."""
+    is_list = len(answers) == 2 * total and all(answer.is_line for answer in answers[:total])
+    return list(range(total, 2 * total)) if is_list and not any(answer.is_line for answer in answers[total:]) else []
+
+
+def _shown(answers: Sequence[Answer], indices: Sequence[int]) -> str:
+    return f'"{answers[indices[0]].heading}"'

@@ -1,0 +1,133 @@
+"""Evidence inside documents, misspelt names of pictures, and what is listed as perhaps meant."""
+
+from collections.abc import Mapping
+
+import pytest
+
+from grader.documents.evidence import Found, find_evidence
+from tests.checks.submissions import REFERENCE, URDF, Submitted, png
+from tests.documents.files import PICTURE, docx, pdf
+
+STEP_8 = ["task 1 step 8"]
+WEBCAM = ["task 3 step 3", "task 3", "webcam", "camera"]
+Files = Mapping[str, str | bytes]
+
+
+def find(files: Files, names: list[str]) -> Found:
+    """Return the evidence with one of these names in a submission of some files."""
+    submission = Submitted({URDF: REFERENCE.files[URDF], **files}).submission
+    return find_evidence(submission.proofs, names, submission.readable_documents)
+
+
+def words(files: Files, names: list[str]) -> tuple[list[str], list[str]]:
+    """Return what is found and what is perhaps meant, in words and without sizes."""
+    found = find(files, names)
+    return tuple([exhibit.words.partition(" (")[0] for exhibit in exhibits] for exhibits in found)  # type: ignore[return-value]
+
+
+@pytest.mark.parametrize(
+    ("path", "names"),
+    [
+        ("Part3_step3.png", WEBCAM),
+        ("Taks1_Step8.png", STEP_8),
+        ("Task1_Setp8.png", STEP_8),
+        ("Tsak 1 stpe 8.png", STEP_8),
+        ("Exercise 1/step 8.png", STEP_8),
+        ("task1step8.png", STEP_8),
+        ("T1S8.png", STEP_8),
+        ("Step8_Task1.png", STEP_8),
+        ("section1-step8.pdf", STEP_8),
+    ],
+)
+def test_misspelt_names_that_are_unambiguous(path: str, names: list[str]) -> None:
+    """A misspelt name with a task and a step, or another word for a task, is matched."""
+    assert words({path: png()}, names) == ([path], [])
+
+
+@pytest.mark.parametrize(
+    ("path", "names"),
+    [
+        ("step8.png", STEP_8),
+        ("Lab6_Step8.png", STEP_8),
+        ("setp 8.jpg", STEP_8),
+        ("webcm.png", WEBCAM),
+        ("my_camrea.png", WEBCAM),
+        ("pictures/step3.png", WEBCAM),
+    ],
+)
+def test_ambiguous_names_are_perhaps_meant(path: str, names: list[str]) -> None:
+    """A step without a task, or a misspelt word, is listed as perhaps meant."""
+    assert words({path: png()}, names) == ([], [path])
+
+
+@pytest.mark.parametrize(
+    ("path", "names"),
+    [
+        ("Part3_step3.png", STEP_8),
+        ("Taks1_Step18.png", STEP_8),
+        ("Taks2_Step8.png", STEP_8),
+        ("Task2_Step8.png", STEP_8),
+        ("Screenshot 2026-03-08.png", STEP_8),
+        ("Task1_Step8_webcm.png", WEBCAM),
+        ("desk.png", WEBCAM),
+    ],
+)
+def test_other_names_are_not_meant(path: str, names: list[str]) -> None:
+    """A name of another task or step is neither found nor perhaps meant."""
+    assert words({path: png()}, names) == ([], [])
+
+
+def test_a_correct_name_wins() -> None:
+    """If a file has the correct name, neither misspelt names nor documents are searched."""
+    files = {"Task1_Step8.png": png(), "Taks1_Step8.png": png(), "step8.png": png(), "report.pdf": b"damaged"}
+    assert words(files, STEP_8) == (["Task1_Step8.png"], [])
+
+
+def test_a_heading_in_a_pdf_is_named_with_its_page() -> None:
+    """A heading with a picture on its pages is found; the file and the page are named."""
+    data = pdf(["Lab 6"], ["Task 1: Step 8", PICTURE, "Task 1: Step 18"], [PICTURE, "Task 3 - Step 3", PICTURE])
+    assert words({"report.pdf": data}, STEP_8) == (["Task 1: Step 8, page 2 of report.pdf"], [])
+    assert words({"report.pdf": data}, ["task 1 step 18"]) == (["Task 1: Step 18, page 2 of report.pdf"], [])
+    assert words({"report.pdf": data}, WEBCAM) == (["Task 3 - Step 3, page 3 of report.pdf"], [])
+    assert words({"report.pdf": data}, ["task 1 step 36"]) == ([], [])
+    (exhibit,) = find({"report.pdf": data}, STEP_8).files
+    assert (exhibit.path, exhibit.size, exhibit.heading, exhibit.page) == ("report.pdf", len(data), "Task 1: Step 8", 2)
+
+
+def test_a_heading_in_a_word_file_is_named() -> None:
+    """A heading in a Word file is found, with its page if Word has saved the pages."""
+    styles = ["Heading 1", "Heading 2", "", "Heading 2", ""]
+    plain = docx("Task 1", "Step 8", PICTURE, "Step 18", PICTURE, styles=styles)
+    assert words({"a.docx": plain}, STEP_8) == (["Step 8 in a.docx"], [])
+    paged = docx("Task 1", "Step 8", PICTURE, "\fStep 18", PICTURE, styles=styles)
+    assert words({"a.docx": paged}, ["task 1 step 18"]) == (["Step 18, page 2 of a.docx"], [])
+    titled = docx("The webcam in RViz", PICTURE, styles=["Heading 1"])
+    assert words({"a.docx": titled}, WEBCAM) == (["The webcam in RViz in a.docx"], [])
+
+
+def test_a_heading_without_a_picture_is_perhaps_meant() -> None:
+    """A heading without a picture below it may be a table of contents or an answer, and a plain number one of the handout."""
+    assert words({"a.docx": docx("Task 1: Step 8", "See below.", "Task 1: Step 18", PICTURE)}, STEP_8) == (
+        [],
+        ["Task 1: Step 8 in a.docx"],
+    )
+    contents = pdf(["Task 1: Step 8 ..... 2", "Task 1: Step 18 ..... 3"], ["Task 1: Step 8", PICTURE])
+    assert words({"a.pdf": contents}, STEP_8) == (["Task 1: Step 8, page 2 of a.pdf"], [])
+    handout = pdf(["Task 1", "18. Put the lidar on the box.", PICTURE])
+    assert words({"a.pdf": handout}, ["task 1 step 18"]) == ([], ["18. Put the lidar on the box., page 1 of a.pdf"])
+    mentioned = pdf(["As you can see in the picture of task 1 step 8 it stands.", PICTURE, "Task 1: Step 18"])
+    assert words({"a.pdf": mentioned}, STEP_8) == ([], [])
+
+
+def test_documents_that_cannot_be_searched_are_perhaps_meant() -> None:
+    """A document of pictures without a heading, or one that cannot be read, may show anything."""
+    assert words({"scan.pdf": pdf([PICTURE], [PICTURE])}, STEP_8) == ([], ["scan.pdf"])
+    assert words({"scan.pdf": b"damaged"}, STEP_8) == ([], ["scan.pdf"])
+    assert words({"notes.pdf": pdf(["No picture at all."])}, STEP_8) == ([], [])
+    assert words({"Task1_Step18.pdf": pdf([PICTURE])}, STEP_8) == ([], [])
+
+
+def test_a_long_heading_is_cut() -> None:
+    """Only the beginning of a long heading is shown."""
+    (exhibit,) = find({"a.pdf": pdf(["Task 1: Step 8 " + "x" * 500, PICTURE])}, STEP_8).files
+    assert exhibit.words == f"Task 1: Step 8 {'x' * 42}..., page 1 of a.pdf"
