@@ -35,7 +35,8 @@ def grade(
 
     A single URDF is graded only on parts that need no more, unless it `is_one_of_class`: a class is graded on the same parts.
     """
-    chosen, notes = _chosen_parts(rubric, submission, parts, is_whole=is_one_of_class or not submission.is_single)
+    is_whole = is_one_of_class or not submission.is_single
+    chosen, notes = _chosen_parts(rubric, submission, parts, is_whole=is_whole)
     grading = _Grading(submission, is_manual=rubric.without_urdf == "manual")
     for criterion in rubric.criteria:
         if criterion.part in chosen:
@@ -45,7 +46,7 @@ def grade(
         from grader.package.problems import package_problems  # a URDF on its own needs none of what reads a package
 
         problems += package_problems(submission.package)
-    evidence = exhibits_of(rubric, submission, chosen)
+    evidence = exhibits_of(rubric, submission, chosen if is_whole else ())
     notes += not_searched(submission, evidence[0])
     results = tuple(grading.results.values())
     return Report(GradedSubmission.of(submission), rubric, chosen, results, problems, *evidence, notes)
