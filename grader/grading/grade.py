@@ -1,7 +1,7 @@
 """Grade a submission: run the rubric's checks in order, and attribute each failure."""
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 from grader.checks.outcome import Outcome, fault_of, location_of, pending
 from grader.checks.registry import Check, Subject
@@ -107,13 +107,13 @@ class _Grading:
         """Run the check of a criterion, or skip it because of another that failed."""
         cause = self._cause(criterion) if criterion.requires or self.robot is None else None
         result = Result(criterion, _skipped(cause), cause) if cause else self._check(criterion)
-        self.results[criterion.id] = result
+        self.results[criterion.id] = self._carried(result)
 
     def _cause(self, criterion: Criterion) -> str | None:
         """Return the criterion because of which this one is skipped, if there is one."""
         for name in criterion.requires:
             required = self.results.get(name)
-            if required is not None and required.outcome.status in ("failed", "skipped"):
+            if required is not None and required.outcome.status in ("failed", "skipped") and not required.carried:
                 return required.because or name
         if self.robot is None and criterion.check.subject == "robot":
             of_urdf = (result for result in self.results.values() if result.criterion.check.subject == "urdf")
@@ -122,17 +122,43 @@ class _Grading:
 
     def _check(self, criterion: Criterion) -> Result:
         try:
-            name = criterion.check.subject
-            subject = self._subjects.get(name) or self._missing(name)
-            outcome = criterion.check.function(subject, **criterion.arguments)
-            fault = fault_of(outcome) if criterion.check.distribution else ""
-            if fault:
-                return Result(criterion, _errored(criterion.check, fault))
-            if outcome.status == "failed":
-                outcome = self._explained(outcome)
-            return Result(criterion, outcome)
+            result = self._run(criterion, criterion.check, criterion.arguments)
         except MissingElement as missing:
             return self._miss(criterion, missing)
+        return result._replace(outcome=self._explained(result.outcome)) if result.outcome.status == "failed" else result
+
+    def _carried(self, result: Result) -> Result:
+        """Return a failure as carried if one of its causes failed before it, and the fact that then counts instead holds."""
+        carried = result.criterion.carried
+        if carried is None or result.outcome.status != "failed":
+            return result
+        before = (self.results[name] for name in carried.causes if name in self.results)
+        cause = next((found for found in before if found.outcome.status == "failed"), None)
+        if cause is None:
+            return result
+        try:
+            other = self._run(result.criterion, carried.check, carried.arguments)
+        except MissingElement:
+            return result
+        if other.outcome.status == "pending":
+            reason = f"whether this is due to {cause.criterion.id} alone cannot be decided"
+            return other._replace(outcome=pending(f"{result.outcome.message}; {reason}: {other.outcome.message}"))
+        if other.outcome.status == "errored":
+            return other
+        if other.outcome.status != "passed":
+            return result
+        outcome = result.outcome._replace(location=cause.outcome.location)  # what has to be changed
+        return result._replace(outcome=outcome, carried=cause.carried or cause.criterion.id)
+
+    def _run(self, criterion: Criterion, check: Check, arguments: Mapping[str, Any]) -> Result:
+        """Return the result of a check; raise MissingElement."""
+        try:
+            subject = self._subjects.get(check.subject) or self._missing(check.subject)
+            outcome = check.function(subject, **arguments)
+            fault = fault_of(outcome) if check.distribution else ""
+            return Result(criterion, _errored(check, fault) if fault else outcome)
+        except MissingElement:
+            raise
         except (UnknownShape, NotDecided) as reason:
             return Result(criterion, pending(f"{reason}; needs manual grading"))
         except KeyboardInterrupt:
@@ -140,7 +166,7 @@ class _Grading:
         except BaseException as error:  # noqa: BLE001  a faulty check, even one that exits, affects only its own criterion
             from traceback import format_exc  # needed only for a fault of the grader
 
-            return Result(criterion, _errored(criterion.check, _text_of(error)), traceback=format_exc())
+            return Result(criterion, _errored(check, _text_of(error)), traceback=format_exc())
 
     def _missing(self, name: Subject) -> object:
         """Return the package; raise MissingElement or NotDecided for any other subject that the submission does not have."""

@@ -83,8 +83,10 @@ def from_record(text: str, rubric: Rubric, quote: Quote | None = None, template:
 
 
 def _result(same: dict[str, Outcome], result: Result) -> Any:
-    criterion, outcome, because, traceback, _ = result
+    criterion, outcome, because, traceback, _, carried = result
     stored = _stored(outcome)
+    if carried:
+        return criterion.position, stored, because, traceback, None, carried
     if because is None and not traceback:
         template = same.get(criterion.id)
         return criterion.position if template and _stored(template) == stored else (criterion.position, stored)

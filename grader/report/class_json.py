@@ -73,7 +73,7 @@ def _statistics(statistics: ClassStatistics) -> dict[str, Any]:
                 "max_points": exact(row.criterion.points),
                 "passed": row.passed,
                 "marked_by_hand": row.marked,
-                **{status: getattr(row, status) for status in ("failed", "skipped", "pending", "errored")},
+                **{status: getattr(row, status) for status in ("carried", "failed", "skipped", "pending", "errored")},
                 "share": rounded(row.share),
                 "discrimination": rounded(row.discrimination),
             }

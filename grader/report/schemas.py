@@ -53,7 +53,7 @@ _RESULT = _object(
         **_all(_TEXT, "id part title message feedback"),
         **_all(_POINTS, "points max_points"),
         **_all(_VALUE, "measured expected"),
-        **_all(_nullable(_TEXT), "unit because"),
+        **_all(_nullable(_TEXT), "unit because carried"),
         "status": {"enum": ["passed", "failed", "skipped", "pending", "errored"]},
         "tolerance": _nullable(_POINTS),
         "location": _nullable(_LOCATION),
@@ -111,7 +111,7 @@ _CRITERION_STATISTICS = _object(
     {
         "id": _TEXT,
         "max_points": _POINTS,
-        **_all(_TOTAL, "passed marked_by_hand failed skipped pending errored"),
+        **_all(_TOTAL, "passed marked_by_hand carried failed skipped pending errored"),
         "share": _nullable(_POINTS),
         "discrimination": _nullable({"type": "number", "minimum": -1, "maximum": 1}),
     }

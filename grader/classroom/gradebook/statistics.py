@@ -10,7 +10,7 @@ from math import sqrt
 from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.gradebook.result import UNITS_PER_POINT
+from grader.classroom.gradebook.result import CARRIED, EARNED, UNITS_PER_POINT
 from grader.grading.rubric import Criterion, Rubric
 
 _BINS = 10
@@ -24,6 +24,8 @@ _GRADED = "FROM grade WHERE verdict = 'graded' AND rubric = ?"
 class CriterionStatistics:
     """The results of a criterion. The check passed for `passed` of `decided` students, `marked` have a manual mark.
 
+    For `carried` students it failed because of an earlier mistake alone: they have the points.
+
     `share` is the mean share of its points that was earned (the lower, the harder). `discrimination` is the correlation of that
     share with the points of all other criteria: below about 0.2 the criterion says little about a student, below 0 it may be wrong.
     It is None if all students have the same result.
@@ -33,6 +35,7 @@ class CriterionStatistics:
     decided: int
     passed: int
     marked: int
+    carried: int
     failed: int
     skipped: int
     pending: int
@@ -124,7 +127,7 @@ def _patterns(book: Gradebook, rubric: Rubric) -> Iterator[_Pattern]:
     for statuses, score, is_pending, students, student in chain(unmarked, marked):
         marks = _marks(book, student) if student else {}
         earned = [
-            marks.get(criterion.id, {"p": _units(criterion) or 1, "f": 0, "s": 0}.get(status))
+            marks.get(criterion.id, (_units(criterion) or 1) * EARNED[status] if status in EARNED else None)
             for criterion, status in zip(rubric.criteria, statuses, strict=True)
         ]
         total = sum(units or 0 for units, criterion in zip(earned, rubric.criteria, strict=True) if criterion.points)
@@ -159,8 +162,9 @@ def _criterion(criterion: Criterion, patterns: Iterable[_Pattern]) -> CriterionS
     variances = (count * xx - x * x) * (count * rr - r * r)
     correlation = (count * xr - x * r) / sqrt(variances) if variances else None
     share = x / (count * (_units(criterion) or 1)) if count else None
-    passed, marked, failed, skipped, pending, errored = (statuses[status] for status in f"p{_MARKED}fs?!")
-    return CriterionStatistics(criterion, count, passed, marked, failed, skipped, pending, errored, share, correlation)
+    passed, marked, carried, failed, skipped, pending, errored = (statuses[s] for s in f"p{_MARKED}{CARRIED}fs?!")
+    counts = count, passed, marked, carried, failed, skipped, pending, errored
+    return CriterionStatistics(criterion, *counts, share, correlation)
 
 
 def _ranked_score(values: list[tuple[int, int]], rank: int) -> Decimal:

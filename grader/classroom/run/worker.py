@@ -9,7 +9,14 @@ from pathlib import Path
 from typing import NamedTuple
 
 from grader.checks.outcome import Outcome, Status
-from grader.classroom.gradebook.result import NOT_GRADED, STATUS_LETTERS, UNITS_PER_POINT, GradingResult, Verdict
+from grader.classroom.gradebook.result import (
+    CARRIED,
+    NOT_GRADED,
+    STATUS_LETTERS,
+    UNITS_PER_POINT,
+    GradingResult,
+    Verdict,
+)
 from grader.classroom.intake.fingerprint import fingerprint
 from grader.classroom.intake.opening import open_submission
 from grader.classroom.run.pool import NO_MEMORY
@@ -125,8 +132,8 @@ def result_of(
     """Return a report as plain data; `seen` is the fingerprint of the files."""
     statuses = [NOT_GRADED] * len(report.rubric.criteria)
     failures = []
-    for criterion, outcome, *_ in report.results:
-        statuses[criterion.position] = STATUS_LETTERS[outcome.status]
+    for criterion, outcome, *_, carried in report.results:
+        statuses[criterion.position] = CARRIED if carried else STATUS_LETTERS[outcome.status]
         if outcome.status == "failed":
             mistake = outcome.mistake or outcome.message
             is_long = len(mistake) > MAX_MISTAKE
