@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any
 from grader.checks.outcome import Outcome, fault_of, location_of, pending
 from grader.checks.registry import Check, Subject
 from grader.errors import InputError, MissingElement, NotDecided
+from grader.grading.explanation import explained
 from grader.grading.report import Exhibits, GradedSubmission, Report, Result
 from grader.grading.rubric import Criterion, Rubric
 from grader.problems import Problem
-from grader.robot import catalogue
 from grader.robot.kinematics import Configuration
 from grader.robot.shapes import UnknownShape
 from grader.source import LazyLocation, Location
@@ -23,10 +23,6 @@ if TYPE_CHECKING:
 _MAX_PICTURES = 50
 _EXPANDED = "the URDF is xacro: its properties and expressions were evaluated, as xacro does before ROS 2 reads it"
 _ELSEWHERE = "the graded URDF is outside the graded package"
-
-# Problems that explain a measurement at the same place, and those with which ROS 2 drops visuals of a link.
-_EXPLAINING = (catalogue.BAD_COLOUR, catalogue.COLOUR_COUNT, catalogue.DEGREES, catalogue.UNDEFINED_MATERIAL)
-_DROPPING = (catalogue.BAD_VISUAL, catalogue.BAD_INERTIAL)
 
 
 def grade(rubric: Rubric, submission: Submission, parts: Sequence[str] = ()) -> Report:
@@ -81,10 +77,14 @@ def _evidence(
     return found, describe(others[:_MAX_PICTURES])
 
 
+def open_reference(rubric: Rubric) -> Submission:
+    """Return a rubric's own reference solution; raise InputError where it cannot be read."""
+    return open_submission(str(rubric.path.parent / rubric.reference), wanted=rubric.urdf, package=rubric.package)
+
+
 def grade_reference(rubric: Rubric) -> Report:
     """Return the report on a rubric's own reference solution; raise InputError where it cannot be read."""
-    path = rubric.path.parent / rubric.reference
-    return grade(rubric, open_submission(str(path), wanted=rubric.urdf, package=rubric.package))
+    return grade(rubric, open_reference(rubric))
 
 
 class _Grading:
@@ -125,7 +125,9 @@ class _Grading:
             result = self._run(criterion, criterion.check, criterion.arguments)
         except MissingElement as missing:
             return self._miss(criterion, missing)
-        return result._replace(outcome=self._explained(result.outcome)) if result.outcome.status == "failed" else result
+        if result.outcome.status != "failed":
+            return result
+        return result._replace(outcome=explained(result.outcome, self.problems))
 
     def _carried(self, result: Result) -> Result:
         """Return a failure as carried if one of its causes failed before it, and the fact that then counts instead holds."""
@@ -142,7 +144,8 @@ class _Grading:
             return result
         if other.outcome.status == "pending":
             reason = f"whether this is due to {cause.criterion.id} alone cannot be decided"
-            return other._replace(outcome=pending(f"{result.outcome.message}; {reason}: {other.outcome.message}"))
+            message = f"{result.outcome.message}; {reason}: {other.outcome.message}"
+            return other._replace(outcome=pending(message, other.outcome.mistake))
         if other.outcome.status == "errored":
             return other
         if other.outcome.status != "passed":
@@ -160,7 +163,8 @@ class _Grading:
         except MissingElement:
             raise
         except (UnknownShape, NotDecided) as reason:
-            return Result(criterion, pending(f"{reason}; needs manual grading"))
+            cause = reason.cause if isinstance(reason, NotDecided) else "mesh files are not opened"
+            return Result(criterion, pending(f"{reason}; needs manual grading", cause))
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # noqa: BLE001  a faulty check, even one that exits, affects only its own criterion
@@ -184,22 +188,8 @@ class _Grading:
         outcome = Outcome(
             "failed", str(missing), location=location_of(at), mistake=missing.mistake, problem=missing.problem
         )
-        return Result(criterion, self._explained(outcome, missing.name if missing.kind == "visual" else None))
-
-    def _explained(self, outcome: Outcome, link: str | None = None) -> Outcome:
-        """Return a failure with the problem that explains it: at its place, or why ROS 2 drops the visuals of a link."""
-        mistake = outcome.mistake or outcome.message
-        for problem in self.problems:
-            if link is not None and problem.kind in _DROPPING and problem.subject == link:
-                message = f"{outcome.message}: {problem.message}"
-                return outcome._replace(
-                    message=message, location=problem.location, mistake=mistake, problem=problem.message
-                )
-            explains = problem.kind in _EXPLAINING or (problem.kind is catalogue.DEFAULT_AXIS and outcome.unit == "deg")
-            if link is None and explains and problem.location == outcome.location:
-                message = f"{outcome.message} ({problem.code}: {problem.message})"
-                return outcome._replace(message=message, mistake=mistake, problem=problem.message)
-        return outcome
+        link = missing.name if missing.kind == "visual" else None
+        return Result(criterion, explained(outcome, self.problems, link))
 
 
 def _skipped(cause: str) -> Outcome:

@@ -119,7 +119,9 @@ _CRITERION_STATISTICS = _object(
 _STATISTICS = _object(
     {
         "counts": _object(dict.fromkeys(_STATUSES, _COUNT), optional=_STATUSES),
-        **_all(_TOTAL, "graded pending"),
+        **_all(_TOTAL, "graded pending undecided"),
+        "points": _object(_all(_POINTS, "earned lost pending")),
+        "reasons": _array(_object({"reason": _TEXT, "count": _COUNT})),
         **_all(_POINTS, "max_score mean deviation lowest median highest"),
         "tenths": {**_array(_TOTAL), "minItems": 10, "maxItems": 10},
         "criteria": _array(_CRITERION_STATISTICS),
@@ -145,6 +147,7 @@ CLASS_SCHEMA = _document(
         "rubric": _RUBRIC,
         "run": _object(_all(_TOTAL, "total graded unchanged errored")),
         "statistics": _STATISTICS,
+        "identical": _array(_object({"students": _array(_TEXT), "same_file": _array(_array(_TEXT))})),
         "needs_a_look": _TOTAL,
         "students": _array(_STUDENT),
     },

@@ -101,19 +101,22 @@ class Submission:
         match self.urdf:
             case Read(reading=reading):
                 return reading
-            case Unreadable(reason=reason) | NeedsExpansion(reason=reason):
-                raise NotDecided(reason)
+            case Unreadable(reason=reason):
+                raise NotDecided(reason, "the URDF cannot be read")
+            case NeedsExpansion(reason=reason, problems=problems):
+                raise NotDecided(reason, problems[0].kind.title if problems else "xacro")
             case Absent():
                 self._refuse_unopened("URDF")
         count = len(self.tree.files)
         files = f"none of the {count} files contains a <robot>" if count > 1 else "the only file contains no <robot>"
-        message = f"no URDF was submitted: {files}" if count else "no URDF was submitted"
-        raise MissingElement("URDF", "", message=message)
+        raise MissingElement("URDF", "", message="no URDF was submitted", detail=f": {files}" if count else "")
 
     def _refuse_unopened(self, wanted: str) -> None:
         if self.tree.unopened:
             archives = ", ".join(archive.path for archive in self.tree.unopened[:3])
-            raise NotDecided(f"no {wanted} was found, but {archives} could not be opened")
+            raise NotDecided(
+                f"no {wanted} was found, but {archives} could not be opened", "an archive could not be opened"
+            )
 
     def source(self, path: str) -> Source | None:
         """Return the text of one of its files, for quoting; None if it cannot be read."""

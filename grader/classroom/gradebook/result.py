@@ -16,7 +16,11 @@ EARNED = {"p": 1, CARRIED: 1, "f": 0, "s": 0}  # the share of the points, by the
 
 
 class GradingResult(NamedTuple):
-    """The result of one submission. `statuses` has a letter for each criterion of the rubric; points are in ten-thousandths."""
+    """The result of one submission. `statuses` has a letter for each criterion of the rubric; points are in ten-thousandths.
+
+    `failures` is JSON, see `Failure`. `undecided` says why most of the undecided automatic points need manual grading; `urdf` and
+    `robot` are the hashes of the URDF and of its normal form.
+    """
 
     key: str
     verdict: Verdict
@@ -29,6 +33,9 @@ class GradingResult(NamedTuple):
     failures: str = "[]"
     record: bytes = b""
     reason: str = ""
+    undecided: str = ""
+    urdf: str = ""
+    robot: str = ""
 
 
 def criterion_points(rubric: Rubric, statuses: str, marks: Mapping[str, Decimal]) -> dict[str, Decimal | None]:
