@@ -5,6 +5,7 @@ from hashlib import sha256
 from typing import Any
 
 from grader.robot.model import Collision, Joint, Link, Robot, Visual
+from grader.robot.reader import Reading
 
 _NAMES = ("name", "material_name")  # of materials: nothing outside of the file refers to them
 
@@ -22,13 +23,15 @@ def normal_form(robot: Robot) -> tuple[Any, ...]:
     return tuple(sorted(links, key=repr)), tuple(sorted(joints, key=repr))
 
 
-def robot_hash(robot: Robot | None) -> str:
-    """Return the hash of a robot's normal form; empty without a robot, or with one that has no links."""
-    return (
-        sha256(repr(normal_form(robot)).encode("utf-8", "backslashreplace")).hexdigest()
-        if robot and robot.links
-        else ""
-    )
+def robot_hash(reading: Reading) -> str:
+    """Return the hash of a robot's normal form, with the problems of its file; empty without a robot that has links.
+
+    The problems count because ROS 2 ignores what is wrong: without them, different mistakes could give the same robot.
+    """
+    if reading.robot is None or not reading.robot.links:
+        return ""
+    problems = sorted((problem.code, problem.message) for problem in reading.problems)
+    return sha256(repr((problems, normal_form(reading.robot))).encode("utf-8", "backslashreplace")).hexdigest()
 
 
 def _renamed(element: Link | Joint, kept: set[str]) -> tuple[Any, ...]:

@@ -96,7 +96,7 @@ def robot_hashes(submission: Submission) -> tuple[str, str]:
     urdf = submission.urdf
     if not isinstance(urdf, Read | NeedsExpansion) or not urdf.data.strip():
         return "", ""
-    return sha256_of(urdf.data), robot_hash(urdf.reading.robot) if isinstance(urdf, Read) else ""
+    return sha256_of(urdf.data), robot_hash(urdf.reading) if isinstance(urdf, Read) else ""
 
 
 def _why_unreadable(submission: Submission) -> str:
