@@ -130,28 +130,33 @@ class _Grading:
         return result._replace(outcome=explained(result.outcome, self.problems))
 
     def _carried(self, result: Result) -> Result:
-        """Return a failure as carried if one of its causes failed before it, and the fact that then counts instead holds."""
+        """Return a failure, or a skip because of a cause, as carried if the fact that then counts instead holds."""
         carried = result.criterion.carried
-        if carried is None or result.outcome.status != "failed":
-            return result
-        before = (self.results[name] for name in carried.causes if name in self.results)
-        cause = next((found for found in before if found.outcome.status == "failed"), None)
-        if cause is None:
+        cause = self._cause_of(result, carried.causes) if carried is not None else None
+        if carried is None or cause is None:
             return result
         try:
             other = self._run(result.criterion, carried.check, carried.arguments)
         except MissingElement:
             return result
+        name, outcome = cause.criterion.id, result.outcome
+        if outcome.status == "skipped":
+            outcome = Outcome("failed", f"it cannot be measured, because {name} failed")
         if other.outcome.status == "pending":
-            reason = f"whether this is due to {cause.criterion.id} alone cannot be decided"
-            message = f"{result.outcome.message}; {reason}: {other.outcome.message}"
-            return other._replace(outcome=pending(message, other.outcome.mistake))
-        if other.outcome.status == "errored":
-            return other
-        if other.outcome.status != "passed":
-            return result
-        outcome = result.outcome._replace(location=cause.outcome.location)  # what has to be changed
-        return result._replace(outcome=outcome, carried=cause.carried or cause.criterion.id)
+            reason = f"whether this is due to {name} alone cannot be decided: {other.outcome.message}"
+            return other._replace(outcome=pending(f"{outcome.message}; {reason}", other.outcome.mistake))
+        if other.outcome.status == "passed":  # the place to look at is that of the mistake
+            outcome = outcome._replace(location=cause.outcome.location)
+            return Result(result.criterion, outcome, carried=cause.carried or name)
+        return other if other.outcome.status == "errored" else result
+
+    def _cause_of(self, result: Result, causes: Sequence[str]) -> Result | None:
+        """Return the first of these criteria that failed, if the result is a failure or a skip because of one of them."""
+        if result.outcome.status not in ("failed", "skipped"):
+            return None
+        names = [name for name in causes if result.because in (None, name)]
+        before = (self.results[name] for name in names if name in self.results)
+        return next((found for found in before if found.outcome.status == "failed"), None)
 
     def _run(self, criterion: Criterion, check: Check, arguments: Mapping[str, Any]) -> Result:
         """Return the result of a check; raise MissingElement."""

@@ -104,6 +104,17 @@ def test_a_carried_requirement_does_not_skip() -> None:
     assert statuses(report) == ["failed", "failed", "passed"]
 
 
+def test_a_skip_because_of_a_cause_is_a_failure() -> None:
+    """What cannot be measured because of the mistake keeps its points; a skip because of another criterion does not."""
+    report = report_on(
+        ask("one", fails_), ask("two", misses_), carried_from("three", ["two"], misses_), carried_from("four", ["one"], misses_),
+    )  # fmt: skip
+    assert statuses(report) == ["failed", "failed", "failed", "skipped"]
+    assert carried(report) == ["", "", "two", ""]
+    assert report.results[2].outcome.message == "it cannot be measured, because two failed"
+    assert report.results[2].because is None
+
+
 def test_an_undecided_fact_needs_manual_grading() -> None:
     """Whether to give the points is not guessed."""
 
@@ -255,6 +266,21 @@ def test_a_wrong_footprint_is_lost_with_and_without_an_early_mistake(footprint: 
     alone, both = lost(lab6(footprint)), lost(lab6(footprint, LEFT_HIGH))
     assert alone["footprint-at-wheel-bottoms"] == 6
     assert both == alone | {"left-wheel-placed": Decimal(2), "stands-on-ground": Decimal(1)}
+
+
+def test_a_misspelt_type_costs_once() -> None:
+    """The wheel would drive forward and turn about itself; one with a wrong axis as well would not."""
+    typo = ('type="continuous"', 'type="continous"')
+    expected = {"urdf-loads": 3, "left-wheel-continuous": 1, "right-wheel-continuous": 1}
+    assert lost(lab6(typo)) == expected
+    axes = ('axis xyz="0 0 1"', 'axis xyz="0 0 -1"')
+    assert lost(lab6(typo, axes)) == expected | {"left-wheel-forward": 6, "right-wheel-forward": 6}
+
+
+def test_what_was_not_built_is_counted_where_it_is_missing() -> None:
+    """A base without a box hides neither the wheels nor the lidar, but what is about the box itself is lost."""
+    no_box = ('<box size="0.6 0.4 0.2"/>', '<box size="0.6, 0.4, 0.2"/>')
+    assert set(lost(lab6(no_box))) == {"base-box", "base-on-ground", "base-green"}
 
 
 def test_a_slanted_lidar_is_not_excused_by_the_base() -> None:
