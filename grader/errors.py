@@ -30,7 +30,14 @@ class RubricError(GraderError):
 
 
 class NotDecided(LookupError):
-    """Something that cannot be determined statically, and needs manual grading. The message says why."""
+    """Something that cannot be determined statically, and needs manual grading. The message says why.
+
+    `cause` is the reason without what differs between students, such as the names of their files.
+    """
+
+    def __init__(self, message: str, cause: str = "") -> None:
+        super().__init__(message)
+        self.cause = cause
 
 
 class MissingElement(LookupError):

@@ -158,7 +158,7 @@ def _graded(folder: Path) -> Iterable[tuple[str, GradingResult]]:
 
 def _lost(graded: GradingResult) -> set[str]:
     """Return the criteria of the URDF that failed or were skipped."""
-    lost = {criterion.id for criterion, sign in zip(LAB6.criteria, graded.statuses, strict=True) if sign in "fs"}
+    lost = {criterion.id for criterion, sign in zip(LAB6.criteria, graded.statuses, strict=True) if sign in "fsc"}
     return lost & set(made_up.criteria())
 
 

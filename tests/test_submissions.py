@@ -16,13 +16,22 @@ REFERENCE = "submissions/reference/roscourse_sim_ws/src/my_robot"
 
 @every_sample
 def test_a_sample_loses_the_expected_criteria(name: str) -> None:
-    """The verdict and the criteria that do not pass are those in expected.toml."""
+    """The verdict, the criteria that cost points and those that are carried forward are those in expected.toml."""
     sample = SAMPLES[name]
     report = sample.grade()
     urdf = sample.open().urdf
     assert (urdf.loaded.verdict if isinstance(urdf, Read) else "missing") == sample.expected["verdict"]
     statuses = {result.criterion.id: result.outcome.status for result in report.results}
-    assert [name for name, status in statuses.items() if status in ("failed", "skipped")] == sample.expected["lost"]
+    carried = [result.criterion.id for result in report.results if result.carried]
+    lost = [name for name, status in statuses.items() if status in ("failed", "skipped") and name not in carried]
+    assert lost == sample.expected["lost"]
+    assert carried == sample.expected.get("carried", [])
+    costly = [
+        result.criterion
+        for result in report.results
+        if result.criterion.id in (*lost, *sample.expected.get("pending", []))
+    ]
+    assert report.max_score - report.score == sum(criterion.points for criterion in costly)
     assert [name for name, status in statuses.items() if status == "pending"] == sample.expected.get("pending", [])
     assert "errored" not in statuses.values()
 

@@ -142,8 +142,10 @@ def _has_only_texture(material: Material) -> bool:
 
 def _colourless(link: str, visual: Visual) -> Outcome:
     if visual.material is not None:
-        return pending(f"{link!r} is shown with a texture, which the grader does not open; needs manual grading")
+        message = f"{link!r} is shown with a texture, which the grader does not open; needs manual grading"
+        return pending(message, "textures are not opened")
     if visual.material_name:
         message = f"{link!r} has no colour: the material {visual.material_name!r} is not defined here"
-        return failed(message, place(visual.location, "name", "material"))
+        at = place(visual.location, "name", "material")
+        return failed(message, at, mistake=f"{link!r} has no colour: its material is not defined")
     return failed(f"{link!r} has no material, so RViz shows it in its default colour, red", place(visual.location))

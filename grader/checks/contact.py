@@ -46,7 +46,7 @@ def clear_of(robot: Configuration, *, link: str, of: str, tolerance: NonNegative
     own = [(visual, visual_pose(robot, link, visual, of)) for visual in visuals(robot, link)]
     others = [(visual.geometry, visual_pose(robot, of, visual, of)) for visual in visuals(robot, of)]
     if len(own) * len(others) > _MAX_PAIRS:
-        return pending(f"{link!r} and {of!r} show too many shapes to compare; needs manual grading")
+        return pending(f"{link!r} and {of!r} show too many shapes to compare; needs manual grading", "too many shapes")
     deepest, culprit = 0.0, own[0][0]
     unknown: Mesh | None = None
     for (visual, pose), (geometry, other) in product(own, others):

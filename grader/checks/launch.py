@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 
 _WORDS = {"urdf": "URDF", "rviz": "RViz file", "include": "launch file", "launch": "launch file"}
 _ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",), "include": (".py", ".xml", ".yaml", ".yml")}
+_UNKNOWN_FILES = "cannot determine statically which files it names"
+_ON_ONE_MACHINE = "the launch file looks for files at paths that exist on one machine only"
+_NOT_INSTALLED = "the launch file looks for files where a build does not install them"
 
 Verdict = tuple[Status | Literal["missing"], str]
 
@@ -56,13 +59,15 @@ def launch_starts(package: Package, *, name: str, nodes: list[str]) -> Outcome:
     listed = ", ".join(" or ".join(choice) for choice in missing)
     if missing and (launch.unknown or not any(uncertain.isdisjoint(choice) for choice in missing)):
         reason = f": {launch.unknown[0].message}" if launch.unknown else ""
-        return pending(f"cannot determine statically whether {listed} is started{reason}; needs manual grading")
+        message = f"cannot determine statically whether {listed} is started{reason}; needs manual grading"
+        return pending(message, "cannot determine statically which nodes the launch file starts")
     running = tuple(sorted(started))
-    message, at = f"starts {', '.join(running) or 'nothing'}", None
-    if missing:
-        reason, at = _why_missing(launch, {node for choice in missing for node in choice})
-        message = f"does not start {listed}; it {message}{reason}"
-    return judged(not missing, f"the launch file {message}", running, tuple(nodes), at=at)
+    message = f"starts {', '.join(running) or 'nothing'}"
+    if not missing:
+        return judged(True, f"the launch file {message}", running, tuple(nodes))
+    reason, at = _why_missing(launch, {node for choice in missing for node in choice})
+    what, detail = f"the launch file does not start {listed}", f"; it {message}{reason}"
+    return judged(False, what, running, tuple(nodes), at=at, detail=detail)
 
 
 def _why_missing(launch: "Launch", missing: set[str]) -> "tuple[str, Location | None]":
@@ -85,10 +90,12 @@ def launch_finds_files(package: Package, *, name: str) -> Outcome:
     wrong = [(text, file) for (status, text), file in verdicts if status == "failed"]
     if wrong:
         message = "; ".join(dict.fromkeys(text for text, _ in wrong))
-        if any(file.path is not None and is_of_one_machine(file.path) for _, file in wrong):
+        is_local = any(file.path is not None and is_of_one_machine(file.path) for _, file in wrong)
+        if is_local:
             message += f"; use get_package_share_directory({package.name!r}), which returns the installed folder"
-        first = wrong[0][1]
-        return failed(message, first.location, problem=one_machine_only(first.path) if first.path else "")
+        first, mistake = wrong[0][1], _ON_ONE_MACHINE if is_local else _NOT_INSTALLED
+        problem = one_machine_only(first.path) if first.path else ""
+        return failed(message, first.location, problem=problem, mistake=mistake)
     for (status, text), file in verdicts:
         if status == "missing":
             raise _missing(package, file, text)
@@ -97,11 +104,11 @@ def launch_finds_files(package: Package, *, name: str) -> Outcome:
             raise _stopped(package, name, launch)
         if launch.unknown:
             reason = launch.unknown[0].message
-            return pending(f"cannot determine statically which files it names: {reason}; needs manual grading")
+            return pending(f"{_UNKNOWN_FILES}: {reason}; needs manual grading", _UNKNOWN_FILES)
         raise MissingElement("named file", "", message="the launch file names neither a URDF nor an RViz file")
     for (status, text), _ in verdicts:
         if status == "pending":
-            return pending(f"{text}; needs manual grading")
+            return pending(f"{text}; needs manual grading", _UNKNOWN_FILES)
     found = dict.fromkeys(text for (_, text), _ in verdicts if text)
     return passed(f"a build installs {enumerated(found)}, where the launch file looks for them")
 
@@ -117,7 +124,7 @@ def _launch(package: Package, name: str) -> "Launch":
     path = _path(package, name)
     launch = package.launch(path)
     if launch.unread:
-        raise NotDecided(launch.unread)
+        raise NotDecided(launch.unread, "the launch file cannot be read")
     if launch.syntax is not None:
         raise MissingElement("launch file", path, message=launch.syntax.message, location=launch.syntax.location)
     return launch

@@ -1,5 +1,6 @@
 """Checks of the motion of a link when its joint turns."""
 
+from dataclasses import replace
 from math import atan2, degrees, hypot
 
 from grader.checks.outcome import SLACK, Outcome, in_degrees, in_millimetres, judged, place, point
@@ -27,13 +28,15 @@ def rolls_forward(
     forward: Direction = (1.0, 0.0, 0.0),
     up: Direction = (0.0, 0.0, 1.0),
     tolerance: NonNegative,
+    any_type: bool = False,
 ) -> Outcome:
     """Turning a wheel's joint by a small positive angle drives the base forward, if the wheel rolls without slip.
 
     The lowest point of the wheel must move opposite to `forward`, a direction in the base's frame, within `tolerance`
     degrees in the ground plane across `up`. It must also move so relative to the wheel's highest point: a wheel that
-    swivels does not.
+    swivels does not. With `any_type` the joint above the wheel turns, whatever its type.
     """
+    robot = _as_turning(robot, link) if any_type else robot
     joint = _turning_joint(robot, link, base)
     ahead, upward = unit(forward) or forward, unit(up) or up
     poses = [(visual.geometry, visual_pose(robot, link, visual, base)) for visual in visuals(robot, link)]
@@ -76,9 +79,13 @@ def axis_along(
 
 
 def turns_about_itself(
-    robot: Configuration, *, link: str, base: str, tolerance: NonNegative, angle: NonNegative
+    robot: Configuration, *, link: str, base: str, tolerance: NonNegative, angle: NonNegative, any_type: bool = False
 ) -> Outcome:
-    """A cylinder turns about its own axis: the joint's axis has its direction (`angle`, degrees) and position (metres)."""
+    """A cylinder turns about its own axis: the joint's axis has its direction (`angle`, degrees) and position (metres).
+
+    With `any_type` the joint above the cylinder turns, whatever its type.
+    """
+    robot = _as_turning(robot, link) if any_type else robot
     cylinders = [visual for visual in visuals(robot, link) if isinstance(visual.geometry, Cylinder)]
     visual = max(cylinders, key=lambda visual: volume(visual.geometry)) if cylinders else main_visual(robot, link)
     if not isinstance(visual.geometry, Cylinder):
@@ -119,6 +126,15 @@ def _turning_joint(robot: Configuration, link: str, base: str) -> Joint:
         message = f"no joint between {base!r} and {link!r} turns; one should be continuous or revolute"
         raise MissingElement("moving joint", link, message=message, location=place(path[-1].location if path else None))
     return moving[-1]
+
+
+def _as_turning(robot: Configuration, link: str) -> Configuration:
+    """Return the robot with the parent joint of a link continuous."""
+    joint = robot.parent_joints.get(link)
+    if joint is None:
+        return robot
+    joints = (replace(other, type="continuous") if other is joint else other for other in robot.robot.joints)
+    return Configuration(replace(robot.robot, joints=tuple(joints)))
 
 
 def _flat(vector: Vector, up: Vector) -> Vector:

@@ -22,7 +22,8 @@ class Outcome(NamedTuple):
     """The result of one check: a sentence, the location, and the measured values in `unit`.
 
     `mistake` is the message without what differs between students who made the same mistake, such as the names of their
-    joints: statistics count equal mistakes. It is empty where the message holds nothing of that kind.
+    joints: statistics count equal mistakes, and equal causes of manual grading. It is empty where the message holds nothing of
+    that kind.
     `problem` is the message of the problem of the file, at `location`, that the outcome reports, where its own message says more.
     """
 
@@ -82,14 +83,18 @@ def passed(message: str) -> Outcome:
     return Outcome("passed", message)
 
 
-def pending(message: str, at: AnyPlace = None) -> Outcome:
-    """Return the outcome for a fact that needs manual grading."""
-    return Outcome("pending", message, location=location_of(at))
+def pending(message: str, cause: str = "", at: AnyPlace = None) -> Outcome:
+    """Return the outcome for a fact that needs manual grading; `cause` is the reason without what differs between students."""
+    return Outcome("pending", message, location=location_of(at), mistake=cause)
 
 
-def failed(message: str, at: AnyPlace = None, *, detail: str = "", problem: str = "") -> Outcome:
-    """Return the outcome for a fact that is not true; `detail` ends the message with what differs between students."""
-    return judged(False, message, at=at, detail=detail)._replace(problem=problem)
+def failed(message: str, at: AnyPlace = None, *, detail: str = "", problem: str = "", mistake: str = "") -> Outcome:
+    """Return the outcome for a fact that is not true.
+
+    `detail` ends the message with what differs between students; `mistake` replaces a message in which something else does.
+    """
+    outcome = judged(False, message, at=at, detail=detail)
+    return outcome._replace(problem=problem, mistake=mistake or outcome.mistake)
 
 
 def judged(

@@ -97,7 +97,7 @@ def _readable_setup(package: Package) -> "Setup | Outcome":
     setup = package.setup
     if package.is_cmake:
         reason = "the grader does not evaluate CMakeLists.txt, which lists what is installed"
-        return pending(f"{reason}; needs manual grading")
+        return pending(f"{reason}; needs manual grading", reason)
     if setup is None:
         message = "the package has no setup.py, so a build of an ament_python package installs nothing"
         raise MissingElement("setup.py", package.folder, message=message)
@@ -105,14 +105,16 @@ def _readable_setup(package: Package) -> "Setup | Outcome":
         message = f"Python cannot read setup.py: {setup.fault.message}"
         raise MissingElement("setup.py", package.folder, message=message, location=setup.fault.location)
     if setup.fault is not None:
-        return pending(f"setup.py cannot be read ({setup.fault.message}); needs manual grading")
+        return pending(
+            f"setup.py cannot be read ({setup.fault.message}); needs manual grading", "setup.py cannot be read"
+        )
     return setup
 
 
 def _readable_manifest(package: Package) -> "Manifest":
     manifest = package.manifest
     if manifest is not None and manifest.unread:
-        raise NotDecided(manifest.unread)
+        raise NotDecided(manifest.unread, "package.xml cannot be read")
     from grader.package.catalogue import BAD_MANIFEST
 
     if manifest is None:
@@ -142,16 +144,17 @@ def _installed(package: Package, files: Sequence[str], kind: FileKind | None) ->
     twice = sorted({copy.target for copy in inside if posixpath.basename(copy.target) == posixpath.basename(files[0])})
     if kind == "launch" and len(twice) > 1:
         message = f"a build installs {files[0]} as {' and as '.join(twice)}; ros2 launch needs exactly one"
-        return failed(message, setup.location(inside[-1].at))
+        return failed(message, setup.location(inside[-1].at), mistake="a build installs the launch file twice")
     if inside:
         return passed(f"a build installs {inside[0].source} as {inside[0].target}")
     if setup.unknown:
         reason = f"{setup.unknown[0].reason} (line {setup.unknown[0].at.line} of setup.py)"
         message = f"cannot determine statically whether a build installs {files[0]}: {reason}"
-        return pending(f"{message}; needs manual grading")
+        return pending(f"{message}; needs manual grading", "cannot determine statically what setup.py installs")
     if copies:
         message = f"a build installs {copies[0].source} as {copies[0].target}; ROS 2 looks for the package's files below {shares[0]}"
-        return failed(message, setup.location(copies[0].at))
+        mistake = f"a build installs the file outside of {shares[0]}"
+        return failed(message, setup.location(copies[0].at), mistake=mistake)
     if not setup.is_called:
         message = "a build installs nothing: setup.py does not call setup()"
         raise MissingElement("call of setup", package.folder, message=message)

@@ -4,35 +4,52 @@ from collections.abc import Callable, Sequence
 from math import acos, degrees
 
 from grader.checks.outcome import (
+    SLACK,
     Outcome,
     difference,
     failed,
     in_degrees,
     judged,
+    location_of,
     measured,
     measured_point,
     place,
     point,
     within,
 )
-from grader.checks.toml_types import NonNegative
+from grader.checks.toml_types import Direction, NonNegative
 from grader.checks.visuals import ShapeName, main_visual, origin_place, shape_name, span, visual_pose
 from grader.errors import MissingElement
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Mesh, Visual
 from grader.robot.shapes import UnknownShape, extent
-from grader.robot.transforms import Vector, dot, minus, unit
+from grader.robot.transforms import Transform, Vector, dot, minus, rotation_from_rpy, unit
 from grader.source import LazyLocation
 from grader.text import enumerated
 
 _ALONG = 0.9  # the least cosine of the angle between two vectors that count as one direction
 _UP: Vector = (0.0, 0.0, 1.0)
+_NOT_TURNED: Vector = (0.0, 0.0, 0.0)
+_ANY_ANGLE = 180.0  # degrees: no two orientations are farther apart
 
 
-def frame_at(robot: Configuration, *, link: str, relative_to: str, xyz: Vector, tolerance: NonNegative) -> Outcome:
-    """The origin of a link's frame is at a point in another link's frame, in metres."""
-    actual = robot.pose(link, relative_to=relative_to).translation
-    return measured_point(f"the frame {link!r}", actual, xyz, tolerance, relative_to, at=origin_place(robot, link))
+def frame_at(
+    robot: Configuration,
+    *,
+    link: str,
+    relative_to: str,
+    xyz: Vector,
+    tolerance: NonNegative,
+    rpy: Vector = _NOT_TURNED,
+    angle: NonNegative = _ANY_ANGLE,
+) -> Outcome:
+    """The origin of a link's frame is at a point in another link's frame, in metres.
+
+    With `angle`, in degrees, the frame must also be turned by `rpy`, in radians about fixed axes, within that angle.
+    """
+    pose, at = robot.pose(link, relative_to=relative_to), origin_place(robot, link)
+    placed = measured_point(f"the frame {link!r}", pose.translation, xyz, tolerance, relative_to, at=at)
+    return _turned(placed, _turn(pose, rpy), angle, at)
 
 
 def centre_at(
@@ -44,20 +61,26 @@ def centre_at(
     tolerance: NonNegative,
     rigid: bool = False,
     shape: ShapeName = "any",
+    axis: Direction = _UP,
+    angle: NonNegative = 90.0,
 ) -> Outcome:
     """The centre of a link's visual is at a point in another link's frame, in metres; if rigid, only fixed joints lie between.
 
-    If a link has several visuals, the largest counts; with `shape`, the largest of that shape, if there is one.
+    If a link has several visuals, the largest counts; with `shape`, the largest of that shape, if there is one. With `angle`, in
+    degrees, the z axis of the visual must also lie along `axis` in the other frame, either way, within that angle.
     """
     visual = main_visual(robot, link, shape)
     if isinstance(visual.geometry, Mesh):
         raise UnknownShape(visual.geometry)
-    actual = visual_pose(robot, link, visual, relative_to).translation
+    pose = visual_pose(robot, link, visual, relative_to)
+    actual = pose.translation
     loose = _loose_joint(robot, link, relative_to) if rigid else None
     if loose is not None:
         return loose
     at = _moved_by(robot, link, visual, relative_to, minus(actual, xyz)) or place(visual.location)
-    return measured_point(f"the centre of the visual of {link!r}", actual, xyz, tolerance, relative_to, at=at)
+    placed = measured_point(f"the centre of the visual of {link!r}", actual, xyz, tolerance, relative_to, at=at)
+    cosine = abs(dot(pose.rotate(_UP), unit(axis) or axis))
+    return _turned(placed, degrees(acos(min(1.0, cosine))), angle, at)
 
 
 def bottom_at_height(
@@ -111,8 +134,7 @@ def under_the_base(
     """
     T_link_base = robot.pose(base, relative_to=link)
     x, y, _ = T_link_base.translation
-    cosine = (sum(T_link_base.rotation[::4]) - 1.0) / 2.0  # the trace of a rotation matrix is 1 + 2 cos(angle)
-    turned = degrees(acos(max(-1.0, min(1.0, cosine))))
+    turned = _turn(T_link_base, _NOT_TURNED)
     lowest, missing = _measured(wheels, lambda wheel: span(robot, wheel, link, _UP)[0])
     off = {wheel: value for wheel, value in lowest.items() if not within(value, 0.0, tolerance)}
     faults = []
@@ -131,6 +153,21 @@ def under_the_base(
     if len(off) == len(faults) < len(lowest):  # the frame is where it should be, and some wheel is not
         at = origin_place(robot, next(iter(off), base))
     return judged(not faults, message, actual, 0.0, tolerance, "m", at=at)
+
+
+def _turn(pose: Transform, rpy: Vector) -> float:
+    """Return the angle in degrees between the rotation of a pose and that by `rpy`."""
+    # The trace of the rotation from one to the other is 1 + 2 cos(angle).
+    trace = sum(a * b for a, b in zip(pose.rotation, rotation_from_rpy(rpy), strict=True))
+    return degrees(acos(max(-1.0, min(1.0, (trace - 1.0) / 2.0))))
+
+
+def _turned(placed: Outcome, turned: float, angle: float, at: LazyLocation | None) -> Outcome:
+    """Return the outcome of a position, or its failure where the orientation is more than `angle` degrees off."""
+    if turned <= angle + SLACK:
+        return placed
+    message = f"{placed.message}; its orientation is {in_degrees(turned)} off"
+    return placed._replace(status="failed", message=message, location=location_of(at))
 
 
 def _loose_joint(robot: Configuration, link: str, relative_to: str) -> Outcome | None:

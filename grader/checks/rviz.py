@@ -24,7 +24,8 @@ def rviz_found(package: Package, *, name: str, launch: str = "") -> Outcome:
     if path.rpartition("/")[2] == name or (opened is not None and path == package.rviz_opened(opened)):
         return passed(f"the RViz file is {path}")
     if opened is not None and (opened.syntax or opened.unknown or not all(file.sure for file in opened.named("rviz"))):
-        return pending(f"cannot determine statically whether the launch file opens {path}; needs manual grading")
+        message = f"cannot determine statically whether the launch file opens {path}; needs manual grading"
+        return pending(message, "cannot determine statically which files the launch file names")
     return failed(f"there is no RViz file {name!r}", detail=f"; the package has {path}{package.built('rviz', name)}")
 
 
@@ -127,7 +128,7 @@ def _read(package: Package, name: str, launch: str) -> "RvizFile":
     path = _path(package, name, _launch(package, launch))
     rviz = package.rviz(path)
     if rviz.unread:
-        raise NotDecided(rviz.unread)
+        raise NotDecided(rviz.unread, "the RViz file cannot be read")
     if rviz.fault is not None:
         raise MissingElement("RViz file", path, message=rviz.fault.message, location=rviz.fault.location)
     return rviz

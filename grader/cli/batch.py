@@ -22,6 +22,7 @@ from grader.report.formats import Format, OutputFormat
 Layout = Literal["auto", "folders", "canvas", "moodle", "teams", "nbgrader"]
 _PATH = "A folder with an entry for each student, or the zip of an LMS."
 _ADD = "Add to the gradebook even if it has another class, assignment or rubric."
+_IGNORE = "A robot that the course handed out: not identical work; repeatable."
 _TIMEOUT = "Time limit for each submission."
 
 
@@ -51,6 +52,7 @@ def batch(
     add: Annotated[bool, typer.Option("--add", help=_ADD)] = False,
     cluster: Annotated[str | None, typer.Option(metavar="ADDRESS", help="A Dask cluster, as tcp://host:8786.")] = None,
     max_size: MaxSizeOption = URDF_LIMIT,
+    ignore_file: Annotated[list[Path] | None, typer.Option(metavar="PATH", help=_IGNORE)] = None,
     output_format: FormatOption = OutputFormat.TERMINAL,
 ) -> str:
     """Grade a class into a gradebook, in parallel.
@@ -73,6 +75,6 @@ def batch(
             raise GraderError(f"{kind} is for one repository: use `grader grade` there")
     request = ClassRequest(
         path, gradebook, rubric, jobs, timeout, roster, layout, assignment, due, force, cluster, add, max_size, tuple(part or ()),
-        reports, formats, csv
+        tuple(ignore_file or ()), reports, formats, csv,
     )  # fmt: skip
     return grade_class(request, output_format, screen(), progress_display(), warn)

@@ -1,15 +1,16 @@
 """Grade a submission: run the rubric's checks in order, and attribute each failure."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 from grader.checks.outcome import Outcome, fault_of, location_of, pending
 from grader.checks.registry import Check, Subject
 from grader.errors import InputError, MissingElement, NotDecided
 from grader.grading.exhibits import by_evidence, exhibits_of, not_searched
+from grader.grading.explanation import explained
 from grader.grading.report import GradedSubmission, Report, Result
 from grader.grading.rubric import Criterion, Rubric
 from grader.problems import Problem
-from grader.robot import catalogue
 from grader.robot.kinematics import Configuration
 from grader.robot.shapes import UnknownShape
 from grader.source import LazyLocation, Location
@@ -22,10 +23,6 @@ _NOT_EXPANDED = (
     "the URDF is xacro, but is loaded without xacro; all but its loading is graded on what xacro makes of it"
 )
 _ELSEWHERE = "the graded URDF is outside the graded package"
-
-# Problems that explain a measurement at the same place, and those with which ROS 2 drops visuals of a link.
-_EXPLAINING = (catalogue.BAD_COLOUR, catalogue.COLOUR_COUNT, catalogue.DEGREES, catalogue.UNDEFINED_MATERIAL)
-_DROPPING = (catalogue.BAD_VISUAL, catalogue.BAD_INERTIAL)
 
 
 def grade(
@@ -80,10 +77,15 @@ def _notes_on_xacro(submission: Submission) -> list[str]:
     return [_EXPANDED if submission.urdf.as_it_stands is None else _NOT_EXPANDED]
 
 
+def open_reference(rubric: Rubric) -> Submission:
+    """Return a rubric's own reference solution; raise InputError where it cannot be read."""
+    path = rubric.path.parent / rubric.reference
+    return open_submission(str(path), wanted=rubric.urdf, package=rubric.package, folders=rubric.folders)
+
+
 def grade_reference(rubric: Rubric) -> Report:
     """Return the report on a rubric's own reference solution; raise InputError where it cannot be read."""
-    path = rubric.path.parent / rubric.reference
-    return grade(rubric, open_submission(str(path), wanted=rubric.urdf, package=rubric.package, folders=rubric.folders))
+    return grade(rubric, open_reference(rubric))
 
 
 class _Grading:
@@ -107,13 +109,13 @@ class _Grading:
         """Run the check of a criterion, or skip it because of another that failed."""
         cause = self._cause(criterion) if criterion.requires or self.robot is None else None
         result = Result(criterion, _skipped(cause), cause) if cause else self._check(criterion)
-        self.results[criterion.id] = result
+        self.results[criterion.id] = self._carried(result)
 
     def _cause(self, criterion: Criterion) -> str | None:
         """Return the criterion because of which this one is skipped, if there is one."""
         for name in criterion.requires:
             required = self.results.get(name)
-            if required is not None and required.outcome.status in ("failed", "skipped"):
+            if required is not None and required.outcome.status in ("failed", "skipped") and not required.carried:
                 return required.because or name
         if self.robot is None and criterion.check.subject == "robot":
             of_urdf = (result for result in self.results.values() if result.criterion.check.subject == "urdf")
@@ -122,27 +124,62 @@ class _Grading:
 
     def _check(self, criterion: Criterion) -> Result:
         try:
-            name = criterion.check.subject
-            if self._by_evidence is not None and name in ("urdf", "robot"):
+            if self._by_evidence is not None and criterion.check.subject in ("urdf", "robot"):
                 return Result(criterion, self._by_evidence)
-            subject = self._subjects.get(name) or self._missing(name)
-            outcome = criterion.check.function(subject, **criterion.arguments)
-            fault = fault_of(outcome) if criterion.check.distribution else ""
-            if fault:
-                return Result(criterion, _errored(criterion.check, fault))
-            if outcome.status == "failed":
-                outcome = self._explained(outcome)
-            return Result(criterion, outcome)
+            result = self._run(criterion, criterion.check, criterion.arguments)
         except MissingElement as missing:
             return self._miss(criterion, missing)
+        if result.outcome.status != "failed":
+            return result
+        return result._replace(outcome=explained(result.outcome, self.problems))
+
+    def _carried(self, result: Result) -> Result:
+        """Return a failure, or a skip because of a cause, as carried if the fact that then counts instead holds."""
+        carried = result.criterion.carried
+        cause = self._cause_of(result, carried.causes) if carried is not None else None
+        if carried is None or cause is None:
+            return result
+        try:
+            other = self._run(result.criterion, carried.check, carried.arguments)
+        except MissingElement:
+            return result
+        name, outcome = cause.criterion.id, result.outcome
+        if outcome.status == "skipped":
+            outcome = Outcome("failed", f"it cannot be measured, because {name} failed")
+        if other.outcome.status == "pending":
+            reason = f"whether this is due to {name} alone cannot be decided: {other.outcome.message}"
+            return other._replace(outcome=pending(f"{outcome.message}; {reason}", other.outcome.mistake))
+        if other.outcome.status == "passed":  # the place to look at is that of the mistake
+            outcome = outcome._replace(location=cause.outcome.location)
+            return Result(result.criterion, outcome, carried=cause.carried or name)
+        return other if other.outcome.status == "errored" else result
+
+    def _cause_of(self, result: Result, causes: Sequence[str]) -> Result | None:
+        """Return the first of these criteria that failed, if the result is a failure or a skip because of one of them."""
+        if result.outcome.status not in ("failed", "skipped"):
+            return None
+        names = [name for name in causes if result.because in (None, name)]
+        before = (self.results[name] for name in names if name in self.results)
+        return next((found for found in before if found.outcome.status == "failed"), None)
+
+    def _run(self, criterion: Criterion, check: Check, arguments: Mapping[str, Any]) -> Result:
+        """Return the result of a check; raise MissingElement."""
+        try:
+            subject = self._subjects.get(check.subject) or self._missing(check.subject)
+            outcome = check.function(subject, **arguments)
+            fault = fault_of(outcome) if check.distribution else ""
+            return Result(criterion, _errored(check, fault) if fault else outcome)
+        except MissingElement:
+            raise
         except (UnknownShape, NotDecided) as reason:
-            return Result(criterion, pending(f"{reason}; needs manual grading"))
+            cause = reason.cause if isinstance(reason, NotDecided) else "mesh files are not opened"
+            return Result(criterion, pending(f"{reason}; needs manual grading", cause))
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # noqa: BLE001  a faulty check, even one that exits, affects only its own criterion
             from traceback import format_exc  # needed only for a fault of the grader
 
-            return Result(criterion, _errored(criterion.check, _text_of(error)), traceback=format_exc())
+            return Result(criterion, _errored(check, _text_of(error)), traceback=format_exc())
 
     def _missing(self, name: Subject) -> object:
         """Return the package; raise MissingElement or NotDecided for any other subject that the submission does not have."""
@@ -160,22 +197,8 @@ class _Grading:
         outcome = Outcome(
             "failed", str(missing), location=location_of(at), mistake=missing.mistake, problem=missing.problem
         )
-        return Result(criterion, self._explained(outcome, missing.name if missing.kind == "visual" else None))
-
-    def _explained(self, outcome: Outcome, link: str | None = None) -> Outcome:
-        """Return a failure with the problem that explains it: at its place, or why ROS 2 drops the visuals of a link."""
-        mistake = outcome.mistake or outcome.message
-        for problem in self.problems:
-            if link is not None and problem.kind in _DROPPING and problem.subject == link:
-                message = f"{outcome.message}: {problem.message}"
-                return outcome._replace(
-                    message=message, location=problem.location, mistake=mistake, problem=problem.message
-                )
-            explains = problem.kind in _EXPLAINING or (problem.kind is catalogue.DEFAULT_AXIS and outcome.unit == "deg")
-            if link is None and explains and problem.location == outcome.location:
-                message = f"{outcome.message} ({problem.code}: {problem.message})"
-                return outcome._replace(message=message, mistake=mistake, problem=problem.message)
-        return outcome
+        link = missing.name if missing.kind == "visual" else None
+        return Result(criterion, explained(outcome, self.problems, link))
 
 
 def _skipped(cause: str) -> Outcome:

@@ -68,6 +68,9 @@ _POINTS = constrained(
 )
 _PERCENT = constrained(_NUMBER, _range(0, 100))
 _MINUTES = constrained(_NUMBER, _range(0, MAX_POINTS))
+_NAMES = simple_type(
+    "a list of strings", {"type": "array", "items": _TEXT.schema}, lambda value: _is_list(value, str), tuple
+)
 _ID = constrained(
     _TEXT,
     Constraint("one printable word", lambda text: text.isprintable() and len(text.split(" ")) == 1 and text != ""),
@@ -98,6 +101,15 @@ PART = KeyTable(
     {"id": _ID, "title": _TITLE, "needs": toml_type(Literal["urdf", "package", "files"]), "points": _POINTS},
     optional=("needs", "points"),
 )
+CARRIED = KeyTable(
+    "carried table",
+    {
+        "from": constrained(_NAMES, Constraint("at least one id", bool, {"minItems": 1})),
+        "check": _TEXT,
+        "with": _table({"type": "object"}),
+    },
+    optional=("with",),
+)
 CRITERION = KeyTable(
     "criterion",
     {
@@ -108,12 +120,11 @@ CRITERION = KeyTable(
         "points": _POINTS,
         "check": _TEXT,
         "with": _table({"type": "object"}),
-        "requires": simple_type(
-            "a list of strings", {"type": "array", "items": _TEXT.schema}, lambda value: _is_list(value, str), tuple
-        ),
+        "requires": _NAMES,
+        "carried": _table(CARRIED.schema),
         "feedback": _TEXT,
     },
-    optional=("about", "with", "requires", "feedback"),
+    optional=("about", "with", "requires", "carried", "feedback"),
 )
 EVIDENCE = KeyTable("evidence", {"id": _ID, "part": _TEXT, "title": _TITLE, "names": toml_type(tuple[str, ...])})
 LATE = KeyTable(
@@ -146,7 +157,9 @@ def rubric_schema() -> dict[str, Any]:
     """Return the JSON Schema of a rubric, with the arguments of every check that comes with the grader."""
     schema = RUBRIC.schema
     criterion = CRITERION.schema
-    criterion["allOf"] = [_arguments_rule(describe(function)) for function in CHECKS]
+    rules = [_arguments_rule(describe(function)) for function in CHECKS]
+    criterion["allOf"] = rules
+    criterion["properties"]["carried"]["allOf"] = rules
     schema["properties"]["criterion"]["items"] = criterion
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "grader rubric", **schema}
 

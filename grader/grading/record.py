@@ -105,8 +105,10 @@ def _exhibits(files: Any) -> tuple[Exhibit, ...]:
 
 
 def _result(same: dict[str, Outcome], result: Result) -> Any:
-    criterion, outcome, because, traceback, _ = result
+    criterion, outcome, because, traceback, _, carried = result
     stored = _stored(outcome)
+    if carried:
+        return criterion.position, stored, because, traceback, None, carried
     if because is None and not traceback:
         template = same.get(criterion.id)
         return criterion.position if template and _stored(template) == stored else (criterion.position, stored)

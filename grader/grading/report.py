@@ -31,20 +31,31 @@ class ManualMark(NamedTuple):
 
 
 class Result(NamedTuple):
-    """The outcome of a criterion. `because` is the criterion that a skip is due to; `traceback` is for the maintainers."""
+    """The outcome of a criterion. `because` is the criterion that a skip is due to; `traceback` is for the maintainers.
+
+    `carried` is the criterion whose mistake alone makes this one fail, empty if there is none: its points are given.
+    """
 
     criterion: Criterion
     outcome: Outcome
     because: str | None = None
     traceback: str = ""
     manual_mark: ManualMark | None = None
+    carried: str = ""
 
     @property
     def points(self) -> Decimal:
-        """The points earned: all or none, or those of a manual mark."""
+        """The points earned: all, also where an error is carried forward, or none, or those of a manual mark."""
         if self.manual_mark is not None:
             return self.manual_mark.points
-        return self.criterion.points if self.outcome.status == "passed" else _NOTHING
+        return self.criterion.points if self.outcome.status == "passed" or self.carried else _NOTHING
+
+    @property
+    def why_given(self) -> str:
+        """Why a criterion that failed has its points, as a sentence; empty if no error is carried forward."""
+        if not self.carried or self.manual_mark is not None:
+            return ""
+        return f"Points given: this mistake is already counted in {self.carried}."
 
     @property
     def is_open(self) -> bool:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from decimal import Decimal
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from grader.checks.manual import answered
 from grader.checks.registry import Check
@@ -14,7 +14,7 @@ from grader.errors import InputError, RubricError
 from grader.files.reading import read_capped, sha256_of
 from grader.grading.toml_lines import Path as TomlPath
 from grader.grading.toml_lines import key_lines, line_of
-from grader.grading.validation import TomlRow, Validation
+from grader.grading.validation import BoundCarried, BoundCheck, TomlRow, Validation
 from grader.names import did_you_mean
 from grader.text import printable_path, shell_quoted
 
@@ -42,6 +42,14 @@ class Evidence:
     names: tuple[str, ...]
 
 
+class Carried(NamedTuple):
+    """Error carried forward: the criterion keeps its points where one of `causes` failed and the check, another fact, passes."""
+
+    causes: tuple[str, ...]
+    check: Check
+    arguments: Mapping[str, Any]
+
+
 @dataclass(frozen=True, slots=True)
 class Criterion:
     """A row of a rubric: a check with its arguments, and the exact points for passing it. `position` counts from 0.
@@ -60,6 +68,7 @@ class Criterion:
     about: str = ""
     position: int = 0
     answer: str = ""
+    carried: Carried | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,12 +177,12 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
     valid = Validation(table)
     complain_of(valid.complaints, text, path)
     rubric = valid.rubric
-    criteria = zip(valid.criteria, valid.bound, strict=True)
+    criteria = zip(valid.criteria, valid.bound, valid.carried, strict=True)
     return Rubric(
         rubric["id"],
         rubric["title"],
         tuple(Part(row["id"], row["title"], row.get("needs", "urdf")) for row in valid.parts),
-        tuple(_criterion(index, row, *bound, answers=answers) for index, (row, bound) in enumerate(criteria)),
+        tuple(_criterion(index, *found, answers=answers) for index, found in enumerate(criteria)),
         rubric.get("urdf", "robot.urdf"),
         rubric.get("reference", ""),
         data,
@@ -209,8 +218,12 @@ def complain_of(complaints: Sequence[tuple[TomlPath, str]], text: str, path: Pat
         raise RubricError((*listed, f"{shown}: {more} more mistakes are not listed") if more > 0 else listed)
 
 
-def _criterion(position: int, row: TomlRow, check: Check, arguments: TomlRow, *, answers: bool) -> Criterion:
+def _criterion(
+    position: int, row: TomlRow, bound: BoundCheck, carried: BoundCarried | None, *, answers: bool
+) -> Criterion:
+    check, arguments = bound
     # Nothing that lists or passes on a criterion's arguments may see the model answer.
     answer = arguments.pop("answer", "") if check.function is answered else ""
-    own = {key: value for key, value in row.items() if key not in ("check", "with")}
-    return Criterion(**own, check=check, arguments=arguments, position=position, answer=answer if answers else "")
+    own = {key: value for key, value in row.items() if key not in ("check", "with", "carried")}
+    own |= {"check": check, "arguments": arguments, "position": position, "answer": answer if answers else ""}
+    return Criterion(**own, carried=Carried(*carried) if carried is not None else None)

@@ -8,7 +8,7 @@ from typing import Any
 from grader.checks.registry import Check, check_names, find_check
 from grader.checks.toml_types import WrongValue
 from grader.errors import InputError
-from grader.grading.keys import CRITERION, EVIDENCE, LATE, PART, RUBRIC, KeyTable
+from grader.grading.keys import CARRIED, CRITERION, EVIDENCE, LATE, PART, RUBRIC, KeyTable
 from grader.grading.toml_lines import Path
 from grader.names import did_you_mean
 from grader.text import enumerated
@@ -19,17 +19,20 @@ _MAX_SHOWN = 40  # characters of a value
 _MAX_BITS = 1000  # of a whole number that is written out
 
 TomlRow = dict[str, Any]
+BoundCheck = tuple[Check, TomlRow]
+BoundCarried = tuple[tuple[str, ...], Check, TomlRow]  # the possible causes, and the fact that counts instead
 
 
 class Validation:
     """One pass over a parsed rubric. Where `complaints` is empty, the rows contain the converted values of a rubric.
 
-    `bound` has the check of each criterion with its arguments, in the order of the rows.
+    `bound` has the check of each criterion with its arguments, in the order of the rows, `carried` what its `carried` says.
     """
 
     def __init__(self, table: TomlRow) -> None:
         self.complaints: list[tuple[Path, str]] = []
-        self.bound: list[tuple[Check, TomlRow]] = []
+        self.bound: list[BoundCheck] = []
+        self.carried: list[BoundCarried | None] = []
         self._guesses = _MAX_GUESSES
         self._find_check, self._check_names = cache(find_check), cache(check_names)
         self.rubric = self._row((), table, RUBRIC)
@@ -39,9 +42,12 @@ class Validation:
         self.late = self._row(("late",), self.rubric["late"], LATE) if "late" in self.rubric else None
         part_ids, positions = self._positions("part"), self._positions("criterion")
         for index, row in enumerate(self.criteria):
-            self._belongs(("criterion", index), row, part_ids)
-            self._requires(index, row, positions)
-            self._arguments(index, row)
+            where: Path = ("criterion", index)
+            self._belongs(where, row, part_ids)
+            self._above((*where, "requires"), row, positions)
+            if (bound := self._arguments(where, row)) is not None:
+                self.bound.append(bound)
+            self.carried.append(self._carried(where, row, positions))
         for index, row in enumerate(self.evidence):
             self._belongs(("evidence", index), row, part_ids)
         self._totals()
@@ -81,25 +87,39 @@ class Validation:
             hint = self._guess(part, parts) or f"; there are: {enumerated(parts, _MAX_LISTED) or 'none'}"
             self._complain((*where, "part"), f"there is no part {part!r}{hint}")
 
-    def _requires(self, index: int, row: TomlRow, positions: Mapping[str, int]) -> None:
-        given = self.rubric["criterion"][index].get("requires")  # also of a list with other mistakes in it
+    def _above(self, where: Path, row: TomlRow, positions: Mapping[str, int]) -> None:
+        """Complain of ids in a list of a criterion, such as `requires`, that are not those of criteria above it."""
+        given: Any = self.rubric  # also of a list with other mistakes in it
+        for key in where:
+            given = given[key] if isinstance(key, int) else given.get(key, {})
+        index, is_required = int(where[1]), where[-1] == "requires"
+        verb, action = ("requires", "require") if is_required else ("is carried from", "be carried from")
         for name in given if isinstance(given, list) else ():
             if not isinstance(name, str) or positions.get(name, index) < index:
                 continue
             if name == row.get("id"):
-                message = "requires itself"
+                message = f"{verb} itself"
             elif name in positions:
-                message = f"requires {name!r}, which is below: a criterion can only require those above it"
+                message = f"{verb} {name!r}, which is below: a criterion can only {action} those above it"
             else:
-                message = f"requires {name!r}, which does not exist{self._guess(name, positions)}"
-            self._complain(("criterion", index, "requires"), message)
+                message = f"{verb} {name!r}, which does not exist{self._guess(name, positions)}"
+            self._complain(where, message)
 
-    def _arguments(self, index: int, row: TomlRow) -> None:
-        where: Path = ("criterion", index)
+    def _carried(self, where: Path, row: TomlRow, positions: Mapping[str, int]) -> BoundCarried | None:
+        if "carried" not in row:
+            return None
+        where = (*where, "carried")
+        carried = self._row(where, row["carried"], CARRIED)
+        self._above((*where, "from"), row, positions)
+        bound = self._arguments(where, carried)
+        return (carried["from"], *bound) if bound is not None and "from" in carried else None
+
+    def _arguments(self, where: Path, row: TomlRow) -> BoundCheck | None:
+        """Return the check of a row with its converted arguments; None if there is no such check."""
         name, given = row.get("check"), row.get("with", {})
         check = self._check((*where, "check"), name) if name is not None else None
         if check is None:
-            return
+            return None
         arguments: TomlRow = {}
         for key, value in given.items():
             parameter = check.parameters.get(key)
@@ -115,7 +135,7 @@ class Validation:
         for key, parameter in check.parameters.items():
             if parameter.required and key not in given:
                 self._complain((*where, "with"), f"the check {check.name} needs {key}: {parameter.type.name}")
-        self.bound.append((check, arguments))
+        return check, arguments
 
     def _check(self, where: Path, name: str) -> Check | None:
         try:

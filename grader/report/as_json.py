@@ -64,8 +64,9 @@ def _result(result: Result) -> dict[str, Any]:
         "tolerance": outcome.tolerance,
         "unit": outcome.unit,
         "because": result.because,
+        "carried": result.carried or None,
         "location": location(outcome.location),
-        "feedback": criterion.feedback if outcome.status == "failed" else "",
+        "feedback": criterion.feedback if outcome.status == "failed" and not result.carried else "",
         "hints": [],
         **({"mark": mark} if mark else {}),
     }

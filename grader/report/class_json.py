@@ -1,10 +1,11 @@
 """A class as JSON, schema grader/class/v1."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from grader import __version__
 from grader.classroom.gradebook.grades import AttentionList
+from grader.classroom.gradebook.identical import IdenticalWork
 from grader.classroom.gradebook.statistics import ClassStatistics
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.grading.rubric import Rubric
@@ -16,6 +17,7 @@ def render_class_json(
     statistics: ClassStatistics,
     grades: Iterable[StudentGrade],
     looks: AttentionList,
+    identical: Sequence[IdenticalWork],
     run: dict[str, int] | None,
     evidence_only: int,
 ) -> str:
@@ -30,6 +32,9 @@ def render_class_json(
             "rubric": {"id": rubric.id, "title": rubric.title, "sha256": rubric.sha256},
             **({"run": run} if run is not None else {}),
             "statistics": _statistics(statistics),
+            "identical": [
+                {"students": list(work.students), "same_file": list(map(list, work.same_file))} for work in identical
+            ],
             "needs_a_look": looks.total,
             "evidence_without_urdf": evidence_only,
             "students": [_grade(grade) for grade in grades],
@@ -66,6 +71,9 @@ def _statistics(statistics: ClassStatistics) -> dict[str, Any]:
         "max_score": exact(statistics.out_of),
         "graded": statistics.graded,
         "pending": statistics.pending,
+        "undecided": statistics.undecided,
+        "points": {name: exact(points) for name, points in statistics.points._asdict().items()},
+        "reasons": [{"reason": reason, "count": count} for reason, count in statistics.reasons],
         "mean": rounded(statistics.mean),
         "deviation": rounded(statistics.deviation),
         "lowest": exact(statistics.lowest),
@@ -78,7 +86,7 @@ def _statistics(statistics: ClassStatistics) -> dict[str, Any]:
                 "max_points": exact(row.criterion.points),
                 "passed": row.passed,
                 "marked_by_hand": row.marked,
-                **{status: getattr(row, status) for status in ("failed", "skipped", "pending", "errored")},
+                **{status: getattr(row, status) for status in ("carried", "failed", "skipped", "pending", "errored")},
                 "share": rounded(row.share),
                 "discrimination": rounded(row.discrimination),
             }

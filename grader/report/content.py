@@ -115,6 +115,10 @@ def result_details(result: Result, report: Report) -> Details:
             return Details((mark,), *answers)
         expected = _expected(result) if status_of(result) == "failed" else ""
         return Details((mark, sentence(f"The check: {outcome.status}. {outcome.message}")), expected=expected)
+    if result.carried:  # the feedback would ask for a change of what is as it should be
+        return Details(
+            (sentence(outcome.message), result.why_given), location=outcome.location, expected=_expected(result)
+        )
     if outcome.status == "skipped":
         return Details((f"Skipped because {result.because} failed.",))
     sentences = (sentence(outcome.message),)

@@ -80,7 +80,8 @@ def _of_criterion(result: Result, report: Report, source_of: Callable[[str], Sou
     location = in_repository(where, source_of(where.path), base) if where is not None else None
     fallback = location or _fallback(report, base, of_package=criterion.check.subject == "package")
     lost = sum(skipped, criterion.points - result.points)
-    return Finding(criterion.id, "error", _text(tuple(lines), where, base), lost, location, fallback)
+    level: Level = "note" if result.why_given else "error"
+    return Finding(criterion.id, level, _text(tuple(lines), where, base), lost, location, fallback)
 
 
 def _undecided(report: Report, base: Base) -> Iterator[Finding]:

@@ -57,6 +57,7 @@ def _overview(report: Report) -> str:
         if result.because is not None and result.manual_mark is None:
             skipped.setdefault(result.because, []).append(result.criterion.id)
     lines += [f"Skipped because {cause} failed: {', '.join(names)}" for cause, names in skipped.items()]
+    lines += [f"{result.criterion.id}: {result.why_given}" for result in report.results if result.carried]
     return "\n".join((*lines, *note_lines(report)))
 
 

@@ -55,5 +55,10 @@ def _test(result: Result, report: Report) -> dict[str, Any]:
         "output_format": "md",
         "tags": [criterion.id, criterion.part, result.outcome.status],
         "visibility": "visible",
-        "extra_data": {"id": criterion.id, "status": result.outcome.status, "because": result.because},
+        "extra_data": {
+            "id": criterion.id,
+            "status": result.outcome.status,
+            "because": result.because,
+            "carried": result.carried or None,
+        },
     }

@@ -2,6 +2,7 @@
 
 import inspect
 import textwrap
+from collections.abc import Mapping
 
 from grader.checks.registry import Check, check_names, find_check
 from grader.errors import InputError
@@ -9,7 +10,7 @@ from grader.grading.rubric import Criterion, Rubric
 from grader.names import did_you_mean
 from grader.package.catalogue import PACKAGE_CATALOGUE
 from grader.robot.catalogue import CATALOGUE
-from grader.text import counted_points, format_points, printable
+from grader.text import counted_points, enumerated, format_points, printable
 from grader.xacro.catalogue import XACRO_CATALOGUE
 
 _WIDTH = 80
@@ -83,11 +84,17 @@ def _criterion_text(criterion: Criterion, rubric: Rubric) -> str:
         lines += ["", _filled(criterion.feedback)]
     if criterion.requires:
         lines += ["", _filled(f"Skipped unless these passed: {', '.join(criterion.requires)}.")]
-    given = ", ".join(f"{key} = {_toml(value)}" for key, value in criterion.arguments.items())
-    lines += ["", _filled(f"Check: {criterion.check.name}. {criterion.check.fact}")]
-    if given:
-        lines += [_filled(f"With {given}.")]
+    lines += ["", *_check_lines("Check", criterion.check, criterion.arguments)]
+    if criterion.carried is not None:
+        causes, check, arguments = criterion.carried
+        title = f"If it fails and {enumerated(causes, word='or')} failed before it, the points are given if this check passes"
+        lines += ["", *_check_lines(title, check, arguments)]
     return "\n".join(lines) + "\n"
+
+
+def _check_lines(title: str, check: Check, arguments: Mapping[str, object]) -> list[str]:
+    given = ", ".join(f"{key} = {_toml(value)}" for key, value in arguments.items())
+    return [_filled(f"{title}: {check.name}. {check.fact}"), *([_filled(f"With {given}.")] if given else [])]
 
 
 def _arguments(check: Check) -> str:

@@ -55,7 +55,7 @@ _RESULT = _object(
         **_all(_TEXT, "id part title message feedback"),
         **_all(_POINTS, "points max_points"),
         **_all(_VALUE, "measured expected"),
-        **_all(_nullable(_TEXT), "unit because"),
+        **_all(_nullable(_TEXT), "unit because carried"),
         "status": {"enum": ["passed", "failed", "skipped", "pending", "errored"]},
         "tolerance": _nullable(_POINTS),
         "location": _nullable(_LOCATION),
@@ -113,7 +113,7 @@ _CRITERION_STATISTICS = _object(
     {
         "id": _TEXT,
         "max_points": _POINTS,
-        **_all(_TOTAL, "passed marked_by_hand failed skipped pending errored"),
+        **_all(_TOTAL, "passed marked_by_hand carried failed skipped pending errored"),
         "share": _nullable(_POINTS),
         "discrimination": _nullable({"type": "number", "minimum": -1, "maximum": 1}),
     }
@@ -121,7 +121,9 @@ _CRITERION_STATISTICS = _object(
 _STATISTICS = _object(
     {
         "counts": _object(dict.fromkeys(_STATUSES, _COUNT), optional=_STATUSES),
-        **_all(_TOTAL, "graded pending"),
+        **_all(_TOTAL, "graded pending undecided"),
+        "points": _object(_all(_POINTS, "earned lost pending")),
+        "reasons": _array(_object({"reason": _TEXT, "count": _COUNT})),
         **_all(_POINTS, "max_score mean deviation lowest median highest"),
         "tenths": {**_array(_TOTAL), "minItems": 10, "maxItems": 10},
         "criteria": _array(_CRITERION_STATISTICS),
@@ -147,6 +149,7 @@ CLASS_SCHEMA = _document(
         "rubric": _RUBRIC,
         "run": _object(_all(_TOTAL, "total graded unchanged errored")),
         "statistics": _STATISTICS,
+        "identical": _array(_object({"students": _array(_TEXT), "same_file": _array(_array(_TEXT))})),
         "needs_a_look": _TOTAL,
         "evidence_without_urdf": _TOTAL,
         "students": _array(_STUDENT),

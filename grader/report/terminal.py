@@ -124,7 +124,10 @@ def _print_result(result: Result, page: _Page) -> None:
         details = content.result_details(result, page.report)
         name.stylize("dim" if not details.expected else "")
         wrapped(page.console, name if details.expected else title + Text("  ") + name, _INDENT, start)
-        styles = (_STYLES["errored"] if result.outcome.status == "errored" else "",)  # faults of the grader stand out
+        styles = (
+            _STYLES["errored"] if result.outcome.status == "errored" else "",
+            "bold",
+        )  # faults of the grader stand out
         _print_details(details, ("bold", "dim") if result.manual_mark is not None else styles, page)
 
 

@@ -125,22 +125,24 @@ class Submission:
         match self.urdf:
             case Read(reading=reading):
                 if reading.robot is None and reading.undetermined:
-                    raise NotDecided(reading.undetermined)
+                    raise NotDecided(reading.undetermined, reading.undetermined)
                 return reading
             case Unreadable(reason=reason):
-                raise NotDecided(reason)
+                raise NotDecided(reason, "the URDF cannot be read")
             case Absent():
                 self._refuse_unopened("URDF")
         count = len(self.tree.files)
         files = f"none of the {count} files contains a <robot>" if count > 1 else "the only file contains no <robot>"
-        message = f"no URDF was submitted: {files}" if count else "no URDF was submitted"
         built = next((path for path in self.tree.generated if path.lower().endswith((".urdf", ".xacro"))), "")
-        raise MissingElement("URDF", "", message=message, detail=was_not_committed(built) if built else "")
+        detail = f"{f': {files}' if count else ''}{was_not_committed(built) if built else ''}"
+        raise MissingElement("URDF", "", message="no URDF was submitted", detail=detail)
 
     def _refuse_unopened(self, wanted: str) -> None:
         if self.tree.unopened:
             archives = ", ".join(archive.path for archive in self.tree.unopened[:3])
-            raise NotDecided(f"no {wanted} was found, but {archives} could not be opened")
+            raise NotDecided(
+                f"no {wanted} was found, but {archives} could not be opened", "an archive could not be opened"
+            )
 
     def source(self, path: str) -> Source | None:
         """Return the text of one of its files, for quoting; None if it cannot be read."""

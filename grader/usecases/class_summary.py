@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from grader.classroom.gradebook.evidence_only import count_evidence_only
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
+from grader.classroom.gradebook.identical import identical_work
 from grader.classroom.gradebook.lateness import read_time
 from grader.classroom.gradebook.statistics import statistics
 from grader.report.formats import OutputFormat
@@ -36,7 +37,7 @@ def class_summary(
     """Return the summary; `done` counts what a batch has just done. Raises InputError if nothing was graded."""
     rubric = grades.newest_rubric()
     found = statistics(grades.book, rubric)
-    looks = grades.needing_attention(_MAX_LISTED)
+    looks, identical = grades.needing_attention(_MAX_LISTED), identical_work(grades.book)
     evidence_only = count_evidence_only(grades.book, rubric)
     if kind is OutputFormat.JSON:
         from grader.report.class_json import render_class_json
@@ -44,8 +45,8 @@ def class_summary(
         run = None
         if done is not None:
             run = {"total": done.total, "graded": done.graded, "unchanged": done.unchanged, "errored": done.errored}
-        return render_class_json(rubric, found, grades.all(), looks, run, evidence_only)
+        return render_class_json(rubric, found, grades.all(), looks, identical, run, evidence_only)
     from grader.report.class_summary import render_class
 
     shown = 0 if rubric.without_urdf else evidence_only
-    return draw(partial(render_class, rubric.title, found, looks, shown), screen)
+    return draw(partial(render_class, rubric.title, found, looks, identical, shown), screen)

@@ -94,7 +94,7 @@ def _refuse_files(request: ExportRequest) -> None:
 def grades_csv(grades: Grades) -> str:
     """Return a row for each student: the grade, the late penalty, and the points of each criterion that is decided."""
     criteria = grades.criteria
-    header = [*_STUDENT_COLUMNS, "total", "not_final_because", *(criterion.id for criterion in criteria)]
+    header = [*_STUDENT_COLUMNS, "total", "not_final_because", *(criterion.id for criterion in criteria), "carried"]
     return write_table(header, (_row(grades, grade, criteria) for grade in grades.all()))
 
 
@@ -102,10 +102,11 @@ def _row(grades: Grades, grade: StudentGrade, criteria: Sequence[Criterion]) -> 
     student = grade.student
     about: list[Cell] = [student.key, student.name, student.email, student.login, student.sis, grade.verdict]
     if grade.result is None:
-        return [*about, *[None] * 6, grade.why_not_final, *[None] * len(criteria)]
+        return [*about, *[None] * 6, grade.why_not_final, *[None] * (len(criteria) + 1)]
     numbers: list[Cell] = [grade.score, grade.out_of, grade.pending, grade.late.days, grade.late.points, grade.total]
     points = grades.points(grade)
-    return [*about, *numbers, grade.why_not_final, *(points.get(criterion.id) for criterion in criteria)]
+    decided = (points.get(criterion.id) for criterion in criteria)
+    return [*about, *numbers, grade.why_not_final, *decided, ", ".join(grades.carried(grade))]
 
 
 def lms_grades(grades: Grades, *, feedback: bool, pending_as_zero: bool) -> Iterator[LmsGrade]:

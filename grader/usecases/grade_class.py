@@ -16,10 +16,13 @@ from grader.classroom.intake.roster import Roster, roster_from_json
 from grader.classroom.intake.roster_file import read_roster
 from grader.classroom.run.batch import Batch, Progress, RunSettings
 from grader.classroom.run.pool import Processes, processors
+from grader.classroom.run.worker import robot_hashes
 from grader.errors import InputError
 from grader.grading.answers import load_with_answers
+from grader.grading.rubric import Rubric
 from grader.report.formats import Format, OutputFormat
 from grader.report.screen import Screen
+from grader.submission.submission import open_submission
 from grader.text import counted, first_lines, printable, printable_path
 from grader.usecases import Warn
 from grader.usecases.class_reports import write_reports
@@ -34,7 +37,10 @@ ProgressDisplay = AbstractContextManager[Callable[[Progress], None]]
 
 @dataclass(frozen=True, slots=True)
 class ClassRequest:
-    """A class to grade, and the files to write besides the gradebook. `timeout` is in seconds, `max_size` in bytes."""
+    """A class to grade, and the files to write besides the gradebook. `timeout` is in seconds, `max_size` in bytes.
+
+    `ignore_files` are robots that the course handed out.
+    """
 
     path: Path
     gradebook: Path
@@ -50,6 +56,7 @@ class ClassRequest:
     add: bool
     max_size: int
     parts: tuple[str, ...]
+    ignore_files: tuple[Path, ...]
     reports: Path | None
     report_formats: tuple[Format, ...]
     csv: Path | None
@@ -71,6 +78,7 @@ def grade_class(
     for name in request.parts:
         rubric.part(name)
     deadline = read_deadline(request.due)
+    handed_out = tuple(_handed_out(request.ignore_files, rubric))
     roster = _roster(request.roster, request.gradebook)
     _refuse_targets(request)
     intake = read_class(request.path, roster, request.layout, request.assignment, rubric.id, rubric.folders)
@@ -79,7 +87,8 @@ def grade_class(
         with _executor(request) as (executor, workers):
             due = deadline.isoformat() if deadline is not None else ""
             settings = RunSettings(
-                str(request.root), intake.layout, len(intake), workers, request.force, roster, due, request.add, request.max_size, request.parts
+                str(request.root), intake.layout, len(intake), workers, request.force, roster, due, request.add, request.max_size,
+                request.parts, handed_out,
             )  # fmt: skip
             with progress as show:
                 batch = Batch(book, rubric, settings, executor, show)
@@ -94,6 +103,17 @@ def grade_class(
         if request.csv is not None:
             save(request.csv, grades_csv(Grades(book, deadline)), (request.root,))
         return class_summary(Grades(book, deadline), kind, screen, done)
+
+
+def _handed_out(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
+    """Yield the hashes of the robots that the course handed out. Raises InputError for a file without a robot."""
+    for path in files:
+        hashes = robot_hashes(
+            open_submission(str(path), wanted=rubric.urdf, package=rubric.package, folders=rubric.folders)
+        )
+        if not any(hashes):
+            raise InputError(f"--ignore-file {printable_path(path)}: there is no URDF in it")
+        yield from filter(None, hashes)
 
 
 def _roster(file: Path | None, gradebook: Path) -> Roster | None:

@@ -33,10 +33,8 @@ class Expansion(NamedTuple):
     @property
     def document(self) -> XmlDocument:
         """The expanded file as the reader of robots takes it; what cannot be determined is a problem in it."""
-        message = "{}; this needs manual grading"
         undetermined = [
-            Problem(catalogue.XACRO_UNDETERMINED, message.format(found.reason), found.location)
-            for found in self.undetermined
+            Problem(catalogue.XACRO_UNDETERMINED, found.reason, found.location) for found in self.undetermined
         ]
         problems = [*self.problems, *undetermined]
         return XmlDocument(self.root, self.source, problems, 0, self.unresolved, is_expanded=True)

@@ -195,26 +195,39 @@ CASES = (
     ),
     Case(
         placement.frame_at,
-        {"link": "lidar", "relative_to": "base", "xyz": (0.15, 0.0, 0.225), "tolerance": 0.002},
+        {"link": "lidar", "relative_to": "base", "xyz": (0.15, 0.0, 0.225), "tolerance": 0.002, "angle": 1.0},
         passing=mounted(),
         pass_message="the frame 'lidar' is at 0.15 0 0.225 m in 'base'",
         failing=mounted((0.15, 0.01, 0.2)),
         fail_message="the frame 'lidar' is at 0.15 0.01 0.2 m in 'base'; it should be at 0.15 0 0.225 m"
         " (y 10 mm too large, z 25 mm too small)",
         at='xyz="0.15 0.01 0.2"',
-        edges={"tolerance": lambda off: mounted((0.15, off, 0.225))},
+        edges={
+            "tolerance": lambda off: mounted((0.15, off, 0.225)),
+            "angle": lambda off: mounted(rpy=turned(yaw=off)),
+        },
         needs_size=False,
     ),
     Case(
         placement.centre_at,
-        {"link": "wheel", "relative_to": "base", "xyz": (-0.15, 0.225, 0.0), "tolerance": 0.002},
+        {
+            "link": "wheel",
+            "relative_to": "base",
+            "xyz": (-0.15, 0.225, 0.0),
+            "tolerance": 0.002,
+            "axis": (0.0, -1.0, 0.0),
+            "angle": 1.0,
+        },
         passing=rolling(),
         pass_message="the centre of the visual of 'wheel' is at -0.15 0.225 0 m in 'base'",
         failing=rolling(xyz=(-0.15, 0.2, 0.0)),
         fail_message="the centre of the visual of 'wheel' is at -0.15 0.2 0 m in 'base'; it should be at -0.15 0.225 0 m"
         " (y 25 mm too small)",
         at='xyz="-0.15 0.2 0.0"',
-        edges={"tolerance": lambda off: rolling(xyz=(-0.15, 0.225 + off, 0.0))},
+        edges={
+            "tolerance": lambda off: rolling(xyz=(-0.15, 0.225 + off, 0.0)),
+            "angle": lambda off: rolling(rpy=turned(roll=-90 + off)),
+        },
         mesh_status="pending",
     ),
     Case(

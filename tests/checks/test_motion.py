@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from grader.checks.motion import axis_along, rolls_forward, turns_about_itself
 from tests.checks.cases import BASE, FORWARD, WHEEL, Case, cases_of, rolling
-from tests.checks.outcomes import Arguments, ask, fails, graded, missing, passes
+from tests.checks.outcomes import AnyCheck, Arguments, ask, fails, graded, missing, passes
 from tests.checks.robots import Scene, box, cylinder, joint, link, mesh, scene, sphere, turned, visual
 
 FORWARDS: Arguments = {"link": "wheel", "base": "base", "tolerance": 1.0}
@@ -448,3 +448,16 @@ def test_a_wobble_is_at_most_a_right_angle(tilt: float) -> None:
     outcome = ask(turns_about_itself, found, **{**ITSELF, "angle": 0.0})
     if min(tilt, 180.0 - tilt) > 1e-6:
         assert outcome.measured == pytest.approx(min(tilt, 180.0 - tilt), abs=1e-6)
+
+
+# --- any_type ---------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("check", "arguments"), [(rolls_forward, FORWARDS), (turns_about_itself, ITSELF)])
+def test_the_type_can_be_left_out(check: AnyCheck, arguments: Arguments) -> None:
+    """With `any_type` a joint of a misspelt type turns about its axis; without it nothing turns."""
+    typo, wrong = rolling(kind="continous"), rolling(kind="continous", axis="1 0 0")
+    assert missing(check, typo, **arguments).kind == "moving joint"
+    assert ask(check, typo, **arguments, any_type=True).status == "passed"
+    assert ask(check, wrong, **arguments, any_type=True).status == "failed"
+    assert ask(check, rolling(), **arguments, any_type=True) == ask(check, rolling(), **arguments)

@@ -78,12 +78,12 @@ def test_csv(top: Path) -> None:
     done = export(top, "csv")
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.splitlines() == [
-        f"{HEADER},loads,box,tall,essay,picture",
-        "anna,Anna Ek,anna@example.org,ae1,anna,graded,10.5,11,0,0,0,10.5,,3,2.5,0.5,3.5,1",
-        "ben,Ben Oh,ben@example.org,bo2,ben,graded,6,11,0,0,0,6,,3,2.5,0.5,0,0",
-        f"cleo,Cleo Ray,cleo@example.org,cr3,cleo,unreadable,0,11,11,0,0,0,{BROKEN},,,,,",
-        "dora,Dora Fi,dora@example.org,df4,dora,missing,,,,,,,nothing was submitted,,,,,",
-        "emil,Ben Oh,emil@example.org,eo5,emil,graded,4.25,11,5,0,0,4.25,5 points need manual grading,3,1.25,0,,",
+        f"{HEADER},loads,box,tall,essay,picture,carried",
+        "anna,Anna Ek,anna@example.org,ae1,anna,graded,10.5,11,0,0,0,10.5,,3,2.5,0.5,3.5,1,",
+        "ben,Ben Oh,ben@example.org,bo2,ben,graded,6,11,0,0,0,6,,3,2.5,0.5,0,0,",
+        f"cleo,Cleo Ray,cleo@example.org,cr3,cleo,unreadable,0,11,11,0,0,0,{BROKEN},,,,,,",
+        "dora,Dora Fi,dora@example.org,df4,dora,missing,,,,,,,nothing was submitted,,,,,,",
+        "emil,Ben Oh,emil@example.org,eo5,emil,graded,4.25,11,5,0,0,4.25,5 points need manual grading,3,1.25,0,,,",
     ]
     again = export(top, "csv", "--output", top / "grades.csv")
     assert (again.returncode, again.stdout, again.stderr) == (0, "", "")

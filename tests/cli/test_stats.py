@@ -32,7 +32,8 @@ def test_at_a_glance(top: Path) -> None:
     text = stats(top / "book.db")
     assert text.startswith(
         "A small lab\n3 graded, 1 could not be graded, 1 without a submission\n\n"
-        "Grades out of 11: mean 6.0, standard deviation 1.2, lowest 4.5, median 6,\nhighest 7.5; 3 need manual grading\n"
+        "Grades on decided points, out of 11: mean 8.1, standard deviation 2.5, lowest\n4.95, median 8.25, highest 11\n"
+        "Points on average: 6.0 earned, 2.7 lost, 0.7 need manual grading; 2 submissions\nneed manual grading\n"
     )
     assert "criterion  points  passed  manual  of  share  discrimination\n" in text
     assert "box           2.5       2       0   3    67%           -0.19\n" in text
@@ -87,7 +88,9 @@ def test_few_or_none(signs: dict[str, str], tmp_path: Path) -> None:
     text = stats(tmp_path / "book.db")
     data = as_json(tmp_path / "book.db")
     assert len(data["students"]) == len(signs)
-    assert ("Grades out of 11: mean 5.5, standard deviation 0.0" in text) == ("pps?f" in signs.values())
+    assert ("Grades on decided points, out of 11: mean 8.6, standard deviation 0.0" in text) == (
+        "pps?f" in signs.values()
+    )
     assert ("no students" in text) == (not signs)
     assert grader("export", "csv", "--gradebook", tmp_path / "book.db").stdout.count("\n") == 1 + len(signs)
 

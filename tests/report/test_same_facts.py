@@ -66,7 +66,9 @@ def _of_criterion(result: Result, report: Report) -> Iterator[Fact]:
         yield from (Fact("found", (printable(line),), name) for line in outcome.measured.splitlines() if line.strip())
     if status == "failed" and outcome.location is not None:
         yield Fact("place", (f"{outcome.location.path}:{outcome.location.line}",), name)
-    if status == "failed" and (report.submission.has_urdf or criterion.check.subject not in ("urdf", "robot")):
+    if result.carried:
+        yield Fact("carried", (result.why_given, f'"carried":"{result.carried}"'), name)
+    elif status == "failed" and (report.submission.has_urdf or criterion.check.subject not in ("urdf", "robot")):
         yield Fact("feedback", (criterion.feedback,), name)
 
 

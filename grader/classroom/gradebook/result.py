@@ -11,10 +11,16 @@ Verdict = Literal["graded", "unreadable", "errored", "unchanged"]
 UNITS_PER_POINT = 10_000  # the gradebook stores points as integers, so that SQL adds them exactly
 STATUS_LETTERS: dict[Status, str] = {"passed": "p", "failed": "f", "skipped": "s", "pending": "?", "errored": "!"}
 NOT_GRADED = "-"
+CARRIED = "c"  # failed because of an earlier mistake alone: the points are given
+EARNED = {"p": 1, CARRIED: 1, "f": 0, "s": 0}  # the share of the points, by the letter of a decided criterion
 
 
 class GradingResult(NamedTuple):
-    """The result of one submission. `statuses` has a letter for each criterion of the rubric; points are in ten-thousandths."""
+    """The result of one submission. `statuses` has a letter for each criterion of the rubric; points are in ten-thousandths.
+
+    `failures` is JSON, see `Failure`. `undecided` says why most of the undecided automatic points need manual grading; `urdf` and
+    `robot` are the hashes of the URDF and of its normal form.
+    """
 
     key: str
     verdict: Verdict
@@ -27,6 +33,9 @@ class GradingResult(NamedTuple):
     failures: str = "[]"
     record: bytes = b""
     reason: str = ""
+    undecided: str = ""
+    urdf: str = ""
+    robot: str = ""
 
 
 def graded_on(rubric: Rubric, statuses: str) -> tuple[str, ...]:
@@ -39,6 +48,6 @@ def graded_on(rubric: Rubric, statuses: str) -> tuple[str, ...]:
 def criterion_points(rubric: Rubric, statuses: str, marks: Mapping[str, Decimal]) -> dict[str, Decimal | None]:
     """Return the points of each criterion: the manual mark, else the automatic points, else None."""
     return {
-        criterion.id: marks.get(criterion.id, {"p": criterion.points, "f": Decimal(0), "s": Decimal(0)}.get(status))
+        criterion.id: marks.get(criterion.id, criterion.points * EARNED[status] if status in EARNED else None)
         for criterion, status in zip(rubric.criteria, statuses, strict=True)
     }

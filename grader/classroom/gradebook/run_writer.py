@@ -1,5 +1,6 @@
 """Write the results of one run into a gradebook."""
 
+from collections.abc import Iterable
 from datetime import UTC, datetime
 from typing import Any
 
@@ -20,7 +21,7 @@ from grader.grading.rubric import Rubric
 
 _FIND = f"SELECT id, {', '.join(PROFILE_COLUMNS)} FROM student WHERE key = ?"
 _UPDATE = f"UPDATE student SET {', '.join(f'{name} = ?' for name in PROFILE_COLUMNS)} WHERE id = ?"
-_NEWEST = "SELECT id, rubric, version, digest, template, record FROM result WHERE student = ? ORDER BY id DESC LIMIT 1"
+_NEWEST = "SELECT id, rubric, version, digest, template, record, urdf, robot FROM result WHERE student = ? ORDER BY id DESC LIMIT 1"
 
 
 class RunWriter:
@@ -47,10 +48,17 @@ class RunWriter:
                 query = "INSERT OR IGNORE INTO template VALUES (?, ?)"
                 self._book.connection.execute(query, (self._template, template))
 
+    def add_handed_out(self, hashes: Iterable[str]) -> None:
+        """Record hashes of URDFs and robots that the course handed out."""
+        with self._book.transaction():
+            rows = [(sha256,) for sha256 in hashes]
+            self._book.connection.executemany("INSERT OR IGNORE INTO handed_out VALUES (?)", rows)
+
     def add_result(self, student: int, result: GradingResult) -> int:
         """Add a result, unless the student's newest one is the same; return its id."""
         newest = self._book.connection.execute(_NEWEST, (student,)).fetchone()
-        same = (self._rubric, __version__, result.digest, self._template, result.record)
+        hashes = result.urdf, result.robot
+        same = (self._rubric, __version__, result.digest, self._template, result.record, *hashes)
         if newest is not None and newest[1:] == same:
             return int(newest[0])
         values = {**result._asdict(), "reason": storable(result.reason)}

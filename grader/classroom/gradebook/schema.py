@@ -22,7 +22,7 @@ AND id = (SELECT max(id) FROM mark AS newer WHERE newer.student = mark.student A
 CREATE VIEW {override} AS
 SELECT student,
     count(*) AS marks,
-    sum(points - iif(status = 'p', maximum, 0)) AS score,
+    sum(points - iif(status {has_points}, maximum, 0)) AS score,
     sum(iif(status = '-', maximum, 0)) AS out_of,
     sum(iif(status = '?', maximum, 0)) AS pending,
     sum(status = '!') AS faults,
@@ -54,7 +54,7 @@ SELECT student.*, {submission}.run, {submission}.result, result.rubric, result.v
     coalesce({override}.marks, 0) AS marks, coalesce({override}.older, 0) AS older_marks,
     coalesce({override}.over, 0) AS over_marks,
     coalesce({submission}.is_gone, 0) AS is_gone,
-    result.{statuses}, coalesce(result.{failures}, '[]') AS {failures},
+    result.{statuses}, coalesce(result.{failures}, '[]') AS {failures},{columns}
     coalesce({submission}.{files}, '[[], [], 0, []]') AS {files}, {submission}.fingerprint,
     coalesce({submission}.is_late, 0) AS is_late, coalesce({submission}.submitted, '') AS submitted,
     run.source
@@ -73,6 +73,7 @@ _FIRST_NAMES = {
     "statuses": "signs",
     "failures": "misses",
 }
+_OF_EARLIER_VERSIONS = {"has_points": "= 'p'", "columns": ""}
 
 _FIRST = (
     """
@@ -176,7 +177,7 @@ CREATE TRIGGER result_not_replaced BEFORE INSERT ON result WHEN EXISTS (SELECT 1
 BEGIN SELECT raise(ABORT, 'a result is never changed: add another'); END;
 """
     + _PROTECTION
-    + _VIEWS.format_map(_FIRST_NAMES)
+    + _VIEWS.format_map(_FIRST_NAMES | _OF_EARLIER_VERSIONS)
 )
 
 _ROSTER_AND_ASSIGNMENT = """
@@ -220,8 +221,26 @@ DROP TRIGGER mark_unchanged;
 DROP TRIGGER mark_not_replaced;
 """
     + _PROTECTION
-    + _VIEWS.format_map({name: name for name in _FIRST_NAMES})
+    + _VIEWS.format_map({name: name for name in _FIRST_NAMES} | _OF_EARLIER_VERSIONS)
+)
+
+# Version 5 knows carried criteria (the letter c in `statuses`), why a submission is undecided, and which robots are identical.
+_CARRIED_AND_IDENTICAL = """
+DROP VIEW grade;
+DROP VIEW override;
+DROP VIEW manual_mark;
+
+ALTER TABLE result ADD COLUMN undecided TEXT NOT NULL DEFAULT '';  -- why most of its undecided automatic points need manual grading
+ALTER TABLE result ADD COLUMN urdf TEXT NOT NULL DEFAULT '';       -- the hash of the URDF
+ALTER TABLE result ADD COLUMN robot TEXT NOT NULL DEFAULT '';      -- the hash of its normal form, empty where there is no robot
+
+CREATE TABLE handed_out (                                          -- hashes of URDFs and robots that the course handed out
+    sha256 TEXT PRIMARY KEY
+) WITHOUT ROWID;
+""" + _VIEWS.format_map(
+    {name: name for name in _FIRST_NAMES}
+    | {"has_points": "IN ('p', 'c')", "columns": "\n    result.undecided, result.urdf, result.robot,"}
 )
 
 # The first step makes version 1; each later one brings a gradebook to the next version. A step that was released never changes.
-STEPS = (_FIRST, _ROSTER_AND_ASSIGNMENT, _ANSWERS_AND_NAMES, _STANDARD_NAMES)
+STEPS = (_FIRST, _ROSTER_AND_ASSIGNMENT, _ANSWERS_AND_NAMES, _STANDARD_NAMES, _CARRIED_AND_IDENTICAL)

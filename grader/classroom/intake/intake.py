@@ -1,17 +1,19 @@
 """The submissions of a class, each assigned to a student on the roster: which are unmatched, and who has submitted nothing."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from grader.classroom.intake.layouts.layout import Submissions, path_key
+from grader.classroom.intake.names import is_course_folder
 from grader.classroom.intake.roster import Roster
 from grader.classroom.matching import CERTAIN, Clue, plain_word
 from grader.classroom.students import ClassSubmission, Student
-from grader.text import first_lines
+from grader.text import enumerated, first_lines, printable_path
 
 _UNMATCHED = -1
 _MAX_NOTES = 200
+_MAX_NAMED = 10
 
 
 class _Placed(NamedTuple):
@@ -93,11 +95,14 @@ def assign(
     entries = roster.entries
     matches = _match(submissions, roster)
     shared = _share(submissions, roster, matches, holds_students)
+    courses = [
+        index for index in matches.unmatched if index not in shared and is_course_folder(submissions.path(index))
+    ]
     taken = {plain_word(entry.student.key) for entry in entries}
     keys = {
         index: submissions.student(index).key
         for index in range(len(submissions))
-        if index not in matches.owners and index not in shared
+        if index not in matches.owners and index not in shared and index not in courses
     }
     # An unmatched submission must not get the key of a student on the roster.
     keys |= {index: path_key(submissions.path(index)) for index, key in keys.items() if plain_word(key) in taken}
@@ -112,7 +117,7 @@ def assign(
     present = {owner for _, _, owner, *_ in placed} | matches.contested
     return Intake(
         layout,
-        ignored,
+        (*_course_line(map(submissions.path, courses)), *ignored),
         submissions,
         roster,
         sorted(placed),
@@ -121,6 +126,14 @@ def assign(
         tuple(entries[index].student for index in sorted(matches.contested)),
         (*roster.notes, *first_lines(sorted(matches.notes), _MAX_NOTES)),
     )
+
+
+def _course_line(folders: Iterable[str]) -> Iterator[str]:
+    """Yield one line that names the course's own folders, if there are any."""
+    names = [printable_path(folder) for folder in folders]
+    if names:
+        one = len(names) == 1
+        yield f"{enumerated(names, _MAX_NAMED)} {'is a folder' if one else 'are folders'} of the course, not of a student"
 
 
 class _Matches(NamedTuple):

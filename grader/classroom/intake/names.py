@@ -14,6 +14,65 @@ _BEFORE = {".gz": ".tar", ".bz2": ".tar", ".xz": ".tar", ".xacro": ".urdf"}
 _COPY = re.compile(r"(.+?) ?\((\d{1,4})\)", re.DOTALL)
 _ZONE = re.compile(r"\s*(?:UTC|UCT|GMT|Z)$")
 _OFFSET = re.compile(r"\s+(?=[+-][0-9:]+$)")
+# The words of the names of folders that hold what a course hands out: Lab6 resources, Starter code, Handout (old).
+_COURSE_WORDS = frozenset(
+    [
+        "resource",
+        "resources",
+        "handout",
+        "handouts",
+        "solution",
+        "solutions",
+        "template",
+        "templates",
+        "starter",
+        "skeleton",
+        "material",
+        "materials",
+        "example",
+        "examples",
+        "instructions",
+        "reference",
+        "references",
+        "rubric",
+        "rubrics",
+        "grading",
+        "demo",
+        "slides",
+    ]
+)
+_OTHER_WORDS = frozenset(
+    [
+        "lab",
+        "labs",
+        "course",
+        "class",
+        "code",
+        "file",
+        "files",
+        "folder",
+        "for",
+        "of",
+        "the",
+        "and",
+        "to",
+        "from",
+        "old",
+        "new",
+        "sample",
+        "model",
+        "student",
+        "students",
+        "project",
+        "assignment",
+        "exercise",
+        "task",
+        "week",
+        "ws",
+        "workspace",
+    ]
+)
+_WORDS = re.compile(r"[^\W\d_]+")
 
 
 @lru_cache(maxsize=64)  # each name is asked for several times in a row
@@ -30,6 +89,13 @@ def ending_of(name: str) -> str:
 def stems_of(folders: list[str], files: list[str]) -> list[str]:
     """Return the names that may be submissions, files without their endings."""
     return folders + [name.removesuffix(ending) for name in files if (ending := ending_of(name))]
+
+
+def is_course_folder(path: str) -> bool:
+    """Return whether the name of a submission says that it is the course's own: it holds no word that could be a student's."""
+    name = path.rpartition("/")[2]
+    words = set(_WORDS.findall(name.removesuffix(ending_of(name)).casefold()))
+    return bool(words & _COURSE_WORDS) and words <= _COURSE_WORDS | _OTHER_WORDS
 
 
 def without_copy(stem: str, ending: str = "") -> tuple[str, int]:

@@ -36,19 +36,21 @@ class FeedbackItem:
 
 
 def feedback_items(results: Iterable[Result]) -> Iterator[FeedbackItem]:
-    """Yield an item for each criterion below its maximum or with a person's comment, in order.
+    """Yield an item for each criterion below its maximum, with a person's comment, or with an error carried forward, in order.
 
     Criteria that are skipped because of the same criterion, or pending for the same reason, are one item.
     """
     groups: dict[tuple[str, str], list[Result]] = {}
     for number, result in enumerate(results):
-        if result.points < result.criterion.points or (result.manual_mark is not None and result.manual_mark.comment):
+        has_comment = result.manual_mark is not None and result.manual_mark.comment
+        if result.points < result.criterion.points or has_comment or result.why_given:
             groups.setdefault(_cause(result) or ("", str(number)), []).append(result)
     for (kind, cause), group in groups.items():
         out_of = sum((result.criterion.points for result in group), Decimal(0))
         if len(group) == 1:
             (result,) = group
             message = _capitalised(result.outcome.message) if result.manual_mark is None else result.manual_mark.comment
+            message = f"{message}. {result.why_given}" if result.why_given else message
             yield FeedbackItem(result.criterion.title, result.points, out_of, message)
         elif kind == "skipped":
             yield FeedbackItem(f"{len(group)} criteria were skipped because {cause} failed", Decimal(0), out_of)

@@ -18,11 +18,11 @@ from grader.classroom.intake.roster import Roster, entry_to_json
 from grader.classroom.run.class_check import assignments_text, check_same_class
 from grader.classroom.run.queue import Queue
 from grader.classroom.run.stored_students import Identities, StoredStudents
-from grader.classroom.run.worker import ClassContext, Task
+from grader.classroom.run.worker import ClassContext, Task, robot_hashes
 from grader.classroom.students import ClassSubmission, Student
 from grader.errors import InputError
 from grader.files.reading import URDF_LIMIT
-from grader.grading.grade import grade_reference
+from grader.grading.grade import grade, open_reference
 from grader.grading.record import to_record
 from grader.grading.rubric import Rubric
 
@@ -52,7 +52,8 @@ class RunSettings(NamedTuple):
     """The settings of a run.
 
     `root` is the absolute path of the class, `max_size` the limit for a URDF in bytes. With `add` the class is added to whatever the
-    gradebook holds. `parts` are the ids of those that every submission is graded on; default: all.
+    gradebook holds. `parts` are the ids of those that every submission is graded on; default: all. `handed_out` are hashes of
+    URDFs and robots that the course handed out.
     """
 
     root: str
@@ -65,6 +66,7 @@ class RunSettings(NamedTuple):
     add: bool = False
     max_size: int = URDF_LIMIT
     parts: tuple[str, ...] = ()
+    handed_out: tuple[str, ...] = ()
 
 
 class Batch:
@@ -103,6 +105,7 @@ class Batch:
         assignment = assignments_text(intake.assignments)
         writer = RunWriter(book, settings.root, settings.layout, self._rubric, settings.deadline, assignment)
         self._writer = writer
+        writer.add_handed_out(settings.handed_out)
         students = StoredStudents(identities, writer, self.notes)
         contested = {student.key for student in intake.contested}
         for submission in intake.submissions():
@@ -144,7 +147,10 @@ class Batch:
         assert self._writer is not None
         rubric, settings, template = self._rubric, self._settings, ""
         with suppress(InputError):  # most records resemble that of the reference solution
-            template = to_record(grade_reference(rubric)) if rubric.reference else ""
+            if rubric.reference:
+                reference = open_reference(rubric)
+                template = to_record(grade(rubric, reference))
+                self._writer.add_handed_out(filter(None, robot_hashes(reference)))
         self._writer.use_template(template)
         return ClassContext(settings.root, rubric.data, str(rubric.path), template, settings.max_size, settings.parts)
 

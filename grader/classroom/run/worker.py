@@ -3,29 +3,39 @@
 import json
 import time
 import zlib
+from collections import Counter
 from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
+from grader.checks.manual import MANUAL_CHECKS
 from grader.checks.outcome import Outcome, Status
-from grader.classroom.gradebook.result import NOT_GRADED, STATUS_LETTERS, UNITS_PER_POINT, GradingResult, Verdict
+from grader.classroom.gradebook.failures import Failure, failure_of
+from grader.classroom.gradebook.result import (
+    CARRIED,
+    NOT_GRADED,
+    STATUS_LETTERS,
+    UNITS_PER_POINT,
+    GradingResult,
+    Verdict,
+)
 from grader.classroom.intake.fingerprint import fingerprint
 from grader.classroom.intake.opening import open_submission
 from grader.classroom.run.pool import NO_MEMORY
 from grader.errors import InputError
 from grader.files.opening import ARCHIVES
-from grader.files.reading import URDF_LIMIT
+from grader.files.reading import URDF_LIMIT, sha256_of
 from grader.grading.grade import grade
 from grader.grading.record import Template, to_record
 from grader.grading.report import GradedSubmission, Report, Result
 from grader.grading.rubric import Rubric, read_rubric
+from grader.robot.normal_form import robot_hash
 from grader.submission.submission import Submission
-from grader.submission.urdf import Absent, Unreadable
+from grader.submission.urdf import Absent, Read, Unreadable
 from grader.text import enumerated
 
 _MAX_NAMED = 10  # students in a message
-MAX_MISTAKE = 200  # characters of a mistake that statistics count
 
 
 class ClassContext(NamedTuple):
@@ -79,11 +89,20 @@ def _grade_one(context: ClassContext, task: Task) -> GradingResult:
     except (Exception, SystemExit) as error:  # noqa: BLE001  a fault of the grader affects only this submission
         reason = f"the grader itself failed: {type(error).__name__}: {error}"
         return failed(rubric, context.parts, task, "errored", reason, digest, seen)
-    for result in report.results:
-        if result.outcome.status == "errored":
-            return result_of(report, task, "errored", result.outcome.message, digest, seen, template)
-    reason = _why_unreadable(submission)
-    return result_of(report, task, "unreadable" if reason else "graded", reason, digest, seen, template)
+    faults = (result.outcome.message for result in report.results if result.outcome.status == "errored")
+    fault, reason = next(faults, ""), _why_unreadable(submission)
+    verdict: Verdict = "errored" if fault else "unreadable" if reason else "graded"
+    graded = result_of(report, task, verdict, fault or reason, digest, seen, template)
+    urdf, robot = robot_hashes(submission)
+    return graded._replace(urdf=urdf, robot=robot)
+
+
+def robot_hashes(submission: Submission) -> tuple[str, str]:
+    """Return the hashes of the graded URDF and of its robot's normal form; empty where there is none."""
+    urdf = submission.urdf
+    if not isinstance(urdf, Read) or not urdf.data.strip():
+        return "", ""
+    return sha256_of(urdf.data), robot_hash(urdf.reading)
 
 
 def _why_unreadable(submission: Submission) -> str:
@@ -138,20 +157,23 @@ def result_of(
 ) -> GradingResult:
     """Return a report as plain data; `seen` is the fingerprint of the files."""
     statuses = [NOT_GRADED] * len(report.rubric.criteria)
-    failures = []
-    for criterion, outcome, *_ in report.results:
-        statuses[criterion.position] = STATUS_LETTERS[outcome.status]
-        if outcome.status == "failed":
-            mistake = outcome.mistake or outcome.message
-            is_long = len(mistake) > MAX_MISTAKE
-            failures.append((criterion.position, mistake[: MAX_MISTAKE - 3] + "..." if is_long else mistake))
+    failures: list[Failure] = []
+    causes: Counter[str] = Counter()
+    for criterion, outcome, *_, carried in report.results:
+        statuses[criterion.position] = CARRIED if carried else STATUS_LETTERS[outcome.status]
+        if outcome.status == "failed" and not carried:
+            failures.append(failure_of(criterion, outcome))
+        elif outcome.status == "pending" and criterion.check.function not in MANUAL_CHECKS:
+            causes[outcome.mistake or f"{criterion.check.name} could not be decided"] += int(
+                criterion.points * UNITS_PER_POINT
+            )
+    undecided = max(causes, key=lambda cause: (causes[cause], cause), default="")
     score, out_of, pending = (
         int(points * UNITS_PER_POINT) for points in (report.score, report.max_score, report.pending)
     )
     record = zlib.compress(to_record(report, template).encode(), 1)
-    return GradingResult(
-        task.key, verdict, digest, seen, score, out_of, pending, "".join(statuses), json.dumps(failures), record, reason
-    )
+    told = "".join(statuses), json.dumps(failures), record, reason, undecided
+    return GradingResult(task.key, verdict, digest, seen, score, out_of, pending, *told)
 
 
 @lru_cache(maxsize=4)

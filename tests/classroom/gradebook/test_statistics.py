@@ -13,10 +13,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from grader.checks.manual import MANUAL_CHECKS
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades import Grades
 from grader.classroom.gradebook.marks import mark
-from grader.classroom.gradebook.statistics import ClassStatistics, statistics
+from grader.classroom.gradebook.statistics import ClassStatistics, PointTotals, statistics
 from tests.classroom.gradebooks import graded_as, grader, lab, record_run
 from tests.samples import LAB6, ROOT
 
@@ -59,17 +60,40 @@ def close(value: float, expected: float) -> bool:
 
 
 def test_marks(graded: tuple[list[dict[str, str]], dict[str, Any]]) -> None:
-    """Mean, deviation (of the class, not of a sample), lowest, median, highest, tenths."""
+    """Mean, deviation (of the class, not of a sample), lowest, median, highest, tenths: over decided points."""
     rows, found = graded
-    scores = [float(row["score"]) for row in rows if row["status"] == "graded"]
-    assert found["graded"] == len(scores) > 40
-    assert found["pending"] == sum(row["status"] == "graded" and float(row["pending"]) > 0 for row in rows) > 0
+    own = [row for row in rows if row["status"] == "graded"]
+    scores, undecided = [], 0
+    for row in own:
+        is_empty = [
+            row[criterion.id] == "" for criterion in LAB6.criteria if criterion.check.function not in MANUAL_CHECKS
+        ]
+        decided = float(row["max_score"]) - float(row["pending"])
+        if float(row["max_score"]) == 100 and sum(is_empty) == len(is_empty):
+            undecided += 1
+        else:
+            scores.append(round(float(row["score"]) * 100 / decided, 4))
+    assert found["graded"] == len(own) > 40
+    assert found["undecided"] == undecided
+    assert found["pending"] == sum(float(row["pending"]) > 0 for row in own) > 0
     assert close(found["mean"], standard.fmean(scores))
     assert close(found["deviation"], standard.pstdev(scores))
     assert (found["lowest"], found["highest"]) == (min(scores), max(scores))
     assert close(found["median"], standard.median(scores))
     assert found["tenths"] == np.histogram(scores, bins=10, range=(0, 100))[0].tolist()
     assert found["counts"] == dict(Counter(row["status"] for row in rows))
+
+
+def test_points_are_earned_lost_or_undecided(graded: tuple[list[dict[str, str]], dict[str, Any]]) -> None:
+    """The three add up to the maximum of all graded submissions."""
+    rows, found = graded
+    own = [row for row in rows if row["status"] == "graded"]
+    earned, pending, most = (sum(Decimal(row[name]) for row in own) for name in ("score", "pending", "max_score"))
+    assert [Decimal(str(found["points"][name])) for name in ("earned", "lost", "pending")] == [
+        earned,
+        most - earned - pending,
+        pending,
+    ]
 
 
 def test_criteria(graded: tuple[list[dict[str, str]], dict[str, Any]]) -> None:
@@ -86,7 +110,7 @@ def test_criteria(graded: tuple[list[dict[str, str]], dict[str, Any]]) -> None:
         rest = earned[who].sum(axis=1) - earned[who, index]
         assert close(criterion["share"], float(share.mean()))
         assert close(criterion["discrimination"], float(np.corrcoef(share, rest)[0, 1]))
-        reported = ("passed", "marked_by_hand", "failed", "skipped")
+        reported = ("passed", "marked_by_hand", "carried", "failed", "skipped")
         assert sum(criterion[name] for name in reported) == who.sum()
     manual = sum(criterion["marked_by_hand"] for criterion in found["criteria"])
     assert manual > 60
@@ -126,11 +150,12 @@ def test_without_grades(signs: tuple[str, ...], tmp_path: Path) -> None:
 
 
 def test_one_is_graded(tmp_path: Path) -> None:
-    """With one student no criterion has a discrimination."""
+    """With one student no criterion has a discrimination. The grade is over the seven points that are decided."""
     found = of(tmp_path, "pps?f")
-    assert (found.graded, found.mean, found.deviation) == (1, 5.5, 0.0)
-    assert {found.lowest, found.median, found.highest} == {Decimal("5.5")}
-    assert found.bins == (0, 0, 0, 0, 0, 1, 0, 0, 0, 0)
+    assert (found.graded, found.undecided, found.mean, found.deviation) == (1, 0, 8.6429, 0.0)
+    assert {found.lowest, found.median, found.highest} == {Decimal("8.6429")}
+    assert found.points == PointTotals(Decimal("5.5"), Decimal("1.5"), Decimal(4))
+    assert found.bins == (0, 0, 0, 0, 0, 0, 0, 1, 0, 0)
     assert [criterion.share for criterion in found.criteria] == [1, 1, 0, None, 0]
     assert {criterion.discrimination for criterion in found.criteria} == {None}
 

@@ -1,0 +1,49 @@
+"""The normal form of a robot: equal for two files that differ only in what a copy can change without changing the robot."""
+
+from dataclasses import fields, is_dataclass
+from hashlib import sha256
+from typing import Any
+
+from grader.robot.model import Collision, Joint, Link, Robot, Visual
+from grader.robot.reader import Reading
+
+_NAMES = ("name", "material_name")  # of materials: nothing outside of the file refers to them
+
+
+def normal_form(robot: Robot) -> tuple[Any, ...]:
+    """Return the links and joints of a robot as nested tuples, sorted.
+
+    Comments, white space, the order of elements and the way in which numbers are written do not count. Neither do names that
+    nothing refers to: those of the robot, of materials, of joints that no joint mimics, and of links without a joint.
+    """
+    mimicked = {joint.mimic.joint for joint in robot.joints if joint.mimic is not None}
+    connected = {name for joint in robot.joints for name in (joint.parent, joint.child)}
+    links = (_renamed(link, connected) for link in robot.links)
+    joints = (_renamed(joint, mimicked) for joint in robot.joints)
+    return tuple(sorted(links, key=repr)), tuple(sorted(joints, key=repr))
+
+
+def robot_hash(reading: Reading) -> str:
+    """Return the hash of a robot's normal form, with the problems of its file; empty without a robot that has links.
+
+    The problems count because ROS 2 ignores what is wrong: without them, different mistakes could give the same robot.
+    """
+    if reading.robot is None or not reading.robot.links:
+        return ""
+    problems = sorted((problem.code, problem.message) for problem in reading.problems)
+    return sha256(repr((problems, normal_form(reading.robot))).encode("utf-8", "backslashreplace")).hexdigest()
+
+
+def _renamed(element: Link | Joint, kept: set[str]) -> tuple[Any, ...]:
+    return element.name if element.name in kept else "", _plain(element, ignored=("name",))
+
+
+def _plain(value: Any, ignored: tuple[str, ...] = _NAMES) -> Any:
+    """Return a value of the model as plain tuples; locations do not count, as in comparisons."""
+    if is_dataclass(value):
+        names = (field.name for field in fields(value) if field.compare and field.name not in ignored)
+        return type(value).__name__, *(_plain(getattr(value, name)) for name in names)
+    if isinstance(value, tuple):
+        items = map(_plain, value)
+        return tuple(sorted(items, key=repr)) if value and isinstance(value[0], Visual | Collision) else tuple(items)
+    return value + 0.0 if isinstance(value, float) else value  # -0.0 is 0.0

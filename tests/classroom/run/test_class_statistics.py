@@ -1,0 +1,245 @@
+"""A class seen truly, through the command line: undecided points, causes, identical work, and the course's own folders."""
+
+import json
+import shutil
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import pytest
+
+from tests.classroom.class_runs import run_in_process
+from tests.samples import ROOT
+
+URDF = (ROOT / "submissions/lidar-buried/my_robot.urdf").read_text(encoding="utf-8")
+HANDED_OUT = (ROOT / "submissions/base-half-sunk/my_robot.urdf").read_text(encoding="utf-8")
+REFERENCE = (ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf").read_text(encoding="utf-8")
+SMALL_WHEELS = (ROOT / "submissions/wheel-too-small/my_robot.urdf").read_text(encoding="utf-8")
+FORWARD = (ROOT / "submissions/axis-negated/my_robot.urdf").read_text(encoding="utf-8")
+XACRO = (
+    '<robot name="r" xmlns:xacro="http://ros.org/wiki/xacro"><xacro:include filename="$(find other)/a.xacro"/></robot>'
+)
+FILES: dict[str, dict[str, str]] = {
+    "ash": {"my_robot.urdf": URDF},
+    "birch": {"my_robot.urdf": URDF.replace("base_lidar_joint", "lidar_joint").replace("<link", "<!-- mine --><link")},
+    "cedar": {"robot.urdf": URDF},
+    "elm": {"my_robot.urdf": REFERENCE},
+    "fir": {"my_robot.urdf": REFERENCE},
+    "hazel": {"my_robot.urdf": HANDED_OUT},
+    "holly": {"my_robot.urdf": HANDED_OUT.replace("0.6 0.4 0.2", ".6 .4 .2")},
+    "juniper": {"my_robot.urdf.xacro": XACRO},
+    "larch": {"my_robot.urdf.xacro": XACRO + "\n"},
+    "maple": {"a.txt": "x", "b.txt": "y"},
+    "oak": {"a.txt": "x", "b.txt": "y", "c.txt": "z"},
+    "pine": {"my_robot.urdf": SMALL_WHEELS},
+    "rowan": {"my_robot.urdf": FORWARD},
+    "spruce": {"my_robot.urdf": FORWARD.replace('axis xyz="0 0 -1"', 'axis xyz="0 0.0008 -1"')},
+    "Lab6 resources": {"my_robot.urdf": URDF},
+    "Handout": {"my_robot.urdf": HANDED_OUT},
+    "lab_6_solutions": {"my_robot.urdf": REFERENCE},
+}
+COURSE = ("Handout", "Lab6 resources", "lab_6_solutions")
+
+
+@pytest.fixture(scope="module")
+def top(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder with a class, its roster and its gradebook; a file was handed out."""
+    top = tmp_path_factory.mktemp("class")
+    for name, files in FILES.items():
+        (top / "class" / name).mkdir(parents=True)
+        for file, text in files.items():
+            (top / "class" / name / file).write_text(text, encoding="utf-8")
+    rows = "".join(f"{name},{name.title()} Tree\n" for name in FILES if name not in COURSE)
+    (top / "roster.csv").write_text(f"id,name\n{rows}", encoding="utf-8")
+    (top / "start.urdf").write_text(HANDED_OUT, encoding="utf-8")
+    done = run_in_process(
+        "batch", top / "class", "--gradebook", top / "g.db", "--roster", top / "roster.csv", "--ignore-file",
+        top / "start.urdf", "--jobs", "2",
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    (top / "out.txt").write_text(done.stdout, encoding="utf-8")
+    (top / "err.txt").write_text(done.stderr, encoding="utf-8")
+    return top
+
+
+def data(top: Path) -> dict[str, Any]:
+    """Return the class as JSON, valid under its schema."""
+    found = json.loads(run_in_process("stats", "--gradebook", top / "g.db", "--format", "json").stdout)
+    jsonschema.validate(found, json.loads(run_in_process("schema", "class").stdout))
+    return dict(found)
+
+
+def text(top: Path) -> str:
+    """Return the summary that batch has printed, without line breaks; stats prints the same."""
+    out = (top / "out.txt").read_text(encoding="utf-8")
+    assert run_in_process("stats", "--gradebook", top / "g.db").stdout == out
+    return " ".join(out.split())
+
+
+# --- Points -----------------------------------------------------------------------------------------------------------
+
+
+def test_undecided_submissions_are_no_zeros(top: Path) -> None:
+    """The two that cannot be expanded are not in the mean, and stated beside it."""
+    found, students = data(top)["statistics"], data(top)["students"]
+    graded = [student for student in students if student["id"] not in ("juniper", "larch")]
+    grades = [student["score"] * 100 / (student["max_score"] - student["pending"]) for student in graded]
+    assert (found["graded"], found["undecided"]) == (len(students), 2) == (14, 2)
+    assert found["mean"] == pytest.approx(sum(grades) / len(grades), abs=1e-3)
+    assert sum(found["tenths"]) == 12
+    assert "2 submissions are undecided for the most part: not in these grades" in text(top)
+
+
+def test_three_kinds_of_points_are_separate(top: Path) -> None:
+    """Earned, lost and undecided points add up to the maximum."""
+    found, students = data(top)["statistics"]["points"], data(top)["students"]
+    assert found["earned"] == sum(student["score"] for student in students)
+    assert found["pending"] == sum(student["pending"] for student in students)
+    assert sum(found.values()) == sum(student["max_score"] for student in students)
+    shares = [f"{found[name] / 14:.1f}" for name in ("earned", "lost", "pending")]
+    words = "Points on average: {} earned, {} lost, {} need manual grading; 14 submissions need manual grading"
+    assert words.format(*shares) in text(top)
+
+
+def test_the_main_reason_is_one_line(top: Path) -> None:
+    """It counts the cause, although the messages name different files."""
+    assert data(top)["statistics"]["reasons"] == [{"reason": "xacro that is not expanded", "count": 2}]
+    assert "Could not be decided: 2 submissions: xacro that is not expanded" in text(top)
+
+
+def test_a_manual_mark_decides(top: Path) -> None:
+    """A submission whose automatic points were all given by a person has no reason any more."""
+    shutil.copy(top / "g.db", top / "marked.db")
+    found = json.loads(run_in_process("stats", "--gradebook", top / "g.db", "--format", "json").stdout)
+    for row in found["statistics"]["criteria"]:
+        if row["pending"] == 2:
+            run_in_process("mark", "larch", row["id"], "0", "--gradebook", top / "marked.db")
+    done = run_in_process("stats", "--gradebook", top / "marked.db", "--format", "json")
+    after = json.loads(done.stdout)["statistics"]
+    assert after["reasons"] == [{"reason": "xacro that is not expanded", "count": 1}]
+    assert after["undecided"] == 1
+
+
+# --- Causes -----------------------------------------------------------------------------------------------------------
+
+
+def test_failures_have_a_row_for_each_cause(top: Path) -> None:
+    """Numbers of files, and differences below the tolerance, make no row of their own."""
+    found = data(top)["statistics"]["failures"]
+    assert [row["count"] for row in found if row["message"].startswith("no URDF was submitted")] == [2]
+    assert [row["count"] for row in found if row["criterion"] == "left-wheel-forward"] == [2]
+    assert [row["count"] for row in found if row["criterion"] == "lidar-frame"] == [3]
+
+
+def test_a_carried_criterion_is_no_mistake(top: Path) -> None:
+    """It is counted on its own, and the cause is the mistake."""
+    found = data(top)["statistics"]
+    criteria = {row["id"]: row for row in found["criteria"]}
+    assert [criteria["footprint-at-wheel-bottoms"][name] for name in ("carried", "failed")] == [1, 0]
+    assert not any(row["criterion"] == "footprint-at-wheel-bottoms" for row in found["failures"])
+    (pine,) = (student for student in data(top)["students"] if student["id"] == "pine")
+    assert pine["score"] == 68
+    table = run_in_process("export", "csv", "--gradebook", top / "g.db").stdout.splitlines()
+    (row,) = (line for line in table if line.startswith("pine,"))
+    assert row.endswith('"footprint-at-wheel-bottoms, stands-on-ground"')
+
+
+def test_a_report_from_the_gradebook_names_the_cause(top: Path) -> None:
+    """Reports of a class are as those of one submission."""
+    done = run_in_process(
+        "batch",
+        top / "class",
+        "--gradebook",
+        top / "g.db",
+        "--roster",
+        top / "roster.csv",
+        "--reports",
+        top / "reports",
+    )
+    assert done.returncode == 0
+    report = (top / "reports/pine.txt").read_text(encoding="utf-8")
+    assert "Points given: this mistake is already counted in left-wheel-shape." in report
+
+
+# --- Identical work ---------------------------------------------------------------------------------------------------
+
+
+def test_identical_work_is_listed(top: Path) -> None:
+    """Who shares with whom, and which of them the same file; the reference and what was handed out are exempt."""
+    assert data(top)["identical"] == [{"students": ["ash", "birch", "cedar"], "same_file": [["ash", "cedar"]]}]
+    words = text(top)
+    assert "ash, birch and cedar (the same file: ash and cedar)" in words
+    assert "This is no verdict" in words
+    assert "hazel and holly" not in words
+
+
+def test_handed_out_files_are_remembered(top: Path) -> None:
+    """A later run and `stats` need not name them again; without them they are identical work."""
+    run_in_process(
+        "batch", top / "class", "--gradebook", top / "other.db", "--roster", top / "roster.csv", "--jobs", "2"
+    )
+    found = json.loads(run_in_process("stats", "--gradebook", top / "other.db", "--format", "json").stdout)
+    assert [group["students"] for group in found["identical"]] == [["ash", "birch", "cedar"], ["hazel", "holly"]]
+    run_in_process(
+        "batch", top / "class", "--gradebook", top / "other.db", "--roster", top / "roster.csv", "--ignore-file",
+        top / "start.urdf",
+    )  # fmt: skip
+    found = json.loads(run_in_process("stats", "--gradebook", top / "other.db", "--format", "json").stdout)
+    assert [group["students"] for group in found["identical"]] == [["ash", "birch", "cedar"]]
+
+
+@pytest.mark.parametrize(("name", "reason"), [("nowhere.urdf", "does not exist"), ("empty", "there is no URDF in it")])
+def test_a_wrong_ignore_file_is_refused(top: Path, name: str, reason: str) -> None:
+    """Before anything is graded, in one line."""
+    (top / "empty").mkdir(exist_ok=True)
+    (top / "empty/notes.txt").write_text("x", encoding="utf-8")
+    done = run_in_process("batch", top / "class", "--gradebook", top / "no.db", "--ignore-file", top / name)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert reason in done.stderr
+    assert not (top / "no.db").exists()
+
+
+def test_a_shared_submission_is_not_identical_work(tmp_path: Path) -> None:
+    """The members of a group who have submitted together share nothing with others."""
+    (tmp_path / "class/team1").mkdir(parents=True)
+    (tmp_path / "class/team1/my_robot.urdf").write_text(URDF, encoding="utf-8")
+    (tmp_path / "roster.csv").write_text("id,name,group\n1,Ash Tree,team1\n2,Birch Tree,team1\n", encoding="utf-8")
+    done = run_in_process(
+        "batch",
+        tmp_path / "class",
+        "--gradebook",
+        tmp_path / "g.db",
+        "--roster",
+        tmp_path / "roster.csv",
+        "--format",
+        "json",
+    )
+    found = json.loads(done.stdout)
+    assert [student["score"] for student in found["students"]] == [62, 62]
+    assert found["identical"] == []
+
+
+# --- The course's own folders -----------------------------------------------------------------------------------------
+
+
+def test_course_folders_are_not_students(top: Path) -> None:
+    """With a roster they are ignored in one line, not graded."""
+    assert not {student["id"] for student in data(top)["students"]} & set(COURSE)
+    errors = (top / "err.txt").read_text(encoding="utf-8")
+    assert (
+        "ignored: Handout, Lab6 resources and lab_6_solutions are folders of the course, not of a student\n" in errors
+    )
+    assert "unmatched" not in errors
+
+
+def test_without_a_roster_every_folder_is_graded(tmp_path: Path) -> None:
+    """Nobody can tell then whose a folder is; a folder of a student on the roster is graded whatever its name."""
+    for name in ("ash", "Template"):
+        (tmp_path / "class" / name).mkdir(parents=True)
+        (tmp_path / "class" / name / "my_robot.urdf").write_text(URDF, encoding="utf-8")
+    (tmp_path / "roster.csv").write_text("id,name\nash,Ash Tree\ntemplate,Tem Plate\n", encoding="utf-8")
+    for more in ((), ("--roster", tmp_path / "roster.csv")):
+        done = run_in_process(
+            "batch", tmp_path / "class", "--gradebook", tmp_path / f"g{len(more)}.db", "--format", "json", *more
+        )
+        assert len(json.loads(done.stdout)["students"]) == 2
