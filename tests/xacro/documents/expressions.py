@@ -172,7 +172,6 @@ _MORE = (
 
 # What a robot does not need: it shows an address in memory, changes values in place, or is a kind of value of its own.
 _BEYOND = {
-    "'a'.center()", "xacro.dotify(1.5)",
     "1 is 1", "1 is not 1", "'a\\tb'.expandtabs(4)", "xacro.arg('missing')",
     "sin", "len", "range(3)", "reversed([1, 2])", "enumerate(['a'])", "(x for x in [1])", "python.enumerate([1])", "python.map(str, [1])", "'abc'.nothing", "math", "abs",
     "python.hash('a')", "python.type(1)", "python.vars", "math.sin", "python.len", "python.issubclass(python.int, python.int)", "1j", "(-1) ** 0.5", "(-8) ** (1/3)", "...",
