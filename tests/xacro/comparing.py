@@ -51,7 +51,7 @@ def difference(document: Document, expected: oracle.Accepted | oracle.Refused) -
         return None if refusals else f"xacro refuses it, the grader does not: {expected.message}"
     if reasons:
         return f"xacro accepts it, the grader cannot determine it: {reasons[0]}"
-    text = etree.tostring(found.root, with_tail=False)
+    text = etree.tostring(found.root, encoding="utf-8", with_tail=False)
     for name, folder in PACKAGES.items():
         text = text.replace(f"/install/{name}/share/{name}".encode(), f"/{folder}".rstrip("/").encode())
     return _difference_of_texts(expected.text.encode(), text)

@@ -2,12 +2,11 @@
 
 from dataclasses import dataclass
 from random import Random
-from xml.sax.saxutils import quoteattr
+from xml.sax.saxutils import escape, quoteattr
 
-from tests.xacro.documents.document import Document, named, part, robot
-from tests.xacro.random_expressions import Expressions, Names
-
-_YAML = "radius: 0.1\nname: left\nsizes: [0.6, 0.4, 0.2]\ninner: {mass: 5, ok: true}\nangle: !degrees 90\n"
+from tests.xacro.documents.document import Document, part, robot
+from tests.xacro.random_definitions import Definitions
+from tests.xacro.random_expressions import Names
 
 
 @dataclass
@@ -25,34 +24,21 @@ def document(seed: int) -> Document:
     return _Writer(Random(seed)).document()
 
 
-class _Writer:
+class _Writer(Definitions):
     def __init__(self, random: Random) -> None:
-        self._random = random
-        self._defect = 0.03 if random.random() < 0.15 else 0.0
-        self._write = Expressions(random, self._defect)
+        super().__init__(random)
         self._macros: list[Macro] = []
         self._names = Names()
-        self._files: dict[str, str | bytes] = {}
-        self._arguments: dict[str, str] = {}
-        self._count = 0
-        self._is_in_macro = False
 
     def document(self) -> Document:
         pieces = [self._piece(self._names) for _ in range(self._random.randint(3, 12))]
-        body = "\n".join([*pieces, self._link(self._names), self._link(self._names)])
+        body = "\n".join(['<link name="base"/>', *pieces, self._link(self._names), self._link(self._names)])
         return Document(robot(body), self._files, self._arguments)
-
-    def _name(self, beginning: str) -> str:
-        self._count += 1
-        return f"{beginning}{self._count}"
-
-    def _maybe(self, probability: float) -> bool:
-        return self._random.random() < probability
 
     def _piece(self, names: Names, depth: int = 2) -> str:
         """Return one of all things that can stand in a robot; definitions add to the names."""
         pieces = [self._link, self._property, self._property, self._property, self._call, self._call]
-        pieces += [self._comment, self._argument, self._element, self._block]
+        pieces += [self._comment, self._argument, self._element, self._block, self._later, self._removed, self._text]
         if depth > 0:
             pieces += [
                 lambda names: self._condition(names, depth),
@@ -69,44 +55,16 @@ class _Writer:
         self._macros = macros
         return pieces
 
-    def _value(self, names: Names, kind: str) -> str:
-        """Return the text of an attribute, or of a parameter, whose value is of a kind."""
-        match kind:
-            case "numbers" if self._maybe(0.3):
-                return self._random.choice(
-                    ("0.1", "5", " 2 ", "1e-2", "-.5", "01", "+3", "1_0" if self._defect else "4.0")
-                )
-            case "numbers":
-                return f"${{{self._write.number(names)}}}"
-            case "texts" if self._maybe(0.4):
-                return self._random.choice(
-                    ("wheel", "base link", "'quoted'", "0 0 ${1 + 1}", "$${kept}", "a_${2 * 3}", "'5'x", "$5 off")
-                )
-            case "texts":
-                return f"${{{self._write.text(names)}}}"
-            case "lists":
-                return f"${{{self._write.values(names)}}}"
-        return self._random.choice(("true", "false", "1", "0", f"${{{self._write.flag(names)}}}"))
-
-    def _property(self, names: Names) -> str:
-        kind = self._random.choice(("numbers", "numbers", "numbers", "texts", "lists", "flags"))
-        known = getattr(names, kind)
-        own = [name for name in known if name.isidentifier()] if self._maybe(0.15) else []
-        name = self._random.choice(
-            own or [self._name("p")]
-        )  # a new value that is made of the old one is evaluated at once
-        more = 'lazy_eval="false"' if own else self._random.choice(("", "", "", 'lazy_eval="false"', 'scope="global"'))
-        if not own and self._is_in_macro and self._maybe(0.3):
-            more = 'scope="parent"'  # refused outside of macros
-        text = named(name, self._value(names, kind), more)
-        if name not in known:
-            known.append(name)
-        return text.replace(" value=", " default=", 1) if not more and self._maybe(0.1) else text
-
     def _block(self, names: Names) -> str:
         name = self._name("block_")
         block = f"<xacro:property name='{name}'><in x={quoteattr(self._value(names, 'numbers'))}/>{self._call(names)}</xacro:property>"
         return block + f"<out><xacro:insert_block name='{name}'/></out>" * self._random.randint(0, 2)
+
+    def _text(self, names: Names) -> str:
+        texts = [escape(self._value(names, kind)) for kind in ("texts", "lists", "numbers")]
+        attribute = f"<xacro:attribute name='k' value={quoteattr('v ' + self._value(names, 'texts'))}/>"
+        condition = f"<xacro:if value='{self._random.choice('01')}'>{attribute}</xacro:if>"
+        return f"<text>{texts[0]} and {texts[1]}<in/>{texts[2]}{self._random.choice((attribute, condition, ''))}</text>"
 
     def _link(self, names: Names) -> str:
         numbers = [f"${{{self._write.number(names)}}}" for _ in range(6)]
@@ -134,9 +92,12 @@ class _Writer:
 
     def _macro(self, names: Names, depth: int) -> str:
         kinds = self._random.choices(("numbers", "numbers", "texts", "flags", "lists"), k=self._random.randint(0, 3))
-        macro = Macro(
-            self._name("m"), {self._name("a"): kind for kind in kinds}, set(), self._random.choice((0, 0, 0, 1, 2))
-        )
+        forwarded = [name for name in names.numbers if name.isidentifier() and self._maybe(0.2)][:1]
+        parameters = {self._name("a"): kind for kind in kinds} | dict.fromkeys(forwarded, "numbers")
+        name = self._name("m")
+        if self._macros and self._maybe(0.1) and "." not in self._macros[-1].name:
+            name = self._macros.pop().name
+        macro = Macro(name, parameters, set(forwarded), self._random.choice((0, 0, 0, 1, 2)))
         specified = [self._parameter(macro, name, names) for name in macro.parameters]
         blocks = [(self._random.choice(("*", "**")), self._name("b")) for _ in range(macro.blocks)]
         specified += [stars + name for stars, name in blocks]
@@ -152,6 +113,8 @@ class _Writer:
         return f"<xacro:macro name='{macro.name}' params={params}>{''.join(content)}</xacro:macro>"
 
     def _parameter(self, macro: Macro, name: str, names: Names) -> str:
+        if name in macro.optional:
+            return name + ":=^"
         if self._maybe(0.6):
             return name
         macro.optional.add(name)
@@ -176,16 +139,6 @@ class _Writer:
         if self._maybe(0.15):
             return f'<xacro:call macro="{macro.name}" {attributes}>{blocks}</xacro:call>'
         return f"<xacro:{macro.name} {attributes}>{blocks}</xacro:{macro.name}>"
-
-    def _argument(self, names: Names) -> str:
-        name = self._name("arg")
-        if self._maybe(0.3):
-            self._arguments[name] = self._random.choice(("3", "0.25", "true", "some text"))
-        declared = f"<xacro:arg name='{name}' default={quoteattr(self._value(names, 'numbers'))}/>"
-        used = self._random.choice(
-            ("$(arg {})", "a $(arg {}) b", "${{'$(arg {})' + '_x'}}", "$(eval {} == 3)", "${{xacro.arg('{}')}}")
-        )
-        return f"{declared}<used x={quoteattr(used.format(name))}/>"
 
     def _element(self, names: Names) -> str:
         attribute = (
@@ -214,12 +167,3 @@ class _Writer:
         way = f"$(find my_robot)/{folder}{path}" if self._maybe(0.3) else way
         space = f' ns="{namespace}"' if namespace else ""
         return f'<xacro:include filename="{way}"{space}/>'
-
-    def _yaml(self, names: Names) -> str:
-        self._files["config/values.yaml"] = _YAML
-        name = self._name("y")
-        names.numbers += [f"{name}.radius", f"{name}['inner']['mass']", f"{name}.angle", f"{name}.sizes[1]"]
-        names.texts.append(f"{name}.name")
-        names.lists.append(f"{name}.sizes")
-        names.flags.append(f"{name}.inner.ok")
-        return named(name, "${xacro.load_yaml('../config/values.yaml')}")
