@@ -83,10 +83,10 @@ def _join(separator: str, items: Value) -> str:
 
 
 def _padded(name: str) -> Callable[..., str]:
-    def pad(text: str, width: int = 8, *fill: str) -> str:
-        if isinstance(width, int) and width > _MAX_WIDTH:
+    def pad(text: str, *args: Value) -> str:
+        if any(isinstance(value, int) and value > _MAX_WIDTH for value in args):
             too_large("text")
-        return str(getattr(text, name)(width, *fill))
+        return str(getattr(text, name)(*args))
 
     return pad
 

@@ -104,7 +104,7 @@ def _expanded(data: bytes, path: str, around: Surroundings, launched: Mapping[st
     """Return the robot that xacro makes of a file; where it cannot be expanded at all, what can be read of the text."""
     from grader.xacro.expansion import expand  # late: most URDFs are no xacro
 
-    expansion = expand(data, path, around.workspace(path), {**launched, **around.arguments})
+    expansion = expand(data, path, around.workspace(), {**launched, **around.arguments})
     if expansion.root is None and expansion.problems:
         raw = read_urdf(data, path)
         problems = [problem for problem in raw.problems if problem.kind not in (RAW_XACRO, NOT_WELL_FORMED)]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import posixpath
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
@@ -32,18 +31,13 @@ class Surroundings:
         """Return where the launch files of the graded package read a URDF."""
         return self.graded.robot_references(path.rpartition("/")[2]) if self.graded is not None else []
 
-    def workspace(self, path: str) -> Workspace:
-        """Return the files as the xacro in a file sees them."""
+    def workspace(self) -> Workspace:
+        """Return the files as xacro sees them."""
         from grader.xacro.files import Workspace  # late: most URDFs are no xacro
 
         folders = {package.name: package.folder for package in reversed(self.packages)}
-        own = posixpath.dirname(path)
-
-        def package_folder(name: str) -> str | None:
-            # Without any package, the submission is taken for a part of the one that its xacro names.
-            return folders.get(name) if folders or not self.tree.files else own
-
-        return Workspace(self._read, package_folder, tuple(self.tree.files), self._installed)
+        is_part = not folders and bool(self.tree.files)
+        return Workspace(self._read, folders.get, tuple(self.tree.files), self._installed, is_part)
 
     def _read(self, path: str) -> bytes:
         file = self.tree.files.get(path)

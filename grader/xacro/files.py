@@ -13,19 +13,24 @@ from grader.xacro.texts import INSTALLED
 from grader.xml.parsing import XMLSyntaxError
 
 _GLOB = re.compile(r"[*\[?]")
+_SHARED = re.compile(rf"{INSTALLED}/(?P<package>[^/]+)/share/(?P=package)(?:/+(?P<inside>.+))", re.DOTALL)
 _MAX_OPEN = 50  # files that include each other
 _MAX_FILES = 200  # that one pattern names
 
 
 class Workspace(NamedTuple):
-    """The files of a submission, as xacro sees them."""
+    """The files of a submission, as xacro sees them.
 
-    read: Callable[[str], bytes]  # the bytes of a file by its path; raises InputError, or NotDecided
-    package: Callable[[str], str | None]  # the folder of a package of the submission, None for other packages
+    `read` returns the bytes of a file by its path, and raises InputError or NotDecided. `package` returns the folder of a package
+    of the submission, `installed` the file that a build installs at a path in a package. With `is_part` the files may be a part of
+    any package, because there is none among them.
+    """
+
+    read: Callable[[str], bytes]
+    package: Callable[[str], str | None]
     paths: Collection[str] = ()
-    installed: Callable[[str, str], str | None] = lambda *_: (
-        None
-    )  # the file that a build installs at a path in a package
+    installed: Callable[[str, str], str | None] = lambda *_: None
+    is_part: bool = False
 
 
 class FileFails(ExpressionFails):
@@ -44,8 +49,8 @@ class Files:
         self.open = [path]
 
     def has_package(self, name: str) -> bool:
-        """Return whether a package is part of the submission."""
-        return self._workspace.package(name) is not None
+        """Return whether a package is, or may be, part of the submission."""
+        return self._workspace.is_part or self._workspace.package(name) is not None
 
     def named(self, text: str) -> list[str]:
         """Return the paths of the files that an include names: several for a pattern."""
@@ -56,19 +61,23 @@ class Files:
 
     def path(self, text: str) -> str:
         """Return the path in the submission of a file that the innermost file names. Raises Undetermined."""
-        if text.startswith(f"{INSTALLED}/"):
-            name, _, inside = text.removeprefix(f"{INSTALLED}/").partition("/")
-            inside = posixpath.normpath(inside.removeprefix(f"share/{name}").lstrip("/") or ".")
-            folder = self._workspace.package(name)
-            if folder is None:
-                raise Undetermined(f"the package {name} is not part of the submission")
-            source = self._workspace.installed(name, inside)
-            path = source if source is not None else posixpath.normpath(posixpath.join(folder, inside))
+        shared = _SHARED.fullmatch(text)
+        if shared is not None:
+            path = self._shared(shared["package"], posixpath.normpath(shared["inside"]))
         else:
             path = posixpath.normpath(posixpath.join(posixpath.dirname(self.open[-1]), text))
+        if text.startswith(f"{INSTALLED}/") and shared is None:
+            raise FileFails(f"there is no file {text.partition('/share/')[2]}: is a slash missing after $(find ...)?")
         if path.startswith(("/", "../")) or path == "..":
             raise Undetermined(f"{text} is outside the submission")
         return path
+
+    def _shared(self, package: str, inside: str) -> str:
+        """Return the path of a file that $(find package) names."""
+        folder, source = self._workspace.package(package), self._workspace.installed(package, inside)
+        if folder is None and source is None:
+            raise Undetermined(f"the package {package} is not part of the submission")
+        return source if source is not None else posixpath.normpath(posixpath.join(folder or "", inside))
 
     def read(self, path: str) -> bytes:
         """Return the bytes of a file. Raises FileFails for one that does not exist, Undetermined."""

@@ -11,6 +11,7 @@ from grader.static_python.closed_values import (
     Namespace,
     Undetermined,
     Value,
+    run,
 )
 
 _OLD_BUILTINS = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round", "sorted", "range")
@@ -33,6 +34,10 @@ def dotted(value: Value) -> Value:
     if isinstance(value, dict):
         return DottedDict({key: dotted(item) for key, item in value.items()})
     return [dotted(item) for item in value] if isinstance(value, list) else value
+
+
+def _dotify(value: Value) -> Value:
+    return dotted(run(dict, value))
 
 
 def argument_value(text: str) -> Value:
@@ -71,7 +76,7 @@ _XACRO: dict[str, Value] = {
     **{name: Function(name, lambda *_, **__: "") for name in ("message", "warning", "error", "print_location")},
     "fatal": Function("fatal", _fatal),
     "tokenize": Function("tokenize", _tokenize),
-    "dotify": Function("dotify", dotted),
+    "dotify": Function("dotify", _dotify),
     "abs_filename": Function("abs_filename", _no_path),
 }
 GLOBALS: Mapping[str, Value] = {

@@ -17,7 +17,7 @@ _DECLARATION = re.compile(
 )
 _MISPLACED = re.compile(r"<\?xml\s[^>]*\?>")
 _UNDECLARED = re.compile(r"(</?\s*)xacro:")
-_STAND_IN = "."  # for the colon of an undeclared prefix; it keeps every column
+_STAND_IN = "\u02d0"  # for the colon of an undeclared prefix: a letter that looks like one, so that columns stay
 _CDATA = re.compile(r"<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
 
 

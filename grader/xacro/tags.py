@@ -11,6 +11,7 @@ from grader.xacro.files import FileFails
 from grader.xacro.macro_tags import call_dynamically, call_macro, define_macro, insert_block, needed, renamed
 from grader.xacro.nodes import Node
 from grader.xacro.scopes import Reported, Scope
+from grader.xacro.texts import for_xml
 
 _NAME = re.compile(r"[^\W\d][\w.-]*(?::[^\W\d][\w.-]*)?")
 
@@ -101,7 +102,7 @@ def _attribute(expander: Expander, node: Node, out: Node, scopes: Scopes) -> Non
     _check_name(name, node)
     if value and not isinstance(value, str):
         raise TagFails(f"<xacro:attribute> needs a value that is a text: xacro fails with the number {value}")
-    out.attributes[name] = value or ""
+    out.attributes[name] = for_xml(value or "")
     out.moved = {**out.moved, name: node.place}
 
 

@@ -16,6 +16,7 @@ _PIECE = re.compile(
     r"(?P<escape>\$\$+[{(])|\$\{(?P<expression>[^}]*)\}|\$\((?P<substitution>[^)]*)\)|(?P<text>[^$]+|\$[^{($]+|\$\Z)"
 )
 _NESTED_FIND = re.compile(r"\$\(find +([^\s()$]+) *\)")
+_NO_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 INSTALLED = "/install"  # where the packages are for $(find package): in a folder that no submission has
 
 
@@ -59,7 +60,9 @@ class Texts:
 
     def text(self, text: str, scope: Scope) -> str:
         """Return the value of a text as it is written into the expanded file."""
-        return text_of(self.evaluate(text, scope)) if "$" in text else text
+        if "$" not in text:
+            return text
+        return for_xml(text_of(self.evaluate(text, scope)))
 
     def find(self, name: str, scope: Scope) -> Value:
         """Return the value of a name: a property, else one of xacro's own."""
@@ -156,6 +159,13 @@ class Texts:
         if name in self.arguments:
             return known(name, self.arguments[name])
         raise Undetermined(f"the argument {name} has no default; give it with --arg {name}=VALUE")
+
+
+def for_xml(value: str) -> str:
+    """Return a text that is written into XML; raise ExpressionFails for characters that XML cannot hold."""
+    if _NO_XML.search(value):
+        raise ExpressionFails("the value has a character that XML cannot hold")
+    return value
 
 
 def known(argument: str, value: str | None) -> str:

@@ -103,8 +103,10 @@ def test_three_kinds_of_points_are_separate(top: Path) -> None:
 
 def test_the_main_reason_is_one_line(top: Path) -> None:
     """It counts the cause, although the messages name different files."""
-    assert data(top)["statistics"]["reasons"] == [{"reason": "xacro that is not expanded", "count": 2}]
-    assert "Could not be decided: 2 submissions: xacro that is not expanded" in text(top)
+    assert data(top)["statistics"]["reasons"] == [
+        {"reason": "the package other is not part of the submission", "count": 2}
+    ]
+    assert "Could not be decided: 2 submissions: the package other is not part of the submission" in text(top)
 
 
 def test_a_manual_mark_decides(top: Path) -> None:
@@ -116,7 +118,7 @@ def test_a_manual_mark_decides(top: Path) -> None:
             run_in_process("mark", "larch", row["id"], "0", "--gradebook", top / "marked.db")
     done = run_in_process("stats", "--gradebook", top / "marked.db", "--format", "json")
     after = json.loads(done.stdout)["statistics"]
-    assert after["reasons"] == [{"reason": "xacro that is not expanded", "count": 1}]
+    assert after["reasons"] == [{"reason": "the package other is not part of the submission", "count": 1}]
     assert after["undecided"] == 1
 
 
