@@ -26,6 +26,8 @@ _LEADING = frozenset({"to", "the", "my", "for", "lab"})  # before the words of a
 _ANSWERS = frozenset({"answer", "answers"})
 _TASK = rf"(?:{'|'.join(sorted(TASKS))})(?:[\W_]*\d{{1,4}}(?!\d))+"
 _STEP = rf"(?:{'|'.join(sorted(STEPS))})[\W_]*\d{{1,4}}(?!\d)(?:(?:\s*[,&+/]?\s*|[-_])\d{{1,4}}(?!\d))*"
+# What a line needs to begin a passage: a sign or number at its start, or a keyword with a number.
+_BEGINNING = rf"[\s>*\-_+|`]*(?:#|\(?\d)|.{{0,200}}?(?<![^\W\d_])(?:{'|'.join(sorted(TASKS | STEPS))})[\W_]*\d"
 _FILLERS = r"[\W_]*(?:(?:of|the|in|to|for|and|required|optional|question|answer)\b[\W_]*)*"
 # "Step 15: see task 2" names no task, and "Step 26: 0.6" no step 6.
 _LABEL = re.compile(rf"(?<![^\W\d_])(?:{_TASK}|{_STEP})(?:{_FILLERS}(?:{_TASK}|{_STEP}))*")
@@ -61,12 +63,12 @@ def find_headings(lines: list[str], name: str, patterns: Collection[Pattern] = (
     found: list[Heading] = []
     known = (*patterns, *_QUESTIONS)
     words = "|".join(sorted({re.escape(word) for pattern in known for word in pattern} | QUESTION_WORDS))
-    candidate = re.compile(rf"\d|#|\b(?:{words})", re.IGNORECASE)
+    candidate = re.compile(rf"{_BEGINNING}|.{{0,200}}?\b(?:{words})(?![^\W\d_])", re.IGNORECASE)
     task = section = read_label(name).task
     is_fenced = False
     for index, line in enumerate(lines):
         is_fenced ^= _FENCE.match(line) is not None
-        if not candidate.search(line, 0, _MAX_LINE):
+        if not candidate.match(line, 0, _MAX_LINE):
             continue
         above = found[-1] if found else None
         heading = _read(line[:_MAX_LINE], index, known, above, is_marked=not is_fenced)
