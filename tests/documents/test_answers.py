@@ -32,6 +32,10 @@ HEADINGS = [
     ("Question 1:", "Question 2:"),
     ("Question 1 (required)", "Question 2 (required)"),
     ("Answer 1:", "Answer 2:"),
+    ("<b>REQUIRED Question:</b>", "<b>REQUIRED Question:</b>"),
+    ("Reqired Question 1:", "Required questoin 2:"),
+    ("(REQUIRED) Question:", "(REQUIRED) Question:"),
+    ("Step 15 - Required question", "Step 2 - Required question"),
     ("Task 1 REQUIRED Question:", "Task 2 REQUIRED Question:"),
     ("## Task 1 - Required question", "## Task 2 - Required question"),
     ("1. REQUIRED Question:", "2. REQUIRED Question:"),
@@ -268,6 +272,14 @@ def test_a_copied_question_is_no_answer(text: str) -> None:
 def test_a_short_answer_is_an_answer(answer: str) -> None:
     """A short answer, or one that asks back, is taken as an answer."""
     assert is_certain(ask({"a.md": f"Task 1 Step 15\n{answer}\n"}, FIRST))
+
+
+@pytest.mark.parametrize(
+    "heading", ["Desired speed:", "Requested question of mine:", "Questions:", "The question is hard."]
+)
+def test_other_words_are_no_question(heading: str) -> None:
+    """Words that only resemble those of a question begin no passage."""
+    assert ask({"a.md": f"{heading}\n{VANISHES}\n{heading}\n{NODES}\n"}, FIRST).measured is None
 
 
 def test_an_answer_wins_over_a_copied_question() -> None:
