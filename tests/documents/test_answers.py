@@ -169,6 +169,7 @@ def test_numbers_that_word_writes() -> None:
     deep = '<w:lvl w:ilvl="1"><w:numFmt w:val="decimal"/><w:lvlText w:val="%1.%2)"/></w:lvl>'
     below = numbered("Step %1.", (0, "See below"), (1, VANISHES), (1, "So."), (0, "no"), (1, "no"), ending, level=deep)
     assert ask({"a.docx": below}, FIRST).measured == f"Step 15. See below\n15.1) {VANISHES}\n15.2) So."
+    assert ask({"a.docx": below}, ("Why?", ["step 16"])).measured == "Step 16. no\n16.1) no"
     anew = '<w:lvlOverride w:ilvl="0"><w:startOverride w:val="2"/></w:lvlOverride>'
     again = numbered("%1.", (-1, "Task 2"), (0, NODES), override=anew)
     assert ask({"a.docx": again}, SECOND).measured == f"2. {NODES}"
@@ -246,6 +247,8 @@ def test_a_list_below_a_task_may_be_steps_or_points() -> None:
         "Perhaps the answer in a.md, from line 2 (a numbered list below the heading of task 2"
     )
     assert two.measured == "1. rviz2 shows it.\n2. robot_state_publisher publishes."
+    whole = ask({"a.md": "# Task 2\n1. rviz2\n2. no\n"}, ("What did you do?", ["task 2"]))
+    assert whole.measured == "# Task 2\n1. rviz2\n2. no"
     below = ask({"a.md": f"# Task 2\n## Step 2\n1. rviz2\n2. {NODES}\n"}, SECOND)
     assert below.measured == f"## Step 2\n1. rviz2\n2. {NODES}"
     assert is_certain(below)

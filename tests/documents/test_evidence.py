@@ -70,6 +70,7 @@ def test_ambiguous_names_are_perhaps_meant(path: str, names: list[str]) -> None:
         ("Task1_Step18 (8).png", STEP_8),
         ("Screenshot 2026-03-08.png", STEP_8),
         ("Task1_Step8_webcm.png", WEBCAM),
+        ("Part3_desk.png", WEBCAM),
         ("desk.png", WEBCAM),
     ],
 )
