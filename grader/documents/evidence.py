@@ -1,5 +1,6 @@
 """Pictures and other evidence in a submission: found by name or by headings in documents, and described, never graded."""
 
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -16,6 +17,7 @@ from grader.names import closest
 _PICTURES = frozenset({".png", ".jpg", ".jpeg", ".gif", ".webp", ".bmp", ".tif", ".tiff", ".heic", ".svg"})
 _EVIDENCE = _PICTURES | {".pdf", ".mp4", ".mov", ".webm", ".mkv", ".avi"}
 DOCUMENTS = ("*.pdf", "*.docx")  # which may have evidence below their headings
+_COPY = re.compile(r"(?<=\d)\s*\(\d{1,3}\)$")  # the number of a copy: Task1_Step8 (1).png
 _MAX_HEADER = 256 * 1024  # bytes in which the size of a picture is found
 _MAX_OPENED = 50  # files at once whose dimensions are read
 _MAX_SHOWN = 60  # characters of a heading
@@ -94,8 +96,9 @@ def describe(proofs: Sequence[Proof]) -> tuple[Exhibit, ...]:
 
 
 def _proof(file: File) -> Proof:
-    label = read_label(stem(file.path))
-    return Proof(file, label, label if label.is_complete else read_label(stem(file.path), loosely=True))
+    name = _COPY.sub("", stem(file.path))
+    label = read_label(name)
+    return Proof(file, label, label if label.is_complete else read_label(name, loosely=True))
 
 
 def _may_match(wanted: Label, proof: Proof) -> bool:

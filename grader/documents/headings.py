@@ -13,6 +13,7 @@ Pattern = tuple[str, ...]  # the words of a heading, such as ("required", "quest
 _QUESTIONS: tuple[Pattern, ...] = (("required", "question"), ("optional", "question"), ("question",))
 _MAX_LINE = 1000  # characters of a line in which a label is searched
 _MAX_WORDS = 6  # the first words of a line, which contain the label of a heading
+_MIN_RATIO = 0.85  # of a misspelt word: 0.93 for "reqired", but 0.71 for "requested"
 _MAX_SPLIT = 12  # words and signs at the beginning of a line that are looked at
 _MARKUP = re.compile(r"^[\s#>*\-_+|`]+")
 _MARKED = re.compile(r"(#{1,6})(?!#)")
@@ -24,8 +25,11 @@ _NUMBERED = re.compile(r"^\(?([1-9]\d)[.):][*_]*(?:\s+|$)")
 _ITEM = re.compile(r"^\(?([1-9])[.):][*_]*(?:\s+|$)")
 _LEADING = frozenset({"to", "the", "my", "for", "lab"})  # before the words of a question
 _ANSWERS = frozenset({"answer", "answers"})
+_TAG = re.compile(r"</?[a-zA-Z][^<>]{0,80}>")  # of HTML in Markdown
 _TASK = rf"(?:{'|'.join(sorted(TASKS))})(?:[\W_]*\d{{1,4}}(?!\d))+"
 _STEP = rf"(?:{'|'.join(sorted(STEPS))})[\W_]*\d{{1,4}}(?!\d)(?:(?:\s*[,&+/]?\s*|[-_])\d{{1,4}}(?!\d))*"
+# What a line needs to begin a passage: a sign or number at its start, or a keyword with a number.
+_BEGINNING = rf"[\s>*\-_+|`]*(?:#|\(?\d)|.{{0,200}}?(?<![^\W\d_])(?:{'|'.join(sorted(TASKS | STEPS))})[\W_]*\d"
 _FILLERS = r"[\W_]*(?:(?:of|the|in|to|for|and|required|optional|question|answer)\b[\W_]*)*"
 # "Step 15: see task 2" names no task, and "Step 26: 0.6" no step 6.
 _LABEL = re.compile(rf"(?<![^\W\d_])(?:{_TASK}|{_STEP})(?:{_FILLERS}(?:{_TASK}|{_STEP}))*")
@@ -61,12 +65,12 @@ def find_headings(lines: list[str], name: str, patterns: Collection[Pattern] = (
     found: list[Heading] = []
     known = (*patterns, *_QUESTIONS)
     words = "|".join(sorted({re.escape(word) for pattern in known for word in pattern} | QUESTION_WORDS))
-    candidate = re.compile(rf"\d|#|\b(?:{words})", re.IGNORECASE)
+    candidate = re.compile(rf"{_BEGINNING}|.{{0,200}}?\b(?:{words})(?![^\W\d_])", re.IGNORECASE)
     task = section = read_label(name).task
     is_fenced = False
     for index, line in enumerate(lines):
         is_fenced ^= _FENCE.match(line) is not None
-        if not candidate.search(line, 0, _MAX_LINE):
+        if not candidate.match(line, 0, _MAX_LINE):
             continue
         above = found[-1] if found else None
         heading = _read(line[:_MAX_LINE], index, known, above, is_marked=not is_fenced)
@@ -95,7 +99,7 @@ def _read(
 ) -> Heading | None:
     """Return what a line begins, if it begins anything; its end and its tasks are not known yet."""
     marked = _MARKED.match(line) if is_marked else None
-    plain = _MARKUP.sub("", line)
+    plain = _MARKUP.sub("", _TAG.sub(" ", line) if "<" in line else line)
     text = plain.rstrip(" *_|`#\t")
     words = _first_words(plain)
     label = _label(words)
@@ -140,10 +144,20 @@ def question_of(text: str, patterns: Collection[Pattern]) -> tuple[Pattern, int 
         count = len(pattern)
         number = next((int(token) for token in tokens[1 : count + 1] if token.isdecimal() and len(token) < 5), None)
         first = [token for token in tokens[: count + (number is not None)] if not token.isdecimal()]
-        is_short = count > 1 or number is not None or len(words) <= _MAX_WORDS or ":" in " ".join(text.split()[:2])
-        if sorted(first) == sorted(pattern) and is_short:
+        is_short = count > 1 or number is not None or len(tokens) == 1 or ":" in " ".join(text.split()[:2])
+        if is_short and _are_alike(sorted(first), sorted(pattern)):
             return pattern, number
     return (), None
+
+
+def _are_alike(words: list[str], wanted: list[str]) -> bool:
+    """Return whether the words are the wanted ones; beside one that is, the others may be misspelt."""
+    if words == wanted or len(words) != len(wanted) or not set(words) & set(wanted):
+        return words == wanted
+    from difflib import SequenceMatcher  # most lines have no misspelt word
+
+    pairs = zip(words, wanted, strict=True)
+    return all(word == other or SequenceMatcher(None, word, other).ratio() >= _MIN_RATIO for word, other in pairs)
 
 
 def _question_words(text: str) -> list[str]:
@@ -153,7 +167,7 @@ def _question_words(text: str) -> list[str]:
         has_number = len(tokens) > 1 and tokens[1].isdecimal()
         if tokens[0] in _ANSWERS and has_number:
             tokens[0] = "question"
-        elif read_label(" ".join(tokens[:2])).task is not None:
+        elif has_number and tokens[0] in (TASKS | STEPS) - QUESTION_WORDS:
             del tokens[:2]
         elif tokens[0] in _LEADING or tokens[0] in _ANSWERS or tokens[0].isdecimal():
             del tokens[0]

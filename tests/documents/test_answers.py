@@ -32,6 +32,10 @@ HEADINGS = [
     ("Question 1:", "Question 2:"),
     ("Question 1 (required)", "Question 2 (required)"),
     ("Answer 1:", "Answer 2:"),
+    ("<b>REQUIRED Question:</b>", "<b>REQUIRED Question:</b>"),
+    ("Reqired Question 1:", "Required questoin 2:"),
+    ("(REQUIRED) Question:", "(REQUIRED) Question:"),
+    ("Step 15 - Required question", "Step 2 - Required question"),
     ("Task 1 REQUIRED Question:", "Task 2 REQUIRED Question:"),
     ("## Task 1 - Required question", "## Task 2 - Required question"),
     ("1. REQUIRED Question:", "2. REQUIRED Question:"),
@@ -165,6 +169,7 @@ def test_numbers_that_word_writes() -> None:
     deep = '<w:lvl w:ilvl="1"><w:numFmt w:val="decimal"/><w:lvlText w:val="%1.%2)"/></w:lvl>'
     below = numbered("Step %1.", (0, "See below"), (1, VANISHES), (1, "So."), (0, "no"), (1, "no"), ending, level=deep)
     assert ask({"a.docx": below}, FIRST).measured == f"Step 15. See below\n15.1) {VANISHES}\n15.2) So."
+    assert ask({"a.docx": below}, ("Why?", ["step 16"])).measured == "Step 16. no\n16.1) no"
     anew = '<w:lvlOverride w:ilvl="0"><w:startOverride w:val="2"/></w:lvlOverride>'
     again = numbered("%1.", (-1, "Task 2"), (0, NODES), override=anew)
     assert ask({"a.docx": again}, SECOND).measured == f"2. {NODES}"
@@ -242,6 +247,8 @@ def test_a_list_below_a_task_may_be_steps_or_points() -> None:
         "Perhaps the answer in a.md, from line 2 (a numbered list below the heading of task 2"
     )
     assert two.measured == "1. rviz2 shows it.\n2. robot_state_publisher publishes."
+    whole = ask({"a.md": "# Task 2\n1. rviz2\n2. no\n"}, ("What did you do?", ["task 2"]))
+    assert whole.measured == "# Task 2\n1. rviz2\n2. no"
     below = ask({"a.md": f"# Task 2\n## Step 2\n1. rviz2\n2. {NODES}\n"}, SECOND)
     assert below.measured == f"## Step 2\n1. rviz2\n2. {NODES}"
     assert is_certain(below)
@@ -268,6 +275,14 @@ def test_a_copied_question_is_no_answer(text: str) -> None:
 def test_a_short_answer_is_an_answer(answer: str) -> None:
     """A short answer, or one that asks back, is taken as an answer."""
     assert is_certain(ask({"a.md": f"Task 1 Step 15\n{answer}\n"}, FIRST))
+
+
+@pytest.mark.parametrize(
+    "heading", ["Desired speed:", "Requested question of mine:", "Questions:", "The question is hard."]
+)
+def test_other_words_are_no_question(heading: str) -> None:
+    """Words that only resemble those of a question begin no passage."""
+    assert ask({"a.md": f"{heading}\n{VANISHES}\n{heading}\n{NODES}\n"}, FIRST).measured is None
 
 
 def test_an_answer_wins_over_a_copied_question() -> None:

@@ -67,14 +67,21 @@ def test_ambiguous_names_are_perhaps_meant(path: str, names: list[str]) -> None:
         ("Taks1_Step18.png", STEP_8),
         ("Taks2_Step8.png", STEP_8),
         ("Task2_Step8.png", STEP_8),
+        ("Task1_Step18 (8).png", STEP_8),
         ("Screenshot 2026-03-08.png", STEP_8),
         ("Task1_Step8_webcm.png", WEBCAM),
+        ("Part3_desk.png", WEBCAM),
         ("desk.png", WEBCAM),
     ],
 )
 def test_other_names_are_not_meant(path: str, names: list[str]) -> None:
     """A name of another task or step is neither found nor perhaps meant."""
     assert words({path: png()}, names) == ([], [])
+
+
+def test_the_number_of_a_copy_is_no_step() -> None:
+    """A copy of a picture has the step of the original."""
+    assert [exhibit.path for exhibit in find({"Task1_Step8 (1).png": png()}, STEP_8).files] == ["Task1_Step8 (1).png"]
 
 
 def test_a_correct_name_wins() -> None:
