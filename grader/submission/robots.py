@@ -9,7 +9,7 @@ from grader.files.tree import File, Tree
 
 START = 4096  # bytes that are read of a file
 _LONG_START = 64 * 1024  # bytes that are read if these are comments only
-_MAX_READ = 2000  # files without .urdf in their names
+_MAX_READ = 2000  # files
 _MAX_ROBOTS = 400  # found by their content alone
 
 # What may come before the first element of XML, also where a declaration ends in > instead of ?>. Possessive: always linear.
@@ -61,11 +61,11 @@ def find_robots(tree: Tree, wanted: str = "", limit: int = URDF_LIMIT) -> tuple[
         files if len(files) <= _MAX_READ else sorted(files, key=lambda file: not _LIKELY.search(file.name.lower()))
     ):
         is_urdf = file.suffix == ".urdf" or file.name == wanted
-        if not is_urdf:
-            if file.suffix in _BINARY or not 0 < file.size <= limit or read >= _MAX_READ or by_content >= _MAX_ROBOTS:
-                continue
-            read += 1
-        start = _robot_start(file)
+        is_read = read < _MAX_READ and by_content < _MAX_ROBOTS
+        if not is_urdf and (not is_read or file.suffix in _BINARY or not 0 < file.size <= limit):
+            continue
+        read += 1
+        start = _robot_start(file) if is_read else None
         if start is not None or is_urdf:
             by_content += not is_urdf
             found.append(RobotFile(file.path, file.size, is_urdf, *(_described(start) if start else ())))
@@ -77,9 +77,13 @@ def is_robot(data: bytes) -> bool:
     return _ROBOT.match(data, _end_of_prolog(data)) is not None
 
 
-def is_part(robot: RobotFile, robots: tuple[RobotFile, ...]) -> bool:
-    """Return whether another of these files includes this one."""
-    return any(robot.name in other.includes for other in robots if other is not robot)
+def parts_of(robots: tuple[RobotFile, ...]) -> frozenset[str]:
+    """Return the paths of those files that another one includes."""
+    includers: dict[str, list[str]] = {}
+    for robot in robots:
+        for name in robot.includes:
+            includers.setdefault(name, []).append(robot.path)
+    return frozenset(robot.path for robot in robots if set(includers.get(robot.name, ())) - {robot.path})
 
 
 def _robot_start(file: File) -> bytes | None:

@@ -7,7 +7,7 @@ from grader.files.tree import Tree
 from grader.names import folded
 from grader.package.package import MANIFEST
 from grader.submission.packages import DEEPER, LATER
-from grader.submission.robots import RobotFile, find_robots, is_part
+from grader.submission.robots import RobotFile, find_robots, parts_of
 from grader.submission.urdf import OtherCandidate
 
 _MAX_GENERATED = 20
@@ -75,11 +75,11 @@ def is_wanted(robot: RobotFile, wanted: str) -> bool:
 def _candidates(
     robots: tuple[RobotFile, ...], wanted: str, package: str | None, others: tuple[str, ...]
 ) -> Iterable[_Candidate]:
+    parts = parts_of(robots)
     for robot in robots:
         path = robot.path
         outside = package is not None and not path.startswith(package + "/" if package else "")
-        tier, part = _tier(robot, wanted), is_part(robot, robots)
-        yield _Candidate(path.startswith(others), tier, part, outside, path.count("/"), path)
+        yield _Candidate(path.startswith(others), _tier(robot, wanted), path in parts, outside, path.count("/"), path)
 
 
 def _tier(robot: RobotFile, wanted: str) -> int:

@@ -14,6 +14,7 @@ from grader.submission.urdf import OtherCandidate
 from grader.text import enumerated
 
 _MAX_ELSEWHERE = 40
+_MAX_WORKS = 1000  # robots of which the student is determined
 _MAX_NAMED = 5  # folders in a note
 _BESIDE = "{others} may be of other students, but were read as well: grade {own} to leave them out"
 _ELSEWHERE = {
@@ -65,7 +66,7 @@ def select(tree: Tree, wanted: str, package: str, folders: Sequence[str], limit:
     elsewhere += [path for path in passed if path.rpartition("/")[2] == MANIFEST]
     others += tuple(OtherCandidate(path, scope.why_not(path)) for path in elsewhere[:_MAX_ELSEWHERE])
     names = {it.folder: it.name for it in packages}
-    works = [Work(it.path.rpartition("/")[0], is_wanted(it, wanted)) for it in candidates if it.size]
+    works = [Work(it.path.rpartition("/")[0], is_wanted(it, wanted)) for it in candidates[:_MAX_WORKS] if it.size]
     works += [Work(folder, is_wanted=True) for folder, name in names.items() if name == package]
     lab = {word for name in folders for word in lab_words(name)}
     students = students_in(works, names, lab, package) if len(works) > 1 else ()

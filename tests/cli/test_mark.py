@@ -113,7 +113,7 @@ def test_a_later_mark_replaces_an_earlier_one(top: Path) -> None:
         ("emil", "tall", "0.5", 3.5, 11, 5),  # skipped
         ("anna", "loads", "0", 3, 11, 5),  # passed
         ("anna", "picture", "1", 7, 11, 4),  # pending
-        ("ben", "essay", "4", 10, 10, 0),  # not part of the grading of a single URDF
+        ("ben", "essay", "4", 10, 11, 1),  # of a single URDF as well
         ("cleo", "box", "2.5", 2.5, 11, 8.5),  # nothing could be read
     ],
 )

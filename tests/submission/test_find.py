@@ -233,6 +233,15 @@ def test_many_texts() -> None:
     assert len(found.others) == 400
 
 
+def test_very_many_urdfs() -> None:
+    """All are listed, and only so many are read; files that include each other take no more time."""
+    text = b"<robot>" + b"".join(b"<xacro:include filename='%d.urdf'/>" % n for n in range(80))
+    tree = tree_of(*(f"p{n % 200}/{n}/{n % 80}.urdf" for n in range(20_000)), **{str(n): text for n in range(10)})
+    with processor_time(4):
+        found = submission_of(tree, "many", wanted=EXPECTED, package="my_robot", folders=("Lab6",))
+    assert len(found.other_candidates) == 19_999
+
+
 def test_likely_files_are_read_first() -> None:
     """Of very many files, those are read whose names say that they may be robots."""
     tree = make_tree(
