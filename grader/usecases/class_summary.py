@@ -43,7 +43,7 @@ def class_summary(
         run = None
         if done is not None:
             run = {"total": done.total, "graded": done.graded, "unchanged": done.unchanged, "errored": done.errored}
-        return render_class_json(rubric, found, grades.all(), looks, identical, run)
+        return render_class_json(rubric, found, grades, looks, identical, run)
     from grader.report.class_summary import render_class
 
     return draw(partial(render_class, rubric.title, found, looks, identical), screen)
