@@ -1,10 +1,10 @@
 """A class as JSON, schema grader/class/v1."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from grader import __version__
-from grader.classroom.gradebook.grades import AttentionList
+from grader.classroom.gradebook.grades import AttentionList, Grades
 from grader.classroom.gradebook.identical import IdenticalWork
 from grader.classroom.gradebook.statistics import ClassStatistics
 from grader.classroom.gradebook.student_grade import StudentGrade
@@ -15,7 +15,7 @@ from grader.report.json_data import exact, rounded, to_json
 def render_class_json(
     rubric: Rubric,
     statistics: ClassStatistics,
-    grades: Iterable[StudentGrade],
+    grades: Grades,
     looks: AttentionList,
     identical: Sequence[IdenticalWork],
     run: dict[str, int] | None,
@@ -37,12 +37,12 @@ def render_class_json(
             ],
             "needs_a_look": looks.total,
             "evidence_without_urdf": evidence_only,
-            "students": [_grade(grade) for grade in grades],
+            "students": [_grade(grade, grades.carried(grade)) for grade in grades.all()],
         }
     )
 
 
-def _grade(grade: StudentGrade) -> dict[str, Any]:
+def _grade(grade: StudentGrade, carried: list[str]) -> dict[str, Any]:
     """Return a student's current grade as plain data."""
     student, has_result = grade.student, grade.result is not None
     return {
@@ -57,6 +57,7 @@ def _grade(grade: StudentGrade) -> dict[str, Any]:
         "late": {"days": grade.late.days, "points": exact(grade.late.points), "because": grade.late.reason},
         "total": exact(grade.total) if has_result else None,
         "is_final": not grade.why_not_final,
+        "carried": carried,
         "marks_by_hand": grade.marks,
         "paths": list(grade.files.paths),
         "attempt": grade.attempt,

@@ -138,7 +138,7 @@ _STUDENT = _object(
         "late": _object({"days": _TOTAL, "points": {"type": "number", "maximum": 0}, "because": _TEXT}),
         "is_final": _FLAG,
         **_all(_TOTAL, "marks_by_hand attempt"),
-        **_all(_array(_TEXT), "paths earlier"),
+        **_all(_array(_TEXT), "paths earlier carried"),
     }
 )
 CLASS_SCHEMA = _document(

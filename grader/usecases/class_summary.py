@@ -45,7 +45,7 @@ def class_summary(
         run = None
         if done is not None:
             run = {"total": done.total, "graded": done.graded, "unchanged": done.unchanged, "errored": done.errored}
-        return render_class_json(rubric, found, grades.all(), looks, identical, run, evidence_only)
+        return render_class_json(rubric, found, grades, looks, identical, run, evidence_only)
     from grader.report.class_summary import render_class
 
     shown = 0 if rubric.without_urdf else evidence_only

@@ -72,7 +72,7 @@ def _cells(failure: Failure) -> Iterable[tuple[object, ...]]:
     if not measured:
         return [(position, mistake)]
     size = (radians(tolerance) if _is_direction(failure) else tolerance) or 10.0**-_DIGITS
-    cell = measured[0] // size
+    cell = sum(measured) // (size * len(measured))  # the sums of two groups that are the same differ by less
     return [(position, unit, len(measured), cell + step) for step in _NEIGHBOURS]
 
 

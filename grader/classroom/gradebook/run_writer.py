@@ -61,7 +61,7 @@ class RunWriter:
         same = (self._rubric, __version__, result.digest, self._template, result.record, *hashes)
         if newest is not None and newest[1:] == same:
             return int(newest[0])
-        values = {**result._asdict(), "reason": storable(result.reason)}
+        values = {**result._asdict(), "reason": storable(result.reason), "undecided": storable(result.undecided)}
         del values["key"], values["fingerprint"]  # the other fields are columns
         row = {"student": student, "rubric": self._rubric, "version": __version__, "template": self._template}
         return _insert(self._book, "result", row | values)
