@@ -17,7 +17,8 @@ class Kind:
 
     The effect of a URDF's problems decides the verdict: ROS 2 rejects the file, drops content of it, or loads all of it. The
     effect of a problem of another file is `other`. `is_consequence`: another problem of the same file usually
-    causes it. `detaches_links`: ROS 2 loads the file without links that are apart from the tree.
+    causes it. `detaches_links`: ROS 2 loads the file without links that are apart from the tree. `is_before_ros`: xacro stops at it,
+    before ROS 2 gets the file.
     """
 
     code: str
@@ -27,6 +28,7 @@ class Kind:
     effect: Effect
     is_consequence: bool = False
     detaches_links: bool = False
+    is_before_ros: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -83,8 +83,11 @@ def _why_missing(launch: "Launch", missing: set[str]) -> "tuple[str, Location | 
     return "", next((node.location for node in similar), None)
 
 
-def launch_finds_files(package: Package, *, name: str) -> Outcome:
-    """The launch file looks for the URDF and RViz files where a build of the package installs them."""
+def launch_finds_files(package: Package, *, name: str, built: bool = True) -> Outcome:
+    """The launch file looks for the URDF and RViz files where a build of the package installs them.
+
+    With `built = false`, a file of the package that a build does not install counts as found.
+    """
     launch = _launch(package, name)
     verdicts = [(_verdict(package, file), file) for file in launch.named("urdf", "rviz", "include")]
     wrong = [(text, file) for (status, text), file in verdicts if status == "failed"]
@@ -96,8 +99,9 @@ def launch_finds_files(package: Package, *, name: str) -> Outcome:
         first, mistake = wrong[0][1], _ON_ONE_MACHINE if is_local else _NOT_INSTALLED
         problem = one_machine_only(first.path) if first.path else ""
         return failed(message, first.location, problem=problem, mistake=mistake)
+    present = set(map(posixpath.basename, package.tree.files))
     for (status, text), file in verdicts:
-        if status == "missing":
+        if status == "missing" and (built or posixpath.basename(file.path or "") not in present):
             raise _missing(package, file, text)
     if all(file.purpose == "include" for _, file in verdicts):
         if launch.faults:
@@ -109,6 +113,8 @@ def launch_finds_files(package: Package, *, name: str) -> Outcome:
     for (status, text), _ in verdicts:
         if status == "pending":
             return pending(f"{text}; needs manual grading", _UNKNOWN_FILES)
+    if any(status == "missing" for (status, _), _ in verdicts):
+        return passed("the launch file looks for files of the package")
     found = dict.fromkeys(text for (_, text), _ in verdicts if text)
     return passed(f"a build installs {enumerated(found)}, where the launch file looks for them")
 

@@ -11,7 +11,6 @@ from grader.robot.joints import JOINT_TYPES, MOVING_TYPES, JointType
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading
 from grader.text import counted, enumerated
-from grader.xacro.catalogue import XACRO_CATALOGUE
 
 
 def urdf_loads(urdf: Reading) -> Outcome:
@@ -27,7 +26,7 @@ def urdf_loads(urdf: Reading) -> Outcome:
         return pending(
             f"{undetermined[0].message}; needs manual grading", undetermined[0].message, undetermined[0].location
         )
-    problems.sort(key=lambda problem: problem.kind not in XACRO_CATALOGUE)  # xacro runs before ROS 2 reads the result
+    problems.sort(key=lambda problem: not problem.kind.is_before_ros)
     causes = [problem for problem in problems if not problem.kind.is_consequence]
     first = (causes or problems or list(urdf.problems))[0]
     others = f" (and {counted(len(problems) - 1, 'more such problem')})" if len(problems) > 1 else ""

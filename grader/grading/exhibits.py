@@ -35,8 +35,10 @@ def exhibits_of(
 
 def not_searched(submission: Submission, exhibits: Sequence[Exhibits]) -> tuple[str, ...]:
     """Return a note on the documents that may have evidence, but were not read."""
+    if all(found.files for found in exhibits):
+        return ()
     documents = submission.readable_documents
-    if documents is None or all(found.files for found in exhibits):
+    if documents is None:
         return ()
     from grader.documents.evidence import DOCUMENTS
 

@@ -14,7 +14,6 @@ from grader.package.package import NO_PACKAGE, Package, was_not_committed
 from grader.robot.reader import Reading, Verdict
 from grader.source import Source
 from grader.submission.urdf import Absent, OtherCandidate, Read, Unreadable, Urdf, read_as_ros
-from grader.submission.workspace import Surroundings
 from grader.text import printable_path
 
 if TYPE_CHECKING:
@@ -159,6 +158,10 @@ def read_submission(
     data: bytes, *, identity: str, path: str, arguments: Mapping[str, str] = _NO_ARGUMENTS
 ) -> Submission:
     """Return the submission that consists of the bytes of one URDF; `arguments` are those of xacro."""
+    if not arguments:
+        return Submission(identity, read_as_ros(data, path))
+    from grader.submission.workspace import Surroundings  # late: most URDFs are no xacro
+
     return Submission(identity, read_as_ros(data, path, Surroundings(arguments=arguments)))
 
 
@@ -228,7 +231,9 @@ def submission_of(
     if not tree.files and not tree.generated:
         reason = f": {tree.ignored[0]}" if tree.ignored else " (hidden files and build folders are ignored)"
         raise InputError(f"{shown or identity} is empty{reason}")
-    from grader.submission.selection import select  # late: a URDF on its own needs no search
+    # Late: a URDF on its own needs no search.
+    from grader.submission.selection import select
+    from grader.submission.workspace import Surroundings
 
     chosen = select(tree, wanted, package, folders, limit)
     urdf: Urdf = Absent()

@@ -1,14 +1,16 @@
 """The URDF of a submission, as one of three states, and what ROS 2 makes of it: read as it is, or expanded by xacro."""
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from grader.problems import Problem
 from grader.robot.catalogue import RAW_XACRO
 from grader.robot.reader import Reading, find_xacro, read_robot, read_urdf
 from grader.source import Source
-from grader.submission.workspace import Surroundings
 from grader.xml.catalogue import NOT_WELL_FORMED
+
+if TYPE_CHECKING:
+    from grader.submission.workspace import Surroundings
 
 
 class OtherCandidate(NamedTuple):
@@ -68,19 +70,21 @@ class Read(NamedTuple):
 
 Urdf = Absent | Unreadable | Read
 
-NOWHERE = Surroundings()
 
-
-def read_as_ros(data: bytes, path: str, around: Surroundings = NOWHERE) -> Read:
+def read_as_ros(data: bytes, path: str, around: "Surroundings | None" = None) -> Read:
     """Read a URDF as ROS 2 gets it: expanded if a launch file runs xacro on it, or else if its name says xacro.
 
-    Other xacro is loaded as it stands; unless that makes no difference, everything but that is graded on its expansion.
+    `around` is what is around it in the submission. Other xacro is loaded as it stands; unless that makes no difference, everything but that is graded on its expansion.
     """
     if not _needs_xacro(data):
         reading = read_urdf(data, path)
         if NOT_WELL_FORMED not in {problem.kind for problem in reading.problems}:
             return Read(path, data, reading)
     name = path.rpartition("/")[2].lower()
+    if around is None:
+        from grader.submission.workspace import Surroundings  # late: most URDFs are no xacro
+
+        around = Surroundings()
     launched = around.robot_references(path)
     programs = {reference.by for reference in launched}
     if programs == {"xacro"} if programs else ".xacro" in name and not name.endswith(".urdf"):
@@ -100,7 +104,7 @@ def _needs_xacro(data: bytes) -> bool:
     return (b"$" in data or b"xacro:" in data) and find_xacro(data.decode("utf-8", "replace")) is not None
 
 
-def _expanded(data: bytes, path: str, around: Surroundings, launched: Mapping[str, str | None]) -> Reading:
+def _expanded(data: bytes, path: str, around: "Surroundings", launched: Mapping[str, str | None]) -> Reading:
     """Return the robot that xacro makes of a file; where it cannot be expanded at all, what can be read of the text."""
     from grader.xacro.expansion import expand  # late: most URDFs are no xacro
 

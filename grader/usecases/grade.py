@@ -13,7 +13,6 @@ from grader.errors import GraderError, InputError
 from grader.report.formats import Format, needed, render
 from grader.text import printable, printable_path, shell_quoted
 from grader.usecases import Warn
-from grader.usecases.arguments import read_arguments
 from grader.usecases.exit_codes import ExitCode, exit_code, read_threshold
 from grader.usecases.rubrics import load
 from grader.usecases.writing import CHECKOUTS, ROBOT_FILES, is_same_file, refuse_symlinks, remove_previous, save
@@ -99,6 +98,14 @@ def grade_and_save(request: GradeRequest, warn: Warn) -> GradeResult:
     return result
 
 
+def _arguments(request: GradeRequest) -> dict[str, str]:
+    if not request.arguments:
+        return {}
+    from grader.usecases.arguments import read_arguments  # late: most URDFs are no xacro
+
+    return read_arguments(request.arguments)
+
+
 def grade_submission(request: GradeRequest, warn: Warn) -> GradeResult:
     """Grade a submission. Raises GraderError."""
     threshold = request.threshold  # before grading, to refuse a wrong one at once
@@ -114,7 +121,7 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeResult:
         package=rubric.package,
         folders=rubric.folders,
         limit=request.max_size,
-        arguments=read_arguments(request.arguments),
+        arguments=_arguments(request),
     )
     if submission.students:
         from grader.usecases.several_students import refusal  # late: few submissions are several

@@ -824,3 +824,12 @@ def test_opaque_functions_are_evaluated() -> None:
     )
     assert starts(submitted) == ("passed", STARTED, None)
     assert finds_files(submitted) == ("passed", FOUND, None)
+
+
+def test_without_a_build_the_files_of_the_package_count() -> None:
+    """With `built = false` only files that the package lacks, or that the launch file looks for elsewhere, fail."""
+    no_setup = REFERENCE.without(SETUP)
+    assert lacks(launch_finds_files, no_setup, name=NAME)[0] == "setup.py"
+    status, message, _ = finds(launch_finds_files, no_setup, name=NAME, built=False)
+    assert (status, message) == ("passed", "the launch file looks for files of the package")
+    assert lacks(launch_finds_files, REFERENCE.without(RVIZ), name=NAME, built=False)[0] == "RViz file in the package"

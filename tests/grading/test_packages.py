@@ -204,6 +204,11 @@ DEFECTS: Mapping[str, tuple[Submitted, Sequence[str], Sequence[str]]] = {
     ),
 }
 
+# Defects of setup.py, because of which the files that the launch file names are not where it looks for them.
+CARRIED = (
+    "setup.py missing", "syntax error in setup.py", "setup() is not called", "no entry for RViz", "a keyword twice",
+)  # fmt: skip
+
 every_defect = pytest.mark.parametrize(("submitted", "lost", "pending"), DEFECTS.values(), ids=DEFECTS)
 
 
@@ -224,7 +229,7 @@ def points(*criteria: str) -> Decimal:
 
 @every_defect
 def test_a_defect_loses_the_expected_criteria(
-    submitted: Submitted, lost: Sequence[str], pending: Sequence[str]
+    submitted: Submitted, lost: Sequence[str], pending: Sequence[str], request: pytest.FixtureRequest
 ) -> None:
     """Exactly the criteria about the defect fail, and exactly those that need manual grading are pending."""
     report = graded(submitted)
@@ -232,14 +237,18 @@ def test_a_defect_loses_the_expected_criteria(
     assert with_status(report, "pending") == {*PENDING, *pending}
     assert with_status(report, "errored") == set()
     assert (report.max_score, report.pending) == (Decimal(100), points(*PENDING, *pending))
-    assert report.score == 100 - points(*lost, *PENDING, *pending)
+    carried = {"launch-finds-files"} if request.node.callspec.id in CARRIED else set()
+    assert {result.criterion.id for result in report.results if result.carried} == carried
+    assert report.score == 100 - points(*{*lost} - carried, *PENDING, *pending)
 
 
 @every_defect
 def test_a_defect_is_reported_once(submitted: Submitted, lost: Sequence[str], pending: Sequence[str]) -> None:
     """Consequences are skipped, and name the criterion that failed."""
     report = graded(submitted)
-    failed = with_status(report, "failed")
+    failed = {
+        result.criterion.id for result in report.results if result.outcome.status == "failed" and not result.carried
+    }
     most = 2 if {"urdf-loads", "package-found"} <= set(lost) else 1
     assert len(failed) == min(most, len(set(lost)))
     assert failed <= set(lost[:most])
