@@ -6,8 +6,9 @@ from typing import NamedTuple
 from grader.files.tree import Tree
 from grader.names import folded
 from grader.package.package import MANIFEST
-from grader.submission.packages import DEEPER, LATER
+from grader.submission.packages import DEEPER, LATER, OLD
 from grader.submission.robots import RobotFile, find_robots, parts_of
+from grader.submission.students import is_old
 from grader.submission.urdf import OtherCandidate
 
 _MAX_GENERATED = 20
@@ -40,6 +41,7 @@ class _Candidate(NamedTuple):
     in_other_package: bool  # in another package with the name of the graded one: that of a team mate
     tier: int
     is_part: bool  # another one includes it
+    is_old: bool
     outside: bool
     depth: int
     path: str
@@ -52,7 +54,7 @@ def find_urdf(
 
     `wanted` is the path that the rubric gives, such as urdf/my_robot.urdf. A file whose path ends in it comes first, then one
     with its name, then one whose name starts alike, then any with a robot of that name, then any other; of the last two kinds a
-    .urdf comes first. Among equals come files that no other includes, then those in `package` (a folder), then the least deep,
+    .urdf comes first. Among equals come files that no other includes, then those that are no earlier version by name, then those in `package` (a folder), then the least deep,
     then alphabetical order. Files of another package with that package's name, such as a team mate's, come last.
     """
     copies = [path for path in tree.generated if path.lower().endswith(".urdf")]
@@ -79,7 +81,9 @@ def _candidates(
     for robot in robots:
         path = robot.path
         outside = package is not None and not path.startswith(package + "/" if package else "")
-        yield _Candidate(path.startswith(others), _tier(robot, wanted), path in parts, outside, path.count("/"), path)
+        yield _Candidate(
+            path.startswith(others), _tier(robot, wanted), path in parts, is_old(path), outside, path.count("/"), path
+        )
 
 
 def _tier(robot: RobotFile, wanted: str) -> int:
@@ -114,6 +118,8 @@ def _reason(best: _Candidate, other: _Candidate, wanted: str) -> str:
         return reason.format(wanted=wanted, stem=wanted.rpartition("/")[2].split(".")[0])
     if other.is_part != best.is_part:
         return _PART
+    if other.is_old != best.is_old:
+        return OLD
     if other.outside != best.outside:
         return _OUTSIDE
     return DEEPER if other.depth != best.depth else LATER
