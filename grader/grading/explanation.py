@@ -21,7 +21,7 @@ def explained(outcome: Outcome, problems: Iterable[Problem], link: str | None = 
                 message=message, location=problem.location, mistake=mistake, problem=problem.message
             )
         explains = problem.kind in _EXPLAINING or (problem.kind is catalogue.DEFAULT_AXIS and outcome.unit == "deg")
-        if link is None and explains and problem.location == outcome.location:
+        if ((link is None and explains) or problem.kind.is_before_ros) and problem.location == outcome.location:
             message = f"{outcome.message} ({problem.code}: {problem.message})"
             return outcome._replace(message=message, mistake=mistake, problem=problem.message)
     return outcome

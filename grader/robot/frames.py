@@ -106,6 +106,7 @@ def undefined_pose(joint: Joint) -> MissingElement:
     at = joint.axis_location and joint.axis_location._replace(attribute="xyz")
     if joint.origin is None:
         reason, at = "the joint's origin cannot be read", joint.location and joint.location._replace(inside="origin")
+        at = joint.unresolved["origin"].location if "origin" in joint.unresolved else at
     elif joint.axis is None:
         reason = "the joint's axis cannot be read"
     elif unit(joint.axis) is None:

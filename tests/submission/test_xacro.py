@@ -156,6 +156,18 @@ def test_a_refused_expression_costs_what_depends_on_it() -> None:
     assert found["lidar-frame"] == found["left-wheel-forward"] == found["footprint-root"] == "passed"
 
 
+def test_a_failure_names_what_xacro_refuses() -> None:
+    """A frame or shape that xacro cannot place fails with xacro's problem, at the attribute."""
+    text = PLAIN.replace('xyz="0.15 0 0.225"', 'xyz="${heigth} 0 0.225"').replace("0.6 0.4 0.2", "${lenght} 0.4 0.2")
+    results = {result.criterion.id: result.outcome for result in grade(LAB6, single(text), ["task1"]).results}
+    for name, wrong in (("lidar-frame", "heigth"), ("base-box", "lenght")):
+        outcome = results[name]
+        assert f"XACRO002: there is no property {wrong} at this place" in outcome.message
+        assert outcome.location is not None
+        line = text.split("\n")[outcome.location.line - 1]
+        assert line[outcome.location.column - 1 :].startswith(("xyz=", "size="))
+
+
 def test_an_environment_variable_leaves_only_its_element_undecided() -> None:
     """What an environment variable decides needs manual grading, all else is graded."""
     found = statuses(single(PLAIN.replace('<box size="0.6 0.4 0.2"/>', '<box size="$(env LENGTH) 0.4 0.2"/>')))
