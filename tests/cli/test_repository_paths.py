@@ -24,8 +24,8 @@ def job(tmp_path: Path) -> GithubJob:
     (made.checkout / "my_robot.urdf").unlink()
     shutil.copytree(REFERENCE, made.checkout, dirs_exist_ok=True)
     _mistake(made.checkout / URDF)
-    (made.checkout / "lab 6").mkdir()
-    shutil.copy(MISTAKEN, made.checkout / "lab 6")
+    (made.checkout / "my lab").mkdir()
+    shutil.copy(MISTAKEN, made.checkout / "my lab")
     return made
 
 
@@ -35,7 +35,7 @@ def _mistake(file: Path) -> None:
 
 def test_the_root_of_the_repository(job: GithubJob) -> None:
     """The checkout itself, under any of its names."""
-    for path in (".", "./", str(job.checkout), "../checkout", "lab 6/.."):
+    for path in (".", "./", str(job.checkout), "../checkout", "my lab/.."):
         assert job.files(path) == {URDF}
 
 
@@ -48,17 +48,17 @@ def test_a_folder_in_it(job: GithubJob) -> None:
 
 def test_a_urdf_in_it(job: GithubJob) -> None:
     """A single file is in its folder; a symlink keeps its own name."""
-    (job.checkout / "linked.urdf").symlink_to("lab 6/my_robot.urdf")
-    assert job.files("lab 6/my_robot.urdf") == {"lab 6/my_robot.urdf"}
-    assert job.files("my_robot.urdf", start=job.checkout / "lab 6") == {"lab 6/my_robot.urdf"}
+    (job.checkout / "linked.urdf").symlink_to("my lab/my_robot.urdf")
+    assert job.files("my lab/my_robot.urdf") == {"my lab/my_robot.urdf"}
+    assert job.files("my_robot.urdf", start=job.checkout / "my lab") == {"my lab/my_robot.urdf"}
     assert job.files("linked.urdf") == {"linked.urdf"}
 
 
 def test_an_archive_in_it(job: GithubJob) -> None:
     """The location of a file in an archive is the archive."""
-    with zipfile.ZipFile(job.checkout / "lab 6" / "lab6.zip", "w") as archive:
+    with zipfile.ZipFile(job.checkout / "my lab" / "lab6.zip", "w") as archive:
         archive.write(MISTAKEN, "my_robot.urdf")
-    assert job.files("lab 6/lab6.zip") == {"lab 6/lab6.zip"}
+    assert job.files("my lab/lab6.zip") == {"my lab/lab6.zip"}
 
 
 def test_a_symlinked_workspace(job: GithubJob, tmp_path: Path) -> None:
@@ -81,24 +81,24 @@ def test_outside_the_workspace(job: GithubJob, tmp_path: Path) -> None:
 def test_without_a_ci_system(job: GithubJob) -> None:
     """The nearest repository counts, including submodules and worktrees; without one, the current folder."""
     alone = {"GITHUB_WORKSPACE": ""}
-    assert job.files("my_robot.urdf", start=job.checkout / "lab 6", around=alone) == {"lab 6/my_robot.urdf"}
-    (job.checkout / "lab 6/.git").write_text("gitdir: ../.git/worktrees/lab\n")
-    assert job.files("lab 6/my_robot.urdf", around=alone) == {"my_robot.urdf"}
-    for location in ("lab 6/.git", ".git"):
+    assert job.files("my_robot.urdf", start=job.checkout / "my lab", around=alone) == {"my lab/my_robot.urdf"}
+    (job.checkout / "my lab/.git").write_text("gitdir: ../.git/worktrees/lab\n")
+    assert job.files("my lab/my_robot.urdf", around=alone) == {"my_robot.urdf"}
+    for location in ("my lab/.git", ".git"):
         git = job.checkout / location
         git.unlink() if git.is_file() else git.rmdir()
-    assert job.files("lab 6/my_robot.urdf", around=alone) == {"lab 6/my_robot.urdf"}
-    assert job.files("my_robot.urdf", start=job.checkout / "lab 6", around=alone) == {"my_robot.urdf"}
+    assert job.files("my lab/my_robot.urdf", around=alone) == {"my lab/my_robot.urdf"}
+    assert job.files("my_robot.urdf", start=job.checkout / "my lab", around=alone) == {"my_robot.urdf"}
 
 
 def test_on_gitlab(job: GithubJob) -> None:
     """GitLab's checkout is the root, even if a repository is nearer."""
-    (job.checkout / "lab 6/.git").mkdir()
+    (job.checkout / "my lab/.git").mkdir()
     done = job.run(
-        *("grade", "lab 6/my_robot.urdf", "--format", "codeclimate"),
+        *("grade", "my lab/my_robot.urdf", "--format", "codeclimate"),
         around={"GITHUB_ACTIONS": "", "GITHUB_WORKSPACE": "", "CI_PROJECT_DIR": str(job.checkout)},
     )
-    assert {issue["location"]["path"] for issue in json.loads(done.stdout)} == {"lab 6/my_robot.urdf"}
+    assert {issue["location"]["path"] for issue in json.loads(done.stdout)} == {"my lab/my_robot.urdf"}
     assert done.stderr == b""
 
 
