@@ -87,3 +87,8 @@ def counted_points(points: Decimal) -> str:
 def signed_points(points: Decimal) -> str:
     """Return a change of points with its sign: +6, -0.5."""
     return f"{'+' if points >= 0 else '-'}{format_points(abs(points))}"
+
+
+def was_not_committed(path: str) -> str:
+    """Return the end of a message on a missing file that a build has copied to a path."""
+    return f"; a build contains {path}: was the source not committed?"

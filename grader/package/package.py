@@ -12,7 +12,7 @@ from grader.files.tree import Tree
 from grader.names import closest, did_you_mean
 from grader.package.launch.places import ENDINGS, PREFIX, SHARE, is_in_launch_folder, is_launch_named, launch_stem
 from grader.source import Location, Source
-from grader.text import enumerated
+from grader.text import enumerated, was_not_committed
 
 # The readers are imported when they are needed: a URDF on its own needs none of them.
 if TYPE_CHECKING:
@@ -215,8 +215,3 @@ class Package:
             with suppress(InputError):
                 return package.tree.files[source].read(PYTHON_LIMIT), package.path(source)
         return None
-
-
-def was_not_committed(path: str) -> str:
-    """Return the end of a message on a missing file that a build has copied to a path."""
-    return f"; a build contains {path}: was the source not committed?"

@@ -4,14 +4,14 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
 from grader.files.tree import Tree
-from grader.package.package import MANIFEST, SETUP, Package, was_not_committed
+from grader.package.package import MANIFEST, SETUP, Package
 from grader.submission.labs import Belonging, LabFolders, lab_words
 from grader.submission.packages import best_named, package_around, read_packages, why_none, why_not
 from grader.submission.robots import RobotFile, find_robots
 from grader.submission.search import find_urdf, is_wanted
 from grader.submission.students import Work, students_beside, students_in
 from grader.submission.urdf import OtherCandidate
-from grader.text import enumerated
+from grader.text import enumerated, was_not_committed
 
 _MAX_ELSEWHERE = 40
 _MAX_WORKS = 1000  # robots of which the student is determined

@@ -10,11 +10,11 @@ from grader.errors import InputError, MissingElement, NotDecided
 from grader.files.opening import open_tree, tree_name
 from grader.files.reading import URDF_LIMIT, read_capped, read_standard_input, read_start, sha256_of
 from grader.files.tree import File, Tree, make_tree
-from grader.package.package import NO_PACKAGE, Package, was_not_committed
+from grader.package.package import NO_PACKAGE, Package
 from grader.robot.reader import Reading, Verdict
 from grader.source import Source
 from grader.submission.urdf import Absent, OtherCandidate, Read, Unreadable, Urdf, read_as_ros
-from grader.text import printable_path
+from grader.text import printable_path, was_not_committed
 
 if TYPE_CHECKING:
     from grader.documents.collection import DocumentCollection

@@ -87,7 +87,7 @@ def read_as_ros(data: bytes, path: str, around: "Surroundings | None" = None) ->
         around = Surroundings()
     launched = around.robot_references(path)
     programs = {reference.by for reference in launched}
-    if programs == {"xacro"} if programs else ".xacro" in name and not name.endswith(".urdf"):
+    if programs == {"xacro"} if programs else _says_xacro(name):
         given = dict(launched[0].arguments) if launched else {}
         return Read(path, data, _expanded(data, path, around, given), is_expanded=True)
     reading = read_urdf(data, path)
@@ -97,6 +97,11 @@ def read_as_ros(data: bytes, path: str, around: "Surroundings | None" = None) ->
     if expanded.robot is None:
         return Read(path, data, reading)
     return Read(path, data, expanded, is_expanded=True, as_it_stands=reading)
+
+
+def _says_xacro(name: str) -> bool:
+    """Return whether xacro in a file of this name, in lower case, is meant to be expanded."""
+    return not name.endswith(".urdf") if ".xacro" in name else ".urdf" not in name
 
 
 def _needs_xacro(data: bytes) -> bool:
