@@ -33,7 +33,7 @@ def test_at_a_glance(top: Path) -> None:
     assert text.startswith(
         "A small lab\n3 graded, 1 could not be graded, 1 without a submission\n\n"
         "Grades on decided points, out of 11: mean 8.1, standard deviation 2.5, lowest\n4.95, median 8.25, highest 11\n"
-        "Points on average: 6.0 earned, 2.7 lost, 0.7 need manual grading; 2 submissions\nneed manual grading\n"
+        "Points on average: 6.0 earned, 2.7 lost, 2.3 need manual grading; 3 submissions\nneed manual grading\n"
     )
     assert "criterion  points  passed  manual  of  share  discrimination\n" in text
     assert "box           2.5       2       0   3    67%           -0.19\n" in text

@@ -52,7 +52,7 @@ EXPECTED = {
         rviz=("10: /opt/a.rviz",),
     ),
     "conditions.launch.py": LaunchSummary(
-        nodes="a/equals a/not_equals! a/expression a/no_expression! a/environment? a/compared a/denied! a/calculated? a/one a/wrong?",
+        nodes="a/equals a/not_equals! a/expression a/no_expression! a/environment? a/compared a/denied! a/calculated a/one a/wrong?",
         faults=("24: a condition is 'gui', expected true or false",),
     ),
     "conditions.launch.xml": LaunchSummary(
