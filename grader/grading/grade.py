@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from grader.checks.manual import MANUAL_CHECKS
 from grader.checks.outcome import Outcome, fault_of, location_of, pending
 from grader.checks.registry import Check, Subject
 from grader.errors import InputError, MissingElement, NotDecided
@@ -124,7 +125,7 @@ class _Grading:
 
     def _check(self, criterion: Criterion) -> Result:
         try:
-            if self._by_evidence is not None and criterion.check.subject in ("urdf", "robot"):
+            if self._by_evidence is not None and self._needs_what_is_missing(criterion.check):
                 return Result(criterion, self._by_evidence)
             result = self._run(criterion, criterion.check, criterion.arguments)
         except MissingElement as missing:
@@ -132,6 +133,12 @@ class _Grading:
         if result.outcome.status != "failed":
             return result
         return result._replace(outcome=explained(result.outcome, self.problems))
+
+    def _needs_what_is_missing(self, check: Check) -> bool:
+        """Return whether a check is decided by a URDF, or by a package where there is none either."""
+        if check.function in MANUAL_CHECKS:
+            return False
+        return check.subject in ("urdf", "robot") or self.submission.package is None
 
     def _carried(self, result: Result) -> Result:
         """Return a failure, or a skip because of a cause, as carried if the fact that then counts instead holds."""

@@ -185,6 +185,20 @@ def test_every_kind_of_evidence_counts(name: str, tmp_path: Path) -> None:
     assert as_json(path, "--rubric", rubric(tmp_path, "manual"))["pending"] == 6
 
 
+def test_pictures_alone_need_manual_grading_in_every_part(tmp_path: Path) -> None:
+    """Without a package the criteria of the package need manual grading too; with one they are decided."""
+    text = (ROOT / "rubrics" / "lab6.toml").read_text(encoding="utf-8")
+    (tmp_path / "lab6.toml").write_text(f'without_urdf = "manual"\n{text}', encoding="utf-8")
+    for name in ("lab6.answers.toml", "lab6"):
+        (tmp_path / name).symlink_to(ROOT / "rubrics" / name)
+    path = submitted(tmp_path / "Ash", {"Task2_Step6.png": png(), "notes.txt": b"none"})
+    report = as_json(path, "--rubric", tmp_path / "lab6.toml")
+    assert (report["score"], report["pending"]) == (0, 100)
+    submitted(path, {"my_robot/package.xml": b"<package/>"})
+    statuses = {row["id"]: row["status"] for row in as_json(path, "--rubric", tmp_path / "lab6.toml")["results"]}
+    assert (statuses["urdf-loads"], statuses["setup-installs-urdf"]) == ("pending", "failed")
+
+
 def test_a_batch_counts_evidence_without_a_urdf(tmp_path: Path) -> None:
     """The end of the summary says how many submissions have evidence, but no URDF, and which key to set."""
     folder = tmp_path / "class"
