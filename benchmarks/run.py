@@ -27,12 +27,15 @@ from grader.report.formats import Format
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import read_urdf
 from grader.submission.submission import open_submission, read_submission
+from grader.submission.workspace import Surroundings
+from grader.xacro.expansion import expand
 
 ROOT = Path(__file__).resolve().parent.parent
 WORKSPACE = ROOT / "submissions" / "reference"
 PACKAGE = WORKSPACE / "roscourse_sim_ws" / "src" / "my_robot"
 URDF = PACKAGE / "urdf" / "my_robot.urdf"
 ZIPPED = ROOT / "submissions" / "equivalent-zipped-with-wrapper" / "lab6.zip"
+XACRO = ROOT / "submissions" / "equivalent-xacro-inertials" / "my_robot.urdf.xacro"
 BARE = "import typer, lxml, numpy, rich"
 BARE_USED = "import typer, lxml.etree, numpy, rich.console"
 CLASSROOM = {
@@ -49,6 +52,7 @@ def main() -> None:
     all_formats()
     warm_grading()
     warm_packages()
+    warm_xacro()
     inspecting()
     forward_kinematics()
 
@@ -104,6 +108,21 @@ def warm_packages(runs: int = 15) -> None:
     submitted = {"the URDF alone": URDF, "package": PACKAGE, "workspace": WORKSPACE, "zip": ZIPPED}
     times = in_turn({name: repeated(grading(path), 10) for name, path in submitted.items()}, runs)
     table("Whole hand-ins, warm, from a path to the report", times, "the URDF alone", "grade my_robot.urdf")
+
+
+def warm_xacro(runs: int = 15) -> None:
+    """Compare grading a robot in xacro with grading the URDF that xacro makes of it, in a running process."""
+    rubric, data = load_rubric("lab6"), XACRO.read_bytes()
+    expanded = expand(data, XACRO.name, Surroundings().workspace(), {}).root
+    assert expanded is not None
+    plain = etree.tostring(expanded, pretty_print=True)
+
+    def grading(data: bytes, path: str) -> Callable[[], object]:
+        return lambda: grade(rubric, read_submission(data, identity="a", path=path))
+
+    files = {"the expanded URDF": (plain, "my_robot.urdf"), "xacro": (data, XACRO.name)}
+    times = in_turn({name: repeated(grading(*file), 50) for name, file in files.items()}, runs)
+    table("xacro, warm, bytes to report", times, "the expanded URDF", "grade my_robot.urdf")
 
 
 def warm_grading(runs: int = 25) -> None:
