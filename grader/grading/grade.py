@@ -10,7 +10,7 @@ from grader.errors import InputError, MissingElement, NotDecided
 from grader.grading.exhibits import by_evidence, exhibits_of, not_searched
 from grader.grading.explanation import explained
 from grader.grading.report import GradedSubmission, Report, Result
-from grader.grading.rubric import Criterion, Rubric
+from grader.grading.rubric import Carried, Criterion, Rubric
 from grader.problems import Problem
 from grader.robot.kinematics import Configuration
 from grader.robot.shapes import UnknownShape
@@ -110,7 +110,10 @@ class _Grading:
         """Run the check of a criterion, or skip it because of another that failed."""
         cause = self._cause(criterion) if criterion.requires or self.robot is None else None
         result = Result(criterion, _skipped(cause), cause) if cause else self._check(criterion)
-        self.results[criterion.id] = self._carried(result)
+        is_lost = result.outcome.status in ("failed", "skipped")
+        self.results[criterion.id] = (
+            self._carried(result, criterion.carried) if criterion.carried and is_lost else result
+        )
 
     def _cause(self, criterion: Criterion) -> str | None:
         """Return the criterion because of which this one is skipped, if there is one."""
@@ -140,11 +143,10 @@ class _Grading:
             return False
         return check.subject in ("urdf", "robot") or self.submission.package is None
 
-    def _carried(self, result: Result) -> Result:
+    def _carried(self, result: Result, carried: Carried) -> Result:
         """Return a failure, or a skip because of a cause, as carried if the fact that then counts instead holds."""
-        carried = result.criterion.carried
-        cause = self._cause_of(result, carried.causes) if carried is not None else None
-        if carried is None or cause is None:
+        cause = self._cause_of(result, carried.causes)
+        if cause is None:
             return result
         try:
             other = self._run(result.criterion, carried.check, carried.arguments)
@@ -162,9 +164,7 @@ class _Grading:
         return other if other.outcome.status == "errored" else result
 
     def _cause_of(self, result: Result, causes: Sequence[str]) -> Result | None:
-        """Return the first of these criteria that failed, if the result is a failure or a skip because of one of them."""
-        if result.outcome.status not in ("failed", "skipped"):
-            return None
+        """Return the first of these criteria that failed, if the result is a failure, or a skip because of one of them."""
         names = [name for name in causes if result.because in (None, name)]
         before = (self.results[name] for name in names if name in self.results)
         return next((found for found in before if found.outcome.status == "failed"), None)

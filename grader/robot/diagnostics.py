@@ -28,6 +28,7 @@ _OF_MISSING = (
     catalogue.MIMIC_TARGET,
 )
 _ZERO: Vector = (0.0, 0.0, 0.0)
+_NOTHING: UnresolvedParts = {}
 
 Value = TypeVar("Value")
 
@@ -52,8 +53,10 @@ class Problems:
 
     def parts(self, element: Element) -> UnresolvedParts:
         """Return what xacro left unresolved of a link or joint, by the tag of its child; "@name" for its own attribute."""
+        if not self.unresolved:
+            return _NOTHING
         parts: dict[str, UnresolvedPart] = {}
-        for inner in element.iter() if self.unresolved else ():
+        for inner in element.iter():
             found = self.unresolved.get(inner)
             if found is None:
                 continue

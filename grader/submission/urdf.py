@@ -78,7 +78,7 @@ def read_as_ros(data: bytes, path: str, around: "Surroundings | None" = None) ->
     """
     if not _needs_xacro(data):
         reading = read_urdf(data, path)
-        if NOT_WELL_FORMED not in {problem.kind for problem in reading.problems}:
+        if not any(problem.kind is NOT_WELL_FORMED for problem in reading.problems):
             return Read(path, data, reading)
     name = path.rpartition("/")[2].lower()
     if around is None:
