@@ -108,3 +108,13 @@ def test_folders_of_others_who_submitted_no_robot() -> None:
     assert found.notes == (note,)
     assert submission(package("Lab6/Ash/my_robot")).notes == ()
     assert submission({**package("Lab6/my_robot"), "Lab6/Birch/step.png": PICTURE}).notes == ()
+
+
+def test_an_old_version_is_not_graded() -> None:
+    """The package that is no backup is graded, however deep it is, and the backup is listed with the reason."""
+    for backup in ("Lab6/backup/my_robot", "Lab6/Old_Versions/my_robot", "Lab6/wsBackup/src/my_robot"):
+        found = submission({**package(backup), **package("Lab6/ws/new/src/my_robot")})
+        assert found.package is not None
+        assert found.package.folder == "Lab6/ws/new/src/my_robot"
+        reasons = {other.path: other.reason for other in found.other_candidates}
+        assert reasons[f"{backup}/package.xml"] == "its path says that it is an old version"
