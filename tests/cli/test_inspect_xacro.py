@@ -47,3 +47,13 @@ def test_a_required_attribute_is_missing_beside_one_that_xacro_refuses(tmp_path:
     done = run(("inspect", path, "--format", "json"))
     codes = {problem["code"] for problem in json.loads(done.stdout)["problems"]}
     assert (done.returncode, codes) == (1, {"URDF065", "URDF072", "XACRO002"})
+
+
+def test_a_misspelt_name_of_xacro_itself(tmp_path: Path) -> None:
+    """An undefined name that is like a constant or function of xacro has it as a suggestion."""
+    path = tmp_path / "robot.urdf.xacro"
+    path.write_text(f'{OPEN}<link name="${{PI}}"/></robot>')
+    done = run(("inspect", path, "--format", "json"))
+    messages = [problem["message"] for problem in json.loads(done.stdout)["problems"]]
+    wanted = "there is no property PI at this place; did you mean 'pi'? xacro stops here, and ROS 2 gets no robot"
+    assert wanted in messages
