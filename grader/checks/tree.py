@@ -36,8 +36,9 @@ def urdf_loads(urdf: Reading) -> Outcome:
 
 def _not_expanded(urdf: Reading, raw: Problem) -> Outcome:
     """Return the failure of xacro that is loaded without xacro, with what ROS 2 does about it."""
-    lost = next(problem for problem in urdf.problems if problem.kind.effect in ("rejects", "drops"))
-    outcome = failed(f"{raw.message}: {lost.message}", raw.location, problem=raw.message)
+    lost = (problem.message for problem in urdf.problems if problem.kind.effect in ("rejects", "drops"))
+    effect = next(lost, "ROS 2 ignores its tags, and the robot lacks what they stand for")
+    outcome = failed(f"{raw.message}: {effect}", raw.location, problem=raw.message)
     return outcome._replace(mistake=f"{raw.code}: {raw.kind.title}")
 
 

@@ -9,7 +9,7 @@ from typing import Any
 from rich.console import Console
 from rich.text import Text
 
-from grader.errors import MissingElement
+from grader.errors import MissingElement, NotDecided
 from grader.report.console import show_problems, symbol, wrapped
 from grader.report.json_data import problem, rounded, to_json
 from grader.robot.kinematics import Configuration
@@ -24,6 +24,7 @@ _EFFECTS = {
     "degraded": ("ROS 2 loads it, but drops content of it", "yellow"),
     "rejected": ("ROS 2 rejects it", "bold red"),
 }
+_UNDECIDED = ("xacro that cannot be determined statically", "bold red")
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,15 +43,15 @@ class Inspection:
         for link in self.robot.robot.links:
             try:
                 yield link.name, self.robot.pose(link.name, relative_to=self.relative_to)
-            except MissingElement as missing:
-                yield link.name, str(missing)
+            except (MissingElement, NotDecided) as reason:
+                yield link.name, str(reason)
 
 
 def main_root(robot: Configuration) -> str | None:
     """Return the root of the largest tree; None if every link is in a loop."""
     sizes = dict.fromkeys(robot.roots, 0)
     for link in robot.robot.links:
-        with suppress(MissingElement):
+        with suppress(MissingElement, NotDecided):
             sizes[robot.root_of(link.name)] += 1
     return max(sizes, key=lambda root: sizes[root]) if sizes else None
 
@@ -80,7 +81,7 @@ def inspection_terminal(inspection: Inspection, console: Console) -> None:
     """Print the inspection."""
     reading, robot = inspection.reading, inspection.robot
     name = f"robot {robot.robot.name!r}" if robot is not None else "no robot"
-    effect = _EFFECTS[reading.verdict]
+    effect = _EFFECTS[reading.verdict] if reading.is_decided else _UNDECIDED
     console.print(Text.assemble((printable(inspection.path), "bold"), ": ", effect, f", {printable(name)}"))
     if reading.problems:
         console.print()

@@ -81,7 +81,7 @@ class Problems:
         if kind in _OF_MISSING and of_root is not None and of_root.content is not None:
             return True
         return found is not None and (
-            attribute in found.attributes if element.get(attribute or "") else found.content is not None
+            attribute in found.attributes if attribute and element.get(attribute) else found.content is not None
         )
 
     def line(self, element: Element) -> int:

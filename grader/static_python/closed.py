@@ -61,14 +61,16 @@ def evaluate(text: str, find: Callable[[str], Value], budget: Budget) -> Value:
 
 @lru_cache(_MAX_KEPT)
 def _parsed(text: str) -> ast.expr | str:
-    """Return an expression, or Python's message on why it is none."""
+    """Return an expression, or Python's message on why it is none. Raises Undetermined if it is nested too deeply."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             return ast.parse(text, mode="eval").body
     except SyntaxError as error:
         return f"SyntaxError: {error.msg}"
-    except (ValueError, RecursionError, MemoryError, OverflowError) as error:
+    except (RecursionError, MemoryError, SystemError):  # how deep differs between versions; CPython 3.11 may miscount
+        raise Undetermined("the expression is nested too deeply") from None
+    except (ValueError, OverflowError) as error:
         return f"{type(error).__name__}: {error}"
 
 

@@ -6,10 +6,10 @@ from typing import NamedTuple
 from grader.files.tree import Tree
 from grader.names import folded
 from grader.package.package import MANIFEST
-from grader.submission.packages import DEEPER, LATER, OLD
+from grader.submission.packages import DEEPER, LATER
 from grader.submission.robots import RobotFile, find_robots, parts_of
-from grader.submission.students import is_old
 from grader.submission.urdf import OtherCandidate
+from grader.submission.versions import OUTDATED, is_outdated
 
 _MAX_GENERATED = 20
 _EXACT, _SAME_NAME, _SAME_START, _OTHER_NAME, _NOT_NAMED, _OTHER_ROBOT, _OTHER_ROBOT_NOT_NAMED, _EMPTY = range(8)
@@ -39,9 +39,10 @@ class _Candidate(NamedTuple):
     """A file that may be the URDF; the best match sorts first."""
 
     in_other_package: bool  # in another package with the name of the graded one: that of a team mate
+    is_other: bool  # it may be another robot than the one that the lab asks for
+    is_outdated: bool
     tier: int
     is_part: bool  # another one includes it
-    is_old: bool
     outside: bool
     depth: int
     path: str
@@ -54,7 +55,7 @@ def find_urdf(
 
     `wanted` is the path that the rubric gives, such as urdf/my_robot.urdf. A file whose path ends in it comes first, then one
     with its name, then one whose name starts alike, then any with a robot of that name, then any other; of the last two kinds a
-    .urdf comes first. Among equals come files that no other includes, then those that are no earlier version by name, then those in `package` (a folder), then the least deep,
+    .urdf comes first. An old version, as its path says, comes after all that surely are the robot. Among equals come files that no other includes, then those in `package` (a folder), then the least deep,
     then alphabetical order. Files of another package with that package's name, such as a team mate's, come last.
     """
     copies = [path for path in tree.generated if path.lower().endswith(".urdf")]
@@ -81,9 +82,9 @@ def _candidates(
     for robot in robots:
         path = robot.path
         outside = package is not None and not path.startswith(package + "/" if package else "")
-        yield _Candidate(
-            path.startswith(others), _tier(robot, wanted), path in parts, is_old(path), outside, path.count("/"), path
-        )
+        tier = _tier(robot, wanted)
+        kind = (path.startswith(others), tier > _NOT_NAMED, is_outdated(path), tier)
+        yield _Candidate(*kind, path in parts, outside, path.count("/"), path)
 
 
 def _tier(robot: RobotFile, wanted: str) -> int:
@@ -112,14 +113,14 @@ def _same_named_packages(tree: Tree, package: str | None) -> tuple[str, ...]:
 def _reason(best: _Candidate, other: _Candidate, wanted: str) -> str:
     if other.in_other_package and not best.in_other_package:
         return _OUTSIDE
+    if other.is_other == best.is_other and other.is_outdated != best.is_outdated:
+        return OUTDATED
     if other.tier != best.tier:
         is_another = best.tier in (_OTHER_NAME, _NOT_NAMED) and other.tier in (_OTHER_ROBOT, _OTHER_ROBOT_NOT_NAMED)
         reason = _ANOTHER if is_another else _TIERS[other.tier]
         return reason.format(wanted=wanted, stem=wanted.rpartition("/")[2].split(".")[0])
     if other.is_part != best.is_part:
         return _PART
-    if other.is_old != best.is_old:
-        return OLD
     if other.outside != best.outside:
         return _OUTSIDE
     return DEEPER if other.depth != best.depth else LATER

@@ -57,13 +57,6 @@ _VERSIONS = frozenset(
         "versuch", "untitled", "unnamed", "von",
     }
 )  # fmt: skip
-# Those of them that name an earlier version.
-_OLD = frozenset(
-    {
-        "old", "older", "oldest", "copy", "copies", "kopie", "bak", "backup", "backups", "previous", "prev", "orig", "original",
-        "draft", "drafts", "wip", "tmp", "temp", "broken", "wrong", "archive", "archived", "trash", "unused", "deprecated", "legacy",
-    }
-)  # fmt: skip
 _NUMBERED = frozenset({"student", "team", "group", "member", "gruppe"})  # team 1 and team 2 are two
 
 
@@ -122,11 +115,6 @@ def is_part(name: str, lab: Collection[str] = ()) -> bool:
     letters = [word for word in words if word not in lab and not word.isdecimal() and word not in _VERSIONS]
     is_version = not letters and not all(map(str.isdecimal, words))
     return is_version or not _PARTS.isdisjoint(letters) or any(map(_STEMS.search, (*letters, "".join(letters))))
-
-
-def is_old(path: str) -> bool:
-    """Return whether a name in a path says that this is an earlier version."""
-    return any(not _OLD.isdisjoint(_words(name)) for name in path.split("/"))
 
 
 def person_in(name: str, lab: Collection[str] = ()) -> str:

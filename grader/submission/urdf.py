@@ -1,6 +1,7 @@
 """The URDF of a submission, as one of three states, and what ROS 2 makes of it: read as it is, or expanded by xacro."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.problems import Problem
@@ -91,17 +92,30 @@ def read_as_ros(data: bytes, path: str, around: "Surroundings | None" = None) ->
         given = dict(launched[0].arguments) if launched else {}
         return Read(path, data, _expanded(data, path, around, given), is_expanded=True)
     reading = read_urdf(data, path)
-    if reading.verdict == "clean" or not any(problem.kind is RAW_XACRO for problem in reading.problems):
+    if not any(problem.kind is RAW_XACRO for problem in reading.problems):
         return Read(path, data, reading)
     expanded = _expanded(data, path, around, {})
     if expanded.robot is None:
         return Read(path, data, reading)
+    if reading.verdict == "clean":
+        if _model(reading) == _model(expanded):
+            return Read(path, data, reading)
+        reading = replace(reading, verdict="degraded")  # ROS 2 ignores the tags of xacro, and what they stand for
     return Read(path, data, expanded, is_expanded=True, as_it_stands=reading)
 
 
 def _says_xacro(name: str) -> bool:
     """Return whether xacro in a file of this name, in lower case, is meant to be expanded."""
     return not name.endswith(".urdf") if ".xacro" in name else ".urdf" not in name
+
+
+def _model(reading: Reading) -> tuple[object, ...]:
+    """Return the links, shapes and joints that ROS 2 loads, without the masses: RViz needs none."""
+    robot = reading.robot
+    if robot is None:
+        return ()
+    links = {link.name: (link.visuals, link.collisions) for link in robot.links}
+    return links, {joint.name: joint for joint in robot.joints}
 
 
 def _needs_xacro(data: bytes) -> bool:

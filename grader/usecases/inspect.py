@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from math import isfinite
 
-from grader.errors import GraderError, InputError, MissingElement
+from grader.errors import GraderError, InputError, MissingElement, NotDecided
 from grader.report.inspection import Inspection, main_root
 from grader.robot.frames import Position
 from grader.robot.kinematics import Configuration
@@ -48,7 +48,7 @@ def _configuration(urdf: Reading, joints: Sequence[str]) -> Configuration | None
         return None
     try:
         return Configuration(urdf.robot, positions)
-    except (MissingElement, ValueError) as error:
+    except (MissingElement, NotDecided, ValueError) as error:
         raise GraderError(f"--joint: {error}") from None
 
 

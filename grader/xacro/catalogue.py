@@ -22,13 +22,13 @@ XACRO_MACRO = stops(
     "XACRO003",
     "A macro call that xacro refuses",
     "xacro stops at a call of a macro that is not defined at this place, and at a parameter that the macro does not have, or "
-    "that is missing and has no default.",
+    "that is missing and has no default. Define a macro, or include its file, above the first call.",
 )
 XACRO_FILE = stops(
     "XACRO004",
     "An included file that does not exist",
     "xacro looks for a file relative to the file that includes it, or in the folder that a build installs a package in, for "
-    "$(find package).",
+    "$(find package). Correct the path, or submit the file.",
 )
 XACRO_TAG = stops(
     "XACRO005",
@@ -40,7 +40,8 @@ XACRO_UNDETERMINED = Kind(
     "XACRO006",
     "xacro that cannot be determined statically",
     "What a file contains can depend on what only a run shows: an environment variable, a package that is not part of the "
-    "submission, an argument without a default. Criteria that depend on it need manual grading.",
+    "submission, an argument without a default. Give the folder or archive that was submitted, not the file alone, and the "
+    "value of an argument with --arg NAME=VALUE.",
     severity="warning",
     effect="undetermined",
 )

@@ -126,7 +126,8 @@ class Expander:
         """List a problem at a place."""
         if self._is_new(message, place, attribute):
             location = self._placed(place).at(attribute)
-            self.problems.append(Problem(kind, f"{message}; {STOPS}", location))
+            joint = " " if message.endswith("?") else "; "
+            self.problems.append(Problem(kind, f"{message}{joint}{STOPS}", location))
 
     def leave_open(self, out: Node, error: Undetermined, place: Place) -> None:
         """Note that an expanded element may have more content than is known."""

@@ -73,7 +73,8 @@ class Texts:
             return self._globals[name]
         if self.names_open is not None:
             raise self.names_open
-        raise ExpressionFails(f"there is no property {name} at this place{did_you_mean(name, scope.names())}")
+        known = (*scope.names(), *self._globals)
+        raise ExpressionFails(f"there is no property {name} at this place{did_you_mean(name, known)}")
 
     def is_bound(self, name: str, scope: Scope) -> bool:
         """Return whether a name has a value in a scope."""

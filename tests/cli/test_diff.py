@@ -132,3 +132,12 @@ def test_names_are_escaped(top: Path) -> None:
     text = diff(top)
     assert "[red]" in text
     assert not set(text) & set("\x1b\u202e")
+
+
+def test_other_parts(top: Path) -> None:
+    """A run on one part of the rubric only is the reason for points that are no longer there."""
+    batch(top)
+    batch(top, "--part", "report")
+    found = as_json(top / "book.db")["students"]
+    assert found
+    assert {tuple(student["because"]) for student in found} == {("graded on other parts",)}

@@ -91,6 +91,12 @@ def test_what_is_dangerous_or_unknown_has_no_value(text: str) -> None:
         value(text)
 
 
+def test_what_python_cannot_parse_has_no_value() -> None:
+    """An expression that is nested too deeply for this version of Python is not certainly an error."""
+    with pytest.raises(Undetermined, match="nested too deeply"):
+        evaluate("-" * 3900 + "1", lambda name: name, Budget(10_000))
+
+
 def test_steps_are_bounded() -> None:
     """A loop that takes too long ends with its own exception."""
     with pytest.raises(OutOfSteps):

@@ -19,6 +19,7 @@ from tests.processor_time import processor_time
 EXPECTED = "urdf/my_robot.urdf"
 ROBOT = b'<?xml version="1.0"?>\n<robot name="my_robot"/>\n'
 OUTSIDE = "it is outside the package that is graded"
+OUTDATED = "its path says that it is an old version"
 DEEPER = "it matches equally well, but is deeper in the folders"
 LATER = "it matches equally well, but comes later in alphabetical order"
 MISSING = "it has the expected name, but is not at urdf/my_robot.urdf"
@@ -95,7 +96,9 @@ def test_every_tier() -> None:
         ("urdf/my_robot.urdf", "x/urdf/my_robot.urdf", DEEPER),
         ("a/urdf/my_robot.urdf", "b/urdf/my_robot.urdf", LATER),
         ("urdf/my_robot.urdf", "urdf/My_Robot.urdf", BEGINS),
-        ("deep/down/my_robot.urdf", "my_robot.urdf.bak.txt", BEGINS),
+        ("deep/down/my_robot.urdf", "my_robot.urdf.bak.txt", OUTDATED),
+        ("src/my_robot.urdf", "backup/urdf/my_robot.urdf", OUTDATED),
+        ("x/y/my_robot_v2.urdf", "my_robotOld.urdf", OUTDATED),
         ("x/my_robot.urdf.xacro", "robot.urdf", OTHER_NAME),
         ("MY_ROBOT_final(2).urdf", "robot.urdf", OTHER_NAME),
         ("x/robot.urdf", "robot.xml", NOT_NAMED),
@@ -380,3 +383,9 @@ def test_a_description_package() -> None:
     assert (
         submission_of(tree, "a", wanted=EXPECTED, package="my_robot").path == "my_robot_description/urdf/my_robot.urdf"
     )
+
+
+def test_an_old_version_comes_before_another_robot() -> None:
+    """An old version is graded if all other files hold other robots."""
+    box = b"<robot name='box'><link name='box'/></robot>"
+    assert find_urdf(tree_of("old/my_robot.urdf", "box.urdf", box=box), EXPECTED).path == "old/my_robot.urdf"

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import pytest
 
 from grader.submission.students import is_part, person_in
-from tests.submission.trees import BOX, PICTURE, ROBOT, manifest, others, package, submission
+from tests.submission.trees import BOX, PICTURE, ROBOT, manifest, package, submission
 
 LAB = {"lab", "6"}
 
@@ -110,17 +110,11 @@ def test_folders_of_others_who_submitted_no_robot() -> None:
     assert submission({**package("Lab6/my_robot"), "Lab6/Birch/step.png": PICTURE}).notes == ()
 
 
-def test_an_earlier_version_comes_last() -> None:
-    """Of two that match equally well, however deep, the one is graded whose path does not say that it is old."""
-    reason = "its path says that it is an earlier version"
-    for old in ("backup", "Old stuff", "my_robot - Copy", "lab6_bak"):
-        found = submission({**package(f"Lab6/{old}/my_robot"), **package("Lab6/v2/ws/src/my_robot")})
-        assert (found.path, found.package and found.package.folder) == (
-            "Lab6/v2/ws/src/my_robot/urdf/my_robot.urdf",
-            "Lab6/v2/ws/src/my_robot",
-        )
-        assert others(found)[f"Lab6/{old}/my_robot/package.xml"] == reason
-    assert (
-        submission({**package("Lab6/backup/my_robot"), "Lab6/a.txt": BOX}).path
-        == "Lab6/backup/my_robot/urdf/my_robot.urdf"
-    )
+def test_an_old_version_is_not_graded() -> None:
+    """The package that is no backup is graded, however deep it is, and the backup is listed with the reason."""
+    for backup in ("Lab6/backup/my_robot", "Lab6/Old_Versions/my_robot", "Lab6/wsBackup/src/my_robot"):
+        found = submission({**package(backup), **package("Lab6/ws/new/src/my_robot")})
+        assert found.package is not None
+        assert found.package.folder == "Lab6/ws/new/src/my_robot"
+        reasons = {other.path: other.reason for other in found.other_candidates}
+        assert reasons[f"{backup}/package.xml"] == "its path says that it is an old version"

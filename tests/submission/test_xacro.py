@@ -87,6 +87,30 @@ def test_xacro_that_is_loaded_without_xacro_loses_its_loading_alone() -> None:
     assert "${-pi/2}" in message
 
 
+def test_xacro_that_ros_loads_in_part_is_graded_on_its_expansion() -> None:
+    """ROS 2 loads a text without the links that macros make: that costs urdf-loads, whatever the name of the file."""
+    start, end = PLAIN.index('<link name="lidar">'), PLAIN.index('<link name="left_wheel">')
+    macro = f'<xacro:macro name="m">{PLAIN[start:end]}</xacro:macro><xacro:m/>'
+    text = (PLAIN[:start] + macro + PLAIN[end:]).replace("${-pi/2}", "-1.57")
+    for name in ("my_robot.urdf", "my_robot", "robot.txt"):
+        found = single(text, name)
+        assert (state(found), found.verdict) == ("both", "degraded")
+        assert {it: status for it, status in statuses(found).items() if status != "passed"} == {"urdf-loads": "failed"}
+    message = grade(LAB6, found, ["task1"]).results[0].outcome.message
+    assert message.endswith("ROS 2 ignores its tags, and the robot lacks what they stand for")
+
+
+def test_xacro_that_makes_no_difference_is_read_as_it_stands() -> None:
+    """Macros for masses alone, and an include that is missing, take nothing away from what ROS 2 loads and RViz shows."""
+    mass = '<xacro:macro name="m"><inertial><mass value="${1}"/></inertial></xacro:macro>'
+    for more in (mass, mass + '<xacro:include filename="$(find other)/more.xacro"/>'):
+        text = PLAIN.replace("${-pi/2}", "-1.57").replace("</robot>", f"{more}</robot>")
+        text = text.replace('<link name="lidar">', '<link name="lidar"><xacro:m/>')
+        found = single(text, "my_robot.urdf")
+        assert (state(found), found.verdict) == ("read", "clean")
+        assert set(statuses(found).values()) == {"passed"}
+
+
 def test_launch_arguments_reach_xacro(tmp_path: Path) -> None:
     """The arguments that the launch file gives xacro count before the defaults of the file."""
     text = PLAIN.replace('name="lidar"', 'name="$(arg sensor)"').replace('link="lidar"', 'link="$(arg sensor)"')

@@ -7,7 +7,7 @@ from functools import cache
 from typing import NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook, Run
-from grader.classroom.gradebook.result import UNITS_PER_POINT, criterion_points
+from grader.classroom.gradebook.result import UNITS_PER_POINT, criterion_points, graded_on
 from grader.errors import InputError
 from grader.text import shell_quoted
 
@@ -64,6 +64,7 @@ class _StudentState(NamedTuple):
     digest: str
     rubric: str
     version: str
+    parts: tuple[str, ...]
     points: Mapping[str, Decimal | None]
     marks: Mapping[str, Decimal]
 
@@ -108,7 +109,8 @@ def _states(snapshot: Snapshot) -> dict[str, _StudentState]:
     for student, key, statuses, verdict, digest, rubric, version in snapshot.book.rows(_STATES, snapshot.run):
         own = marks.get(student, {})
         points = criterion_points(rubric_of(rubric), statuses, own)
-        states[key] = _StudentState(verdict, digest, rubric, version, points, own)
+        parts = graded_on(rubric_of(rubric), statuses)
+        states[key] = _StudentState(verdict, digest, rubric, version, parts, points, own)
     return states
 
 
@@ -127,6 +129,7 @@ def _change(key: str, old: _StudentState | None, new: _StudentState | None) -> C
         (old.digest != new.digest, "the submission changed"),
         (old.rubric != new.rubric, "the rubric changed"),
         (old.version != new.version, "the grader changed"),
+        (old.rubric == new.rubric and old.parts != new.parts, "graded on other parts"),
         (old.marks != new.marks, "manual marks changed"),
         (old.verdict != new.verdict, f"it was {old.verdict}, and is {new.verdict}"),
     )
