@@ -92,7 +92,7 @@ def test_xacro_that_ros_loads_in_part_is_graded_on_its_expansion() -> None:
     start, end = PLAIN.index('<link name="lidar">'), PLAIN.index('<link name="left_wheel">')
     macro = f'<xacro:macro name="m">{PLAIN[start:end]}</xacro:macro><xacro:m/>'
     text = (PLAIN[:start] + macro + PLAIN[end:]).replace("${-pi/2}", "-1.57")
-    for name in ("my_robot.urdf", "my_robot", "robot.txt"):
+    for name in ("my_robot.urdf", "robot.urdf.txt"):
         found = single(text, name)
         assert (state(found), found.verdict) == ("both", "degraded")
         assert {it: status for it, status in statuses(found).items() if status != "passed"} == {"urdf-loads": "failed"}
