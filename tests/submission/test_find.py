@@ -176,6 +176,71 @@ def test_a_file_that_another_one_includes_is_a_part() -> None:
     assert find_urdf(tree, EXPECTED) == UrdfChoice("z/robot.xacro", others)
 
 
+MACROS = b"<robot name='my_robot'><xacro:macro name='a'><link name='b'/></xacro:macro></robot>"
+LINKS = b"<robot name='r'><link name='base_link'/></robot>"
+
+
+@pytest.mark.parametrize("main", ["robot.urdf.xacro", "z/a.xacro"])
+def test_the_name_of_a_part_does_not_matter(main: str) -> None:
+    """A file that includes one named like the robot is graded, unless that is named exactly so, with any ending."""
+    name = main.rpartition("/")[2].partition(".")[0]
+    includes = b"<robot name='r'><xacro:include filename='%s'/></robot>"
+    tree = tree_of(
+        main, "box.urdf", "my_robot_core.xacro", **{name: includes % b"my_robot_core.xacro"}, my_robot=LINKS, box=LINKS
+    )
+    assert find_urdf(tree, EXPECTED) == UrdfChoice(
+        main,
+        (
+            OtherCandidate("my_robot_core.xacro", "another candidate includes it"),
+            OtherCandidate("box.urdf", OTHER_NAME),
+        ),
+    )
+    tree = tree_of(main, "my_robot.urdf.xacro", **{name: includes % b"my_robot.urdf.xacro"}, my_robot=LINKS, box=LINKS)
+    assert find_urdf(tree, EXPECTED).path == "my_robot.urdf.xacro"
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        MACROS,
+        b"<robot><material name='green'/></robot>",
+        b"<robot><!-- <link name='a'/> --><gazebo reference='base_link'/></robot>",
+        b"<robot xmlns:xacro='x'>" + b"<xacro:property name='a' value='1'/>" * 200 + MACROS[23:],
+    ],
+)
+def test_a_file_without_links_is_no_robot(content: bytes) -> None:
+    """Macros, materials and settings of a simulator are not graded if another file has a link, whatever their names."""
+    tree = tree_of("urdf/my_robot.urdf.xacro", "urdf/parts.xacro", my_robot=content, parts=LINKS)
+    reason = OtherCandidate("urdf/my_robot.urdf.xacro", "it has no link outside of macros")
+    assert find_urdf(tree, EXPECTED) == UrdfChoice("urdf/parts.xacro", (reason,))
+    alone = tree_of("urdf/my_robot.urdf.xacro", "urdf/empty.urdf", my_robot=content, empty=b"")
+    assert find_urdf(alone, EXPECTED).path == "urdf/my_robot.urdf.xacro"
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"<robot>" + b"<material name='m'/>" * 300 + b"<link name='a'/></robot>",
+        b"<robot>" + MACROS[23:-8] + b"<xacro:a/></robot>",
+        b"<robot><xacro:if value='1'><link name='a'/></xacro:if></robot>",
+        b"<robot><xacro:include filename='parts.xacro'/></robot>",
+        b"<robot>" + b"<xacro:macro name='a'>" * 4000 + b"</robot>",
+    ],
+)
+def test_links_anywhere_in_the_beginning(content: bytes) -> None:
+    """A link below other things, a call, a condition or an include makes a file the robot; a long file may have one."""
+    tree = tree_of("urdf/my_robot.urdf.xacro", "urdf/parts.xacro", my_robot=content, parts=LINKS)
+    assert find_urdf(tree, EXPECTED).path == "urdf/my_robot.urdf.xacro"
+
+
+@pytest.mark.parametrize("tag", [b"<xacro:macro ", b"<xacro:include ", b"<!--", b"</xacro:macro ", b"filename = '/"])
+def test_tags_that_never_end(tag: bytes) -> None:
+    """The search in the beginning of a file takes linear time."""
+    data = b"<robot>" + tag * (60_000 // len(tag))
+    with processor_time(1):
+        assert find_urdf(tree_of("a.xacro", a=data), EXPECTED).path == "a.xacro"
+
+
 def test_a_file_of_the_right_name_needs_no_content() -> None:
     """A file at the expected path is graded whatever its content, unless it is empty."""
     tree = tree_of("urdf/my_robot.urdf", "other.urdf", my_robot=b"nonsense")

@@ -26,7 +26,9 @@ _OTHER_ROBOT = '<robot name="{}"><link name="chassis"/></robot>'
 
 def robot(sample: str) -> str:
     """Return the plain URDF of a sample submission."""
-    path = REFERENCE / "urdf/my_robot.urdf" if sample == "reference" else ROOT / "submissions" / sample / "my_robot.urdf"
+    path = (
+        REFERENCE / "urdf/my_robot.urdf" if sample == "reference" else ROOT / "submissions" / sample / "my_robot.urdf"
+    )
     return path.read_text(encoding="utf-8")
 
 

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Callable, Mapping
 from copy import deepcopy
+from typing import Any
 
 from lxml import etree
 
@@ -158,7 +159,7 @@ SPELLINGS: Mapping[str, Callable[[str], Files]] = {
 }  # fmt: skip
 
 
-def _parsed(text: str) -> etree._Element:
+def _parsed(text: str) -> Any:
     source = etree.fromstring(text.encode(), etree.XMLParser(remove_comments=True))
     root = etree.Element("robot", dict(source.attrib), nsmap={"xacro": XACRO})
     root.text = "\n  "
@@ -166,7 +167,7 @@ def _parsed(text: str) -> etree._Element:
     return root
 
 
-def _written(root: etree._Element) -> str:
+def _written(root: Any) -> str:
     return f'<?xml version="1.0"?>\n{etree.tostring(root, encoding="unicode")}\n'
 
 
@@ -174,7 +175,7 @@ def _body(text: str) -> str:
     return re.sub(r"^\s*<\?xml[^>]*>\s*", "", text)
 
 
-def _insert(root: etree._Element, content: str) -> None:
+def _insert(root: Any, content: str) -> None:
     """Put content at the beginning of a robot."""
     for position, element in enumerate(etree.fromstring(_library(content).encode())):
         root.insert(position, element)
@@ -184,7 +185,7 @@ def _library(content: str) -> str:
     return f'<robot xmlns:xacro="{XACRO}">{content}</robot>\n'
 
 
-def _with_arithmetic(root: etree._Element) -> etree._Element:
+def _with_arithmetic(root: Any) -> Any:
     for element in root.iter("*"):
         for attribute in _NUMERIC:
             if (value := element.get(attribute)) is not None:
@@ -193,13 +194,14 @@ def _with_arithmetic(root: etree._Element) -> etree._Element:
     return root
 
 
-def _with_inertials(root: etree._Element) -> etree._Element:
+def _with_inertials(root: Any) -> Any:
     for link in root.findall("link"):
         if link.find("visual") is None:
             continue
         is_round = link.find("visual/geometry/sphere") is not None
-        size = {"radius": "0.05"} if is_round else {"x": "0.6", "y": "0.4", "z": "0.2"}
-        call = etree.SubElement(link, f"{{{XACRO}}}inertial_{'sphere' if is_round else 'box'}", mass="0.5", **size)
+        call = etree.SubElement(link, f"{{{XACRO}}}inertial_{'sphere' if is_round else 'box'}", mass="0.5")
+        for name, value in {"radius": "0.05"}.items() if is_round else zip("xyz", ("0.6", "0.4", "0.2"), strict=True):
+            call.set(name, value)
         etree.SubElement(call, "origin", xyz="0 0 0", rpy="0 0 0")
     return root
 
@@ -207,11 +209,13 @@ def _with_inertials(root: etree._Element) -> etree._Element:
 def _split(text: str, *names: str) -> Files:
     core, lidar, drive = names
     root = _parsed(text)
-    found: dict[str, list[etree._Element]] = {name: [] for name in names}
+    found: dict[str, list[Any]] = {name: [] for name in names}
     for element in root:
         about = " ".join([element.get("name", ""), *(child.get("link", "") for child in element.findall("child"))])
         is_part = element.tag != "material"
-        found[lidar if is_part and "lidar" in about else drive if is_part and "wheel" in about else core].append(element)
+        found[lidar if is_part and "lidar" in about else drive if is_part and "wheel" in about else core].append(
+            element
+        )
     files = {MAIN: _main_of(root, names)}
     for name, elements in found.items():
         part = etree.Element("robot", nsmap={"xacro": XACRO})
@@ -220,7 +224,7 @@ def _split(text: str, *names: str) -> Files:
     return files
 
 
-def _main_of(root: etree._Element, names: tuple[str, ...]) -> str:
+def _main_of(root: Any, names: tuple[str, ...]) -> str:
     main = etree.Element("robot", dict(root.attrib), nsmap={"xacro": XACRO})
     for name in names:
         etree.SubElement(main, f"{{{XACRO}}}include", filename=name)

@@ -32,7 +32,9 @@ class Row(NamedTuple):
     failed: tuple[str, ...] = ()  # criteria of Task 1 that the spelling costs
 
 
-def one(sample: str, path: str, spelling: str = "plain", package: str | None = None, launched: str = "", **more: object) -> dict[str, Work]:
+def one(
+    sample: str, path: str, spelling: str = "plain", package: str | None = None, launched: str = "", **more: object
+) -> dict[str, Work]:
     """Return the robot of the only student."""
     return {"": Work(sample, path, spelling, package, launched, **more)}  # type: ignore[arg-type]
 
@@ -41,7 +43,12 @@ SRC = "roscourse_sim_ws/src/my_robot"
 URDF = "urdf/my_robot.urdf"
 MIRRORED, BURIED, LOW, INSIDE = "right-wheel-mirrored", "lidar-buried", "footprint-too-low", "wheel-inside-base"
 VISUAL, GREEN, BACK, MISSING = "lidar-offset-in-visual", "green-0-1-0", "caster-at-the-back", "footprint-missing"
-AXIS, ALONG_X, SWAPPED, TRUNCATED = "axis-for-the-z-up-wheel", "wheel-axes-along-x", "base-size-swapped", "truncated-file"
+AXIS, ALONG_X, SWAPPED, TRUNCATED = (
+    "axis-for-the-z-up-wheel",
+    "wheel-axes-along-x",
+    "base-size-swapped",
+    "truncated-file",
+)
 SEVERAL, CENTRES, MACRO_FILE = "several-mistakes", "equivalent-wheel-joints-at-centres", "my_robot.urdf.xacro"
 
 ROWS = (
