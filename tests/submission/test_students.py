@@ -107,4 +107,5 @@ def test_folders_of_others_who_submitted_no_robot() -> None:
     note = "Lab6/Birch and Lab6/Cedar may be of other students, but were read as well: grade Lab6/Ash to leave them out"
     assert found.notes == (note,)
     assert submission(package("Lab6/Ash/my_robot")).notes == ()
+    assert submission({**package("lab6-ash"), "lab5-ash/my_robot.urdf": ROBOT}).notes == ()  # another lab's
     assert submission({**package("Lab6/my_robot"), "Lab6/Birch/step.png": PICTURE}).notes == ()

@@ -8,7 +8,7 @@ Extra = tuple[str, str]  # a key of EXTRAS, and the folder that it is put into
 class Work(NamedTuple):
     """A robot: the sample that it is, its spelling and its path; its package, and the file that the launch file runs xacro on.
 
-    `lost` are the criteria of Task 2 that fail. Without a package all are lost, of which `package-found` is named.
+    `lost` are the criteria of Task 2 that fail, and `unknown` others that do not pass. Without a package nothing passes.
     """
 
     sample: str
@@ -18,6 +18,7 @@ class Work(NamedTuple):
     launched: str = ""
     package_name: str = "my_robot"
     lost: tuple[str, ...] = ()
+    unknown: tuple[str, ...] = ()
 
 
 class Row(NamedTuple):
@@ -80,8 +81,8 @@ ROWS = (
     Row("ginkgo", "a zip in the lab's folder", one(ALONG_X, f"Lab6/my_robot/{URDF}", package="Lab6/my_robot"), (("macOS", "Lab6"), ("pictures", "Lab6")), zipped="Lab6"),
     Row("guava", "what macOS adds", one(MISSING, f"Lab6/{URDF}", package="Lab6"), (("macOS", "Lab6"),)),
     Row("gum", "a robot of several mistakes in xacro numbers", one(SEVERAL, "Lab6/my_robot.xacro", "numbers"), (("answers", "Lab6"),)),
-    Row("hawthorn", "the package has another name", one(SWAPPED, f"{SRC}/{URDF}", package=SRC, package_name="hawthorn_robot")),
-    Row("hazel", "a launch file without extension", one(BURIED, f"Lab6/my_robot/{URDF}", package="Lab6/my_robot", lost=("launch-found",)), (("pdf", "Lab6"),)),
+    Row("hawthorn", "the package has another name", one(SWAPPED, f"{SRC}/{URDF}", package=SRC, package_name="hawthorn_robot", lost=("package-found",), unknown=("launch-finds-files",))),
+    Row("hazel", "a launch file without extension", one(BURIED, f"Lab6/my_robot/{URDF}", package="Lab6/my_robot", lost=("launch-found", "setup-installs-launch")), (("pdf", "Lab6"),)),
     Row("hemlock", "joints at the centres of the wheels, with macros", one(CENTRES, f"{SRC}/urdf/{MACRO_FILE}", "inertial", SRC, MACRO_FILE)),
     Row("hickory", "a .urdf with xacro in it that nothing expands: ROS 2 rejects it", one(MIRRORED, f"Lab6/{URDF}", "inertial"), failed=("urdf-loads",)),
     Row("holly", "the included file was not submitted", one(LOW, "Lab6/my_robot.urdf.xacro", "unsubmitted"), failed=("urdf-loads",)),
