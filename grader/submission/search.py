@@ -6,6 +6,7 @@ from typing import NamedTuple
 from grader.files.tree import Tree
 from grader.names import folded
 from grader.package.package import MANIFEST
+from grader.submission.backups import BACKUP, is_backup
 from grader.submission.packages import DEEPER, LATER
 from grader.submission.robots import RobotFile, find_robots, parts_of
 from grader.submission.urdf import OtherCandidate
@@ -41,7 +42,9 @@ class _Candidate(NamedTuple):
     """A file that may be the URDF; the best match sorts first."""
 
     in_other_package: bool  # in another package with the name of the graded one: that of a team mate
+    is_other: bool  # it has not the name that is wanted, nor has its robot
     has_no_link: bool
+    is_backup: bool
     tier: int
     is_part: bool  # another one includes it
     outside: bool
@@ -55,10 +58,10 @@ def find_urdf(
     """Return the URDF that is graded, of `robots` (default: those in the tree).
 
     `wanted` is the path that the rubric gives, such as urdf/my_robot.urdf. A file whose path ends in it comes first, then one
-    with its name, with its name and another ending, with a name that starts alike, with a robot of that name, and any other; of the
-    last two kinds a .urdf comes first. Who includes a file of a later kind than the third counts as that kind. Among equals come
-    files that no other includes, then those in `package` (a folder), then the least deep, then alphabetical order. Files without a
-    link, and those of another package with that package's name, such as a team mate's, come last.
+    with its name, with its name and another ending, with a name that starts alike, with a robot of that name, and last any other;
+    of both kinds files without a link and backups are the last. Of the last two kinds a .urdf comes first. Who includes a file of a
+    later kind than the third counts as that kind. Among equals come files that no other includes, then those in `package` (a folder),
+    then the least deep, then alphabetical order. Files of another package with that package's name, a team mate's, come last of all.
     """
     copies = [path for path in tree.generated if path.lower().endswith(".urdf")]
     generated = tuple(OtherCandidate(path, _GENERATED) for path in copies[:_MAX_GENERATED])
@@ -89,9 +92,17 @@ def _candidates(
     for robot in robots:
         path = robot.path
         tier = min(tiers[path], *(by_name.get(name, _EMPTY) for name in robot.includes), _EMPTY)
-        outside = package is not None and not path.startswith(package + "/" if package else "")
-        has_no_link = not (robot.size and robot.has_links)
-        yield _Candidate(path.startswith(others), has_no_link, tier, path in parts, outside, path.count("/"), path)
+        yield _Candidate(
+            in_other_package=path.startswith(others),
+            is_other=tier > (_NOT_NAMED if robot.has_links else _SAME_NAME),
+            has_no_link=not (robot.size and robot.has_links),
+            is_backup=is_backup(path),
+            tier=tier,
+            is_part=path in parts,
+            outside=package is not None and not path.startswith(package + "/" if package else ""),
+            depth=path.count("/"),
+            path=path,
+        )
 
 
 def _tier(robot: RobotFile, wanted: str) -> int:
@@ -122,8 +133,10 @@ def _same_named_packages(tree: Tree, package: str | None) -> tuple[str, ...]:
 def _reason(best: _Candidate, other: _Candidate, wanted: str) -> str:
     if other.in_other_package and not best.in_other_package:
         return _OUTSIDE
-    if other.has_no_link != best.has_no_link and other.tier != _EMPTY:
+    if other.has_no_link and not best.has_no_link and other.tier != _EMPTY:
         return _PART if other.is_part else _NO_LINK
+    if other.is_backup != best.is_backup and other.is_other == best.is_other:
+        return BACKUP
     if other.tier != best.tier:
         is_another = best.tier in (_OTHER_NAME, _NOT_NAMED) and other.tier in (_OTHER_ROBOT, _OTHER_ROBOT_NOT_NAMED)
         reason = _ANOTHER if is_another else _TIERS[other.tier]

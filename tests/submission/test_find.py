@@ -95,7 +95,7 @@ def test_every_tier() -> None:
         ("urdf/my_robot.urdf", "x/urdf/my_robot.urdf", DEEPER),
         ("a/urdf/my_robot.urdf", "b/urdf/my_robot.urdf", LATER),
         ("urdf/my_robot.urdf", "urdf/My_Robot.urdf", BEGINS),
-        ("deep/down/my_robot.urdf", "my_robot.urdf.bak.txt", BEGINS),
+        ("deep/down/my_robot.urdf", "my_robot.urdf.txt", BEGINS),
         ("x/my_robot.urdf.xacro", "robot.urdf", OTHER_NAME),
         ("MY_ROBOT_final(2).urdf", "robot.urdf", OTHER_NAME),
         ("x/robot.urdf", "robot.xml", NOT_NAMED),
@@ -197,6 +197,36 @@ def test_the_name_of_a_part_does_not_matter(main: str) -> None:
     )
     tree = tree_of(main, "my_robot.urdf.xacro", **{name: includes % b"my_robot.urdf.xacro"}, my_robot=LINKS, box=LINKS)
     assert find_urdf(tree, EXPECTED).path == "my_robot.urdf.xacro"
+
+
+@pytest.mark.parametrize(
+    ("better", "backup"),
+    [
+        ("my_robot.urdf", "old/urdf/my_robot.urdf"),
+        ("x/y/my_robot.urdf.xacro", "Backup/my_robot.urdf"),
+        ("a/robot.urdf", "a/my_robot_old.urdf"),
+        ("x/y/my_robot.urdf", "my_robot - Copy/my_robot.urdf"),
+        ("x/y/my_robot.urdf", "oldWorkspace/src/my_robot/urdf/my_robot.urdf"),
+    ],
+)
+def test_backups(better: str, backup: str) -> None:
+    """A file that is named like a backup is graded only if no other one has the name or the robot of the lab."""
+    named = LINKS.replace(b"'r'", b"'my_robot'")
+    tree = tree_of(better, backup, my_robot=named, robot=named)
+    assert find_urdf(tree, EXPECTED) == UrdfChoice(better, (OtherCandidate(backup, "it is named like a backup"),))
+    assert find_urdf(tree_of(backup), EXPECTED).path == backup
+    assert find_urdf(tree_of(backup, "box.urdf", my_robot=LINKS, box=LINKS), EXPECTED).path == backup
+    assert (
+        find_urdf(tree_of("z/golden/my_robot.urdf", "y/old/my_robot.urdf"), EXPECTED).path == "z/golden/my_robot.urdf"
+    )
+
+
+def test_a_robot_of_no_link_that_has_the_name() -> None:
+    """It is graded rather than a robot of another name, and after one of the same name."""
+    names = ("my_robot.urdf", "box.urdf", "z/robot.xacro")
+    assert find_urdf(tree_of(*names, box=LINKS), EXPECTED).path == "my_robot.urdf"
+    named = LINKS.replace(b"'r'", b"'my_robot'")
+    assert find_urdf(tree_of(*names, box=LINKS, robot=named), EXPECTED).path == "z/robot.xacro"
 
 
 @pytest.mark.parametrize(
