@@ -70,9 +70,11 @@ class Tree:
         return tuple(file for file in self.ignored if file.is_archive)
 
     def only(self, belongs: Callable[[str], bool]) -> "Tree":
-        """Return the tree without the files, folders and notes whose paths do not belong to it."""
+        """Return the tree without the files, folders and notes whose paths do not belong to it; a folder's path ends in a slash."""
         files = {path: file for path, file in self.files.items() if belongs(path)}
-        folders, unseen = (frozenset(filter(belongs, paths)) for paths in (self.folders, self.unseen))
+        folders, unseen = (
+            frozenset(path for path in paths if belongs(f"{path}/")) for paths in (self.folders, self.unseen)
+        )
         ignored = tuple(file for file in self.ignored if belongs(file.path))
         return Tree(self.name, files, folders, ignored, tuple(filter(belongs, self.generated)), unseen, (self,))
 

@@ -9,6 +9,13 @@ from grader.files.tree import parents
 
 _WORD = re.compile(r"[^\W\d_]+|\d+")
 _NUMBER = re.compile(r"\d+")
+_NUMBER_BORDER = re.compile(r"(?<=\d) (?=\d)")
+_NUMBER_WORDS = {
+    word: str(number)
+    for number, word in enumerate(
+        ["one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve"], start=1
+    )
+}
 _FINAL = re.compile(r"(?:final|course|term|semester|capstone)projects?|capstone")
 _PACKAGE_FILES = frozenset({"package.xml", "setup.py"})
 
@@ -30,7 +37,7 @@ class LabFolders:
     """
 
     def __init__(self, names: Sequence[str], paths: Iterable[str] = ()) -> None:
-        self._own = {"".join(lab_words(name)): lab_words(name) for name in names}
+        self._own = {_joined(lab_words(name)) for name in names}
         self._shapes = {_NUMBER.sub("#", own) for own in self._own if _NUMBER.search(own)}
         self._known: dict[str, Belonging] = {}
         self._packages: set[str] = set()
@@ -44,7 +51,7 @@ class LabFolders:
 
     def is_lab(self, name: str) -> bool:
         """Return whether a folder has exactly the name of this lab."""
-        return "".join(lab_words(without_archive(name))) in self._own
+        return _joined(lab_words(without_archive(name))) in self._own
 
     def belonging(self, path: str) -> Belonging:
         """Return where a file is. Of the folders around it the nearest that names a lab decides."""
@@ -69,24 +76,29 @@ class LabFolders:
 
     def _named(self, folder: str) -> Belonging:
         words = lab_words(without_archive(folder.rpartition("/")[2]))
-        name = "".join(words)
+        name = _joined(words)
         if name in self._own:
             return Belonging.THIS_LAB
         if _NUMBER.sub("#", name) in self._shapes or _FINAL.fullmatch(name):
             return Belonging.OTHER_LAB
         if folder in self._packages:
             return Belonging.NO_LAB
-        spans = {"".join(words[i:j]) for i in range(len(words)) for j in range(i + 1, len(words) + 1)}
-        if any(_NUMBER.search(own) for own in spans & self._own.keys()):
+        spans = {_joined(words[i:j]) for i in range(len(words)) for j in range(i + 1, len(words) + 1)}
+        if any(_NUMBER.search(own) for own in spans & self._own):
             return Belonging.NO_LAB if self._has_exact else Belonging.THIS_LAB
         is_other = any(_NUMBER.sub("#", span) in self._shapes or _FINAL.fullmatch(span) for span in spans)
         return Belonging.OTHER_LAB if is_other else Belonging.NO_LAB
 
 
 def lab_words(name: str) -> tuple[str, ...]:
-    """Return the words and numbers of a name: lab and 6 of Lab_06."""
+    """Return the words and numbers of a name: lab and 6 of Lab_06 or Lab Six."""
     words = _WORD.findall(name[:100].casefold())
-    return tuple(str(int(word)) if word.isdecimal() else word for word in words)
+    return tuple(str(int(word)) if word.isdecimal() else _NUMBER_WORDS.get(word, word) for word in words)
+
+
+def _joined(words: Sequence[str]) -> str:
+    """Return words without spaces, but with a point between numbers: lab6, and lab6.2 of Lab6 (2), which is not lab 62."""
+    return _NUMBER_BORDER.sub(".", " ".join(words)).replace(" ", "")
 
 
 def without_archive(name: str) -> str:

@@ -6,7 +6,7 @@ from grader.names import closest, folded
 from grader.package.manifest import Manifest, read_manifest
 from grader.package.package import MANIFEST, NO_PACKAGE, SETUP, Package
 from grader.source import Location, Source
-from grader.submission.versions import OUTDATED, is_outdated
+from grader.submission.backups import BACKUP, is_backup
 from grader.text import enumerated, quoted
 
 _MAX_PACKAGES = 40
@@ -32,12 +32,14 @@ def find_packages(tree: Tree, wanted: str) -> list[str]:
 def read_packages(tree: Tree, wanted: str, urdf: str = "") -> tuple[Package, ...]:
     """Return the packages of a submission, the one that matches best first: that of the wanted name.
 
-    Among packages of one name it is one that is no old version, then the one with most of the files that a lab asks for, above all the URDF at its path; then
+    Among packages of one name it is one that is no backup, then the one with most of the files that a lab asks for, above all the URDF at its path; then
     the least deep, then the first in alphabetical order.
     """
     known: dict[str, Package] = {}
     found = [_read_package(tree, folder, known) for folder in find_packages(tree, wanted)]
-    found.sort(key=lambda package: (_rank(package, wanted), _missing(package, urdf), _depth(package.folder)))
+    found.sort(
+        key=lambda it: (_distance(it, wanted), is_backup(it.folder), _missing(it, urdf), _depth(it.folder)),
+    )
     for package in found:
         known.setdefault(package.name, package)
     return tuple(found)
@@ -71,8 +73,8 @@ def why_not(graded: Package | None, other: Package, urdf: str) -> str:
         return f"the package {other.name!r} has another name, and does not contain the graded URDF"
     if other.name != graded.name:
         return f"the package {graded.name!r} is graded, not {other.name!r}"
-    if is_outdated(other.folder) != is_outdated(graded.folder):
-        return OUTDATED
+    if is_backup(other.folder) and not is_backup(graded.folder):
+        return BACKUP
     if _missing(other, urdf) != _missing(graded, urdf):
         return "the package that is graded has more of the files that the lab asks for"
     return DEEPER if other.folder.count("/") != graded.folder.count("/") else LATER
@@ -88,10 +90,6 @@ def _missing(package: Package, urdf: str) -> tuple[int, bool]:
     has_urdf = urdf in files and files[urdf].size > 0
     usual = (has_urdf, MANIFEST in files, SETUP in files, package.launch_files, package.rviz_files)
     return sum(not present for present in usual), not has_urdf
-
-
-def _rank(package: Package, wanted: str) -> tuple[int, bool]:
-    return _distance(package, wanted), is_outdated(package.folder)
 
 
 def _distance(package: Package, wanted: str) -> int:

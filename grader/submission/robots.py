@@ -18,7 +18,11 @@ _PROLOG = re.compile(
 )
 _ROBOT = re.compile(rb"<\s*robot(?=[\s/>])([^>]*)")
 _NAME = re.compile(rb"(?<![\w:])name\s*=\s*[\"']([^\"']*)")
-_INCLUDE = re.compile(rb"<xacro:include\s[^>]*filename\s*=\s*[\"'](?:[^\"']*/)?([^\"'/]+)[\"']")
+_COMMENT = re.compile(rb"<!--.*?(?:-->|\Z)", re.DOTALL)
+_MACRO = re.compile(rb"<xacro:macro[\s>].*?(?:</xacro:macro\s*>|\Z)", re.DOTALL)
+# A link, or a tag of xacro that may make one: a call, an include, a block.
+_LINK = re.compile(rb"<\s*link[\s/>]|<xacro:(?!(?:macro|property|arg|if|unless)[\s/>])")
+_INCLUDE = re.compile(rb"<xacro:include\s[^<>]*filename\s*=\s*[\"'](?:[^\"']*/)?([^\"'/]+)[\"']")
 _LIKELY = re.compile("urdf|xacro|robot")  # in names of files that are read first
 # Files that are no text, and need not be read.
 _BINARY = frozenset(
@@ -34,7 +38,8 @@ _BINARY = frozenset(
 class RobotFile(NamedTuple):
     """A file that may be graded as the URDF: it is called .urdf, or its first element is <robot>.
 
-    `robot` is the name of the robot, and `includes` the names of the files that it includes, as far as its beginning tells.
+    `robot` is the name of the robot, `includes` are the names of the files that it includes, and `has_links` is whether it may have
+    a link outside of macros, as far as its beginning tells.
     """
 
     path: str
@@ -42,6 +47,7 @@ class RobotFile(NamedTuple):
     is_urdf: bool  # by its name
     robot: str = ""
     includes: frozenset[str] = frozenset()
+    has_links: bool = True
 
     @property
     def name(self) -> str:
@@ -68,7 +74,7 @@ def find_robots(tree: Tree, wanted: str = "", limit: int = URDF_LIMIT) -> tuple[
         start = _robot_start(file) if is_read else None
         if start is not None or is_urdf:
             by_content += not is_urdf
-            found.append(RobotFile(file.path, file.size, is_urdf, *(_described(start) if start else ())))
+            found.append(RobotFile(file.path, file.size, is_urdf, *(_described(start, file.size) if start else ())))
     return tuple(sorted(found))
 
 
@@ -87,7 +93,7 @@ def parts_of(robots: tuple[RobotFile, ...]) -> frozenset[str]:
 
 
 def _robot_start(file: File) -> bytes | None:
-    """Return the beginning of a file from its <robot> on; None if its first element is another."""
+    """Return the beginning of a file from its <robot> on, a longer one of xacro; None if its first element is another."""
     if not file.size:
         return None
     for count in (START, _LONG_START):
@@ -97,6 +103,8 @@ def _robot_start(file: File) -> bytes | None:
             return None
         end = _end_of_prolog(data)
         if _ROBOT.match(data, end):
+            if count < _LONG_START and len(data) == count and (b"xacro:" in data or not _LINK.search(data)):
+                continue
             return data[end:]
         # Only comments so far, the last of which may have been cut.
         if len(data) < count or (end < len(data) and not data.startswith((b"<!", b"<?"), end)):
@@ -109,8 +117,10 @@ def _end_of_prolog(data: bytes) -> int:
     return found.end() if found is not None else 0
 
 
-def _described(start: bytes) -> tuple[str, frozenset[str]]:
+def _described(start: bytes, size: int) -> tuple[str, frozenset[str], bool]:
     tag = _ROBOT.match(start)
     name = _NAME.search(tag[1]) if tag is not None else None
-    includes = frozenset(found.decode("utf-8", "replace") for found in _INCLUDE.findall(start))
-    return name[1].decode("utf-8", "replace").strip() if name is not None else "", includes
+    text = _COMMENT.sub(b"", start)
+    includes = frozenset(found.decode("utf-8", "replace") for found in _INCLUDE.findall(text))
+    has_links = size > _LONG_START or _LINK.search(_MACRO.sub(b"", text)) is not None
+    return name[1].decode("utf-8", "replace").strip() if name is not None else "", includes, has_links

@@ -6,15 +6,17 @@ from typing import NamedTuple
 from grader.files.tree import Tree
 from grader.names import folded
 from grader.package.package import MANIFEST
+from grader.submission.backups import BACKUP, is_backup
 from grader.submission.packages import DEEPER, LATER
 from grader.submission.robots import RobotFile, find_robots, parts_of
 from grader.submission.urdf import OtherCandidate
-from grader.submission.versions import OUTDATED, is_outdated
 
 _MAX_GENERATED = 20
-_EXACT, _SAME_NAME, _SAME_START, _OTHER_NAME, _NOT_NAMED, _OTHER_ROBOT, _OTHER_ROBOT_NOT_NAMED, _EMPTY = range(8)
+_EXACT, _SAME_NAME, _OTHER_ENDING, _SAME_START, _OTHER_NAME, _NOT_NAMED = range(6)
+_OTHER_ROBOT, _OTHER_ROBOT_NOT_NAMED, _EMPTY = range(6, 9)
 _TIERS = {
     _SAME_NAME: "it has the expected name, but is not at {wanted}",
+    _OTHER_ENDING: "its name only starts like that of {wanted}",
     _SAME_START: "its name only starts like that of {wanted}",
     _OTHER_NAME: "its name differs from that of {wanted}",
     _NOT_NAMED: "it is not named like a URDF",
@@ -22,6 +24,7 @@ _TIERS = {
     _OTHER_ROBOT_NOT_NAMED: "it is not named like a URDF",
     _EMPTY: "it is empty",
 }
+_NO_LINK = "it has no link outside of macros"
 _ANOTHER = "its robot is not named {stem!r}"
 _OUTSIDE = "it is outside the package that is graded"
 _PART = "another candidate includes it"
@@ -39,8 +42,9 @@ class _Candidate(NamedTuple):
     """A file that may be the URDF; the best match sorts first."""
 
     in_other_package: bool  # in another package with the name of the graded one: that of a team mate
-    is_other: bool  # it may be another robot than the one that the lab asks for
-    is_outdated: bool
+    is_other: bool  # it has not the name that is wanted, nor has its robot
+    has_no_link: bool
+    is_backup: bool
     tier: int
     is_part: bool  # another one includes it
     outside: bool
@@ -54,9 +58,10 @@ def find_urdf(
     """Return the URDF that is graded, of `robots` (default: those in the tree).
 
     `wanted` is the path that the rubric gives, such as urdf/my_robot.urdf. A file whose path ends in it comes first, then one
-    with its name, then one whose name starts alike, then any with a robot of that name, then any other; of the last two kinds a
-    .urdf comes first. An old version, as its path says, comes after all that surely are the robot. Among equals come files that no other includes, then those in `package` (a folder), then the least deep,
-    then alphabetical order. Files of another package with that package's name, such as a team mate's, come last.
+    with its name, with its name and another ending, with a name that starts alike, with a robot of that name, and last any other;
+    of both kinds files without a link and backups are the last. Of the last two kinds a .urdf comes first. Who includes a file of a
+    later kind than the third counts as that kind. Among equals come files that no other includes, then those in `package` (a folder),
+    then the least deep, then alphabetical order. Files of another package with that package's name, a team mate's, come last of all.
     """
     copies = [path for path in tree.generated if path.lower().endswith(".urdf")]
     generated = tuple(OtherCandidate(path, _GENERATED) for path in copies[:_MAX_GENERATED])
@@ -79,12 +84,25 @@ def _candidates(
     robots: tuple[RobotFile, ...], wanted: str, package: str | None, others: tuple[str, ...]
 ) -> Iterable[_Candidate]:
     parts = parts_of(robots)
+    tiers = {robot.path: _tier(robot, wanted) for robot in robots}
+    by_name: dict[str, int] = {}  # the best tiers of parts by their names
+    for robot in robots:
+        if robot.path in parts and robot.has_links and tiers[robot.path] >= _SAME_START:
+            by_name[robot.name] = min(tiers[robot.path], by_name.get(robot.name, _EMPTY))
     for robot in robots:
         path = robot.path
-        outside = package is not None and not path.startswith(package + "/" if package else "")
-        tier = _tier(robot, wanted)
-        kind = (path.startswith(others), tier > _NOT_NAMED, is_outdated(path), tier)
-        yield _Candidate(*kind, path in parts, outside, path.count("/"), path)
+        tier = min(tiers[path], *(by_name.get(name, _EMPTY) for name in robot.includes), _EMPTY)
+        yield _Candidate(
+            in_other_package=path.startswith(others),
+            is_other=tier > (_NOT_NAMED if robot.has_links else _SAME_NAME),
+            has_no_link=not (robot.size and robot.has_links),
+            is_backup=is_backup(path),
+            tier=tier,
+            is_part=path in parts,
+            outside=package is not None and not path.startswith(package + "/" if package else ""),
+            depth=path.count("/"),
+            path=path,
+        )
 
 
 def _tier(robot: RobotFile, wanted: str) -> int:
@@ -96,6 +114,8 @@ def _tier(robot: RobotFile, wanted: str) -> int:
         return _EXACT
     if robot.name == parts[-1]:
         return _SAME_NAME
+    if folded(robot.name.split(".")[0]) == folded(stem):
+        return _OTHER_ENDING
     if folded(robot.name).startswith(folded(stem)):
         return _SAME_START
     if folded(robot.robot) == folded(stem):
@@ -113,8 +133,10 @@ def _same_named_packages(tree: Tree, package: str | None) -> tuple[str, ...]:
 def _reason(best: _Candidate, other: _Candidate, wanted: str) -> str:
     if other.in_other_package and not best.in_other_package:
         return _OUTSIDE
-    if other.is_other == best.is_other and other.is_outdated != best.is_outdated:
-        return OUTDATED
+    if other.has_no_link and not best.has_no_link and other.tier != _EMPTY:
+        return _PART if other.is_part else _NO_LINK
+    if other.is_backup != best.is_backup and other.is_other == best.is_other:
+        return BACKUP
     if other.tier != best.tier:
         is_another = best.tier in (_OTHER_NAME, _NOT_NAMED) and other.tier in (_OTHER_ROBOT, _OTHER_ROBOT_NOT_NAMED)
         reason = _ANOTHER if is_another else _TIERS[other.tier]

@@ -14,6 +14,7 @@ from grader.xml.parsing import XMLSyntaxError
 
 _GLOB = re.compile(r"[*\[?]")
 _SHARED = re.compile(rf"{INSTALLED}/(?P<package>[^/]+)/share/(?P=package)(?:/+(?P<inside>.+))", re.DOTALL)
+_ADDED = re.compile(r".*\.(?:urdf|xacro)([^/]*)", re.IGNORECASE | re.DOTALL)
 _MAX_OPEN = 50  # files that include each other
 _MAX_FILES = 200  # that one pattern names
 
@@ -70,7 +71,13 @@ class Files:
             raise FileFails(f"there is no file {text.partition('/share/')[2]}: is a slash missing after $(find ...)?")
         if path.startswith(("/", "../")) or path == "..":
             raise Undetermined(f"{text} is outside the submission")
-        return path
+        renamed = path + self._added_ending()
+        return renamed if path not in self._workspace.paths and renamed in self._workspace.paths else path
+
+    def _added_ending(self) -> str:
+        """Return what was added to the name of the innermost file when it was uploaded without its package: .txt of a.xacro.txt."""
+        added = _ADDED.fullmatch(self.open[-1]) if self._workspace.is_part else None
+        return added[1] if added is not None else ""
 
     def _shared(self, package: str, inside: str) -> str:
         """Return the path of a file that $(find package) names."""

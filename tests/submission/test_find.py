@@ -19,10 +19,10 @@ from tests.processor_time import processor_time
 EXPECTED = "urdf/my_robot.urdf"
 ROBOT = b'<?xml version="1.0"?>\n<robot name="my_robot"/>\n'
 OUTSIDE = "it is outside the package that is graded"
-OUTDATED = "its path says that it is an old version"
 DEEPER = "it matches equally well, but is deeper in the folders"
 LATER = "it matches equally well, but comes later in alphabetical order"
 MISSING = "it has the expected name, but is not at urdf/my_robot.urdf"
+BACKUP = "it is named like a backup"
 BEGINS = "its name only starts like that of urdf/my_robot.urdf"
 OTHER_NAME = "its name differs from that of urdf/my_robot.urdf"
 NOT_NAMED = "it is not named like a URDF"
@@ -96,9 +96,10 @@ def test_every_tier() -> None:
         ("urdf/my_robot.urdf", "x/urdf/my_robot.urdf", DEEPER),
         ("a/urdf/my_robot.urdf", "b/urdf/my_robot.urdf", LATER),
         ("urdf/my_robot.urdf", "urdf/My_Robot.urdf", BEGINS),
-        ("deep/down/my_robot.urdf", "my_robot.urdf.bak.txt", OUTDATED),
-        ("src/my_robot.urdf", "backup/urdf/my_robot.urdf", OUTDATED),
-        ("x/y/my_robot_v2.urdf", "my_robotOld.urdf", OUTDATED),
+        ("deep/down/my_robot.urdf", "my_robot.urdf.bak.txt", BEGINS),
+        ("src/my_robot.urdf", "backup/urdf/my_robot.urdf", BACKUP),
+        ("x/y/my_robot_v2.urdf", "my_robotOld.urdf", BACKUP),
+        ("deep/down/my_robot.urdf", "my_robot.urdf.txt", BEGINS),
         ("x/my_robot.urdf.xacro", "robot.urdf", OTHER_NAME),
         ("MY_ROBOT_final(2).urdf", "robot.urdf", OTHER_NAME),
         ("x/robot.urdf", "robot.xml", NOT_NAMED),
@@ -177,6 +178,101 @@ def test_a_file_that_another_one_includes_is_a_part() -> None:
     part = "another candidate includes it"
     others = (OtherCandidate("a.xacro", part), OtherCandidate("materials.xacro", part))
     assert find_urdf(tree, EXPECTED) == UrdfChoice("z/robot.xacro", others)
+
+
+MACROS = b"<robot name='my_robot'><xacro:macro name='a'><link name='b'/></xacro:macro></robot>"
+LINKS = b"<robot name='r'><link name='base_link'/></robot>"
+
+
+@pytest.mark.parametrize("main", ["robot.urdf.xacro", "z/a.xacro"])
+def test_the_name_of_a_part_does_not_matter(main: str) -> None:
+    """A file that includes one named like the robot is graded, unless that is named exactly so, with any ending."""
+    name = main.rpartition("/")[2].partition(".")[0]
+    includes = b"<robot name='r'><xacro:include filename='%s'/></robot>"
+    tree = tree_of(
+        main, "box.urdf", "my_robot_core.xacro", **{name: includes % b"my_robot_core.xacro"}, my_robot=LINKS, box=LINKS
+    )
+    assert find_urdf(tree, EXPECTED) == UrdfChoice(
+        main,
+        (
+            OtherCandidate("my_robot_core.xacro", "another candidate includes it"),
+            OtherCandidate("box.urdf", OTHER_NAME),
+        ),
+    )
+    tree = tree_of(main, "my_robot.urdf.xacro", **{name: includes % b"my_robot.urdf.xacro"}, my_robot=LINKS, box=LINKS)
+    assert find_urdf(tree, EXPECTED).path == "my_robot.urdf.xacro"
+
+
+@pytest.mark.parametrize(
+    ("better", "backup"),
+    [
+        ("my_robot.urdf", "old/urdf/my_robot.urdf"),
+        ("x/y/my_robot.urdf.xacro", "Backup/my_robot.urdf"),
+        ("a/robot.urdf", "a/my_robot_old.urdf"),
+        ("x/y/my_robot.urdf", "my_robot - Copy/my_robot.urdf"),
+        ("x/y/my_robot.urdf", "oldWorkspace/src/my_robot/urdf/my_robot.urdf"),
+    ],
+)
+def test_backups(better: str, backup: str) -> None:
+    """A file that is named like a backup is graded only if no other one has the name or the robot of the lab."""
+    named = LINKS.replace(b"'r'", b"'my_robot'")
+    tree = tree_of(better, backup, my_robot=named, robot=named)
+    assert find_urdf(tree, EXPECTED) == UrdfChoice(better, (OtherCandidate(backup, "it is named like a backup"),))
+    assert find_urdf(tree_of(backup), EXPECTED).path == backup
+    assert find_urdf(tree_of(backup, "box.urdf", my_robot=LINKS, box=LINKS), EXPECTED).path == backup
+    assert (
+        find_urdf(tree_of("z/golden/my_robot.urdf", "y/old/my_robot.urdf"), EXPECTED).path == "z/golden/my_robot.urdf"
+    )
+
+
+def test_a_robot_of_no_link_that_has_the_name() -> None:
+    """It is graded rather than a robot of another name, and after one of the same name."""
+    names = ("my_robot.urdf", "box.urdf", "z/robot.xacro")
+    assert find_urdf(tree_of(*names, box=LINKS), EXPECTED).path == "my_robot.urdf"
+    named = LINKS.replace(b"'r'", b"'my_robot'")
+    assert find_urdf(tree_of(*names, box=LINKS, robot=named), EXPECTED).path == "z/robot.xacro"
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        MACROS,
+        b"<robot><material name='green'/></robot>",
+        b"<robot><!-- <link name='a'/> --><gazebo reference='base_link'/></robot>",
+        b"<robot xmlns:xacro='x'>" + b"<xacro:property name='a' value='1'/>" * 200 + MACROS[23:],
+    ],
+)
+def test_a_file_without_links_is_no_robot(content: bytes) -> None:
+    """Macros, materials and settings of a simulator are not graded if another file has a link, whatever their names."""
+    tree = tree_of("urdf/my_robot.urdf.xacro", "urdf/parts.xacro", my_robot=content, parts=LINKS)
+    reason = OtherCandidate("urdf/my_robot.urdf.xacro", "it has no link outside of macros")
+    assert find_urdf(tree, EXPECTED) == UrdfChoice("urdf/parts.xacro", (reason,))
+    alone = tree_of("urdf/my_robot.urdf.xacro", "urdf/empty.urdf", my_robot=content, empty=b"")
+    assert find_urdf(alone, EXPECTED).path == "urdf/my_robot.urdf.xacro"
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"<robot>" + b"<material name='m'/>" * 300 + b"<link name='a'/></robot>",
+        b"<robot>" + MACROS[23:-8] + b"<xacro:a/></robot>",
+        b"<robot><xacro:if value='1'><link name='a'/></xacro:if></robot>",
+        b"<robot><xacro:include filename='parts.xacro'/></robot>",
+        b"<robot>" + b"<xacro:macro name='a'>" * 4000 + b"</robot>",
+    ],
+)
+def test_links_anywhere_in_the_beginning(content: bytes) -> None:
+    """A link below other things, a call, a condition or an include makes a file the robot; a long file may have one."""
+    tree = tree_of("urdf/my_robot.urdf.xacro", "urdf/parts.xacro", my_robot=content, parts=LINKS)
+    assert find_urdf(tree, EXPECTED).path == "urdf/my_robot.urdf.xacro"
+
+
+@pytest.mark.parametrize("tag", [b"<xacro:macro ", b"<xacro:include ", b"<!--", b"</xacro:macro ", b"filename = '/"])
+def test_tags_that_never_end(tag: bytes) -> None:
+    """The search in the beginning of a file takes linear time."""
+    data = b"<robot>" + tag * (60_000 // len(tag))
+    with processor_time(1):
+        assert find_urdf(tree_of("a.xacro", a=data), EXPECTED).path == "a.xacro"
 
 
 def test_a_file_of_the_right_name_needs_no_content() -> None:

@@ -24,6 +24,10 @@ OUTSIDE = "it is outside the folder of this lab"
         "Lab6_Ash",
         "Ash - Lab 6",
         "Lab6 and Lab7",
+        "Lab6 (1)",
+        "Lab 6_2026-11-20",
+        "2026 Lab6",
+        "Lab Six",
     ],
 )
 def test_names_of_this_lab(name: str) -> None:
@@ -32,7 +36,21 @@ def test_names_of_this_lab(name: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["Lab7", "lab_5", "LAB 10", "Lab7_Ash", "Final Project", "FinalProject", "final_project_ash", "Lab7.zip"]
+    "name",
+    [
+        "Lab7",
+        "lab_5",
+        "LAB 10",
+        "Lab7_Ash",
+        "Final Project",
+        "FinalProject",
+        "final_project_ash",
+        "Lab7.zip",
+        "Lab5 (1)",
+        "Lab 16",
+        "Lab 5_2026",
+        "Lab seven",
+    ],
 )
 def test_names_of_other_labs(name: str) -> None:
     """The same name with another number, and a final project."""

@@ -107,6 +107,7 @@ def test_folders_of_others_who_submitted_no_robot() -> None:
     note = "Lab6/Birch and Lab6/Cedar may be of other students, but were read as well: grade Lab6/Ash to leave them out"
     assert found.notes == (note,)
     assert submission(package("Lab6/Ash/my_robot")).notes == ()
+    assert submission({**package("lab6-ash"), "lab5-ash/my_robot.urdf": ROBOT}).notes == ()  # another lab's
     assert submission({**package("Lab6/my_robot"), "Lab6/Birch/step.png": PICTURE}).notes == ()
 
 
@@ -117,4 +118,4 @@ def test_an_old_version_is_not_graded() -> None:
         assert found.package is not None
         assert found.package.folder == "Lab6/ws/new/src/my_robot"
         reasons = {other.path: other.reason for other in found.other_candidates}
-        assert reasons[f"{backup}/package.xml"] == "its path says that it is an old version"
+        assert reasons[f"{backup}/package.xml"] == "it is named like a backup"

@@ -4,6 +4,8 @@ import re
 import shutil
 from pathlib import Path
 
+import pytest
+
 from grader.grading.grade import grade
 from grader.submission.submission import Submission, read_submission
 from grader.submission.urdf import Read
@@ -174,6 +176,20 @@ def test_a_part_of_a_package_includes_its_own_files(tmp_path: Path) -> None:
     text = inserted('<xacro:include filename="$(find my_robot)/urdf/more.xacro"/>')
     (tmp_path / "urdf" / "my_robot.urdf.xacro").write_text(text)
     assert set(statuses(opened(tmp_path)).values()) == {"passed"}
+
+
+@pytest.mark.parametrize("ending", ["", ".txt", " file", " file.py"])
+def test_files_that_were_renamed_alike_include_each_other(ending: str, tmp_path: Path) -> None:
+    """Without a package, an ending that was added to the name of a file may be added to those that it includes as well."""
+    include = '<xacro:include filename="macros.xacro"/>'
+    (tmp_path / f"urdf.xacro{ending}").write_text(inserted(include))
+    (tmp_path / f"macros.xacro{ending}").write_text(f"<robot {NAMESPACE}/>")
+    assert statuses(opened(tmp_path))["urdf-loads"] == "passed"
+    (tmp_path / f"macros.xacro{ending}").rename(tmp_path / "macros.xacro.bak")
+    assert statuses(opened(tmp_path))["urdf-loads"] == "failed"
+    (tmp_path / "macros.xacro.bak").rename(tmp_path / f"macros.xacro{ending}")
+    shutil.copy(LAB6.path.parent / LAB6.reference / "package.xml", tmp_path)
+    assert statuses(opened(tmp_path))["urdf-loads"] == ("failed" if ending else "passed")
 
 
 def test_a_refused_expression_costs_what_depends_on_it() -> None:

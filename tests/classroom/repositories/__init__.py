@@ -1,0 +1,1 @@
+"""A class of 60 repositories, written as students hand them in."""
