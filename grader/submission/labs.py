@@ -53,6 +53,10 @@ class LabFolders:
         """Return whether a folder has exactly the name of this lab."""
         return _joined(lab_words(without_archive(name))) in self._own
 
+    def is_project(self, path: str) -> bool:
+        """Return whether a file is in the folder of a final project."""
+        return any(_FINAL.search(_joined(lab_words(name))) for name in path.split("/")[:-1])
+
     def belonging(self, path: str) -> Belonging:
         """Return where a file is. Of the folders around it the nearest that names a lab decides."""
         if not self._own:

@@ -43,8 +43,9 @@ class Selection(NamedTuple):
 def select(tree: Tree, wanted: str, package: str, folders: Sequence[str], limit: int) -> Selection:
     """Select what is graded, given what the rubric says: the URDF's path, the package's name, the names of the lab's folder.
 
-    Where the lab's folder exists, it decides: a file in no lab's folder is graded only if the lab's has none of its kind, and one of
-    another lab never. Without it, another lab's folder is used if there is nothing else. `limit` is in bytes of a URDF.
+    Where the lab's folder exists, it decides: a file in no lab's folder is graded only if the lab's has none of its kind. Another
+    lab's folder is used only if no robot and no package is anywhere else, and if the lab's folder exists, only for the robot that the
+    rubric names. `limit` is in bytes of a URDF.
     """
     robots = find_robots(tree, wanted.rpartition("/")[2], limit)
     roots = [path for path in tree.files if path.rpartition("/")[2] in (MANIFEST, SETUP)]
@@ -91,17 +92,20 @@ class _Scope:
         self._other = ""
         present = set(map(self._labs.belonging, tree.files))
         work = {self._labs.belonging(path) for path in (*(robot.path for robot in robots), *roots)}
-        if Belonging.THIS_LAB in present:
+        has_own = Belonging.THIS_LAB in present
+        of_labs = [robot for robot in robots if not self._labs.is_project(robot.path)]
+        is_elsewhere = work == {Belonging.OTHER_LAB} and any(is_wanted(robot, wanted) for robot in of_labs)
+        if has_own and not is_elsewhere:
             self._allowed = [Belonging.THIS_LAB, Belonging.NO_LAB]
         elif work == {Belonging.OTHER_LAB} or present == {Belonging.OTHER_LAB}:
-            best = find_urdf(tree, wanted, None, tuple(robots)).path or next(iter([*roots, *tree.files]))
+            best = find_urdf(tree, wanted, None, tuple(of_labs or robots)).path or next(iter([*roots, *tree.files]))
             self._other = self._labs.around(best)
             self._allowed = [Belonging.OTHER_LAB, Belonging.NO_LAB]
         else:
             self._allowed = [Belonging.NO_LAB]
         self.tree = self.only(*self._allowed)
-        has_own = self._allowed[0] is Belonging.THIS_LAB
         self.documents = self.only(Belonging.THIS_LAB) if has_own else self.tree
+        self._own = next(map(self._labs.around, self.documents.files), "") if has_own else ""
 
     def lab(self, path: str) -> Belonging | None:
         """Return where a file is; None of one in the folder of another lab that is not graded."""
@@ -128,10 +132,12 @@ class _Scope:
     def notes(self, urdf: str | None) -> tuple[str, ...]:
         """Return the notes on the folders that were searched."""
         if self._other:
-            return (f"no folder of this lab was found: {self._other}, the folder of another lab, was graded",)
-        if self._allowed[0] is Belonging.THIS_LAB and urdf and self.lab(urdf) is Belonging.NO_LAB:
-            own = next(self._labs.around(path) for path in self.documents.files)
-            return (f"{own}, the folder of this lab, has no URDF: {urdf}, which is outside of it, was graded",)
+            why = f"{self._own}, the folder of this lab, has no robot and no package" if self._own else ""
+            return (
+                f"{why or 'no folder of this lab was found'}: {self._other}, the folder of another lab, was graded",
+            )
+        if self._own and urdf and self.lab(urdf) is Belonging.NO_LAB:
+            return (f"{self._own}, the folder of this lab, has no URDF: {urdf}, which is outside of it, was graded",)
         return ()
 
 

@@ -109,15 +109,17 @@ def test_another_lab_is_graded_with_a_note_in_every_format(tmp_path: Path) -> No
 
 
 def test_pictures_in_the_lab_and_a_robot_in_another(tmp_path: Path) -> None:
-    """The robot of Lab 7 is never graded as that of Lab 6."""
+    """The robot of Lab 7 is graded if there is no other, and the report says so first; pictures are those of Lab 6."""
     put(tmp_path / "Lab6/Task1_Step8.png", BURIED)
     put(tmp_path / "Lab7/my_robot", PACKAGE)
+    put(tmp_path / "Lab7/Task1_Step18.png", BURIED)
     found = report(tmp_path)
-    assert found["score"] == 0
-    assert "it is in the folder of another lab" in json.dumps(found["submission"])
-    assert message_of(tmp_path, "package-found") == (
-        "no package was submitted for this lab; there is 'my_robot' in Lab7/my_robot"
-    )
+    note = "Lab6, the folder of this lab, has no robot and no package: Lab7, the folder of another lab, was graded"
+    assert (found["score"], found["notes"][0]) == (90, note)
+    assert '"Lab6/Task1_Step8.png"' in json.dumps(found["evidence"])
+    assert "Lab7/Task1" not in json.dumps(found["evidence"])
+    (tmp_path / "Lab7").rename(tmp_path / "Final Project")
+    assert report(tmp_path)["score"] == 0
 
 
 def test_an_archive_of_the_lab_is_opened(tmp_path: Path) -> None:

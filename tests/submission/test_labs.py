@@ -109,10 +109,14 @@ def test_the_nearest_folder_decides() -> None:
             },
         ),
         (
-            {"Lab6/step.png": PICTURE, **package("Lab7/my_robot")},
+            {"Lab6/step.png": PICTURE, "Lab4/box.urdf": BOX, **package("Final Project/my_robot")},
             None,
             None,
-            {"Lab7/my_robot/urdf/my_robot.urdf": OTHER_LAB, "Lab7/my_robot/package.xml": OTHER_LAB},
+            {
+                "Lab4/box.urdf": OTHER_LAB,
+                "Final Project/my_robot/urdf/my_robot.urdf": OTHER_LAB,
+                "Final Project/my_robot/package.xml": OTHER_LAB,
+            },
         ),
         (
             {**package("ws/src/my_robot"), **package("Lab7/my_robot")},
@@ -193,3 +197,12 @@ def test_another_package_is_not_graded(files: Mapping[str, bytes], folder: str |
     """Only the package with the rubric's name, or else the one that holds the graded URDF."""
     found = submission(files)
     assert (found.package.folder if found.package is not None else None) == folder
+
+
+def test_another_lab_is_graded_where_this_one_has_no_work() -> None:
+    """The robot that is wanted is taken from another lab's folder if there is no other, with a note; no other robot is."""
+    found = submission({"Lab6/step.png": PICTURE, **package("Lab7/my_robot"), **package("Lab8/my_robot", "other")})
+    assert (found.path, found.package and found.package.folder) == ("Lab7/my_robot/urdf/my_robot.urdf", "Lab7/my_robot")
+    why = "Lab6, the folder of this lab, has no robot and no package"
+    assert found.notes == (f"{why}: Lab7, the folder of another lab, was graded",)
+    assert list(found.tree.files) == ["Lab6/step.png"]

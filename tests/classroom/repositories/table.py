@@ -101,7 +101,7 @@ ROWS = (
     Row("mulberry", "the lab's folder has the login in its name", one(INSIDE, f"lab6-mulberry/{URDF}", package="lab6-mulberry"), (("another version", "lab5-mulberry"),)),
     # No robot.
     Row("myrtle", "pictures only", extras=(("pictures", "Lab6"),)),
-    Row("nutmeg", "pictures with other names", extras=(("loosely named pictures", "Lab6/Nutmeg"), ("another package", "Lab7/Nutmeg/my_robot"))),
+    Row("nutmeg", "pictures with other names", extras=(("loosely named pictures", "Lab6/Nutmeg"), ("another package", "Final Project/Nutmeg/my_robot"))),
     Row("oak", "one PDF with headings", extras=(("pdf", "Lab6"), ("readme", ""))),
     Row("oleander", "one Word file with headings", extras=(("docx", "lab6/oleander/lab"),)),
     Row("olive", "a PDF, and the worlds of another lab", extras=(("pdf", "Lab6"), ("webots", "Lab4"))),
