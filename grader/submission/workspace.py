@@ -42,7 +42,7 @@ class Surroundings:
     def _read(self, path: str) -> bytes:
         file = self.tree.files.get(path)
         if file is None and not self.tree.files:
-            raise NotDecided(f"the included file {path} was not submitted: this is a single file")
+            raise NotDecided(f"the included file {path} is not read with a single file: give the folder with both")
         if file is None:
             raise InputError(f"there is no file {path} in the submission")
         try:

@@ -16,7 +16,7 @@ from grader.xacro.scopes import Reported, Scope
 from grader.xacro.texts import Texts
 from grader.xacro.yaml_values import read_yaml_values
 
-_MAX_STEPS = 60_000
+_MAX_STEPS = 40_000
 _MAX_LISTED = 100
 STOPS = "xacro stops here, and ROS 2 gets no robot"
 

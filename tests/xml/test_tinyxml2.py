@@ -6,6 +6,7 @@ from hypothesis import strategies as st
 from lxml import etree
 
 from grader.robot.reader import read_urdf
+from grader.xml.catalogue import MISPLACED_DECLARATION
 from grader.xml.parsing import is_plain
 from grader.xml.tinyxml2.scanner import Scan, Scanner
 from tests.processor_time import processor_time
@@ -22,7 +23,10 @@ def decoded(raw: bytes) -> str:
 
 
 def assert_sound(scan: Scan, text: str) -> None:
-    """Assert that the XML parses and has the offset of the < of each element, or that there is a reason or no robot."""
+    """Assert that the XML parses and has the offset of the < of each element, or that there is a reason or no robot.
+
+    Of the defects that ROS 2 rejects, only a misplaced declaration leaves the elements around it readable.
+    """
     for found in scan.differences:
         assert 0 <= found.offset <= len(text)
         assert found.message
@@ -33,7 +37,8 @@ def assert_sound(scan: Scan, text: str) -> None:
     assert len(list(root.iter())) == len(scan.offsets)
     assert all(text[offset] == "<" for offset in scan.offsets)
     assert scan.offsets == sorted(scan.offsets)
-    assert not any(found.kind.effect == "rejects" for found in scan.differences)
+    fatal = {found.kind for found in scan.differences if found.kind.effect == "rejects"}
+    assert fatal <= {MISPLACED_DECLARATION}
 
 
 @settings(max_examples=2000, deadline=None)

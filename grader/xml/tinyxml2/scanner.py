@@ -149,7 +149,7 @@ class Scanner:
             return None
         if self._open_tags or not self._only_declarations:
             message = "an XML declaration must be at the very top of the file; ROS 2 rejects the file"
-            self._refuse(catalogue.MISPLACED_DECLARATION, message, position)
+            self._add(catalogue.MISPLACED_DECLARATION, message, position)  # the elements around it can be read
         elif position > 0 and not self._text.startswith("\ufeff<"):
             self._differ("declaration", "something before the XML declaration", position)
         elif not _DECLARATION.fullmatch(self._text, position + 2, end - 2):
