@@ -183,3 +183,16 @@ def test_the_assignment_is_an_option(tmp_path: Path) -> None:
     lay_out(tmp_path / "c", "submitted/ann/LAB 6/", "submitted/ann/Lab_6/")
     with pytest.raises(InputError, match="name the assignment"):
         read_class(tmp_path / "c")
+
+
+def test_a_students_own_repository_is_not_split(tmp_path: Path) -> None:
+    """A folder of a student on the roster stays whole, whatever is in it, unless the layout is named."""
+    files = ("hazel/Lab6/Ash/a.urdf", "hazel/Lab6/Birch/a.urdf", "oak/Lab6/Elm/a.urdf", "oak/Lab6/Fir/a.urdf")
+    top = lay_out(tmp_path, *files)
+    roster = Roster([RosterEntry(Student(name)) for name in ("hazel", "oak")])
+    intake = read_class(top, roster)
+    assert (intake.layout, assigned(intake)) == ("folders", {"hazel": ("hazel",), "oak": ("oak",)})
+    groups = {"hazel": "", "Elm": "oak", "Fir": "oak"}
+    some = Roster([RosterEntry(Student(name), group) for name, group in groups.items()])
+    expected = {"hazel": ("hazel",), "Elm": ("oak/Lab6/Elm",), "Fir": ("oak/Lab6/Fir",)}
+    assert assigned(read_class(top, some)) == expected

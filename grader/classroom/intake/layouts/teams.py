@@ -44,7 +44,8 @@ def find_labs(folder: ClassFolder) -> dict[str, str]:
             labs[folder.start + name] = ""
     if labs or (len(folder.children.folders) > _MAX_TEAMS and not folder.is_explicit):
         return labs
-    for team in sorted(folder.children.folders):
+    own = [name for name in folder.children.folders if not folder.is_explicit and _is_of_student(folder, name)]
+    for team in sorted(set(folder.children.folders).difference(own)):
         for name in sorted(folder.listing.children(folder.start + team, _MAX_NAMES).folders):
             lab = f"{folder.start}{team}/{name}"
             if names.is_lab(name) and _holds_students(folder, lab):
@@ -71,6 +72,11 @@ def find_submissions(folder: ClassFolder) -> Submissions:
         members = FolderSubmissions(ClassFolder(folder.listing, inner, f"{lab}/", folder.ignored))
         found += (_of_team(members.submission(index), team) for index in range(len(members)))
     return Submissions(found, contested=alone.contested)
+
+
+def _is_of_student(folder: ClassFolder, name: str) -> bool:
+    """Return whether a folder is one student's by the roster: then it is not split, whatever is in it."""
+    return folder.roster is not None and folder.roster.knows(name)
 
 
 def _of_team(submission: ClassSubmission, team: str) -> ClassSubmission:
