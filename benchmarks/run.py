@@ -26,7 +26,7 @@ from grader.report.as_json import render_json
 from grader.report.formats import Format
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import read_urdf
-from grader.submission.submission import open_submission, read_submission
+from grader.submission.opening import open_submission, read_submission
 from grader.submission.workspace import Surroundings
 from grader.xacro.expansion import expand
 

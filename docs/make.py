@@ -12,7 +12,7 @@ from grader.grading.grade import grade
 from grader.grading.rubric import load_rubric
 from grader.report.rubrics import EFFECTS, EVERY_KIND
 from grader.report.terminal import render_terminal
-from grader.submission.submission import open_submission
+from grader.submission.opening import open_submission
 
 DOCS = Path(__file__).resolve().parent
 SAMPLE = DOCS.parent / "submissions" / "lidar-offset-in-visual" / "my_robot.urdf"

@@ -8,7 +8,8 @@ from typing import Any
 from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.grading.rubric import Rubric, load_rubric
-from grader.submission.submission import Submission, open_submission
+from grader.submission.opening import open_submission
+from grader.submission.submission import Submission
 
 ROOT = Path(__file__).parent.parent
 LAB6 = load_rubric("lab6")

@@ -11,7 +11,7 @@ from lxml import etree
 from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.grading.rubric import load_rubric
-from grader.submission.submission import read_submission
+from grader.submission.opening import read_submission
 from tests.rewriting import BEHAVING, Element, Step, parse, rewritings, rewritten
 
 RUBRIC = load_rubric("lab6")

@@ -6,7 +6,7 @@ import pytest
 
 from grader.grading.grade import grade
 from grader.grading.rubric import load_rubric, shipped_rubrics
-from grader.submission.submission import open_submission
+from grader.submission.opening import open_submission
 from grader.submission.urdf import Read
 from tests.samples import LAB6, ROOT, SAMPLES
 

@@ -15,7 +15,8 @@ from grader.problems import Problem
 from grader.robot.kinematics import Configuration
 from grader.robot.shapes import UnknownShape
 from grader.source import LazyLocation, Location
-from grader.submission.submission import Submission, open_submission
+from grader.submission.opening import open_submission
+from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from grader.text import enumerated
 

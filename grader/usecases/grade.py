@@ -112,7 +112,7 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeResult:
     for kind in (request.format, *(kind for kind, _ in request.saves)):
         needed(kind)  # as well
     from grader.grading.grade import grade
-    from grader.submission.submission import open_submission
+    from grader.submission.opening import open_submission
 
     rubric = requested_rubric(request, warn)
     submission = open_submission(

@@ -22,7 +22,7 @@ from grader.grading.answers import load_with_answers
 from grader.grading.rubric import Rubric
 from grader.report.formats import Format, OutputFormat
 from grader.report.screen import Screen
-from grader.submission.submission import open_submission
+from grader.submission.opening import open_submission
 from grader.text import counted, first_lines, printable, printable_path
 from grader.usecases import Warn
 from grader.usecases.class_reports import write_reports

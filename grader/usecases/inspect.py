@@ -8,7 +8,7 @@ from grader.report.inspection import Inspection, main_root
 from grader.robot.frames import Position
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import Reading
-from grader.submission.submission import open_submission
+from grader.submission.opening import open_submission
 from grader.submission.urdf import Absent, Unreadable
 from grader.text import printable_path
 from grader.usecases import Warn

@@ -14,7 +14,7 @@ from grader.errors import MissingElement
 from grader.grading.grade import grade
 from grader.grading.rubric import Criterion, Part, Rubric
 from grader.source import Location
-from grader.submission.submission import read_submission
+from grader.submission.opening import read_submission
 from tests.checks.robots import PATH, Scene
 from tests.checks.submissions import Submitted
 

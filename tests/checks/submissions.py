@@ -11,7 +11,8 @@ from grader.errors import InputError
 from grader.files.tree import File, IgnoredFile, make_tree
 from grader.package.package import Package
 from grader.source import Location
-from grader.submission.submission import Submission, submission_of
+from grader.submission.opening import submission_of
+from grader.submission.submission import Submission
 
 FOLDER = "my_robot"
 MANIFEST = "my_robot/package.xml"

@@ -17,7 +17,7 @@ from grader.grading.report import Report
 from grader.grading.rubric import Carried, Criterion, Part, Rubric
 from grader.report.formats import Format
 from grader.robot.kinematics import Configuration
-from grader.submission.submission import read_submission
+from grader.submission.opening import read_submission
 from tests.checks.cases import BASE
 from tests.checks.outcomes import AnyCheck
 from tests.checks.robots import scene

@@ -23,7 +23,7 @@ from grader.robot.kinematics import Configuration
 from grader.robot.model import Mesh
 from grader.robot.reader import Reading
 from grader.robot.shapes import UnknownShape
-from grader.submission.submission import read_submission
+from grader.submission.opening import read_submission
 from tests.checks.cases import BASE, LIDAR, MOUNT, WHEEL, rolling
 from tests.checks.robots import PATH, Scene, joint, mesh, scene
 

@@ -3,7 +3,7 @@
 import pytest
 
 from grader.grading.grade import grade
-from grader.submission.submission import read_submission
+from grader.submission.opening import read_submission
 from tests.samples import LAB6, ROOT
 
 SAMPLES = ("lidar-buried", "right-wheel-mirrored", "wheel-joint-fixed", "wheels-rolling-sideways", "lidar-turning")

@@ -9,7 +9,7 @@ from grader.errors import InputError
 from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.grading.rubric import load_rubric
-from grader.submission.submission import read_submission
+from grader.submission.opening import read_submission
 from tests.checks.submissions import ANSWERS, LAUNCH, MANIFEST, REFERENCE, RVIZ, SETUP, URDF, WEBCAM, Submitted, png
 
 LAB = load_rubric("lab6")

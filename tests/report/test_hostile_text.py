@@ -20,7 +20,7 @@ from grader.grading.grade import grade
 from grader.grading.report import Report
 from grader.report.formats import Format, render
 from grader.report.locations import Base
-from grader.submission.submission import read_submission
+from grader.submission.opening import read_submission
 from tests.report.hostile import BREAKING, PIECES, SLOTS, TEXT, UNASKED, name_of, write_submission
 from tests.report.readers import reader
 from tests.report.rewording import recast

@@ -18,7 +18,7 @@ from grader.report.json_data import exact, rounded, to_json
 from grader.report.schemas import INSPECT_SCHEMA, REPORT_SCHEMA
 from grader.robot.kinematics import Configuration
 from grader.robot.reader import read_urdf
-from grader.submission.submission import read_submission
+from grader.submission.opening import read_submission
 from tests.robot.edge_cases import EDGE_CASES
 from tests.samples import SAMPLES
 

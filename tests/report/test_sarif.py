@@ -17,7 +17,7 @@ from grader.report.locations import Base
 from grader.report.sarif import render_sarif
 from grader.robot.catalogue import UNDEFINED_MATERIAL
 from grader.source import Location
-from grader.submission.submission import read_submission
+from grader.submission.opening import read_submission
 from tests.report.readers import read_sarif
 from tests.report.rewording import recast
 from tests.samples import LAB6, ROOT, SAMPLES

@@ -15,7 +15,7 @@ from grader.report.inspection import Inspection, inspection_terminal, main_root
 from grader.report.terminal import render_terminal
 from grader.robot.kinematics import Configuration
 from grader.source import Location, Source
-from grader.submission.submission import read_submission
+from grader.submission.opening import read_submission
 from grader.text import printable
 from tests.samples import SAMPLES
 

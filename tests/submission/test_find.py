@@ -9,10 +9,10 @@ from hypothesis import strategies as st
 from grader.errors import InputError
 from grader.files.tree import File, Tree, make_tree
 from grader.package.package import Package
+from grader.submission.opening import submission_of
 from grader.submission.packages import find_packages, read_packages
 from grader.submission.robots import find_robots
 from grader.submission.search import UrdfChoice, find_urdf
-from grader.submission.submission import submission_of
 from grader.submission.urdf import OtherCandidate
 from tests.processor_time import processor_time
 

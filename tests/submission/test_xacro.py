@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from grader.grading.grade import grade
-from grader.submission.submission import Submission, read_submission
+from grader.submission.opening import read_submission
+from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 from tests.samples import LAB6, opened
 

@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from functools import partial
 
 from grader.files.tree import File, make_tree
-from grader.submission.submission import Submission, submission_of
+from grader.submission.opening import submission_of
+from grader.submission.submission import Submission
 
 FOLDERS = ("Lab6",)
 ROBOT = b"<?xml version='1.0'?><robot name='my_robot'><link name='base_link'/></robot>"

@@ -16,8 +16,9 @@ from grader.files.reading import URDF_LIMIT, open_regular, read_capped, read_sta
 from grader.files.tree import Tree, make_tree
 from grader.grading.rubric import Rubric
 from grader.submission.labs import LabFolders
+from grader.submission.opening import read_submission, submission_of
 from grader.submission.robots import START, is_robot
-from grader.submission.submission import Submission, read_submission, submission_of
+from grader.submission.submission import Submission
 from grader.text import printable_path
 
 if TYPE_CHECKING:
