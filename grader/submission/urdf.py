@@ -105,8 +105,8 @@ def read_as_ros(data: bytes, path: str, around: "Surroundings | None" = None) ->
 
 
 def _says_xacro(name: str) -> bool:
-    """Return whether xacro in a file of this name, in lower case, is meant to be expanded."""
-    return not name.endswith(".urdf") if ".xacro" in name else ".urdf" not in name
+    """Return whether xacro in a file of this name, in lower case, is meant to be expanded; standard input is a URDF."""
+    return not name.endswith(".urdf") if ".xacro" in name else ".urdf" not in name and name != "-"
 
 
 def _model(reading: Reading) -> tuple[object, ...]:

@@ -73,7 +73,7 @@ def test_a_name_that_says_xacro_means_expansion() -> None:
     for name in ("a.urdf.xacro", "a.xacro", "urdf.Xacro file.txt", "urdf.xacro file.py", "a.urdf.xacro.txt"):
         assert state(single(MACRO, name)) == "expanded", name
     assert state(single(MACRO, "my_robot")) == state(single(MACRO, "robot.xml")) == "expanded"
-    for name in ("a.urdf", "A.URDF", "a.urdf.txt", "a.xacro.urdf"):
+    for name in ("a.urdf", "A.URDF", "a.urdf.txt", "a.xacro.urdf", "-"):
         assert state(single(PLAIN, name)) == "both", name
     assert state(single(REFERENCE, "a.xacro")) == "read"
 
