@@ -206,7 +206,7 @@ BROKEN = (
     Variant("tag-parent", 2, "", _EVERYTHING, (Edit(_LIDAR, "<parent link=", "<parent="),)),
     Variant("tag-origin", 2, "", _EVERYTHING, (Edit(_FOOTPRINT, "<origin xyz=", "<origin="),)),
     Variant("comma-between-attributes", 2, "", _EVERYTHING, (Edit("lidar", '"0.1" length', '"0.1", length'),)),
-    Variant("comment-before-declaration", 2, "", _EVERYTHING, ()),
+    Variant("comment-before-declaration", 2, "", "urdf-loads", ()),
     Variant("declaration-without-quotes", 1, "", _EVERYTHING, ()),
     Variant("truncated", 2, "", _EVERYTHING, ()),
     Variant("text-after-robot", 2, "", _EVERYTHING, ()),

@@ -19,7 +19,6 @@ KNOWN_DIFFERENCES = {
     "cdata-undefined": _CDATA,
     "cdata-and-text": _CDATA,
     "comment-evaluated-undefined": "the grader does not evaluate comments after xacro:eval-comments",
-    "processing-instruction": "xacro keeps it and ROS 2 rejects it; the grader leaves it out, like a comment",
     "prefix-attribute": "xacro refuses xmlns:b in a call of a macro, the grader ignores it",
 }
 """The documents on which the grader and xacro differ, and why that is accepted."""
