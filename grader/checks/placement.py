@@ -31,6 +31,7 @@ _ALONG = 0.9  # the least cosine of the angle between two vectors that count as 
 _UP: Vector = (0.0, 0.0, 1.0)
 _NOT_TURNED: Vector = (0.0, 0.0, 0.0)
 _ANY_ANGLE = 180.0  # degrees: no two orientations are farther apart
+_ANY_AXIS = 90.0  # degrees: no two lines are farther apart
 
 
 def frame_at(
@@ -49,7 +50,7 @@ def frame_at(
     """
     pose, at = robot.pose(link, relative_to=relative_to), origin_place(robot, link)
     placed = measured_point(f"the frame {link!r}", pose.translation, xyz, tolerance, relative_to, at=at)
-    return _turned(placed, _turn(pose, rpy), angle, at)
+    return _turned(placed, _turn(pose, rpy), angle, at) if angle < _ANY_ANGLE else placed
 
 
 def centre_at(
@@ -62,7 +63,7 @@ def centre_at(
     rigid: bool = False,
     shape: ShapeName = "any",
     axis: Direction = _UP,
-    angle: NonNegative = 90.0,
+    angle: NonNegative = _ANY_AXIS,
 ) -> Outcome:
     """The centre of a link's visual is at a point in another link's frame, in metres; if rigid, only fixed joints lie between.
 
@@ -79,6 +80,8 @@ def centre_at(
         return loose
     at = _moved_by(robot, link, visual, relative_to, minus(actual, xyz)) or place(visual.location)
     placed = measured_point(f"the centre of the visual of {link!r}", actual, xyz, tolerance, relative_to, at=at)
+    if angle >= _ANY_AXIS:
+        return placed
     cosine = abs(dot(pose.rotate(_UP), unit(axis) or axis))
     return _turned(placed, degrees(acos(min(1.0, cosine))), angle, at)
 
