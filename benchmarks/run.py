@@ -78,7 +78,7 @@ def whole_packages(runs: int = 15) -> None:
     module = [sys.executable, "-m", "grader"]
     submitted = {"the URDF alone": URDF, "package": PACKAGE, "workspace": WORKSPACE, "zip": ZIPPED}
     times = in_turn({name: process([*module, "grade", str(path)]) for name, path in submitted.items()}, runs)
-    table("Whole hand-ins as a whole process", times, "the URDF alone", "grade my_robot.urdf")
+    table("Whole submissions as a whole process", times, "the URDF alone", "grade my_robot.urdf")
 
 
 def all_formats(runs: int = 25) -> None:
@@ -107,7 +107,7 @@ def warm_packages(runs: int = 15) -> None:
 
     submitted = {"the URDF alone": URDF, "package": PACKAGE, "workspace": WORKSPACE, "zip": ZIPPED}
     times = in_turn({name: repeated(grading(path), 10) for name, path in submitted.items()}, runs)
-    table("Whole hand-ins, warm, from a path to the report", times, "the URDF alone", "grade my_robot.urdf")
+    table("Whole submissions, warm, from a path to the report", times, "the URDF alone", "grade my_robot.urdf")
 
 
 def warm_xacro(runs: int = 15) -> None:

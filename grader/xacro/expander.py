@@ -78,7 +78,7 @@ class Expander:
         return out
 
     def content(self, source: Node, out: Node, scopes: Scopes) -> None:
-        """Expand the children of an element into another. What is refused or cannot be determined is left out."""
+        """Expand the children of an element into another. Omit what is refused or cannot be determined."""
         out.open = out.open or source.open
         for child in source.children:
             place = child.place if isinstance(child, Node) else source.place
@@ -96,7 +96,7 @@ class Expander:
                 self.leave_open(out, error, place)
 
     def insert(self, source: Node, out: Node, scopes: Scopes) -> None:
-        """Expand the children of an element that itself is left out, such as <xacro:if>, with attributes set on it."""
+        """Expand the children of an element, but not the element itself, such as <xacro:if>; attributes set on it are lost."""
         inside = Node(source.tag, source.place)
         try:
             self.content(source, inside, scopes)

@@ -163,7 +163,7 @@ def test_a_robot_outside_of_the_folder_is_noted() -> None:
 
 
 def test_the_folder_confines_evidence_and_documents() -> None:
-    """A picture or answer of another lab is none of this lab; without a folder of the lab all others are left out."""
+    """A picture or answer of another lab is none of this lab; without a folder of the lab all others are ignored."""
     files = {name: PICTURE for name in ("Lab6/a.png", "Lab7/Task1_Step8.png", "b.png", "Lab7/answers.md", "Lab6/c.md")}
     found = submission({**files, "Lab6/my_robot.urdf": ROBOT})
     assert [proof.file.path for proof in found.proofs] == ["Lab6/a.png"]

@@ -69,7 +69,7 @@ def _difference_of_texts(expected: bytes, found: bytes) -> str | None:
 def tree(element: etree._Element) -> Tree:
     """Return an element as plain values: tag, attributes, and its elements with the text before, between and after them.
 
-    Comments and processing instructions are left out. White space counts as one space; in an attribute, as a space each, which
+    Comments and processing instructions are ignored. White space counts as one space; in an attribute, as a space each, which
     is what a parser reads of the line breaks that xacro writes.
     """
     content: list[Any] = [element.text or ""]

@@ -33,7 +33,7 @@ class Refused(NamedTuple):
 def expand(document: Document) -> Accepted | Refused:
     """Return what xacro makes of a document, in a folder that holds it and its files only.
 
-    The path of that folder is left out of the text: `$(find my_robot)/a.stl` becomes `/a.stl`.
+    The path of that folder is removed from the text: `$(find my_robot)/a.stl` becomes `/a.stl`.
     """
     with TemporaryDirectory() as name:
         folder = Path(name).resolve()
