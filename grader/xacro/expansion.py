@@ -18,7 +18,6 @@ from grader.xacro.tags import CALL, HANDLERS
 from grader.xml.parsing import Element, Unresolved, XmlDocument, XMLSyntaxError, make_element
 
 __all__ = ("Expansion", "Open", "Workspace", "expand")
-_MAX_ELEMENTS = 50_000
 
 
 class Expansion(NamedTuple):

@@ -39,7 +39,7 @@ class FileFails(ExpressionFails):
 
 
 class XmlFails(ExpressionFails):
-    """A file that is not well-formed XML, at `line` and `column`."""
+    """A file that is not well-formed XML."""
 
 
 class Files:

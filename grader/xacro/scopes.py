@@ -10,6 +10,9 @@ Evaluate = Callable[[str, "Scope"], Value]
 Report = Callable[[str, Place, str], None]
 
 
+BOOLEANS = {"true": True, "True": True, "false": False, "False": False}
+
+
 class Reported(ExpressionFails):
     """Something that xacro refuses, which is already listed as a problem."""
 
@@ -105,4 +108,4 @@ def literal(value: Value) -> Value:
             return kind(value)
         except ValueError:
             pass
-    return {"true": True, "True": True, "false": False, "False": False}.get(value, value)
+    return BOOLEANS.get(value, value)

@@ -10,7 +10,7 @@ from grader.xacro.expander import Expander, Handler, Scopes, TagFails
 from grader.xacro.files import FileFails
 from grader.xacro.macro_tags import call_dynamically, call_macro, define_macro, insert_block, needed, renamed
 from grader.xacro.nodes import Node
-from grader.xacro.scopes import Reported, Scope
+from grader.xacro.scopes import BOOLEANS, Reported, Scope
 from grader.xacro.texts import for_xml
 
 _NAME = re.compile(r"[^\W\d][\w.-]*(?::[^\W\d][\w.-]*)?")
@@ -21,9 +21,7 @@ def _boolean(value: Value, text: str) -> bool:
     if not isinstance(value, str):
         return bool(value)
     try:
-        return {"true": True, "True": True, "false": False, "False": False}.get(value) or (
-            value not in ("false", "False") and bool(int(value))
-        )
+        return BOOLEANS[value] if value in BOOLEANS else bool(int(value))
     except ValueError:
         raise TagFails(f'the condition "{text}" gives "{value}", which is neither true nor false') from None
 
