@@ -26,6 +26,21 @@ class Location:
     calls: "tuple[tuple[str, Location], ...]" = ()
 
 
+class Edit(NamedTuple):
+    """A change of the text of one file: `old`, which stands at a place, becomes `new`, and nothing else changes.
+
+    Line and column count from 1, as in a Location. A file that does not exist is created with the text `new`. With `renamed`, the
+    file gets this path instead.
+    """
+
+    path: str
+    line: int
+    column: int
+    old: str
+    new: str
+    renamed: str = ""
+
+
 class Source:
     """The text of one file, in which locations are computed on demand: most never are."""
 

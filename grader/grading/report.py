@@ -1,6 +1,6 @@
 """The report: the outcome and the points of every criterion. Renderers only lay it out."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from decimal import Decimal
 from typing import TYPE_CHECKING, NamedTuple
@@ -10,7 +10,7 @@ from grader.checks.outcome import Outcome
 from grader.grading.rubric import Criterion, Evidence, Rubric
 from grader.problems import Problem
 from grader.robot.reader import Verdict
-from grader.source import Source
+from grader.source import Edit, Location, Source
 from grader.submission.submission import Submission
 from grader.submission.urdf import OtherCandidate
 
@@ -30,10 +30,25 @@ class ManualMark(NamedTuple):
     comment: str = ""
 
 
+class Hint(NamedTuple):
+    """A change of the submission that was tried: with it the criteria in `gains` pass, and nothing that passed fails.
+
+    `message` says it in a sentence, and `at` is where it is. `edits` is empty where the rubric does not want to show them. `action`
+    is the change without names and lines of the submission: "negate the roll of the joint of 'right_wheel'".
+    """
+
+    message: str
+    at: Location
+    gains: Mapping[str, Decimal]  # criteria with their points
+    edits: tuple[Edit, ...] = ()
+    action: str = ""
+
+
 class Result(NamedTuple):
     """The outcome of a criterion. `because` is the criterion that a skip is due to; `traceback` is for the maintainers.
 
-    `carried` is the criterion whose mistake alone makes this one fail, empty if there is none: its points are given.
+    `carried` is the criterion whose mistake alone makes this one fail, empty if there is none: its points are given. Criteria that
+    one edit makes pass have the same hint.
     """
 
     criterion: Criterion
@@ -42,6 +57,7 @@ class Result(NamedTuple):
     traceback: str = ""
     manual_mark: ManualMark | None = None
     carried: str = ""
+    hints: tuple[Hint, ...] = ()
 
     @property
     def points(self) -> Decimal:

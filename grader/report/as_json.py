@@ -3,8 +3,8 @@
 from dataclasses import asdict
 from typing import Any
 
-from grader.grading.report import Report, Result
-from grader.report.json_data import exact, location, problem, rounded, to_json
+from grader.grading.report import Hint, Report, Result
+from grader.report.json_data import edit, exact, location, problem, rounded, to_json
 
 
 def render_json(report: Report) -> str:
@@ -67,6 +67,11 @@ def _result(result: Result) -> dict[str, Any]:
         "carried": result.carried or None,
         "location": location(outcome.location),
         "feedback": criterion.feedback if outcome.status == "failed" and not result.carried else "",
-        "hints": [],
+        "hints": list(map(_hint, result.hints)),
         **({"mark": mark} if mark else {}),
     }
+
+
+def _hint(hint: Hint) -> dict[str, Any]:
+    gains = {name: exact(points) for name, points in hint.gains.items()}
+    return {"message": hint.message, "edits": list(map(edit, hint.edits)), "gains": gains, "verified": True}

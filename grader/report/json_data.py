@@ -7,7 +7,7 @@ from decimal import Decimal
 from typing import Any
 
 from grader.problems import Problem
-from grader.source import Location
+from grader.source import Edit, Location
 
 _ENCODER = json.JSONEncoder(ensure_ascii=False, allow_nan=False)
 _UNPRINTABLE = re.compile(r"[^\n -~]")  # or any other character that is not ASCII
@@ -73,3 +73,9 @@ def problem(found: Problem) -> dict[str, Any]:
     """Return a problem as plain data."""
     words = {"code": found.code, "severity": found.severity, "message": found.message}
     return {**words, "location": location(found.location)}
+
+
+def edit(change: Edit) -> dict[str, Any]:
+    """Return an edit as plain data; only the name of a file that is renamed has the key `renamed`."""
+    data = change._asdict()
+    return data if change.renamed else {key: value for key, value in data.items() if key != "renamed"}

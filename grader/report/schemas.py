@@ -50,6 +50,8 @@ _PROBLEM = _object(
     }
 )
 _VALUE: dict[str, Any] = {"type": ["null", "boolean", "number", "string", "array", "object"]}
+_EDIT = _object({**_PLACE, **_all(_TEXT, "old new renamed")}, ("renamed",))
+_GAINS: dict[str, Any] = {"type": "object", "additionalProperties": _POINTS}
 _RESULT = _object(
     {
         **_all(_TEXT, "id part title message feedback"),
@@ -59,7 +61,7 @@ _RESULT = _object(
         "status": {"enum": ["passed", "failed", "skipped", "pending", "errored"]},
         "tolerance": _nullable(_POINTS),
         "location": _nullable(_LOCATION),
-        "hints": _array(_object({"message": _TEXT, "edit": {"type": "object"}, "verified": _FLAG})),
+        "hints": _array(_object({"message": _TEXT, "edits": _array(_EDIT), "gains": _GAINS, "verified": _FLAG})),
         "mark": _object({"points": _POINTS, **_all(_TEXT, "by comment")}),
     },
     optional=("mark",),
