@@ -1,4 +1,4 @@
-"""Locations in the text of a file: line and column of a tag or of one of its attributes."""
+"""Locations in the text of a file, line and column of a tag or of one of its attributes."""
 
 import re
 from bisect import bisect_right
@@ -7,10 +7,10 @@ from functools import cached_property
 from itertools import accumulate
 from typing import NamedTuple
 
+from grader import markup
+
 # In text that an XML parser has accepted, `<` and a name outside comments and CDATA opens a tag.
 _START_TAG = re.compile(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<(?![/!?])", re.DOTALL)
-_TAG_NAME = re.compile(r"<\s*[^\s=/>]*")
-_ATTRIBUTE = re.compile(r"""\s*([^\s=/>"']+)\s*=\s*(?:"[^"]*"|'[^']*')""")
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,13 +82,30 @@ class Source:
         return lines[number - 1].rstrip("\r").removeprefix("\ufeff") if 0 < number <= len(lines) else ""
 
     def _attribute(self, start: int, name: str) -> int:
-        name_end = _TAG_NAME.match(self.text, start)
-        position = name_end.end() if name_end else start
-        while found := _ATTRIBUTE.match(self.text, position):
-            if found[1] == name:
-                return found.start(1)
-            position = found.end()
-        return start
+        found = markup.attribute(self.text, start, name)
+        return found.start if found is not None else start
+
+    def offset(self, line: int, column: int) -> int:
+        """Return the character offset of a line and column, the inverse of `at`."""
+        start = self._lines[line - 1] if 0 < line <= len(self._lines) else len(self.text)
+        return start + column - 1 + (line == 1 and self.text.startswith("\ufeff"))
+
+    def edit(self, start: int, end: int, new: str) -> Edit:
+        """Return the edit that replaces the text between two offsets."""
+        place = self.at(start)
+        return Edit(place.path, place.line, place.column, self.text[start:end], new)
+
+    def element(self, tag: int) -> "tuple[Source, int]":
+        """Return the text that the element with this index was written in, and the offset of its start tag."""
+        return self, self._tags[tag]
+
+    def rewrites(self, tag: int, name: str, attribute: str, old: str, new: str) -> "list[tuple[Edit, ...]] | None":
+        """Return the ways to give an attribute of an expanded element another value; None where its text is what is read.
+
+        `name` is the tag, and `old` and `new` are the values that the reader sees.
+        """
+        del tag, name, attribute, old, new
+        return None
 
 
 class LazyLocation(NamedTuple):

@@ -10,8 +10,9 @@ import pytest
 
 ROOT = Path(__file__).parent.parent / "grader"
 LAYERS = (
-    ("errors", "source", "text"),
-    ("names", "problems"),
+    ("errors", "markup", "text"),
+    ("source", "names"),
+    ("problems", "edits"),
     ("files", "static_python", "xml"),
     ("xacro", "robot", "documents", "package"),
     ("submission",),

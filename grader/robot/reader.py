@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from grader.problems import Problem
@@ -26,12 +26,16 @@ _XACRO = re.compile(r"<xacro:|\$\{|\$\(")
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """ROS 2's verdict on a URDF. `robot` is as much as could be read, also of a rejected file; None if nothing could."""
+    """ROS 2's verdict on a URDF. `robot` is as much as could be read, also of a rejected file; None if nothing could.
+
+    `root` is the element that it was read from, None where the text is not XML.
+    """
 
     verdict: Verdict
     robot: Robot | None
     problems: tuple[Problem, ...]
     source: Source
+    root: Element | None = field(default=None, compare=False, repr=False)
 
     @property
     def is_decided(self) -> bool:
@@ -79,7 +83,7 @@ def read_robot(document: XmlDocument) -> Reading:
     listed.sort(key=lambda problem: (problem.location.line, problem.location.column, problem.code))
     if robot is not None and verdict == "rejected":
         robot = replace(robot, rejected=True, incomplete=_incomplete(document, robot))
-    return Reading(verdict, robot, tuple(listed), source)
+    return Reading(verdict, robot, tuple(listed), source, root)
 
 
 def _read_robot(root: Element, problems: Problems) -> Robot:

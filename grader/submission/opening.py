@@ -29,7 +29,7 @@ def read_submission(
         return Submission(identity, read_as_ros(data, path))
     from grader.submission.workspace import Surroundings  # late: most URDFs are no xacro
 
-    return Submission(identity, read_as_ros(data, path, Surroundings(arguments=arguments)))
+    return Submission(identity, read_as_ros(data, path, Surroundings(arguments=arguments)), arguments=arguments)
 
 
 def open_submission(
@@ -123,4 +123,16 @@ def submission_of(
         chosen.notes,
         is_single=False,
         no_documents=no_documents,
+        arguments=arguments,
+        reopen=partial(
+            submission_of,
+            identity=identity,
+            wanted=wanted,
+            package=package,
+            folders=folders,
+            limit=limit,
+            shown=shown,
+            no_documents=no_documents,
+            arguments=arguments,
+        ),
     )

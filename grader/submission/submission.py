@@ -1,5 +1,8 @@
 """A submission: its files, and which URDF and which package of it are graded."""
 
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -40,21 +43,23 @@ class Submission:
     notes: tuple[str, ...] = ()
     is_single: bool = True  # whether it is a URDF on its own, not a folder or archive
     no_documents: str = ""  # why no document is read, where grading ran out of memory with them
+    arguments: Mapping[str, str] = field(default_factory=dict)  # of xacro
+    reopen: Callable[[Tree], Submission] | None = field(default=None, repr=False)  # opens other files in the same way
 
     @cached_property
-    def documents(self) -> "DocumentCollection":
+    def documents(self) -> DocumentCollection:
         """The documents in it, each of which is read once."""
         from grader.documents.collection import DocumentCollection  # a URDF on its own has none
 
         return DocumentCollection(self.tree)
 
     @property
-    def readable_documents(self) -> "DocumentCollection | None":
+    def readable_documents(self) -> DocumentCollection | None:
         """The documents in it; None where they must not be read."""
         return None if self.no_documents else self.documents
 
     @cached_property
-    def proofs(self) -> "tuple[Proof, ...]":
+    def proofs(self) -> tuple[Proof, ...]:
         """The pictures, films and PDF files in it."""
         from grader.documents.evidence import read_proofs
 

@@ -1,0 +1,179 @@
+"""Edits of the text of a file: made for its elements, put together, and applied."""
+
+import re
+from collections.abc import Iterable, Iterator
+from typing import NamedTuple
+
+from grader import markup
+from grader.source import Edit, Source
+
+_SAME = 1e-5  # numbers that differ by less are the same
+_PIECE = re.compile(r"(\s*)(\S+)")
+
+
+class Proposal(NamedTuple):
+    """An edit that may undo a mistake: what is wrong, as a noun ("the sign of the roll"), and what to do ("negate the roll").
+
+    `of` is whose it is, without names that a student chose: "the joint of 'right_wheel'". `link` is the link that is moved or changed.
+    """
+
+    edits: tuple[Edit, ...]
+    cause: str
+    action: str
+    of: str = ""
+    link: str = ""
+    is_blind: bool = False  # tried without an expected value
+    is_rewrite: bool = False  # takes whole elements of the reference: for want of anything smaller
+
+    @property
+    def size(self) -> int:
+        """How much text changes: the number of edits counts more than their length."""
+        return sum(100 + len(edit.old) + len(edit.new) for edit in self.edits)
+
+    @property
+    def said(self) -> str:
+        """The change in words: "negate the roll of the joint of 'right_wheel'"."""
+        return f"{self.action} of {self.of}" if self.of else self.action
+
+
+def text_of(source: Source, start: int) -> str:
+    """Return the text of the element at an offset."""
+    return source.text[start : markup.element_end(source.text, start)]
+
+
+def with_attribute(source: Source, start: int, attribute: str, value: str) -> Edit:
+    """Return the edit that sets an attribute of the start tag at an offset, or adds it."""
+    found = markup.attribute(source.text, start, attribute)
+    if found is None:
+        end = markup.name_end(source.text, start)
+        return source.edit(start, end, f'{source.text[start:end]} {attribute}="{value}"')
+    head, tail = source.text[found.start : found.value_start], source.text[found.value_end : found.end]
+    return source.edit(found.start, found.end, f"{head}{value}{tail}")
+
+
+def with_child(source: Source, start: int, xml: str) -> Edit:
+    """Return the edit that inserts an element as the first child of the one at an offset."""
+    text, newline = source.text, "\r\n" if "\r\n" in source.text else "\n"
+    end, is_empty = markup.head_end(text, start)
+    indent = markup.child_indentation(text, start)
+    child = f"{newline}{indent}{markup.indented(xml, indent, newline)}"
+    if not is_empty:
+        return source.edit(end, end, child)
+    slash = text.rfind("/", start, end)
+    name = text[start + 1 : markup.name_end(text, start)].strip()
+    closing = f"{newline}{markup.indentation(text, start)}</{name}>"
+    return source.edit(start, end, f"{text[start:slash].rstrip()}>{child}{closing}")
+
+
+def with_sibling(source: Source, start: int, xml: str) -> Edit:
+    """Return the edit that inserts an element after the one at an offset."""
+    newline, indent = "\r\n" if "\r\n" in source.text else "\n", markup.indentation(source.text, start)
+    end = markup.element_end(source.text, start)
+    return source.edit(end, end, f"{newline}{indent}{markup.indented(xml, indent, newline)}")
+
+
+def without_element(source: Source, start: int) -> Edit:
+    """Return the edit that removes the element at an offset, with its line where nothing else is on it."""
+    end = markup.element_end(source.text, start)
+    indent = markup.indentation(source.text, start)
+    line = start - len(indent)
+    is_alone = source.text[end : end + 2].startswith(("\n", "\r\n")) and (line == 0 or source.text[line - 1] == "\n")
+    return source.edit(line, source.text.find("\n", end) + 1, "") if is_alone else source.edit(start, end, "")
+
+
+def with_element(source: Source, start: int, xml: str) -> Edit:
+    """Return the edit that replaces the element at an offset by another one."""
+    newline = "\r\n" if "\r\n" in source.text else "\n"
+    indent = markup.indentation(source.text, start)
+    return source.edit(start, markup.element_end(source.text, start), markup.indented(xml, indent, newline))
+
+
+def merged(old: str, new: str) -> str:
+    """Return a new list of numbers with those that stay, and the space between all, as the old text writes them."""
+    before, after = _PIECE.findall(old), new.split()
+    if len(before) != len(after):
+        return new
+    return "".join(space + _merged(piece, other) for (space, piece), other in zip(before, after, strict=True))
+
+
+def _merged(old: str, new: str) -> str:
+    """Return the new number, written as the old one where it is the same or only its sign changes."""
+    try:
+        before, after = float(old), float(new)
+    except ValueError:
+        return new
+    if abs(before - after) < _SAME:
+        return old
+    if abs(before + after) < _SAME:
+        return old.lstrip("-") if before < 0 else f"-{old.lstrip('+')}"
+    return new
+
+
+def edited(text: str, path: str, edits: Iterable[Edit]) -> str | None:
+    """Return the text of a file after edits; None if they overlap, or if the text is not what they replace."""
+    source = Source(path, text)
+    pieces: list[str] = []
+    position = 0
+    for start, edit in _placed(source, edits):
+        if start < position or not text.startswith(edit.old, start):
+            return None
+        pieces += (text[position:start], edit.new)
+        position = start + len(edit.old)
+    return "".join((*pieces, text[position:]))
+
+
+def composed(text: str, path: str, first: Iterable[Edit], second: Iterable[Edit]) -> tuple[Edit, ...]:
+    """Return the edits of a text that do what `first` does, and then `second`, whose places are in the text after `first`.
+
+    An edit that touches an earlier one becomes one edit with it.
+    """
+    before = Source(path, text)
+    spans = [_Span(start, start + len(edit.old), edit.new) for start, edit in _placed(before, first)]
+    after = Source(path, "".join(_pieces(text, spans)))
+    for start, edit in reversed(_placed(after, second)):
+        spans = _with_span(text, spans, start, start + len(edit.old), edit.new)
+    return tuple(before.edit(*span) for span in spans)
+
+
+class _Span(NamedTuple):
+    start: int
+    end: int
+    new: str
+
+
+def _placed(source: Source, edits: Iterable[Edit]) -> list[tuple[int, Edit]]:
+    return sorted(((source.offset(edit.line, edit.column), edit) for edit in edits), key=lambda pair: pair[0])
+
+
+def _pieces(text: str, spans: list[_Span]) -> Iterator[str]:
+    position = 0
+    for span in spans:
+        yield text[position : span.start]
+        yield span.new
+        position = span.end
+    yield text[position:]
+
+
+def _with_span(text: str, spans: list[_Span], start: int, end: int, new: str) -> list[_Span]:
+    """Return the spans with another one, whose offsets are in the text after them."""
+    kept: list[_Span] = []
+    touched: list[tuple[int, _Span]] = []  # each with the offset of its new text
+    shift = before = 0  # how much longer the text is up to here, and up to the new span
+    for span in spans:
+        at = span.start + shift
+        if at <= end and at + len(span.new) >= start:
+            touched.append((at, span))
+        else:
+            kept.append(span)
+        shift += len(span.new) - (span.end - span.start)
+        if at + len(span.new) < start:
+            before = shift
+    if not touched:
+        return sorted([*kept, _Span(start - before, end - before, new)])
+    (first_at, first), (last_at, last) = touched[0], touched[-1]
+    low, high = min(start, first_at), max(end, last_at + len(last.new))
+    span_start = first.start - (first_at - low)
+    span_end = last.end + high - (last_at + len(last.new))
+    inner = [_Span(span.start - span_start, span.end - span_start, span.new) for _, span in touched]
+    whole = "".join(_pieces(text[span_start:span_end], inner))
+    return sorted([*kept, _Span(span_start, span_end, whole[: start - low] + new + whole[end - low :])])

@@ -1,0 +1,96 @@
+"""The extent of tags, attributes and elements in the text of a markup file, for edits that change nothing else.
+
+The text need not be well-formed XML: what a lenient parser reads can be edited, too.
+"""
+
+import re
+from collections.abc import Iterator
+from typing import NamedTuple
+
+_HEAD = re.compile(r"""<\s*([^\s=/>"'<]*)((?:"[^"]*"|'[^']*'|[^>"'<])*)(/?)>""")
+_TAG_NAME = re.compile(r"<\s*[^\s=/>]*")
+_ATTRIBUTE = re.compile(r"""\s*([^\s=/>"']+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
+_TOKEN = re.compile(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|<!|</[^>]*>|<", re.DOTALL)
+_STEP = "   "  # of indentation, where the file shows none
+
+
+class Attribute(NamedTuple):
+    """An attribute of a start tag, such as xyz="0 0 1": the offsets of its name, its value and its end."""
+
+    name: str
+    start: int
+    value_start: int
+    value_end: int
+    end: int
+
+
+def attributes(text: str, start: int) -> Iterator[Attribute]:
+    """Yield the attributes of the start tag at an offset."""
+    name = _TAG_NAME.match(text, start)
+    position = name.end() if name else start
+    while found := _ATTRIBUTE.match(text, position):
+        group = 2 if found[2] is not None else 3
+        yield Attribute(found[1], found.start(1), found.start(group), found.end(group), found.end())
+        position = found.end()
+
+
+def attribute(text: str, start: int, name: str) -> Attribute | None:
+    """Return the attribute of this name of the start tag at an offset."""
+    return next((found for found in attributes(text, start) if found.name == name), None)
+
+
+def name_end(text: str, start: int) -> int:
+    """Return the offset after the name of the start tag at an offset."""
+    found = _TAG_NAME.match(text, start)
+    return found.end() if found else start
+
+
+def head_end(text: str, start: int) -> tuple[int, bool]:
+    """Return the offset after the start tag at an offset, and whether it is an empty element (<a/>)."""
+    found = _HEAD.match(text, start)
+    if found is None:
+        end = text.find(">", start)
+        return (end + 1 if end >= 0 else len(text)), text[end - 1 : end] == "/"
+    return found.end(), found[3] == "/" or found[2].endswith("/")
+
+
+def element_end(text: str, start: int) -> int:
+    """Return the offset after the end tag of the element at an offset; the end of the text where that is missing."""
+    position, is_empty = head_end(text, start)
+    depth = 0 if is_empty else 1
+    while depth:
+        token = _TOKEN.search(text, position)
+        if token is None:
+            return len(text)
+        position = token.end()
+        if token[0].startswith("</"):
+            depth -= 1
+        elif token[0] == "<":
+            position, is_empty = head_end(text, token.start())
+            depth += not is_empty
+    return position
+
+
+def indentation(text: str, start: int) -> str:
+    """Return the blank text between the start of a line and an offset; empty if there is something else."""
+    line = text[text.rfind("\n", 0, start) + 1 : start]
+    return line if line.isspace() else ""
+
+
+def indented(xml: str, indent: str, newline: str) -> str:
+    """Return the text of an element with its lines moved to an indentation; the first line has none."""
+    lines = xml.replace("\r", "").split("\n")
+    margin = min((len(line) - len(line.lstrip()) for line in lines[1:] if line.strip()), default=0)
+    return f"{newline}{indent}".join([lines[0], *(line[margin:] for line in lines[1:] if line.strip())])
+
+
+def child_indentation(text: str, start: int) -> str:
+    """Return the indentation of the children of the element at an offset: that of its first child, else one step more."""
+    own = indentation(text, start)
+    end, is_empty = head_end(text, start)
+    token = None if is_empty else _TOKEN.search(text, end)
+    if token is not None and not token[0].startswith("</"):
+        found = indentation(text, token.start())
+        if len(found) > len(own):
+            return found
+    return own + ("\t" if own.startswith("\t") else _STEP)

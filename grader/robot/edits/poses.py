@@ -1,0 +1,100 @@
+"""The origins and axes that put a link where the reference has it, whatever frames the robot uses."""
+
+from collections.abc import Iterator, Sequence
+
+from grader.errors import MissingElement, NotDecided
+from grader.robot.edits.families import Values
+from grader.robot.frames import placed_by
+from grader.robot.kinematics import Configuration
+from grader.robot.model import Box, Cylinder, Robot, Sphere, Visual
+from grader.robot.transforms import Transform, minus, rotation_from_rpy
+
+
+class Poses:
+    """A robot and the reference, each with its joints at 0; `anchors` are links in whose frames the lab measures."""
+
+    def __init__(self, robot: Robot, reference: Robot, anchors: Sequence[str]) -> None:
+        self.robot, self.reference = Configuration(robot), Configuration(reference)
+        self._anchors = anchors
+
+    def joint(self, link: str, tag: str, attribute: str) -> Iterator[Values]:
+        """Yield the values of a joint's origin or axis with which the link's frame, or what it shows, is right."""
+        joint = self.robot.parent_joints.get(link)
+        if joint is None or joint.origin is None:
+            return
+        if tag == "axis":
+            yield from self._axis(link)
+            return
+        for frame in self._frames(link, joint.parent):
+            yield frame.translation if attribute == "xyz" else frame.rpy
+        if attribute == "xyz":
+            for centre in self._centres(link, joint.parent):
+                for visual in self._visuals(link)[:1]:
+                    offset = Transform(rotation_from_rpy(joint.origin.rpy)).rotate(visual.origin.xyz)
+                    yield minus(centre.translation, offset)
+
+    def visual(self, link: str, index: int, attribute: str) -> Iterator[Values]:
+        """Yield the values of a visual's origin with which it is where the reference shows it."""
+        if index < len(self._visuals(link)):
+            for pose in self._centres(link, link):
+                yield pose.translation if attribute == "xyz" else pose.rpy
+
+    def shown_offset(self, link: str) -> Values:
+        """Return the position of the reference's visual of a link in its frame."""
+        shown = self.reference.robot.link(link).visuals if self.reference.robot.has_link(link) else ()
+        return shown[0].origin.xyz if shown else (0.0, 0.0, 0.0)
+
+    def _frames(self, link: str, parent: str) -> Iterator[Transform]:
+        """Yield T_parent_link as the reference has it."""
+        for anchor in (parent, *self._anchors):
+            wanted, own = _pose(self.reference, link, anchor), _pose(self.robot, parent, anchor)
+            if wanted is not None and own is not None and anchor != link:
+                yield own.inverse() @ wanted
+                return
+
+    def _centres(self, link: str, frame: str) -> Iterator[Transform]:
+        """Yield the pose of the reference's visual of a link in a frame of the robot."""
+        shown = self.reference.robot.link(link).visuals if self.reference.robot.has_link(link) else ()
+        for anchor in self._anchors:
+            wanted, own = _pose(self.reference, link, anchor), _pose(self.robot, frame, anchor)
+            if shown and wanted is not None and own is not None and (anchor != link or frame == link):
+                yield own.inverse() @ placed_by(wanted, shown[0].origin)
+                return
+
+    def _axis(self, link: str) -> Iterator[Values]:
+        """Yield the axis with which the link turns in the reference's direction."""
+        other = self.reference.parent_joints.get(link)
+        for anchor in self._anchors:
+            wanted, own = _pose(self.reference, link, anchor), _pose(self.robot, link, anchor)
+            if other is not None and other.axis is not None and wanted is not None and own is not None:
+                direction = own.unrotate(wanted.rotate(other.axis))
+                yield tuple(round(value, 2) + 0.0 for value in direction)
+                return
+
+    def _visuals(self, link: str) -> tuple[Visual, ...]:
+        return self.robot.robot.link(link).visuals if self.robot.robot.has_link(link) else ()
+
+
+def _pose(robot: Configuration, link: str, relative_to: str) -> Transform | None:
+    try:
+        return robot.pose(link, relative_to=relative_to)
+    except (MissingElement, NotDecided):
+        return None
+
+
+def shapes_of(robot: Robot, link: str) -> Iterator[tuple[float, str]]:
+    """Yield half the lengths of what a link and its parent show, with their names."""
+    parents = [joint.parent for joint in robot.joints if joint.child == link]
+    for name in (link, *parents[:1]):
+        for visual in robot.link(name).visuals[:1] if robot.has_link(name) else ():
+            match visual.geometry:
+                case Box(size=size):
+                    for length, word in zip(size, ("length", "width", "height"), strict=True):
+                        yield length / 2, f"the {word} of the box of {name!r}"
+                case Cylinder(radius=radius, length=length):
+                    yield length / 2, f"the length of the cylinder of {name!r}"
+                    yield radius, f"the diameter of the cylinder of {name!r}"
+                case Sphere(radius=radius):
+                    yield radius, f"the diameter of the sphere of {name!r}"
+                case _:
+                    pass

@@ -1,0 +1,248 @@
+"""Edits of the links, joints and materials of a robot themselves: names, types, ends, and what is missing or too much."""
+
+from collections.abc import Iterator
+from itertools import islice
+
+from grader.edits import Proposal
+from grader.names import closest
+from grader.robot.edits.draft import Draft, Edits, child_of, end_of
+from grader.robot.model import Material
+from grader.xml.parsing import Element
+
+_MAX_NAMES = 4  # links or materials that may be meant
+
+
+def structure_proposals(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
+    """Yield edits that give a link, its joint and what it shows the structure that the reference has."""
+    if draft.link(link) is None:
+        yield from missing_link(draft, reference, link)
+    else:
+        yield from duplicates(draft, link)
+        yield from shape(draft, reference, link)
+        yield from material(draft, reference, link)
+    if draft.link(link) is not None or draft.joint_of(link) is not None:
+        yield from joint(draft, reference, link)
+
+
+def missing_link(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
+    """Rename a link whose name is misspelt, else restore it: a forgotten link, base instead of base_link."""
+    others = [other.get("name") or "" for other in draft.links()]
+    unknown = [name for name in others if reference.link(name) is None]
+    near = closest(link, unknown)
+    for name in islice(dict.fromkeys([*([near] if near else []), *unknown]), _MAX_NAMES):
+        of = f"the link that should be {link!r}"
+        yield Proposal(renamed(draft, name, link), "the name", "correct the name", of, link)
+        own = draft.link(name)
+        if own is not None and any(end_of(found, role) == link for found in draft.joints() for role in _ENDS):
+            yield from (
+                Proposal(edits, "the name", "correct the name", of, link) for edits in draft.set(own, "name", link)
+            )
+    missing = reference.link(link)
+    if missing is not None:
+        text, other = reference.text(missing), reference.joint_of(link)
+        if draft.joint_of(link) is None and other is not None:
+            text += f"\n\n{reference.text(other)}"
+        yield Proposal(draft.append(text), f"the link {link!r}, which is missing", f"add the link {link!r}", "", link)
+
+
+_ENDS = ("parent", "child")
+
+
+def renamed(draft: Draft, old: str, new: str) -> Edits:
+    """Return the edit that gives a link another name, also where joints name it."""
+    own = draft.link(old)
+    edits = draft.set(own, "name", new)[0] if own is not None else ()
+    for found in draft.joints():
+        for role in _ENDS:
+            end = child_of(found, role)
+            if end is not None and end.get("link") == old:
+                edits += draft.set(end, "link", new)[0]
+    return edits
+
+
+def duplicates(draft: Draft, link: str) -> Iterator[Proposal]:
+    """Remove a second link of the same name, or one of two parent joints: pasted twice."""
+    same = [other for other in draft.links() if other.get("name") == link]
+    joints = [found for found in draft.joints() if end_of(found, "child") == link]
+    names = [found.get("name") for found in joints]
+    for found in reversed(same) if len(same) > 1 else ():
+        yield Proposal(draft.remove(found), "the second link of this name", "remove one", f"the links {link!r}", link)
+    for found in reversed(joints) if len(joints) > 1 else ():
+        cause = "the second joint of this name" if names.count(found.get("name")) > 1 else "the second parent joint"
+        yield Proposal(draft.remove(found), cause, "remove one", f"the joints of {link!r}", link)
+
+
+def joint(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
+    """Connect a loose link; correct the type, the ends and the name of a joint: fixed wheels, exchanged parent and child."""
+    own, other, of = draft.joint_of(link), reference.joint_of(link), f"the joint of {link!r}"
+    if own is None:
+        yield from loose(draft, reference, link)
+        return
+    parent, child = end_of(own, "parent"), end_of(own, "child")
+    if parent and child:
+        ends = [child_of(own, role) for role in _ENDS]
+        edits = [
+            draft.set(end, "link", name)[0] for end, name in zip(ends, (child, parent), strict=True) if end is not None
+        ]
+        yield Proposal(sum(edits, ()), "parent and child, which are exchanged", "exchange parent and child", of, link)
+    if other is None:
+        if own.get("type") != "fixed":
+            yield from (
+                Proposal(edits, "the type", "make the type fixed", of, link)
+                for edits in draft.set(own, "type", "fixed")
+            )
+        return
+    for name, verb in (("type", "set the type"), ("name", "correct the name")):
+        value = other.get(name) or ""
+        if own.get(name) != value:
+            action = f"{verb} to {value}" if name == "type" else verb
+            yield from (Proposal(edits, f"the {name}", action, of, link) for edits in draft.set(own, name, value))
+    for role in _ENDS:
+        yield from joint_end(draft, own, role, end_of(other, role), link)
+    for tag in ("origin", "axis", "limit", "mimic", "dynamics"):
+        yield from inner(draft, reference, own, other, tag, of, link)
+
+
+def joint_end(draft: Draft, own: Element, role: str, wanted: str, link: str) -> Iterator[Proposal]:
+    """Name the right link as a joint's parent or child: a misspelt name, a wheel on the lidar, a joint without child."""
+    of, end = f"the joint of {link!r}", child_of(own, role)
+    if end is None:
+        yield Proposal(
+            draft.insert(own, f'<{role} link="{wanted}"/>'),
+            f"the {role}, which is missing",
+            f"name the {role}",
+            of,
+            link,
+        )
+    elif end.get("link") != wanted:
+        yield from (
+            Proposal(edits, f"the {role}", f"make {wanted!r} the {role}", of, link)
+            for edits in draft.set(end, "link", wanted)
+        )
+
+
+def loose(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
+    """Connect a link that no joint has as its child: one whose name the joint misspells, or one without a joint."""
+    of = f"the joint of {link!r}"
+    for found in draft.joints():
+        child = end_of(found, "child")
+        if draft.link(child) is None:
+            yield from joint_end(draft, found, "child", link, link)
+    other = reference.joint_of(link)
+    if other is not None:
+        same = next((found for found in draft.joints() if found.get("name") == other.get("name")), None)
+        if same is not None:
+            yield Proposal(draft.replace(same, reference.text(other)), "the joint", "correct the joint", of, link)
+        yield Proposal(
+            draft.append(reference.text(other)), "the joint, which is missing", f"add the joint of {link!r}", "", link
+        )
+
+
+def shape(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
+    """Give a link the shape that it should show, or none: no geometry, a sphere for a cylinder, a footprint that is visible."""
+    own, other = draft.link(link), reference.link(link)
+    if own is None or other is None:
+        return
+    of = f"the visual of {link!r}"
+    visual, wanted = child_of(own, "visual"), child_of(other, "visual")
+    if wanted is None:
+        shown = list(own.iterchildren("visual"))
+        if shown:
+            edits: Edits = sum((draft.remove(found) for found in shown), ())
+            yield Proposal(edits, "the visual, which should not be there", f"remove the visual of {link!r}", "", link)
+        return
+    if visual is None:
+        yield Proposal(
+            draft.insert(own, reference.text(wanted)),
+            "the visual, which is missing",
+            f"add the visual of {link!r}",
+            "",
+            link,
+        )
+        return
+    for extra in list(own.iterchildren("visual"))[1:]:
+        yield Proposal(draft.remove(extra), "the second visual", f"remove the second visual of {link!r}", "", link)
+    yield from inner(draft, reference, visual, wanted, "geometry", of, link)
+    yield Proposal(
+        draft.replace(visual, reference.text(wanted)), "the visual", "correct the visual", of, link, is_rewrite=True
+    )
+
+
+def inner(
+    draft: Draft, reference: Draft, own: Element, other: Element, tag: str, of: str, link: str
+) -> Iterator[Proposal]:
+    """Insert or replace a child of an element as the reference has it: no geometry, a limit without effort, no axis."""
+    found, wanted = child_of(own, tag), child_of(other, tag)
+    if wanted is None:
+        if found is not None and tag not in ("origin", "axis"):
+            yield Proposal(
+                draft.remove(found), f"the <{tag}>, which should not be there", f"remove the <{tag}>", of, link
+            )
+    elif found is None:
+        yield Proposal(
+            draft.insert(own, reference.text(wanted)), f"the <{tag}>, which is missing", f"add the <{tag}>", of, link
+        )
+    elif _content(found) != _content(wanted):
+        yield Proposal(draft.replace(found, reference.text(wanted)), f"the <{tag}>", f"correct the <{tag}>", of, link)
+
+
+def _content(element: Element) -> list[tuple[str, dict[str, str]]]:
+    return [(str(inner.tag), {str(key): str(value) for key, value in inner.attrib.items()}) for inner in element.iter()]
+
+
+def material(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
+    """Name a material or correct its colour: a misspelt name, no material in the visual, 0 1 0 1 for the green of the lab."""
+    own, other = draft.link(link), reference.link(link)
+    visual = child_of(own, "visual") if own is not None else None
+    expected = reference.robot.link(link).visuals if other is not None else ()
+    wanted = next((shown.material for shown in expected[:1] if shown.material is not None), None)
+    if visual is None or wanted is None:
+        return
+    of, used = f"the visual of {link!r}", child_of(visual, "material")
+    for known in islice((found for found in draft.robot.materials if _is_alike(found, wanted)), _MAX_NAMES):
+        if used is None:
+            yield Proposal(
+                draft.insert(visual, f'<material name="{known.name}"/>'),
+                "the material, which is missing",
+                "name the material",
+                of,
+                link,
+            )
+        elif used.get("name") != known.name:
+            yield from (
+                Proposal(edits, "the name of the material", "correct the name of the material", of, link)
+                for edits in draft.set(used, "name", known.name)
+            )
+    name = (used.get("name") if used is not None else None) or wanted.name
+    colour = " ".join(f"{channel:g}" for channel in wanted.rgba)
+    definition = f'<material name="{name}">\n  <color rgba="{colour}"/>\n</material>'
+    defined = draft.material(name)
+    if used is None:
+        yield Proposal(draft.insert(visual, definition), "the material, which is missing", "add the material", of, link)
+        return
+    yield Proposal(
+        draft.insert(draft.root, definition),
+        f"the material {name!r}, which is not defined under <robot>",
+        "define the material",
+        of,
+        link,
+    )
+    for found in (found for found in (defined, used) if found is not None and (found is defined or len(found))):
+        inside = child_of(found, "color")
+        if inside is None:
+            yield Proposal(
+                draft.insert(found, f'<color rgba="{colour}"/>'),
+                "the colour, which is missing",
+                "add the colour",
+                of,
+                link,
+            )
+        elif inside.get("rgba") != colour:
+            yield from (
+                Proposal(edits, "the colour", f"set the colour to {colour}", of, link)
+                for edits in draft.set(inside, "rgba", colour)
+            )
+
+
+def _is_alike(one: Material, other: Material) -> bool:
+    return all(abs(a - b) < 0.01 for a, b in zip(one.rgba, other.rgba, strict=True))

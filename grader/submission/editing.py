@@ -1,0 +1,80 @@
+"""A submission with edits of its files, which exist in memory only."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+from grader.edits import edited
+from grader.errors import InputError
+from grader.files.reading import URDF_LIMIT
+from grader.files.tree import File, Tree, make_tree
+from grader.source import Edit
+from grader.submission.submission import Submission
+from grader.submission.urdf import Read, read_as_ros
+from grader.submission.workspace import Surroundings
+
+Files = Mapping[str, bytes | None]  # the new content of files by path; None for one that is no longer there
+
+
+def edited_files(submission: Submission, edits: Iterable[Edit]) -> Files | None:
+    """Return the files of a submission that edits change; None where the edits do not fit."""
+    by_path: dict[str, list[Edit]] = {}
+    for edit in edits:
+        by_path.setdefault(edit.path, []).append(edit)
+    files: dict[str, bytes | None] = {}
+    for path, of_file in by_path.items():
+        before = content(submission, path)
+        text = (before or b"").decode("utf-8", "surrogateescape")
+        renamed = next((edit.renamed for edit in of_file if edit.renamed), "")
+        after = edited(text, path, [edit for edit in of_file if not edit.renamed])
+        if after is None:
+            return None
+        if renamed:
+            files[path] = None
+        files[renamed or path] = after.encode("utf-8", "surrogateescape")
+    return files
+
+
+def content(submission: Submission, path: str) -> bytes | None:
+    """Return the bytes of a file of a submission; None where it has none that can be read."""
+    if isinstance(submission.urdf, Read) and path == submission.urdf.path:
+        return submission.urdf.data
+    file = submission.everything.files.get(path)
+    try:
+        return file.read(URDF_LIMIT) if file is not None else None
+    except InputError:
+        return None
+
+
+def with_urdf(submission: Submission, files: Files) -> Submission:
+    """Return a submission with the URDF read again, and nothing else: for edits of the URDF and of xacro that it includes."""
+    urdf = submission.urdf
+    assert isinstance(urdf, Read)
+    data = files.get(urdf.path) or urdf.data
+    if submission.is_single:
+        return replace(submission, urdf=read_as_ros(data, urdf.path, Surroundings(arguments=submission.arguments)))
+    everything = overlaid(submission.everything, files)
+    around = Surroundings(everything, submission.package, submission.packages, submission.arguments)
+    return replace(submission, urdf=read_as_ros(data, urdf.path, around), everything=everything)
+
+
+def with_files(submission: Submission, files: Files) -> Submission:
+    """Return a submission that is read again from scratch with other files. Raises InputError."""
+    if submission.reopen is None:
+        return with_urdf(submission, files)
+    return submission.reopen(overlaid(submission.everything, files))
+
+
+def overlaid(tree: Tree, files: Files) -> Tree:
+    """Return a file tree with other content of some files."""
+    kept = [file for path, file in tree.files.items() if path not in files]
+    new = [_file(path, data) for path, data in files.items() if data is not None]
+    return make_tree(tree.name, (*kept, *new), tree.folders, tree.ignored, tree.generated, tree.unseen, (tree,))
+
+
+def _file(path: str, data: bytes) -> File:
+    def read(limit: int, *, first: bool = False) -> bytes:
+        if not first and len(data) > limit:
+            raise InputError(f"{path} is larger than {limit} bytes")
+        return data[:limit]
+
+    return File(path, len(data), read)
