@@ -12,9 +12,10 @@ _PIECE = re.compile(r"(\s*)(\S+)")
 
 
 class Proposal(NamedTuple):
-    """An edit that may undo a mistake: what is wrong, as a noun ("the sign of the roll"), and what to do ("negate the roll").
+    """An edit that may undo a mistake: what is wrong, as a noun ("the sign of the roll"), and what to do ("negate the roll{}").
 
-    `of` is whose it is, without names that a student chose: "the joint of 'right_wheel'". `link` is the link that is moved or changed.
+    `of` is whose it is, without names that a student chose ("the joint of 'right_wheel'"); it takes the place of {} in the action.
+    `link` is the link that is moved or changed. The `rank` orders proposals that gain the same: those to a known value come first.
     """
 
     edits: tuple[Edit, ...]
@@ -22,8 +23,7 @@ class Proposal(NamedTuple):
     action: str
     of: str = ""
     link: str = ""
-    is_blind: bool = False  # tried without an expected value
-    is_rewrite: bool = False  # takes whole elements of the reference: for want of anything smaller
+    rank: int = 0
 
     @property
     def size(self) -> int:
@@ -33,7 +33,16 @@ class Proposal(NamedTuple):
     @property
     def said(self) -> str:
         """The change in words: "negate the roll of the joint of 'right_wheel'"."""
-        return f"{self.action} of {self.of}" if self.of else self.action
+        return self.action.replace("{}", f" of {self.of}" if self.of else "")
+
+    @property
+    def named(self) -> str:
+        """What is wrong in words: "the sign of the roll of the joint of 'right_wheel'"."""
+        return f"{self.cause} of {self.of}" if self.of else self.cause
+
+
+# The ranks of proposals: a value that the reference has, one that is computed from it, one that is tried, whole elements of it.
+KNOWN, SOLVED, TRIED, REWRITTEN = range(4)
 
 
 def text_of(source: Source, start: int) -> str:

@@ -5,8 +5,8 @@ from decimal import Decimal
 from itertools import combinations
 from typing import NamedTuple
 
-from grader.edits import Proposal, composed
-from grader.grading.hints.targets import links_of
+from grader.edits import REWRITTEN, TRIED, Proposal, composed
+from grader.grading.hints.targets import targets_of
 from grader.grading.hints.trials import Edits, OutOfBudget, Results, State, Trials, gained, loses_nothing
 from grader.grading.rubric import Criterion
 from grader.robot.edits.candidates import proposals
@@ -102,13 +102,14 @@ class Search:
         draft = Draft.of(urdf.reading) if isinstance(urdf, Read) else None
         if draft is not None:
             reference = self.reference or draft
-            links = links_of(_about_robot(criteria), draft.robot, reference.robot)
+            shown, moved = targets_of(_about_robot(criteria), draft.robot, reference.robot)
+            anchors = tuple(dict.fromkeys((*shown, *moved)))
             if any(criterion.check.subject == "urdf" for criterion in criteria):
-                links = list(dict.fromkeys((*links, *(link.name for link in reference.robot.links))))
+                shown = moved = tuple(dict.fromkeys((*anchors, *(link.name for link in reference.robot.links))))
             places = [
                 result.outcome.location for result in state.results.values() if result.outcome.location is not None
             ]
-            found += proposals(draft, reference, links, places)
+            found += proposals(draft, reference, shown, moved, anchors, places)
         return found
 
     def _options(self, state: State, wanted: Sequence[str]) -> list[Option]:
@@ -117,14 +118,18 @@ class Search:
         for proposal in self._proposals(state, wanted):
             passes = frozenset(self.trials.passing(state, proposal.edits, wanted))
             options.append(Option(proposal, passes))
-            if len(passes) == len(wanted):
+            if (
+                len(passes) == len(wanted)
+                and proposal.rank < REWRITTEN
+                and self._proven(state, proposal.edits, wanted[0])
+            ):
                 break
         return options
 
     def _best_of(self, state: State, name: str, options: Sequence[Option]) -> Proposal | None:
         """Return a single edit, else two, else one that takes whole elements of the reference."""
-        edits = [option for option in options if not option.proposal.is_rewrite]
-        rewrites = [option for option in options if option.proposal.is_rewrite]
+        edits = [option for option in options if option.proposal.rank < REWRITTEN]
+        rewrites = [option for option in options if option.proposal.rank == REWRITTEN]
         return (
             self._best(state, name, edits)
             or self._repaired(state, name, edits)
@@ -135,13 +140,13 @@ class Search:
     def _best(self, state: State, name: str, options: Sequence[Option]) -> Proposal | None:
         """Return the edit with which a criterion passes, nothing is lost, and most points are gained; of equals the smallest."""
         passing = sorted((option for option in options if name in option.passes), key=_promise(state.results))
-        best: tuple[Decimal, int, Proposal] | None = None
+        best: tuple[Decimal, int, int, Proposal] | None = None
         for option in passing[:_MAX_OPTIONS]:
             after = self._proven(state, option.proposal.edits, name)
             if after is not None:
-                gain = _score(after.results), -option.proposal.size, option.proposal
-                best = max(best, gain, key=lambda found: found[:2]) if best is not None else gain
-        return best[2] if best is not None else None
+                gain = _score(after.results), -option.proposal.rank, -option.proposal.size, option.proposal
+                best = max(best, gain, key=lambda found: found[:3]) if best is not None else gain
+        return best[3] if best is not None else None
 
     def _proven(self, state: State, edits: Edits, name: str) -> State | None:
         after = self.trials.applied(state, edits)
@@ -152,7 +157,7 @@ class Search:
     def _repaired(self, state: State, name: str, options: Sequence[Option]) -> Proposal | None:
         """Return two edits: the first makes a criterion pass and others fail, which the second repairs."""
         passing = sorted((option for option in options if name in option.passes), key=_promise(state.results))
-        for option in [option for option in passing if not option.proposal.is_blind][:_MAX_REPAIRED]:
+        for option in [option for option in passing if option.proposal.rank < TRIED][:_MAX_REPAIRED]:
             first = option.proposal
             middle = self.trials.applied(state, first.edits)
             if middle is None:
@@ -171,9 +176,11 @@ class Search:
         robot = urdf.reading.robot if isinstance(urdf, Read) else None
         if robot is None:
             return None
-        links = set(links_of([self._criteria[name]], robot, self.reference.robot if self.reference else robot))
+        links = targets_of([self._criteria[name]], robot, self.reference.robot if self.reference else robot)
         plausible = [
-            option.proposal for option in options if not option.proposal.is_blind and option.proposal.link in links
+            option.proposal
+            for option in options
+            if option.proposal.rank < TRIED and option.proposal.link in (*links.shown, *links.moved)
         ]
         pairs = (pair for pair in combinations(plausible, 2) if pair[0].link == pair[1].link)
         for _, (first, second) in zip(range(_MAX_PAIRS), pairs, strict=False):
@@ -206,10 +213,10 @@ def _about_robot(criteria: Iterable[Criterion]) -> Iterator[Criterion]:
     return (criterion for criterion in criteria if criterion.check.subject == "robot")
 
 
-def _promise(results: Results) -> Callable[[Option], tuple[Decimal, int]]:
-    def key(option: Option) -> tuple[Decimal, int]:
+def _promise(results: Results) -> Callable[[Option], tuple[Decimal, int, int]]:
+    def key(option: Option) -> tuple[Decimal, int, int]:
         points = sum((results[name].criterion.points for name in option.passes), Decimal(0))
-        return -points, option.proposal.size
+        return -points, option.proposal.rank, option.proposal.size
 
     return key
 
@@ -227,7 +234,7 @@ def _worse(before: Results, after: Results) -> list[str]:
 
 
 def _pair_of(first: Proposal, second: Proposal, edits: Edits) -> Proposal:
-    return Proposal(edits, f"{first.cause} and {second.cause}", f"{first.said} and {second.said}", "", first.link)
+    return Proposal(edits, f"{first.named} and {second.named}", f"{first.said} and {second.said}", "", first.link)
 
 
 def _joined(submission: Submission, first: Sequence[Edit], second: Sequence[Edit]) -> Edits:

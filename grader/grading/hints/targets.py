@@ -1,7 +1,7 @@
 """The links that a criterion depends on: those that its arguments name, and those on the chains between them."""
 
 from collections.abc import Iterable, Iterator, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 from grader.errors import MissingElement, NotDecided
 from grader.grading.rubric import Criterion
@@ -9,16 +9,23 @@ from grader.robot.kinematics import Configuration
 from grader.robot.model import Robot
 
 
-def links_of(criteria: Iterable[Criterion], robot: Robot, reference: Robot) -> list[str]:
-    """Return the links whose joints and shapes decide these criteria: first those that a criterion names, then those between."""
-    found: dict[str, None] = {}
-    between: dict[str, None] = {}
+class Targets(NamedTuple):
+    """Links that decide criteria: those whose shapes count, those whose parent joints move them, and those that criteria name."""
+
+    shown: tuple[str, ...]
+    moved: tuple[str, ...]
+
+
+def targets_of(criteria: Iterable[Criterion], robot: Robot, reference: Robot) -> Targets:
+    """Return the links whose joints and shapes decide criteria."""
+    shown: dict[str, None] = {}
+    moved: dict[str, None] = {}
     posed = Configuration(robot)
     for criterion in criteria:
         named = [name for name in texts(criterion.arguments) if reference.has_link(name) or robot.has_link(name)]
-        found |= dict.fromkeys(named)
-        between |= dict.fromkeys(joint_children(posed, named))
-    return list(found | between)
+        shown |= dict.fromkeys(named)
+        moved |= dict.fromkeys(_between(posed, named) if len(named) > 1 else named)
+    return Targets(tuple(shown), tuple(moved))
 
 
 def texts(value: Any) -> Iterator[str]:
@@ -32,11 +39,10 @@ def texts(value: Any) -> Iterator[str]:
             yield from texts(item)
 
 
-def joint_children(posed: Configuration, named: list[str]) -> Iterator[str]:
-    """Yield the links whose parent joints are on the chains between the first link and the others."""
+def _between(posed: Configuration, named: list[str]) -> Iterator[str]:
+    """Yield the links whose parent joints are on the chains between links; all of those that no chain connects."""
     for other in named[1:]:
         try:
-            for joint in posed.between(other, named[0]):
-                yield joint.child
+            yield from (joint.child for joint in posed.between(other, named[0]))
         except (MissingElement, NotDecided):
-            continue
+            yield from (named[0], other)

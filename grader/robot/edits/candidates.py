@@ -2,34 +2,54 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 
-from grader.edits import Proposal
+from grader.edits import REWRITTEN, Proposal
 from grader.robot.edits.draft import Draft, child_of
 from grader.robot.edits.poses import Poses
 from grader.robot.edits.structure import structure_proposals
-from grader.robot.edits.values import value_proposals, with_values
+from grader.robot.edits.values import joint_values, visual_values, with_values
 from grader.source import Location
 
 
-def proposals(draft: Draft, reference: Draft, links: Sequence[str], places: Iterable[Location] = ()) -> list[Proposal]:
-    """Return edits of links, their parent joints and what they show: those at the places of failures first."""
-    poses = Poses(draft.robot, reference.robot, links)
+def proposals(
+    draft: Draft,
+    reference: Draft,
+    shown: Sequence[str],
+    moved: Sequence[str],
+    anchors: Sequence[str],
+    places: Iterable[Location] = (),
+) -> list[Proposal]:
+    """Return edits of what links show, and of the parent joints of the links that are `moved`: those at the places of failures first.
+
+    `anchors` are the links in whose frames poses are measured.
+    """
+    poses = Poses(draft.robot, reference.robot, anchors)
     found: dict[frozenset[object], Proposal] = {}
-    for link in links:
-        for proposal in _of_link(draft, reference, poses, link):
-            if proposal.edits and all(edit.old != edit.new for edit in proposal.edits):
+    for link in dict.fromkeys((*moved, *shown)):
+        for proposal in _of_link(draft, reference, poses, link, is_moved=link in moved, is_shown=link in shown):
+            if proposal.edits and all(edit.old != edit.new or edit.renamed for edit in proposal.edits):
                 found.setdefault(frozenset(proposal.edits), proposal)
     lines = {(place.path, place.line) for place in places}
     return sorted(
         found.values(),
-        key=lambda proposal: (proposal.is_rewrite, (proposal.edits[0].path, proposal.edits[0].line) not in lines),
+        key=lambda proposal: (
+            proposal.rank >= REWRITTEN,
+            (proposal.edits[0].path, proposal.edits[0].line) not in lines,
+            proposal.rank,
+        ),
     )
 
 
-def _of_link(draft: Draft, reference: Draft, poses: Poses, link: str) -> Iterator[Proposal]:
-    yield from value_proposals(draft, reference, poses, link)
-    yield from moved_offsets(draft, poses, link)
-    yield from structure_proposals(draft, reference, link)
-    yield from as_in_reference(draft, reference, link)
+def _of_link(
+    draft: Draft, reference: Draft, poses: Poses, link: str, *, is_moved: bool, is_shown: bool
+) -> Iterator[Proposal]:
+    if is_moved:
+        yield from joint_values(draft, reference, poses, link)
+    if is_shown:
+        yield from visual_values(draft, reference, poses, link)
+        yield from moved_offsets(draft, poses, link)
+    yield from structure_proposals(draft, reference, link, is_moved=is_moved)
+    if is_moved:
+        yield from as_in_reference(draft, reference, link)
 
 
 def moved_offsets(draft: Draft, poses: Poses, link: str) -> Iterator[Proposal]:
@@ -44,7 +64,7 @@ def moved_offsets(draft: Draft, poses: Poses, link: str) -> Iterator[Proposal]:
             for shown in with_values(draft, visual, "origin", {"xyz": poses.shown_offset(link)}):
                 cause = "the place of the offset: in the visual, not in the joint"
                 yield Proposal(
-                    (*placed, *shown), cause, "move the offset to the joint", f"the visual of {link!r}", link
+                    (*placed, *shown), cause, "move the offset{} to the joint", f"the visual of {link!r}", link
                 )
 
 
@@ -54,11 +74,21 @@ def as_in_reference(draft: Draft, reference: Draft, link: str) -> Iterator[Propo
     if joint is None or other is None or draft.link(link) is None:
         return
     yield Proposal(
-        draft.replace(joint, reference.text(other)), "the joint", "correct the joint", f"the link {link!r}", link
+        draft.replace(joint, reference.text(other)),
+        "the joint",
+        "correct the joint{}",
+        f"the link {link!r}",
+        link,
+        REWRITTEN,
     )
     own, wanted = draft.link(link), reference.link(link)
     if own is not None and wanted is not None:
         edits = (*draft.replace(joint, reference.text(other)), *draft.replace(own, reference.text(wanted)))
         yield Proposal(
-            edits, "the joint and what it moves", "correct the joint and the visual", f"the link {link!r}", link
+            edits,
+            "the joint and what it moves",
+            "correct the joint and the visual{}",
+            f"the link {link!r}",
+            link,
+            REWRITTEN,
         )

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from itertools import combinations
-from math import pi, radians
+from math import radians
 from typing import NamedTuple
 
 Values = tuple[float, ...]
@@ -45,17 +45,17 @@ def negated(slot: Slot) -> Iterator[Change]:
         return
     for index in nonzero:
         name = slot.component(index)
-        yield Change(_with(slot.values, {index: -slot.values[index]}), f"the sign of {name}", f"negate {name}")
+        yield Change(_with(slot.values, {index: -slot.values[index]}), f"the sign of {name}", f"negate {name}{{}}")
     if len(nonzero) > 1:
         values = tuple(-value if value else value for value in slot.values)
-        yield Change(values, f"the direction of {slot.attribute}", f"negate all of {slot.attribute}")
+        yield Change(values, f"the direction of {slot.attribute}", f"negate {slot.attribute}{{}}")
 
 
 def in_radians(slot: Slot) -> Iterator[Change]:
     """Convert degrees to radians: rpy="-90 0 0"."""
     if slot.attribute == "rpy" and any(value and not value % _ANGLE_STEP for value in slot.values):
         yield Change(
-            tuple(map(radians, slot.values)), "the unit of rpy: degrees, not radians", "convert rpy to radians"
+            tuple(map(radians, slot.values)), "the unit of rpy: degrees, not radians", "convert rpy{} to radians"
         )
 
 
@@ -65,18 +65,18 @@ def in_metres(slot: Slot) -> Iterator[Change]:
         large = [index for index, value in enumerate(slot.values) if abs(value) >= 1.0]
         if large:
             values = tuple(value / factor for value in slot.values)
-            yield Change(values, f"the unit: {unit}, not metres", f"convert {slot.attribute} to metres")
+            yield Change(values, f"the unit: {unit}, not metres", f"convert {slot.attribute}{{}} to metres")
         if large and len(large) < len([value for value in slot.values if value]):
             values = _with(slot.values, {index: slot.values[index] / factor for index in large})
             names = " and ".join(map(slot.component, large))
-            yield Change(values, f"the unit of {names}: {unit}, not metres", f"convert {names} to metres")
+            yield Change(values, f"the unit of {names}: {unit}, not metres", f"convert {names}{{}} to metres")
 
 
 def in_shares(slot: Slot) -> Iterator[Change]:
     """Convert channels of a colour from 0..255 to 0..1: rgba="0 153 0 1"."""
     if slot.attribute == "rgba" and any(value > 1.0 for value in slot.values):
         values = tuple(round(value / 255.0, 3) for value in slot.values[:3])
-        yield Change((*values, *(min(1.0, value) for value in slot.values[3:])), "the range of the colour: 0..255, not 0..1", "write the colour in 0..1")  # fmt: skip
+        yield Change((*values, *(min(1.0, value) for value in slot.values[3:])), "the range of the colour: 0..255, not 0..1", "write the colour{} in 0..1")  # fmt: skip
 
 
 def swapped(slot: Slot) -> Iterator[Change]:
@@ -85,7 +85,7 @@ def swapped(slot: Slot) -> Iterator[Change]:
         if slot.values[one] != slot.values[other]:
             names = f"{slot.component(one)} and {slot.component(other)}"
             values = _with(slot.values, {one: slot.values[other], other: slot.values[one]})
-            yield Change(values, f"the order: {names} are exchanged", f"exchange {names}")
+            yield Change(values, f"the order: {names} are exchanged", f"exchange {names}{{}}")
 
 
 def halved(slot: Slot) -> Iterator[Change]:
@@ -95,10 +95,10 @@ def halved(slot: Slot) -> Iterator[Change]:
             for index in range(len(slot.values)):
                 name = slot.component(index)
                 value = slot.values[index] * factor
-                yield Change(_with(slot.values, {index: value}), f"the size: {name}", f"{action} {name}")
+                yield Change(_with(slot.values, {index: value}), f"the size: {name}", f"{action} {name}{{}}")
             if len(slot.values) > 1:
                 values = tuple(value * factor for value in slot.values)
-                yield Change(values, f"the size: {'half' if factor > 1 else 'double'} of the full lengths", f"{action} {slot.attribute}")  # fmt: skip
+                yield Change(values, f"the size: {'half' if factor > 1 else 'double'} of the full lengths", f"{action} {slot.attribute}{{}}")  # fmt: skip
 
 
 def half_shapes(slot: Slot) -> Iterator[Change]:
@@ -109,16 +109,7 @@ def half_shapes(slot: Slot) -> Iterator[Change]:
                 component = slot.component(index)
                 values = _with(slot.values, {index: value + sign * half})
                 excess = "" if sign > 0 else " too much"
-                yield Change(values, f"{component}, which {word} half of {name}{excess}", f"{verb} half of {name} {'to' if sign > 0 else 'from'} {component}")  # fmt: skip
-
-
-def quarter_turns(slot: Slot) -> Iterator[Change]:
-    """Turn a frame by a quarter: a rotation that was left out, or is about another axis."""
-    if slot.attribute == "rpy":
-        for index in range(3):
-            for angle in (-pi / 2, pi / 2):
-                values = _with((0.0, 0.0, 0.0), {index: angle})
-                yield Change(values, "the rotation", f"turn the frame by {angle:.2f} about {'xyz'[index]}")
+                yield Change(values, f"{component}, which {word} half of {name}{excess}", f"{verb} half of {name} {'to' if sign > 0 else 'from'} {component}{{}}")  # fmt: skip
 
 
 Family = Callable[[Slot], Iterator[Change]]
@@ -135,12 +126,12 @@ def named(slot: Slot, wanted: Values) -> Change:
             if is_close(change.values, wanted):
                 return change
     if len(slot.values) != len(wanted):
-        return Change(wanted, slot.attribute, f"set {slot.attribute} to {written(wanted)}")
+        return Change(wanted, slot.attribute, f"set {slot.attribute}{{}} to {written(wanted)}")
     off = [index for index, (a, b) in enumerate(zip(slot.values, wanted, strict=True)) if abs(a - b) > _CLOSE / 10]
     values = _with(slot.values, {index: wanted[index] for index in off})
     names = " and ".join(map(slot.component, off)) or slot.attribute
     to = " and ".join(number(wanted[index]) for index in off)
-    return Change(values, names, f"set {names} to {to}")
+    return Change(values, names, f"set {names}{{}} to {to}")
 
 
 def is_close(one: Values, other: Values) -> bool:

@@ -46,20 +46,30 @@ class Poses:
 
     def _frames(self, link: str, parent: str) -> Iterator[Transform]:
         """Yield T_parent_link as the reference has it."""
-        for anchor in (parent, *self._anchors):
+        for anchor in dict.fromkeys((parent, *self._anchors)):
             wanted, own = _pose(self.reference, link, anchor), _pose(self.robot, parent, anchor)
-            if wanted is not None and own is not None and anchor != link:
+            if wanted is not None and own is not None and not self._is_above(link, anchor):
                 yield own.inverse() @ wanted
                 return
 
     def _centres(self, link: str, frame: str) -> Iterator[Transform]:
-        """Yield the pose of the reference's visual of a link in a frame of the robot."""
+        """Yield the pose of the reference's visual of a link in a frame of the robot: of its parent, or its own."""
         shown = self.reference.robot.link(link).visuals if self.reference.robot.has_link(link) else ()
-        for anchor in self._anchors:
+        apart = [anchor for anchor in self._anchors if not self._is_above(link, anchor)]
+        for anchor in (*apart, *([link] if frame == link else [])):
             wanted, own = _pose(self.reference, link, anchor), _pose(self.robot, frame, anchor)
-            if shown and wanted is not None and own is not None and (anchor != link or frame == link):
+            if shown and wanted is not None and own is not None:
                 yield own.inverse() @ placed_by(wanted, shown[0].origin)
                 return
+
+    def _is_above(self, link: str, other: str) -> bool:
+        """Return whether a link carries another one, or is it: then it cannot be measured from there."""
+        name = other
+        for _ in self.robot.parent_joints:
+            if name == link or name not in self.robot.parent_joints:
+                break
+            name = self.robot.parent_joints[name].parent
+        return name == link
 
     def _axis(self, link: str) -> Iterator[Values]:
         """Yield the axis with which the link turns in the reference's direction."""

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from itertools import islice
 
-from grader.edits import Proposal
+from grader.edits import REWRITTEN, Proposal
 from grader.names import closest
 from grader.robot.edits.draft import Draft, Edits, child_of, end_of
 from grader.robot.model import Material
@@ -12,7 +12,7 @@ from grader.xml.parsing import Element
 _MAX_NAMES = 4  # links or materials that may be meant
 
 
-def structure_proposals(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
+def structure_proposals(draft: Draft, reference: Draft, link: str, *, is_moved: bool) -> Iterator[Proposal]:
     """Yield edits that give a link, its joint and what it shows the structure that the reference has."""
     if draft.link(link) is None:
         yield from missing_link(draft, reference, link)
@@ -20,7 +20,7 @@ def structure_proposals(draft: Draft, reference: Draft, link: str) -> Iterator[P
         yield from duplicates(draft, link)
         yield from shape(draft, reference, link)
         yield from material(draft, reference, link)
-    if draft.link(link) is not None or draft.joint_of(link) is not None:
+    if is_moved and (draft.link(link) is not None or draft.joint_of(link) is not None):
         yield from joint(draft, reference, link)
 
 
@@ -31,11 +31,11 @@ def missing_link(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal
     near = closest(link, unknown)
     for name in islice(dict.fromkeys([*([near] if near else []), *unknown]), _MAX_NAMES):
         of = f"the link that should be {link!r}"
-        yield Proposal(renamed(draft, name, link), "the name", "correct the name", of, link)
+        yield Proposal(renamed(draft, name, link), "the name", "correct the name{}", of, link)
         own = draft.link(name)
         if own is not None and any(end_of(found, role) == link for found in draft.joints() for role in _ENDS):
             yield from (
-                Proposal(edits, "the name", "correct the name", of, link) for edits in draft.set(own, "name", link)
+                Proposal(edits, "the name", "correct the name{}", of, link) for edits in draft.set(own, "name", link)
             )
     missing = reference.link(link)
     if missing is not None:
@@ -66,10 +66,10 @@ def duplicates(draft: Draft, link: str) -> Iterator[Proposal]:
     joints = [found for found in draft.joints() if end_of(found, "child") == link]
     names = [found.get("name") for found in joints]
     for found in reversed(same) if len(same) > 1 else ():
-        yield Proposal(draft.remove(found), "the second link of this name", "remove one", f"the links {link!r}", link)
+        yield Proposal(draft.remove(found), "the second link of this name", "remove one{}", f"the links {link!r}", link)
     for found in reversed(joints) if len(joints) > 1 else ():
         cause = "the second joint of this name" if names.count(found.get("name")) > 1 else "the second parent joint"
-        yield Proposal(draft.remove(found), cause, "remove one", f"the joints of {link!r}", link)
+        yield Proposal(draft.remove(found), cause, "remove one{}", f"the joints of {link!r}", link)
 
 
 def joint(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
@@ -84,15 +84,15 @@ def joint(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
         edits = [
             draft.set(end, "link", name)[0] for end, name in zip(ends, (child, parent), strict=True) if end is not None
         ]
-        yield Proposal(sum(edits, ()), "parent and child, which are exchanged", "exchange parent and child", of, link)
+        yield Proposal(sum(edits, ()), "parent and child, which are exchanged", "exchange parent and child{}", of, link)
     if other is None:
         if own.get("type") != "fixed":
             yield from (
-                Proposal(edits, "the type", "make the type fixed", of, link)
+                Proposal(edits, "the type", "make the type fixed{}", of, link)
                 for edits in draft.set(own, "type", "fixed")
             )
         return
-    for name, verb in (("type", "set the type"), ("name", "correct the name")):
+    for name, verb in (("type", "set the type{}"), ("name", "correct the name{}")):
         value = other.get(name) or ""
         if own.get(name) != value:
             action = f"{verb} to {value}" if name == "type" else verb
@@ -110,13 +110,13 @@ def joint_end(draft: Draft, own: Element, role: str, wanted: str, link: str) -> 
         yield Proposal(
             draft.insert(own, f'<{role} link="{wanted}"/>'),
             f"the {role}, which is missing",
-            f"name the {role}",
+            f"name the {role}{{}}",
             of,
             link,
         )
     elif end.get("link") != wanted:
         yield from (
-            Proposal(edits, f"the {role}", f"make {wanted!r} the {role}", of, link)
+            Proposal(edits, f"the {role}", f"make {wanted!r} the {role}{{}}", of, link)
             for edits in draft.set(end, "link", wanted)
         )
 
@@ -132,7 +132,7 @@ def loose(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
     if other is not None:
         same = next((found for found in draft.joints() if found.get("name") == other.get("name")), None)
         if same is not None:
-            yield Proposal(draft.replace(same, reference.text(other)), "the joint", "correct the joint", of, link)
+            yield Proposal(draft.replace(same, reference.text(other)), "the joint", "correct the joint{}", of, link)
         yield Proposal(
             draft.append(reference.text(other)), "the joint, which is missing", f"add the joint of {link!r}", "", link
         )
@@ -164,7 +164,7 @@ def shape(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
         yield Proposal(draft.remove(extra), "the second visual", f"remove the second visual of {link!r}", "", link)
     yield from inner(draft, reference, visual, wanted, "geometry", of, link)
     yield Proposal(
-        draft.replace(visual, reference.text(wanted)), "the visual", "correct the visual", of, link, is_rewrite=True
+        draft.replace(visual, reference.text(wanted)), "the visual", "correct the visual{}", of, link, REWRITTEN
     )
 
 
@@ -176,14 +176,20 @@ def inner(
     if wanted is None:
         if found is not None and tag not in ("origin", "axis"):
             yield Proposal(
-                draft.remove(found), f"the <{tag}>, which should not be there", f"remove the <{tag}>", of, link
+                draft.remove(found), f"the <{tag}>, which should not be there", f"remove the <{tag}>{{}}", of, link
             )
     elif found is None:
         yield Proposal(
-            draft.insert(own, reference.text(wanted)), f"the <{tag}>, which is missing", f"add the <{tag}>", of, link
+            draft.insert(own, reference.text(wanted)),
+            f"the <{tag}>, which is missing",
+            f"add the <{tag}>{{}}",
+            of,
+            link,
         )
     elif _content(found) != _content(wanted):
-        yield Proposal(draft.replace(found, reference.text(wanted)), f"the <{tag}>", f"correct the <{tag}>", of, link)
+        yield Proposal(
+            draft.replace(found, reference.text(wanted)), f"the <{tag}>", f"correct the <{tag}>{{}}", of, link
+        )
 
 
 def _content(element: Element) -> list[tuple[str, dict[str, str]]]:
@@ -204,13 +210,13 @@ def material(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
             yield Proposal(
                 draft.insert(visual, f'<material name="{known.name}"/>'),
                 "the material, which is missing",
-                "name the material",
+                "name the material{}",
                 of,
                 link,
             )
         elif used.get("name") != known.name:
             yield from (
-                Proposal(edits, "the name of the material", "correct the name of the material", of, link)
+                Proposal(edits, "the name of the material", "correct the name of the material{}", of, link)
                 for edits in draft.set(used, "name", known.name)
             )
     name = (used.get("name") if used is not None else None) or wanted.name
@@ -218,12 +224,14 @@ def material(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
     definition = f'<material name="{name}">\n  <color rgba="{colour}"/>\n</material>'
     defined = draft.material(name)
     if used is None:
-        yield Proposal(draft.insert(visual, definition), "the material, which is missing", "add the material", of, link)
+        yield Proposal(
+            draft.insert(visual, definition), "the material, which is missing", "add the material{}", of, link
+        )
         return
     yield Proposal(
         draft.insert(draft.root, definition),
         f"the material {name!r}, which is not defined under <robot>",
-        "define the material",
+        "define the material{}",
         of,
         link,
     )
@@ -233,13 +241,13 @@ def material(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
             yield Proposal(
                 draft.insert(found, f'<color rgba="{colour}"/>'),
                 "the colour, which is missing",
-                "add the colour",
+                "add the colour{}",
                 of,
                 link,
             )
         elif inside.get("rgba") != colour:
             yield from (
-                Proposal(edits, "the colour", f"set the colour to {colour}", of, link)
+                Proposal(edits, "the colour", f"set the colour{{}} to {colour}", of, link)
                 for edits in draft.set(inside, "rgba", colour)
             )
 

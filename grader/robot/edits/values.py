@@ -1,9 +1,9 @@
 """Edits of the numbers of a link: where it is, and what it shows."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-from grader.edits import Proposal
+from grader.edits import KNOWN, SOLVED, TRIED, Proposal
 from grader.robot.edits.draft import Draft, Edits, child_of
 from grader.robot.edits.families import BLIND, Change, Slot, Values, is_close, named, written
 from grader.robot.edits.poses import Poses, shapes_of
@@ -15,30 +15,35 @@ _DEFAULTS = {("origin", "xyz"): _ZERO, ("origin", "rpy"): _ZERO, ("axis", "xyz")
 
 
 class Number(NamedTuple):
-    """Numbers of an element: the child that has them, its attribute, whose they are, and the expected values."""
+    """Numbers of an element: the child that has them, its attribute, whose they are, and the expected values with their ranks."""
 
     owner: Element
     tag: str
     attribute: str
     of: str
-    wanted: tuple[Values, ...]
+    wanted: tuple[tuple[Values, int], ...]
 
 
-def value_proposals(draft: Draft, reference: Draft, poses: Poses, link: str) -> Iterator[Proposal]:
-    """Yield edits of the numbers of a link, its shapes and its parent joint: those to an expected value first."""
-    found = [*_of_joint(draft, reference, poses, link), *_of_visuals(draft, reference, poses, link)]
+def joint_values(draft: Draft, reference: Draft, poses: Poses, link: str) -> Iterator[Proposal]:
+    """Yield edits of the origin and the axis of the parent joint of a link."""
+    return _proposals(draft, tuple(_of_joint(draft, reference, poses, link)), link)
+
+
+def visual_values(draft: Draft, reference: Draft, poses: Poses, link: str) -> Iterator[Proposal]:
+    """Yield edits of the origins and the sizes of the visuals of a link."""
+    return _proposals(draft, tuple(_of_visuals(draft, reference, poses, link)), link)
+
+
+def _proposals(draft: Draft, found: Sequence[Number], link: str) -> Iterator[Proposal]:
     halves = tuple(shapes_of(draft.robot, link))
-    slots = [(number, _slot(number, halves)) for number in found]
-    tried: set[tuple[int, Values]] = set()
-    for index, (number, slot) in enumerate(slots):
-        for wanted in number.wanted:
-            if slot.values is not None and not is_close(slot.values, wanted):
-                yield from _changed(draft, number, named(slot, wanted), link)
-                tried.add((index, wanted))
-    for number, slot in slots:
+    for number in found:
+        slot = _slot(number, halves)
+        for wanted, rank in number.wanted:
+            if not is_close(slot.values, wanted):
+                yield from _changed(draft, number, named(slot, wanted), link, rank)
         for family in BLIND:
             for change in family(slot):
-                yield from (found._replace(is_blind=True) for found in _changed(draft, number, change, link))
+                yield from _changed(draft, number, change, link, TRIED)
 
 
 def _slot(number: Number, halves: tuple[tuple[float, str], ...]) -> Slot:
@@ -56,9 +61,9 @@ def values_of(text: str) -> Values:
         return ()
 
 
-def _changed(draft: Draft, number: Number, change: Change, link: str) -> Iterator[Proposal]:
+def _changed(draft: Draft, number: Number, change: Change, link: str, rank: int) -> Iterator[Proposal]:
     for edits in with_values(draft, number.owner, number.tag, {number.attribute: change.values}):
-        yield Proposal(edits, change.cause, change.action, number.of, link)
+        yield Proposal(edits, change.cause, change.action, number.of, link, rank)
 
 
 def with_values(draft: Draft, owner: Element, tag: str, values: dict[str, Values]) -> list[Edits]:
@@ -78,9 +83,9 @@ def _of_joint(draft: Draft, reference: Draft, poses: Poses, link: str) -> Iterat
     if joint is None:
         return
     of = f"the joint of {link!r}"
-    for tag, attribute in (("origin", "xyz"), ("origin", "rpy"), ("axis", "xyz")):
-        solved = poses.joint(link, tag, attribute)
-        yield Number(joint, tag, attribute, of, tuple(_once((*_of(other, tag, attribute), *solved))))
+    turns = joint.get("type") not in ("fixed", "floating")
+    for tag, attribute in (("origin", "xyz"), ("origin", "rpy"), *((("axis", "xyz"),) if turns else ())):
+        yield Number(joint, tag, attribute, of, _wanted(_of(other, tag, attribute), poses.joint(link, tag, attribute)))
 
 
 def _of_visuals(draft: Draft, reference: Draft, poses: Poses, link: str) -> Iterator[Number]:
@@ -91,12 +96,13 @@ def _of_visuals(draft: Draft, reference: Draft, poses: Poses, link: str) -> Iter
     for index, visual in enumerate(own.iterchildren("visual")):
         for attribute in ("xyz", "rpy"):
             solved = poses.visual(link, index, attribute)
-            yield Number(visual, "origin", attribute, of, tuple(_once((*_of(expected, "origin", attribute), *solved))))
+            yield Number(visual, "origin", attribute, of, _wanted(_of(expected, "origin", attribute), solved))
         shape, like = _shape(visual), _shape(expected) if expected is not None else None
         for name in ("size", "radius", "length", "scale") if shape is not None else ():
             if shape is not None and shape.get(name) is not None:
                 values = like.get(name) if like is not None else None
-                yield Number(shape, "", name, of, (values_of(values),) if values is not None else ())
+                known = (values_of(values),) if values is not None else ()
+                yield Number(shape, "", name, of, _wanted(known, ()))
 
 
 def _shape(visual: Element) -> Element | None:
@@ -114,9 +120,10 @@ def _of(owner: Element | None, tag: str, attribute: str) -> tuple[Values, ...]:
     return (values,) if values else ()
 
 
-def _once(values: Iterable[Values]) -> Iterator[Values]:
-    before: list[Values] = []
-    for found in values:
-        if not any(is_close(found, other) for other in before):
-            before.append(found)
-            yield found
+def _wanted(known: Iterable[Values], solved: Iterable[Values]) -> tuple[tuple[Values, int], ...]:
+    """Return expected values with their ranks, each once."""
+    found: list[tuple[Values, int]] = []
+    for values, rank in (*((values, KNOWN) for values in known), *((values, SOLVED) for values in solved)):
+        if not any(is_close(values, other) for other, _ in found):
+            found.append((values, rank))
+    return tuple(found)
