@@ -1,0 +1,117 @@
+"""Measure the hints: python -m tests.hints.measure [--share 0.1] [--seed 1] [--bad] [BASE...] or --samples.
+
+Every mutant of the correct robots that loses points is searched. For each family it prints how many have a verified hint
+(`hint`), how many get full marks with all edits (`full`), how many are then the same robot (`same`) or the same text (`undo`).
+"""
+
+import argparse
+from collections.abc import Iterable, Iterator
+from random import Random
+from statistics import mean
+from time import perf_counter
+from typing import NamedTuple
+
+from tests.hints.mutants import mutants
+from tests.hints.trials import Base, Hints, bases, behaviour, differences, hints_for, text_after
+from tests.samples import SAMPLES
+
+
+class Verdict(NamedTuple):
+    """What the hints for one mutant achieve."""
+
+    family: str
+    label: str
+    hints: Hints
+    is_undo: bool
+    differs: tuple[str, ...]
+    milliseconds: float
+
+    @property
+    def marks(self) -> tuple[bool, bool, bool, bool]:
+        """Whether there is a hint, full marks, the same robot, the same text."""
+        full = self.hints.is_full
+        return bool(self.hints.found), full, full and not self.differs, self.is_undo
+
+    @property
+    def told(self) -> str:
+        """The hints in lines."""
+        lines = [f"{self.family} | {self.label} | lost {len(self.hints.lost)}: {' '.join(self.hints.lost[:4])}"]
+        for found in self.hints.found:
+            edits = "; ".join(f"{edit.line}: {_flat(edit.old)} -> {_flat(edit.new)}" for edit in found.edits[:4])
+            lines.append(f"     + {found.proposal.said} [{found.proposal.named}] {edits} ({len(found.gains)})")
+        left = f"     left: {' '.join(self.hints.final.failed[:6])}" if not self.hints.is_full else ""
+        return "\n".join([*lines, left or f"     differs: {', '.join(self.differs)}"])
+
+
+def verdicts(base: Base, share: float, random: Random) -> Iterator[Verdict]:
+    """Yield the verdict on every mutant of a base that loses points, or on a share of them."""
+    expected = behaviour(base.submission)
+    for mutant in mutants(base.text):
+        if share < 1 and random.random() >= share:
+            continue
+        submission = base.changed(mutant.text)
+        start = perf_counter()
+        hints = hints_for(submission)
+        milliseconds = (perf_counter() - start) * 1e3
+        if hints.lost:
+            differs = differences(expected, behaviour(hints.final.submission))
+            is_undo = hints.is_full and text_after(base, hints) == base.text
+            yield Verdict(mutant.family, f"{base.name} {mutant.change}", hints, is_undo, tuple(differs), milliseconds)
+
+
+def of_samples() -> Iterator[Verdict]:
+    """Yield the verdict on every mistake sample."""
+    for sample in SAMPLES.values():
+        submission = sample.open()
+        start = perf_counter()
+        hints = hints_for(submission, sample.rubric)
+        if hints.lost:
+            yield Verdict("sample", sample.name, hints, False, (), (perf_counter() - start) * 1e3)
+
+
+def table(found: Iterable[Verdict]) -> Iterator[str]:
+    """Yield the shares by family, the worst first, and of all."""
+    families: dict[str, list[Verdict]] = {}
+    for verdict in found:
+        families.setdefault(verdict.family, []).append(verdict)
+        families.setdefault("all", []).append(verdict)
+    yield f"{'family':22}{'count':>7}{'hint':>8}{'full':>8}{'same':>8}{'undo':>8}{'steps':>8}{'ms':>8}"
+    for family, those in sorted(families.items(), key=lambda pair: mean(found.marks[1] for found in pair[1])):
+        shares = "".join(f"{100 * mean(found.marks[index] for found in those):8.1f}" for index in range(4))
+        steps, time = (
+            mean(found.hints.steps for found in those),
+            mean(found.milliseconds for found in those),
+        )
+        yield f"{family:22}{len(those):7}{shares}{steps:8.0f}{time:8.1f}"
+
+
+def _flat(text: str) -> str:
+    flat = " ".join(text.split())
+    return flat if len(flat) <= 70 else f"{flat[:67]}..."
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("names", nargs="*")
+    parser.add_argument("--samples", action="store_true")
+    parser.add_argument("--share", type=float, default=1.0)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--bad", action="store_true", help="show those without full marks or another robot")
+    parser.add_argument("--all", action="store_true", help="show every hint")
+    options = parser.parse_args()
+    random = Random(options.seed)
+    chosen = (base for base in bases() if not options.names or base.name in options.names)
+    found = (
+        list(of_samples())
+        if options.samples
+        else [verdict for base in chosen for verdict in verdicts(base, options.share, random)]
+    )
+    for verdict in found:
+        if options.all or (options.bad and not (verdict.marks[1] and not verdict.differs)):
+            print(verdict.told)
+    print("\n".join(table(found)))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,152 @@
+"""Search hints for submissions, and judge what was found."""
+
+from collections import Counter
+from collections.abc import Iterator
+from functools import cache
+from typing import NamedTuple
+
+from grader.errors import MissingElement, NotDecided
+from grader.grading.grade import grade, open_reference
+from grader.grading.hints.search import Found, Search
+from grader.grading.hints.trials import State, Trials, is_lost
+from grader.grading.rubric import Rubric, load_rubric
+from grader.robot.edits.draft import Draft
+from grader.robot.frames import placed_by
+from grader.robot.kinematics import Configuration
+from grader.robot.model import Box, Cylinder, Sphere
+from grader.robot.shapes import half_width, is_empty
+from grader.robot.transforms import Vector
+from grader.submission.editing import with_files
+from grader.submission.opening import read_submission
+from grader.submission.submission import Submission
+from grader.submission.urdf import Read
+from tests.samples import LAB6, SAMPLES
+
+_AXES: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+_SAME = 4e-3  # metres, components of directions and channels of colours: what the lab's tolerances leave open
+
+
+class Hints(NamedTuple):
+    """What a search found for a submission: the criteria that lost points, the proven edits, and all of them together."""
+
+    lost: tuple[str, ...]
+    found: list[Found]
+    final: State
+    steps: int
+
+    @property
+    def is_full(self) -> bool:
+        """Whether nothing is lost any more with all edits."""
+        return not self.final.failed
+
+
+@cache
+def reference_draft(name: str) -> Draft | None:
+    """Return the draft of the reference of a rubric."""
+    urdf = open_reference(LAB6 if name == LAB6.id else load_rubric(name)).urdf
+    assert isinstance(urdf, Read)
+    return Draft.of(urdf.reading)
+
+
+def hints_for(submission: Submission, rubric: Rubric = LAB6) -> Hints:
+    """Return the hints for a submission; it is searched only if it lost points."""
+    results = {result.criterion.id: result for result in grade(rubric, submission).results}
+    trials = Trials(rubric, submission, results)
+    budget = trials.left
+    lost = tuple(name for name, result in results.items() if is_lost(result))
+    search = Search(trials, reference_draft(rubric.id))
+    if lost:
+        search.run()
+    return Hints(lost, search.found, search.final, budget - trials.left)
+
+
+class Base(NamedTuple):
+    """A correct robot whose text is changed: a submission, and the path of the file."""
+
+    name: str
+    submission: Submission
+    path: str
+    text: str
+
+    def changed(self, text: str) -> Submission:
+        """Return the submission with another text of the file."""
+        data = text.encode("utf-8", "surrogateescape")
+        if self.submission.is_single:
+            return read_submission(data, identity=self.name, path=self.path)
+        return with_files(self.submission, {self.path: data})
+
+
+def bases() -> Iterator[Base]:
+    """Yield the reference and every different text of the equivalents, the files that xacro includes as well."""
+    texts: Counter[bytes] = Counter()
+    for sample in [SAMPLES["reference"], *(SAMPLES[name] for name in SAMPLES if name.startswith("equivalent-"))]:
+        submission = sample.open()
+        urdf = submission.urdf
+        assert isinstance(urdf, Read)
+        paths = [urdf.path]
+        if urdf.is_expanded:
+            paths += [
+                path for path in submission.everything.files if path.endswith(".xacro") and path not in paths
+            ]
+        for path in paths:
+            data = urdf.data if path == urdf.path else submission.everything.files[path].read(1 << 20)
+            texts[data] += 1
+            if texts[data] == 1:
+                yield Base(sample.name, _alone(submission, urdf), path, data.decode("utf-8", "surrogateescape"))
+
+
+def _alone(submission: Submission, urdf: Read) -> Submission:
+    """Return the URDF without its package where that makes no difference: it is read faster."""
+    return submission if urdf.is_expanded else read_submission(urdf.data, identity=submission.id, path=urdf.path)
+
+
+Behaviour = dict[str, tuple[object, ...]]
+
+
+def behaviour(submission: Submission) -> Behaviour:
+    """Return what a robot shows and how it moves, whatever its frames: by link the extent and colour of shapes, and its axis."""
+    urdf = submission.urdf
+    if not isinstance(urdf, Read) or urdf.reading.robot is None:
+        return {}
+    robot = Configuration(urdf.reading.robot)
+    found: Behaviour = {}
+    for link in urdf.reading.robot.links:
+        try:
+            pose = robot.pose(link.name, relative_to="base_link")
+        except (MissingElement, NotDecided):
+            continue
+        for index, visual in enumerate(shown for shown in link.visuals if not is_empty(shown.geometry)):
+            shape = visual.geometry
+            placed = placed_by(pose, visual.origin)
+            if isinstance(shape, Box | Cylinder | Sphere):
+                extent = tuple(half_width(shape, placed.unrotate(axis)) for axis in _AXES)
+                colour = visual.material.rgba if visual.material is not None else (1.0, 0.0, 0.0, 1.0)
+                found[f"{link.name} {index}"] = (*placed.translation, *extent, *colour)
+        joint = robot.parent_joints.get(link.name)
+        if joint is not None and joint.type in ("continuous", "revolute", "prismatic", "planar", "floating"):
+            axis = pose.rotate(joint.axis) if joint.axis is not None else ()
+            found[f"joint of {link.name}"] = (joint.type, *axis)
+        if link.name in ("lidar", "base_footprint"):
+            found[f"frame of {link.name}"] = pose.translation
+    return found
+
+
+def differences(one: Behaviour, other: Behaviour) -> list[str]:
+    """Return what differs between two robots."""
+    return [name for name in dict.fromkeys((*one, *other)) if not _is_same(one.get(name, ()), other.get(name, ()))]
+
+
+def _is_same(one: tuple[object, ...], other: tuple[object, ...]) -> bool:
+    return len(one) == len(other) and all(
+        abs(a - b) <= _SAME if isinstance(a, float) and isinstance(b, float) else a == b
+        for a, b in zip(one, other, strict=True)
+    )
+
+
+def text_after(base: Base, hints: Hints) -> str:
+    """Return the text of a base's file after all edits."""
+    submission = hints.final.submission
+    if isinstance(submission.urdf, Read) and submission.urdf.path == base.path:
+        return submission.urdf.data.decode("utf-8", "surrogateescape")
+    file = submission.everything.files.get(base.path)
+    return file.read(1 << 20).decode("utf-8", "surrogateescape") if file is not None else ""
