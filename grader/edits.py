@@ -14,7 +14,7 @@ _PIECE = re.compile(r"(\s*)(\S+)")
 class Proposal(NamedTuple):
     """An edit that may undo a mistake: what is wrong, as a noun ("the sign of the roll"), and what to do ("negate the roll{}").
 
-    `of` is whose it is, without names that a student chose ("the joint of 'right_wheel'"); it takes the place of {} in the action.
+    `of` is whose it is, without names that a student chose ("the joint of 'right_wheel'"); it takes the place of {} in both texts.
     `link` is the link that is moved or changed. The `rank` orders proposals that gain the same: those to a known value come first.
     """
 
@@ -33,16 +33,20 @@ class Proposal(NamedTuple):
     @property
     def said(self) -> str:
         """The change in words: "negate the roll of the joint of 'right_wheel'"."""
-        return self.action.replace("{}", f" of {self.of}" if self.of else "")
+        return self._completed(self.action)
 
     @property
     def named(self) -> str:
         """What is wrong in words: "the sign of the roll of the joint of 'right_wheel'"."""
-        return f"{self.cause} of {self.of}" if self.of else self.cause
+        return self._completed(self.cause if "{}" in self.cause or not self.of else f"{self.cause}{{}}")
+
+    def _completed(self, text: str) -> str:
+        return text.replace("{}", f" of {self.of}" if self.of else "")
 
 
-# The ranks of proposals: a value that the reference has, one that is computed from it, one that is tried, whole elements of it.
-KNOWN, SOLVED, TRIED, REWRITTEN = range(4)
+# The ranks of proposals: a value that the reference has, one that is computed from it, one that is tried without knowing it, all
+# values of a link at once, whole elements of the reference.
+KNOWN, SOLVED, TRIED, TOGETHER, REWRITTEN = range(5)
 
 
 def text_of(source: Source, start: int) -> str:

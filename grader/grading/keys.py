@@ -12,6 +12,9 @@ MAX_POINTS = 1_000_000
 _DECIMALS = 4  # of points: gradebooks store them as whole numbers of ten-thousandths
 
 
+Level = Literal["none", "place", "cause", "edit"]  # how much a hint tells
+
+
 class KeyTable(NamedTuple):
     """A table of the rubric: what one is called, and its keys."""
 
@@ -144,12 +147,24 @@ RUBRIC = KeyTable(
         "points": _POINTS,
         "answers": _ANSWERS,
         "without_urdf": toml_type(Literal["failed", "manual"]),
+        "hints": toml_type(Level),
         "part": _rows(PART),
         "criterion": _rows(CRITERION),
         "evidence": _rows(EVIDENCE),
         "late": _table(LATE.schema),
     },
-    optional=("reference", "urdf", "package", "folders", "points", "answers", "without_urdf", "evidence", "late"),
+    optional=(
+        "reference",
+        "urdf",
+        "package",
+        "folders",
+        "points",
+        "answers",
+        "without_urdf",
+        "hints",
+        "evidence",
+        "late",
+    ),
 )
 
 

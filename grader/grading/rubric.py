@@ -12,6 +12,7 @@ from grader.checks.manual import answered
 from grader.checks.registry import Check
 from grader.errors import InputError, RubricError
 from grader.files.reading import read_capped, sha256_of
+from grader.grading.keys import Level
 from grader.grading.toml_lines import Path as TomlPath
 from grader.grading.toml_lines import key_lines, line_of
 from grader.grading.validation import BoundCarried, BoundCheck, TomlRow, Validation
@@ -90,7 +91,7 @@ class Rubric:
 
     `folders` are the names of the lab's folder in a repository of several labs.
     `without_urdf` says what the criteria of the URDF are if there is evidence, but no URDF: "failed", or "manual" for manual
-    grading. It is empty where the rubric does not say, which means "failed".
+    grading. It is empty where the rubric does not say, which means "failed". `hints` is the most that hints tell.
     """
 
     id: str
@@ -107,6 +108,7 @@ class Rubric:
     answers: str = ""
     folders: tuple[str, ...] = ()
     without_urdf: str = ""
+    hints: Level = "cause"
 
     @property
     def sha256(self) -> str:
@@ -193,6 +195,7 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
         rubric.get("answers", ""),
         rubric.get("folders", ()),
         rubric.get("without_urdf", ""),
+        rubric.get("hints", "cause"),
     )
 
 

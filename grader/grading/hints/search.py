@@ -1,6 +1,6 @@
 """Search the edits that make failed criteria pass: single ones first, then pairs, within a budget of gradings."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from itertools import combinations
 from typing import NamedTuple
@@ -16,19 +16,24 @@ from grader.submission.editing import content
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 
-_MAX_ROUNDS = 4
 _MAX_OPTIONS = 4  # edits that are proven for one criterion, to choose the best
 _MAX_PAIRS = 60
 _MAX_REPAIRED = 3  # edits that make a criterion pass and others fail, which a second edit may repair
 
 
+_UNION = Proposal((), "", "")  # of edits that are proposed already
+
+
 class Found(NamedTuple):
-    """A proven edit of the submission as it is, and the criteria that pass with it."""
+    """A proven edit of the submission as it is, and the points of the criteria that pass with it.
+
+    `after` are earlier edits that it includes, because it needs them.
+    """
 
     proposal: Proposal
     edits: Edits
-    gains: tuple[str, ...]
-    results: Results
+    gains: Mapping[str, Decimal]
+    after: "tuple[Found, ...]" = ()
 
 
 class Option(NamedTuple):
@@ -46,35 +51,33 @@ class Search:
         self.reference = reference
         self.found: list[Found] = []
         self.final = trials.start
+        self._known: dict[Edits, list[Option]] = {}
         self._criteria = {criterion.id: criterion for criterion in trials.rubric.criteria}
 
     def run(self) -> "Search":
         """Search until nothing more is found, or the budget is spent."""
         try:
-            for _ in range(_MAX_ROUNDS):
-                if not self._round(self.final):
-                    break
+            for ranks in (range(REWRITTEN), range(REWRITTEN + 1), range(REWRITTEN)):
+                while self._round(self.final, ranks):
+                    pass
             self._combine()
         except OutOfBudget:
             pass
         return self
 
-    def _round(self, state: State) -> bool:
+    def _round(self, state: State, ranks: range) -> bool:
         """Find edits of a state for as many of its failed criteria as possible; return whether there were any."""
         wanted = self._by_cost(state.results)
         if not wanted:
             return False
-        options = self._options(state, wanted)
+        options = self._known.get(state.edits) or self._options(state, wanted)
+        self._known = {state.edits: options}
         taken: Edits = ()
         current = state
         for name in wanted:
             if current.results[name].outcome.status == "passed":
                 continue
-            best = (
-                self._best(state, name, options)
-                or self._repaired(state, name, options)
-                or self._pair(state, name, options)
-            )
+            best = self._best_of(state, name, options, ranks)
             if best is None or not self._prove(state, best, name):
                 continue
             together = self.trials.applied(state, (*taken, *best.edits))
@@ -118,59 +121,56 @@ class Search:
         for proposal in self._proposals(state, wanted):
             passes = frozenset(self.trials.passing(state, proposal.edits, wanted))
             options.append(Option(proposal, passes))
-            if (
-                len(passes) == len(wanted)
-                and proposal.rank < REWRITTEN
-                and self._proven(state, proposal.edits, wanted[0])
-            ):
+            if len(passes) == len(wanted) and proposal.rank <= TRIED and self._proven(state, proposal, wanted[0]):
                 break
         return options
 
-    def _best_of(self, state: State, name: str, options: Sequence[Option]) -> Proposal | None:
-        """Return a single edit, else two, else one that takes whole elements of the reference."""
-        edits = [option for option in options if option.proposal.rank < REWRITTEN]
-        rewrites = [option for option in options if option.proposal.rank == REWRITTEN]
-        return (
-            self._best(state, name, edits)
-            or self._repaired(state, name, edits)
-            or self._pair(state, name, edits)
-            or self._best(state, name, rewrites)
-        )
+    def _best_of(self, state: State, name: str, options: Sequence[Option], ranks: range) -> Proposal | None:
+        """Return a single edit, or two where these gain more; else all values of a link, or whole elements of the reference."""
+        passing = [option for option in options if name in option.passes]
+        single = [option for option in passing if option.proposal.rank <= TRIED]
+        whole = [option for option in passing if TRIED < option.proposal.rank in ranks]
+        best = self._best(state, name, single)
+        more = [option for option in single if best is None or _promised(state.results, option) > best.gain]
+        repaired = self._repaired(state, name, more)
+        if repaired is not None and (best is None or repaired.gain > best.gain):
+            best = repaired
+        found = best or self._best(state, name, whole) or self._pair(state, name, options)
+        return found.proposal if found is not None else None
 
-    def _best(self, state: State, name: str, options: Sequence[Option]) -> Proposal | None:
+    def _best(self, state: State, name: str, options: Iterable[Option]) -> "_Proven | None":
         """Return the edit with which a criterion passes, nothing is lost, and most points are gained; of equals the smallest."""
-        passing = sorted((option for option in options if name in option.passes), key=_promise(state.results))
-        best: tuple[Decimal, int, int, Proposal] | None = None
-        for option in passing[:_MAX_OPTIONS]:
-            after = self._proven(state, option.proposal.edits, name)
-            if after is not None:
-                gain = _score(after.results), -option.proposal.rank, -option.proposal.size, option.proposal
-                best = max(best, gain, key=lambda found: found[:3]) if best is not None else gain
-        return best[3] if best is not None else None
+        found: list[_Proven] = []
+        for option in sorted(options, key=lambda option: _promise(state.results, option))[:_MAX_OPTIONS]:
+            proven = self._proven(state, option.proposal, name)
+            if proven is not None:
+                found.append(proven)
+        return min(found, key=lambda one: (-one.gain, one.proposal.rank, one.proposal.size), default=None)
 
-    def _proven(self, state: State, edits: Edits, name: str) -> State | None:
-        after = self.trials.applied(state, edits)
+    def _proven(self, state: State, proposal: Proposal, name: str) -> "_Proven | None":
+        after = self.trials.applied(state, proposal.edits)
         if after is None or after.results[name].outcome.status != "passed":
             return None
-        return after if loses_nothing(state.results, after.results) else None
+        if not loses_nothing(state.results, after.results):
+            return None
+        return _Proven(proposal, _score(after.results) - _score(state.results))
 
-    def _repaired(self, state: State, name: str, options: Sequence[Option]) -> Proposal | None:
+    def _repaired(self, state: State, name: str, options: Iterable[Option]) -> "_Proven | None":
         """Return two edits: the first makes a criterion pass and others fail, which the second repairs."""
-        passing = sorted((option for option in options if name in option.passes), key=_promise(state.results))
-        for option in [option for option in passing if option.proposal.rank < TRIED][:_MAX_REPAIRED]:
+        likely = [option for option in options if option.proposal.rank < TRIED]
+        for option in sorted(likely, key=lambda option: _promise(state.results, option))[:_MAX_REPAIRED]:
             first = option.proposal
             middle = self.trials.applied(state, first.edits)
-            if middle is None:
-                continue
-            broken = [other for other in _worse(state.results, middle.results) if other in middle.results]
-            for second in self._options(middle, broken) if broken else ():
-                if len(second.passes) == len(broken):
+            broken = _worse(state.results, middle.results) if middle is not None else []
+            for second in self._options(middle, broken) if middle is not None and broken else ():
+                if len(second.passes) == len(broken) and second.proposal.rank <= TRIED:
                     edits = _joined(state.submission, first.edits, second.proposal.edits)
-                    if self._proven(state, edits, name):
-                        return _pair_of(first, second.proposal, edits)
+                    proven = self._proven(state, _pair_of(first, second.proposal, edits), name)
+                    if proven is not None:
+                        return proven
         return None
 
-    def _pair(self, state: State, name: str, options: Sequence[Option]) -> Proposal | None:
+    def _pair(self, state: State, name: str, options: Sequence[Option]) -> "_Proven | None":
         """Return two edits of one link that make a criterion pass together."""
         urdf = state.submission.urdf
         robot = urdf.reading.robot if isinstance(urdf, Read) else None
@@ -184,41 +184,66 @@ class Search:
         ]
         pairs = (pair for pair in combinations(plausible, 2) if pair[0].link == pair[1].link)
         for _, (first, second) in zip(range(_MAX_PAIRS), pairs, strict=False):
-            edits = (*first.edits, *second.edits)
-            if self.trials.passing(state, edits, (name,)) and self._proven(state, edits, name):
-                return _pair_of(first, second, edits)
+            pair = _pair_of(first, second, (*first.edits, *second.edits))
+            proven = self._proven(state, pair, name) if self.trials.passing(state, pair.edits, (name,)) else None
+            if proven is not None:
+                return proven
         return None
 
     def _prove(self, state: State, proposal: Proposal, name: str) -> bool:
-        """Add a proven edit of the submission as it is: the edit alone, else together with those before it."""
-        start = self.trials.start
-        together = _joined(start.submission, state.edits, proposal.edits)
-        alone = tuple(edit for edit in together if edit not in state.edits)
-        is_apart = len(alone) + len(state.edits) == len(together)
-        for edits in ((alone,) if is_apart else ()) + (together,):
-            after = self.trials.applied(start, edits, whole=True)
-            if after is None or not loses_nothing(start.results, after.results):
-                continue
-            gains = gained(start.results, after.results)
-            if name in gains:
-                self.found.append(Found(proposal, edits, tuple(gains), after.results))
+        """Add a proven edit of the submission as it is: the edit alone, else together with one or all of those before it."""
+        submission = self.trials.start.submission
+        all_edits = _joined(submission, state.edits, proposal.edits) if state.edits else proposal.edits
+        alone = tuple(edit for edit in all_edits if edit not in state.edits)
+        if len(alone) + len(state.edits) == len(all_edits):
+            if self._add(proposal, alone, name, ()):
                 return True
-        return False
+            for before in list(self.found):
+                if self._add(proposal, _joined(submission, before.edits, ()) + alone, name, (before,)):
+                    return True
+        return self._add(proposal, all_edits, name, tuple(self.found))
+
+    def _add(self, proposal: Proposal, edits: Edits, name: str, after: tuple[Found, ...]) -> bool:
+        start = self.trials.start
+        state = self.trials.applied(start, edits, whole=True)
+        if state is None or not loses_nothing(start.results, state.results):
+            return False
+        gains = gained(start.results, state.results)
+        if name in gains:
+            self.found.append(Found(proposal, edits, gains, after))
+        return name in gains
 
     def _combine(self) -> None:
-        """Find which edits together make a criterion pass that no single one does."""
+        """Find which of the proven edits make a criterion pass together that no single one does."""
+        start = self.trials.start
+        for name in self._by_cost(start.results):
+            if any(name in found.gains for found in self.found) or self.final.results[name].outcome.status != "passed":
+                continue
+            for first, second in combinations(self.found, 2):
+                edits = tuple(dict.fromkeys((*first.edits, *second.edits)))
+                if not first.after and not second.after and self._add(_UNION, edits, name, (first, second)):
+                    break
+            else:
+                self._add(_UNION, self.final.edits, name, tuple(self.found))
 
 
 def _about_robot(criteria: Iterable[Criterion]) -> Iterator[Criterion]:
     return (criterion for criterion in criteria if criterion.check.subject == "robot")
 
 
-def _promise(results: Results) -> Callable[[Option], tuple[Decimal, int, int]]:
-    def key(option: Option) -> tuple[Decimal, int, int]:
-        points = sum((results[name].criterion.points for name in option.passes), Decimal(0))
-        return -points, option.proposal.rank, option.proposal.size
+class _Proven(NamedTuple):
+    """An edit of a state that is proven, and the points that it gains."""
 
-    return key
+    proposal: Proposal
+    gain: Decimal
+
+
+def _promised(results: Results, option: Option) -> Decimal:
+    return sum((results[name].criterion.points for name in option.passes), Decimal(0))
+
+
+def _promise(results: Results, option: Option) -> tuple[Decimal, int, int]:
+    return -_promised(results, option), option.proposal.rank, option.proposal.size
 
 
 def _score(results: Results) -> Decimal:
@@ -234,7 +259,8 @@ def _worse(before: Results, after: Results) -> list[str]:
 
 
 def _pair_of(first: Proposal, second: Proposal, edits: Edits) -> Proposal:
-    return Proposal(edits, f"{first.named} and {second.named}", f"{first.said} and {second.said}", "", first.link)
+    leading = tuple(sorted(edits, key=lambda edit: edit not in first.edits))
+    return Proposal(leading, f"{first.named} and {second.named}", f"{first.said} and {second.said}", "", first.link)
 
 
 def _joined(submission: Submission, first: Sequence[Edit], second: Sequence[Edit]) -> Edits:

@@ -1,6 +1,7 @@
 """Try edits of a submission: which criteria pass with them, and whether the whole proves it."""
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Mapping
+from decimal import Decimal
 from typing import NamedTuple
 
 from grader.errors import InputError
@@ -110,15 +111,10 @@ def loses_nothing(before: Results, after: Results) -> bool:
     return True
 
 
-def gained(before: Results, after: Results) -> list[str]:
-    """Return the criteria that pass now and did not before."""
-    return [
-        name
+def gained(before: Results, after: Results) -> dict[str, Decimal]:
+    """Return the criteria that pass now and did not before, with the points that this gives."""
+    return {
+        name: result.points - before[name].points
         for name, result in after.items()
         if result.outcome.status == "passed" and before[name].outcome.status in ("failed", "skipped")
-    ]
-
-
-def points_of(results: Results, names: Iterable[str]) -> object:
-    """Return the points that these criteria do not have yet."""
-    return sum(results[name].criterion.points - results[name].points for name in names)
+    }

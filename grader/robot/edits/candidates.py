@@ -3,11 +3,14 @@
 from collections.abc import Iterable, Iterator, Sequence
 
 from grader.edits import REWRITTEN, Proposal
-from grader.robot.edits.draft import Draft, child_of
+from grader.robot.edits.draft import Draft, Edits, child_of
+from grader.robot.edits.families import written
 from grader.robot.edits.poses import Poses
 from grader.robot.edits.structure import structure_proposals
-from grader.robot.edits.values import joint_values, visual_values, with_values
+from grader.robot.edits.values import joint_values, together, values_of, visual_values, with_values
 from grader.source import Location
+
+_LARGE = 3.0  # metres: no shape of a robot for a desk is as large
 
 
 def proposals(
@@ -24,6 +27,8 @@ def proposals(
     """
     poses = Poses(draft.robot, reference.robot, anchors)
     found: dict[frozenset[object], Proposal] = {}
+    for proposal in other_units(draft):
+        found.setdefault(frozenset(proposal.edits), proposal)
     for link in dict.fromkeys((*moved, *shown)):
         for proposal in _of_link(draft, reference, poses, link, is_moved=link in moved, is_shown=link in shown):
             if proposal.edits and all(edit.old != edit.new or edit.renamed for edit in proposal.edits):
@@ -31,11 +36,7 @@ def proposals(
     lines = {(place.path, place.line) for place in places}
     return sorted(
         found.values(),
-        key=lambda proposal: (
-            proposal.rank >= REWRITTEN,
-            (proposal.edits[0].path, proposal.edits[0].line) not in lines,
-            proposal.rank,
-        ),
+        key=lambda proposal: (proposal.rank, (proposal.edits[0].path, proposal.edits[0].line) not in lines),
     )
 
 
@@ -49,7 +50,27 @@ def _of_link(
         yield from moved_offsets(draft, poses, link)
     yield from structure_proposals(draft, reference, link, is_moved=is_moved)
     if is_moved:
+        yield from together(draft, reference, poses, link)
         yield from as_in_reference(draft, reference, link)
+
+
+def other_units(draft: Draft) -> Iterator[Proposal]:
+    """Convert all lengths to metres: a robot in centimetres or millimetres."""
+    slots = [
+        (element, name, values_of(element.get(name) or ""))
+        for element in draft.root.iter("origin", "box", "cylinder", "sphere")
+        for name in ("xyz", "size", "radius", "length")
+        if element.get(name) is not None
+    ]
+    if not any(value >= _LARGE for element, _, values in slots for value in values if element.tag != "origin"):
+        return
+    for factor, unit in ((100.0, "centimetres"), (1000.0, "millimetres")):
+        edits: Edits = ()
+        for element, name, values in slots:
+            ways = draft.set(element, name, written(tuple(value / factor for value in values))) if any(values) else []
+            edits += ways[0] if ways else ()
+        if edits:
+            yield Proposal(edits, f"the unit of all lengths: {unit}, not metres", "convert all lengths to metres")
 
 
 def moved_offsets(draft: Draft, poses: Poses, link: str) -> Iterator[Proposal]:
@@ -58,7 +79,7 @@ def moved_offsets(draft: Draft, poses: Poses, link: str) -> Iterator[Proposal]:
     visual = child_of(own, "visual") if own is not None else None
     if joint is None or visual is None:
         return
-    frames = list(poses.joint(link, "origin", "xyz"))[:1]
+    frames = list(poses.joint(link, "origin", "xyz"))[:1] if poses.is_shown_right(link) else []
     for frame in frames:
         for placed in with_values(draft, joint, "origin", {"xyz": frame}):
             for shown in with_values(draft, visual, "origin", {"xyz": poses.shown_offset(link)}):

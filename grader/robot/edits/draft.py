@@ -1,5 +1,6 @@
 """The elements of a robot, each with its place in the text, and the edits of them."""
 
+import re
 from collections.abc import Iterator
 
 from grader.edits import merged, text_of, with_attribute, with_child, with_element, with_sibling, without_element
@@ -10,6 +11,7 @@ from grader.source import Edit, Source
 from grader.xml.parsing import Element
 
 Edits = tuple[Edit, ...]
+_COMMENT = re.compile(r"[ \t]*<!--.*?-->", re.DOTALL)
 _ESCAPES = (("&", "&amp;"), ("<", "&lt;"), ('"', "&quot;"))
 
 
@@ -56,9 +58,9 @@ class Draft:
         return next((found for found in everywhere if found.get("name") == name and len(found)), None)
 
     def text(self, element: Element) -> str:
-        """Return an element as it is written in the file."""
+        """Return an element as it is written in the file, without comments."""
         source, start = self.source.element(self._tags[element])
-        return text_of(source, start)
+        return _COMMENT.sub("", text_of(source, start))
 
     def line(self, element: Element) -> int:
         """Return the line of an element, from 1."""

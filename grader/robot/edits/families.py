@@ -12,6 +12,7 @@ COMPONENTS = {
     "rpy": ("the roll", "the pitch", "the yaw"),
     "size": ("the length (x)", "the width (y)", "the height (z)"),
     "rgba": ("red", "green", "blue", "the opacity"),
+    "axis": ("x of the axis", "y of the axis", "z of the axis"),
 }
 _LENGTHS = ("xyz", "size", "radius", "length", "scale")
 _ANGLE_STEP = 5.0  # degrees: what is written in degrees is a multiple
@@ -19,7 +20,7 @@ _CLOSE = 3e-3  # metres, radians, channels of a colour
 
 
 class Slot(NamedTuple):
-    """An attribute with numbers: its name, what is around it, and the half lengths of the shapes there with their names."""
+    """Numbers of one attribute, "axis" for those of an axis, and the half lengths of the shapes there with their names."""
 
     attribute: str
     values: Values
@@ -41,21 +42,21 @@ class Change(NamedTuple):
 def negated(slot: Slot) -> Iterator[Change]:
     """Negate one number, or all: a mirrored wheel, an axis that points backward, an offset to the wrong side."""
     nonzero = [index for index, value in enumerate(slot.values) if value]
-    if slot.attribute not in ("xyz", "rpy"):
+    if slot.attribute not in ("xyz", "rpy", "axis"):
         return
     for index in nonzero:
         name = slot.component(index)
         yield Change(_with(slot.values, {index: -slot.values[index]}), f"the sign of {name}", f"negate {name}{{}}")
     if len(nonzero) > 1:
         values = tuple(-value if value else value for value in slot.values)
-        yield Change(values, f"the direction of {slot.attribute}", f"negate {slot.attribute}{{}}")
+        yield Change(values, f"the direction of {_called(slot)}", f"negate {_called(slot)}{{}}")
 
 
 def in_radians(slot: Slot) -> Iterator[Change]:
     """Convert degrees to radians: rpy="-90 0 0"."""
     if slot.attribute == "rpy" and any(value and not value % _ANGLE_STEP for value in slot.values):
         yield Change(
-            tuple(map(radians, slot.values)), "the unit of rpy: degrees, not radians", "convert rpy{} to radians"
+            tuple(map(radians, slot.values)), "the unit of rpy{}: degrees, not radians", "convert rpy{} to radians"
         )
 
 
@@ -65,18 +66,20 @@ def in_metres(slot: Slot) -> Iterator[Change]:
         large = [index for index, value in enumerate(slot.values) if abs(value) >= 1.0]
         if large:
             values = tuple(value / factor for value in slot.values)
-            yield Change(values, f"the unit: {unit}, not metres", f"convert {slot.attribute}{{}} to metres")
+            yield Change(
+                values, f"the unit of {_called(slot)}{{}}: {unit}, not metres", f"convert {_called(slot)}{{}} to metres"
+            )
         if large and len(large) < len([value for value in slot.values if value]):
             values = _with(slot.values, {index: slot.values[index] / factor for index in large})
             names = " and ".join(map(slot.component, large))
-            yield Change(values, f"the unit of {names}: {unit}, not metres", f"convert {names}{{}} to metres")
+            yield Change(values, f"the unit of {names}{{}}: {unit}, not metres", f"convert {names}{{}} to metres")
 
 
 def in_shares(slot: Slot) -> Iterator[Change]:
     """Convert channels of a colour from 0..255 to 0..1: rgba="0 153 0 1"."""
     if slot.attribute == "rgba" and any(value > 1.0 for value in slot.values):
         values = tuple(round(value / 255.0, 3) for value in slot.values[:3])
-        yield Change((*values, *(min(1.0, value) for value in slot.values[3:])), "the range of the colour: 0..255, not 0..1", "write the colour{} in 0..1")  # fmt: skip
+        yield Change((*values, *(min(1.0, value) for value in slot.values[3:])), "the range of the colour{}: 0..255, not 0..1", "write the colour{} in 0..1")  # fmt: skip
 
 
 def swapped(slot: Slot) -> Iterator[Change]:
@@ -85,7 +88,7 @@ def swapped(slot: Slot) -> Iterator[Change]:
         if slot.values[one] != slot.values[other]:
             names = f"{slot.component(one)} and {slot.component(other)}"
             values = _with(slot.values, {one: slot.values[other], other: slot.values[one]})
-            yield Change(values, f"the order: {names} are exchanged", f"exchange {names}{{}}")
+            yield Change(values, f"the order of {names}{{}}", f"exchange {names}{{}}")
 
 
 def halved(slot: Slot) -> Iterator[Change]:
@@ -95,10 +98,14 @@ def halved(slot: Slot) -> Iterator[Change]:
             for index in range(len(slot.values)):
                 name = slot.component(index)
                 value = slot.values[index] * factor
-                yield Change(_with(slot.values, {index: value}), f"the size: {name}", f"{action} {name}{{}}")
+                yield Change(
+                    _with(slot.values, {index: value}),
+                    f"{name}{{}}, which is {'half' if factor > 1 else 'double'} of what it should be",
+                    f"{action} {name}{{}}",
+                )
             if len(slot.values) > 1:
                 values = tuple(value * factor for value in slot.values)
-                yield Change(values, f"the size: {'half' if factor > 1 else 'double'} of the full lengths", f"{action} {slot.attribute}{{}}")  # fmt: skip
+                yield Change(values, f"the size{{}}, which is {'half' if factor > 1 else 'double'} of the full lengths", f"{action} {_called(slot)}{{}}")  # fmt: skip
 
 
 def half_shapes(slot: Slot) -> Iterator[Change]:
@@ -109,7 +116,7 @@ def half_shapes(slot: Slot) -> Iterator[Change]:
                 component = slot.component(index)
                 values = _with(slot.values, {index: value + sign * half})
                 excess = "" if sign > 0 else " too much"
-                yield Change(values, f"{component}, which {word} half of {name}{excess}", f"{verb} half of {name} {'to' if sign > 0 else 'from'} {component}{{}}")  # fmt: skip
+                yield Change(values, f"{component}{{}}, which {word} half of {name}{excess}", f"{verb} half of {name} {'to' if sign > 0 else 'from'} {component}{{}}")  # fmt: skip
 
 
 Family = Callable[[Slot], Iterator[Change]]
@@ -126,10 +133,12 @@ def named(slot: Slot, wanted: Values) -> Change:
             if is_close(change.values, wanted):
                 return change
     if len(slot.values) != len(wanted):
-        return Change(wanted, slot.attribute, f"set {slot.attribute}{{}} to {written(wanted)}")
+        return Change(
+            wanted, f"{slot.attribute}{{}}, which ROS 2 cannot read", f"set {slot.attribute}{{}} to {written(wanted)}"
+        )
     off = [index for index, (a, b) in enumerate(zip(slot.values, wanted, strict=True)) if abs(a - b) > _CLOSE / 10]
     values = _with(slot.values, {index: wanted[index] for index in off})
-    names = " and ".join(map(slot.component, off)) or slot.attribute
+    names = " and ".join(map(slot.component, off)) or _called(slot)
     to = " and ".join(number(wanted[index]) for index in off)
     return Change(values, names, f"set {names}{{}} to {to}")
 
@@ -148,6 +157,10 @@ def number(value: float) -> str:
     """Return a number in as few characters as a robot that is built by hand needs."""
     text = f"{round(value, 6) + 0.0:.6g}"
     return text if "e" not in text else f"{value:.6f}".rstrip("0").rstrip(".")
+
+
+def _called(slot: Slot) -> str:
+    return slot.attribute if slot.attribute in ("xyz", "rpy") else f"the {slot.attribute}"
 
 
 def _with(values: Values, others: dict[int, float]) -> Values:

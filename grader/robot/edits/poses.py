@@ -9,6 +9,8 @@ from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Cylinder, Robot, Sphere, Visual
 from grader.robot.transforms import Transform, minus, rotation_from_rpy
 
+_SAME = 2e-3  # metres
+
 
 class Poses:
     """A robot and the reference, each with its joints at 0; `anchors` are links in whose frames the lab measures."""
@@ -38,6 +40,13 @@ class Poses:
         if index < len(self._visuals(link)):
             for pose in self._centres(link, link):
                 yield pose.translation if attribute == "xyz" else pose.rpy
+
+    def is_shown_right(self, link: str) -> bool:
+        """Return whether what a link shows is where the reference shows it."""
+        own = [visual.origin.xyz for visual in self._visuals(link)[:1]]
+        return any(
+            max(map(abs, minus(pose.translation, place))) < _SAME for pose in self._centres(link, link) for place in own
+        )
 
     def shown_offset(self, link: str) -> Values:
         """Return the position of the reference's visual of a link in its frame."""

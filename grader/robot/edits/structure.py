@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from itertools import islice
 
-from grader.edits import REWRITTEN, Proposal
+from grader.edits import KNOWN, REWRITTEN, Proposal
 from grader.names import closest
 from grader.robot.edits.draft import Draft, Edits, child_of, end_of
 from grader.robot.model import Material
@@ -18,6 +18,7 @@ def structure_proposals(draft: Draft, reference: Draft, link: str, *, is_moved: 
         yield from missing_link(draft, reference, link)
     else:
         yield from duplicates(draft, link)
+        yield from parts(draft, reference, link)
         yield from shape(draft, reference, link)
         yield from material(draft, reference, link)
     if is_moved and (draft.link(link) is not None or draft.joint_of(link) is not None):
@@ -37,12 +38,37 @@ def missing_link(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal
             yield from (
                 Proposal(edits, "the name", "correct the name{}", of, link) for edits in draft.set(own, "name", link)
             )
+    twice = [other for other in draft.links() if others.count(other.get("name") or "") > 1]
+    for second in twice[-1:]:
+        for edits in draft.set(second, "name", link):
+            yield Proposal(
+                edits,
+                "the name{}, which another link has",
+                "correct the name{}",
+                f"the link that should be {link!r}",
+                link,
+            )
     missing = reference.link(link)
     if missing is not None:
         text, other = reference.text(missing), reference.joint_of(link)
         if draft.joint_of(link) is None and other is not None:
             text += f"\n\n{reference.text(other)}"
-        yield Proposal(draft.append(text), f"the link {link!r}, which is missing", f"add the link {link!r}", "", link)
+        rank = REWRITTEN if near else KNOWN
+        edits = (*draft.append(text), *_materials(draft, reference, missing))
+        yield Proposal(edits, f"the link {link!r}, which is missing", f"add the link {link!r}", "", link, rank)
+
+
+def _materials(draft: Draft, reference: Draft, link: Element) -> Edits:
+    """Return the edits that define the materials of a link of the reference where the robot has none of their names."""
+    names = [found.get("name") or "" for found in link.iter("material")]
+    texts = [
+        reference.text(found)
+        for name in names
+        if draft.material(name) is None
+        for found in [reference.material(name)]
+        if found is not None
+    ]
+    return draft.insert(draft.root, "\n".join(texts)) if texts else ()
 
 
 _ENDS = ("parent", "child")
@@ -84,7 +110,9 @@ def joint(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
         edits = [
             draft.set(end, "link", name)[0] for end, name in zip(ends, (child, parent), strict=True) if end is not None
         ]
-        yield Proposal(sum(edits, ()), "parent and child, which are exchanged", "exchange parent and child{}", of, link)
+        yield Proposal(
+            sum(edits, ()), "parent and child{}, which are exchanged", "exchange parent and child{}", of, link
+        )
     if other is None:
         if own.get("type") != "fixed":
             yield from (
@@ -109,7 +137,7 @@ def joint_end(draft: Draft, own: Element, role: str, wanted: str, link: str) -> 
     if end is None:
         yield Proposal(
             draft.insert(own, f'<{role} link="{wanted}"/>'),
-            f"the {role}, which is missing",
+            f"the {role}{{}}, which is missing",
             f"name the {role}{{}}",
             of,
             link,
@@ -134,7 +162,11 @@ def loose(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
         if same is not None:
             yield Proposal(draft.replace(same, reference.text(other)), "the joint", "correct the joint{}", of, link)
         yield Proposal(
-            draft.append(reference.text(other)), "the joint, which is missing", f"add the joint of {link!r}", "", link
+            draft.append(reference.text(other)),
+            "the joint{}, which is missing",
+            "add the joint{}",
+            f"link {link!r}",
+            link,
         )
 
 
@@ -149,12 +181,12 @@ def shape(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
         shown = list(own.iterchildren("visual"))
         if shown:
             edits: Edits = sum((draft.remove(found) for found in shown), ())
-            yield Proposal(edits, "the visual, which should not be there", f"remove the visual of {link!r}", "", link)
+            yield Proposal(edits, "the visual{}, which should not be there", f"remove the visual of {link!r}", "", link)
         return
     if visual is None:
         yield Proposal(
             draft.insert(own, reference.text(wanted)),
-            "the visual, which is missing",
+            "the visual{}, which is missing",
             f"add the visual of {link!r}",
             "",
             link,
@@ -168,6 +200,14 @@ def shape(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
     )
 
 
+def parts(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
+    """Correct or remove what a link does not show: an inertial without mass, with which ROS 2 drops the visual."""
+    own, other = draft.link(link), reference.link(link)
+    for tag in ("inertial", "collision"):
+        if own is not None and other is not None:
+            yield from inner(draft, reference, own, other, tag, f"the link {link!r}", link)
+
+
 def inner(
     draft: Draft, reference: Draft, own: Element, other: Element, tag: str, of: str, link: str
 ) -> Iterator[Proposal]:
@@ -176,12 +216,12 @@ def inner(
     if wanted is None:
         if found is not None and tag not in ("origin", "axis"):
             yield Proposal(
-                draft.remove(found), f"the <{tag}>, which should not be there", f"remove the <{tag}>{{}}", of, link
+                draft.remove(found), f"the <{tag}>{{}}, which should not be there", f"remove the <{tag}>{{}}", of, link
             )
     elif found is None:
         yield Proposal(
             draft.insert(own, reference.text(wanted)),
-            f"the <{tag}>, which is missing",
+            f"the <{tag}>{{}}, which is missing",
             f"add the <{tag}>{{}}",
             of,
             link,
@@ -209,7 +249,7 @@ def material(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
         if used is None:
             yield Proposal(
                 draft.insert(visual, f'<material name="{known.name}"/>'),
-                "the material, which is missing",
+                "the material{}, which is missing",
                 "name the material{}",
                 of,
                 link,
@@ -225,12 +265,16 @@ def material(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
     defined = draft.material(name)
     if used is None:
         yield Proposal(
-            draft.insert(visual, definition), "the material, which is missing", "add the material{}", of, link
+            draft.insert(visual, definition), "the material{}, which is missing", "add the material{}", of, link
         )
         return
+    if name != wanted.name and draft.material(wanted.name) is None:
+        second = definition.replace(f'"{name}"', f'"{wanted.name}"', 1)
+        edits = (*draft.set(used, "name", wanted.name)[0], *draft.insert(draft.root, second))
+        yield Proposal(edits, "the material", "name another material{}, and define it", of, link)
     yield Proposal(
         draft.insert(draft.root, definition),
-        f"the material {name!r}, which is not defined under <robot>",
+        f"the material {name!r}{{}}, which is not defined under <robot>",
         "define the material{}",
         of,
         link,
@@ -240,7 +284,7 @@ def material(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
         if inside is None:
             yield Proposal(
                 draft.insert(found, f'<color rgba="{colour}"/>'),
-                "the colour, which is missing",
+                "the colour{}, which is missing",
                 "add the colour{}",
                 of,
                 link,

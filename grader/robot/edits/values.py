@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-from grader.edits import KNOWN, SOLVED, TRIED, Proposal
+from grader.edits import KNOWN, SOLVED, TOGETHER, TRIED, Proposal
 from grader.robot.edits.draft import Draft, Edits, child_of
 from grader.robot.edits.families import BLIND, Change, Slot, Values, is_close, named, written
 from grader.robot.edits.poses import Poses, shapes_of
@@ -46,11 +46,28 @@ def _proposals(draft: Draft, found: Sequence[Number], link: str) -> Iterator[Pro
                 yield from _changed(draft, number, change, link, TRIED)
 
 
+def together(draft: Draft, reference: Draft, poses: Poses, link: str) -> Iterator[Proposal]:
+    """Place a link as the reference does: the origin and axis of its joint and the origin of its visual, all at once."""
+    edits: Edits = ()
+    for number in (*_of_joint(draft, reference, poses, link), *_of_visuals(draft, reference, poses, link)):
+        slot = _slot(number, ())
+        known = [values for values, rank in number.wanted if rank == KNOWN]
+        if known and not is_close(slot.values, known[0]):
+            ways = with_values(draft, number.owner, number.tag, {number.attribute: known[0]})
+            edits += ways[0] if ways else ()
+    if len(edits) > 1:
+        of = f"the link {link!r}"
+        yield Proposal(
+            edits, "the frame, and the shape in it", "correct the frame{}, and the shape in it", of, link, TOGETHER
+        )
+
+
 def _slot(number: Number, halves: tuple[tuple[float, str], ...]) -> Slot:
     child = child_of(number.owner, number.tag) if number.tag else number.owner
     text = child.get(number.attribute) if child is not None else None
     default = _DEFAULTS.get((number.tag, number.attribute), ())
-    return Slot(number.attribute, values_of(text) if text is not None else default, halves)
+    name = "axis" if number.tag == "axis" else number.attribute
+    return Slot(name, values_of(text) if text is not None else default, halves)
 
 
 def values_of(text: str) -> Values:

@@ -1,0 +1,61 @@
+"""Reports with hints, and submissions with the edits of all hints."""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+from grader.errors import InputError
+from grader.grading.grade import open_reference
+from grader.grading.hints.search import Found, Search
+from grader.grading.hints.trials import Edits, Trials, is_lost
+from grader.grading.hints.words import message
+from grader.grading.keys import Level
+from grader.grading.report import Hint, Report
+from grader.grading.rubric import Rubric
+from grader.robot.edits.draft import Draft
+from grader.source import Location
+from grader.submission.submission import Submission
+from grader.submission.urdf import Read
+
+
+class Hinted(NamedTuple):
+    """A report with hints, and the edits of all hints that fit together."""
+
+    report: Report
+    edits: Edits
+
+
+def hinted(report: Report, submission: Submission, level: Level) -> Hinted:
+    """Return a report with proven hints for the criteria that failed."""
+    results = {result.criterion.id: result for result in report.results}
+    if level == "none" or not any(map(is_lost, report.results)):
+        return Hinted(report, ())
+    search = Search(Trials(report.rubric, submission, results), _reference(report.rubric)).run()
+    hints = {
+        name: hint
+        for found in reversed(search.found)
+        for hint in [_hint(found, level, submission)]
+        for name in found.gains
+    }
+    with_hints = [
+        result._replace(hints=(hints[result.criterion.id],)) if result.criterion.id in hints else result
+        for result in report.results
+    ]
+    return Hinted(replace(report, results=tuple(with_hints)), search.final.edits)
+
+
+def _hint(found: Found, level: Level, submission: Submission) -> Hint:
+    first = found.edits[0]
+    at = Location(first.path, first.line, first.column)
+    edits = found.edits if level == "edit" else ()
+    return Hint(message(found, level, submission.path), at, found.gains, edits, found.proposal.said)
+
+
+def _reference(rubric: Rubric) -> Draft | None:
+    """Return the robot of a rubric's reference solution, if it has one that can be read."""
+    if not rubric.reference:
+        return None
+    try:
+        urdf = open_reference(rubric).urdf
+    except InputError:
+        return None
+    return Draft.of(urdf.reading) if isinstance(urdf, Read) else None

@@ -1,0 +1,84 @@
+"""What a hint says, at each level: nothing, where to look, what is wrong there, or the edit."""
+
+from collections.abc import Mapping
+from decimal import Decimal
+from typing import get_args
+
+from grader.grading.hints.search import Found
+from grader.grading.keys import Level
+from grader.source import Edit
+from grader.text import counted_points, enumerated
+
+LEVELS: tuple[Level, ...] = get_args(Level)
+_MAX_NAMED = 4  # criteria and edits that are named
+_MAX_TEXT = 240  # characters of a changed text
+
+
+def lower(one: Level, other: Level) -> Level:
+    """Return the level that tells less."""
+    return min(one, other, key=LEVELS.index)
+
+
+def message(found: Found, level: Level, main: str | None) -> str:
+    """Return the hint in one line; `main` is the file whose name needs no mention."""
+    own = _own_edits(found)
+    gains = {
+        name: points for name, points in found.gains.items() if own or not any(name in one.gains for one in found.after)
+    }
+    if not own:
+        text = f"The edits for {_after(found)} together"
+    elif level == "edit":
+        changes = [_change(edit, main) for edit in own[:_MAX_NAMED]]
+        changes += [f"{len(own) - _MAX_NAMED} more edits"] * (len(own) > _MAX_NAMED)
+        text = enumerated(changes, _MAX_NAMED + 1)
+    else:
+        text = f"look at {found.proposal.named if level == 'cause' else _quoted(own[0].old) or 'this place'} ({_where(own[0], main)})"
+    text = text[0].upper() + text[1:]
+    if own and found.after:
+        text += f", with the edits for {_after(found)}"
+    corrected = " with this corrected," if own and level != "edit" else ""
+    return f"{text}:{corrected} {_outcome(gains)}."
+
+
+def _own_edits(found: Found) -> list[Edit]:
+    """Return the edits that are not those of an earlier hint."""
+    if not found.proposal.edits:
+        return []
+    earlier = {edit for before in found.after for edit in before.edits}
+    return [edit for edit in found.edits if edit not in earlier]
+
+
+def _after(found: Found) -> str:
+    """Return earlier hints, each named by the criterion with most points that it makes pass."""
+    names = dict.fromkeys(max(before.gains, key=lambda name: before.gains[name]) for before in found.after)
+    return enumerated(list(names), _MAX_NAMED)
+
+
+def _outcome(gains: Mapping[str, Decimal]) -> str:
+    names = sorted(gains, key=lambda name: -gains[name])
+    points = sum(gains.values(), Decimal(0))
+    gain = f", +{counted_points(points)}" if points else ""
+    return f"{enumerated(names, _MAX_NAMED)} {'passes' if len(names) == 1 else 'pass'}{gain}"
+
+
+def _change(edit: Edit, main: str | None) -> str:
+    old, new, where = _quoted(edit.old), _quoted(edit.new), _where(edit, main)
+    if edit.renamed:
+        return f"rename `{edit.path}` to `{edit.renamed}`"
+    if not edit.old:
+        return f"insert {new} (after {where})"
+    if not edit.new:
+        return f"remove {old} ({where})"
+    return f"change {old} to {new} ({where})"
+
+
+def _where(edit: Edit, main: str | None) -> str:
+    return f"line {edit.line}" if edit.path == main else f"{edit.path}, line {edit.line}"
+
+
+def _quoted(text: str) -> str:
+    """Return a text of the file between backticks, in one line."""
+    line = " ".join(text.split()).replace("> <", "><")
+    if not line:
+        return ""
+    return f"`{line}`" if len(line) <= _MAX_TEXT else f"`{line[: _MAX_TEXT - 3]}...`"
