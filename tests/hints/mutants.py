@@ -5,6 +5,7 @@ The text is read here, not by the grader: a fault of its own reader must not hid
 
 import re
 from collections.abc import Iterable, Iterator
+from itertools import pairwise
 from math import degrees
 from typing import NamedTuple
 
@@ -119,7 +120,7 @@ def _of_numbers(text: str, start: int, end: int) -> Iterator[Change]:
         value = float(text[low:high])
         for family, other in _altered(value):
             yield family, low, high, f"{other:.6g}"
-    for (low, middle), (next_low, high) in zip(pieces, pieces[1:], strict=False):
+    for (low, middle), (next_low, high) in pairwise(pieces):
         yield "number exchanged", low, high, text[next_low:high] + text[middle:next_low] + text[low:middle]
 
 

@@ -13,7 +13,7 @@ from grader.grading.rubric import Rubric, load_rubric
 from grader.robot.edits.draft import Draft
 from grader.robot.frames import placed_by
 from grader.robot.kinematics import Configuration
-from grader.robot.model import Box, Cylinder, Sphere
+from grader.robot.model import Box, Cylinder, Sphere, Visual
 from grader.robot.shapes import half_width, is_empty
 from grader.robot.transforms import Vector
 from grader.submission.editing import with_files
@@ -85,9 +85,7 @@ def bases() -> Iterator[Base]:
         assert isinstance(urdf, Read)
         paths = [urdf.path]
         if urdf.is_expanded:
-            paths += [
-                path for path in submission.everything.files if path.endswith(".xacro") and path not in paths
-            ]
+            paths += [path for path in submission.everything.files if path.endswith(".xacro") and path not in paths]
         for path in paths:
             data = urdf.data if path == urdf.path else submission.everything.files[path].read(1 << 20)
             texts[data] += 1
@@ -120,8 +118,7 @@ def behaviour(submission: Submission) -> Behaviour:
             placed = placed_by(pose, visual.origin)
             if isinstance(shape, Box | Cylinder | Sphere):
                 extent = tuple(half_width(shape, placed.unrotate(axis)) for axis in _AXES)
-                colour = visual.material.rgba if visual.material is not None else (1.0, 0.0, 0.0, 1.0)
-                found[f"{link.name} {index}"] = (*placed.translation, *extent, *colour)
+                found[f"{link.name} {index}"] = (*placed.translation, *extent, *_colour(visual))
         joint = robot.parent_joints.get(link.name)
         if joint is not None and joint.type in ("continuous", "revolute", "prismatic", "planar", "floating"):
             axis = pose.rotate(joint.axis) if joint.axis is not None else ()
@@ -129,6 +126,11 @@ def behaviour(submission: Submission) -> Behaviour:
         if link.name in ("lidar", "base_footprint"):
             found[f"frame of {link.name}"] = pose.translation
     return found
+
+
+def _colour(visual: Visual) -> tuple[object, ...]:
+    rgba = visual.material.rgba if visual.material is not None else (1.0, 0.0, 0.0, 1.0)
+    return ("white", rgba[3]) if rgba[0] == rgba[1] == rgba[2] >= 0.75 else rgba
 
 
 def differences(one: Behaviour, other: Behaviour) -> list[str]:

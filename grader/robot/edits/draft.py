@@ -42,8 +42,8 @@ class Draft:
         return self.root.iterchildren("joint")
 
     def link(self, name: str) -> Element | None:
-        """Return the first link of this name."""
-        return next((link for link in self.links() if link.get("name") == name), None)
+        """Return the first link of this name; a link without a name has an empty one."""
+        return next((link for link in self.links() if (link.get("name") or "") == name), None)
 
     def joint_of(self, link: str) -> Element | None:
         """Return the parent joint of a link, also one whose parent does not exist."""
