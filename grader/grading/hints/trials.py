@@ -101,11 +101,6 @@ def _is_of_package(path: str) -> bool:
     return path.lower().endswith((".py", ".rviz", ".cfg", ".toml", ".yaml", "package.xml", ".launch", ".launch.xml"))
 
 
-def is_lost(result: Result) -> bool:
-    """Return whether a criterion has no points because of a mistake."""
-    return result.outcome.status in ("failed", "skipped") and not result.carried
-
-
 def is_worse(before: Result, after: Result) -> bool:
     """Return whether a criterion passed and does not any more, has fewer points, or is undecided now."""
     status = after.outcome.status
