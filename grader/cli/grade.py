@@ -1,5 +1,6 @@
 """grader grade: one submission against a rubric."""
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -8,6 +9,7 @@ from grader.cli.options import DEFAULT_RUBRIC, ArgOption, MaxSizeOption, PartOpt
 from grader.cli.output import TERMINAL, screen, warn, write_stderr
 from grader.errors import GraderError
 from grader.files.reading import URDF_LIMIT
+from grader.grading.levels import Level
 from grader.report.formats import Format, render
 from grader.usecases.github import is_github_job, publish_refusal, publish_report
 from grader.usecases.grade import GradeRequest, grade_and_save, read_saves
@@ -16,6 +18,7 @@ from grader.usecases.writing import write_stdout
 _PATH = "A .urdf file, package, workspace, repository, .zip or .tar.gz, or - for standard input."
 _SAVE = "Also write a report to a file; repeatable."
 _FAIL_UNDER = "Exit 0 if the score reaches this, in points or percent."
+_FIX = "Write the submission with the edits of all hints to a file, or a folder."
 _EXPECT = "Refuse a rubric with another hash (see grader rubric show)."
 
 
@@ -36,6 +39,10 @@ def grade(
     answers: Annotated[
         bool, typer.Option("--answers", help="Also show model answers (terminal, markdown, json).")
     ] = False,
+    hints: Annotated[
+        Level | None, typer.Option(metavar="LEVEL", help="The most that hints tell: none, place, cause or edit.")
+    ] = None,
+    fix: Annotated[Path | None, typer.Option(metavar="FILE", help=_FIX)] = None,
     watch: Annotated[bool, typer.Option("--watch", help="Grade again after every change, until Ctrl-C.")] = False,
 ) -> int:
     """Grade a submission against a rubric.
@@ -68,6 +75,8 @@ def grade(
             max_size,
             answers,
             tuple(arg or ()),
+            hints,
+            fix,
         )
         if watch:
             from grader.usecases.watch import watch as grade_on_change

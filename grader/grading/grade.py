@@ -1,6 +1,6 @@
 """Grade a submission: run the rubric's checks in order, and attribute each failure."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any
 
 from grader.checks.manual import MANUAL_CHECKS
@@ -36,7 +36,8 @@ def grade(
     """
     is_whole = is_one_of_class or not submission.is_single
     chosen, notes = _chosen_parts(rubric, submission, parts, is_whole=is_whole)
-    graded = decide(rubric, submission, {criterion.id for criterion in rubric.criteria if criterion.part in chosen})
+    wanted = {criterion.id for criterion in rubric.criteria if criterion.part in chosen}
+    results = tuple(decide(rubric, submission, wanted))
     problems = submission.urdf.problems if isinstance(submission.urdf, Read) else ()
     if submission.package is not None and any(rubric.part(part).needs == "package" for part in chosen):
         from grader.package.problems import package_problems  # a URDF on its own needs none of what reads a package
@@ -44,17 +45,16 @@ def grade(
         problems += package_problems(submission.package)
     evidence = exhibits_of(rubric, submission, chosen if is_whole else ())
     notes += not_searched(submission, evidence[0])
-    results = tuple(graded.values())
     return Report(GradedSubmission.of(submission), rubric, chosen, results, problems, *evidence, notes)
 
 
-def decide(rubric: Rubric, submission: Submission, wanted: Collection[str]) -> dict[str, Result]:
-    """Return the results of some criteria, without a report; criteria that they depend on are decided with them if wanted."""
+def decide(rubric: Rubric, submission: Submission, wanted: Collection[str]) -> Iterator[Result]:
+    """Yield the results of some criteria in the order of the rubric; what a criterion requires counts if it is wanted, too."""
     grading = _Grading(submission, is_manual=rubric.without_urdf == "manual")
     for criterion in rubric.criteria:
         if criterion.id in wanted:
             grading.decide(criterion)
-    return grading.results
+            yield grading.results[criterion.id]
 
 
 def _chosen_parts(

@@ -7,12 +7,10 @@ from typing import Any, Literal, NamedTuple
 
 from grader.checks.registry import CHECKS, Check, describe
 from grader.checks.toml_types import Constraint, TomlType, constrained, simple_type, toml_type
+from grader.grading.levels import Level
 
 MAX_POINTS = 1_000_000
 _DECIMALS = 4  # of points: gradebooks store them as whole numbers of ten-thousandths
-
-
-Level = Literal["none", "place", "cause", "edit"]  # how much a hint tells
 
 
 class KeyTable(NamedTuple):

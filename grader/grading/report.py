@@ -74,6 +74,11 @@ class Result(NamedTuple):
         return f"Points given: this mistake is already counted in {self.carried}."
 
     @property
+    def is_lost(self) -> bool:
+        """Return whether the criterion has no points because of a mistake."""
+        return self.outcome.status in ("failed", "skipped") and not self.carried
+
+    @property
     def is_open(self) -> bool:
         """Return whether the criterion still needs manual grading."""
         return self.outcome.status == "pending" and self.manual_mark is None
@@ -164,6 +169,11 @@ class Report:
         return _sum(result.points for result in self.results)
 
     @property
+    def has_failures(self) -> bool:
+        """Return whether a criterion has no points because of a mistake."""
+        return any(result.is_lost for result in self.results)
+
+    @property
     def max_score(self) -> Decimal:
         """The maximum of the graded parts."""
         return _sum(result.criterion.points for result in self.results)
@@ -176,6 +186,13 @@ class Report:
     def counts(self, *statuses: str) -> int:
         """Return the number of criteria with one of these statuses."""
         return sum(result.outcome.status in statuses for result in self.results)
+
+
+class Fix(NamedTuple):
+    """The files of a submission that the edits of all hints change, None for one that is gone, and the report on the result."""
+
+    files: Mapping[str, bytes | None]
+    report: Report
 
 
 def _sum(points: Iterable[Decimal]) -> Decimal:

@@ -12,7 +12,7 @@ from grader.checks.manual import answered
 from grader.checks.registry import Check
 from grader.errors import InputError, RubricError
 from grader.files.reading import read_capped, sha256_of
-from grader.grading.keys import Level
+from grader.grading.levels import Level
 from grader.grading.toml_lines import Path as TomlPath
 from grader.grading.toml_lines import key_lines, line_of
 from grader.grading.validation import BoundCarried, BoundCheck, TomlRow, Validation

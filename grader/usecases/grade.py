@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.errors import GraderError, InputError
+from grader.grading.levels import LEVELS, Level
 from grader.report.formats import Format, needed, render
 from grader.text import printable, printable_path, shell_quoted
 from grader.usecases import Warn
@@ -18,9 +19,10 @@ from grader.usecases.rubrics import load
 from grader.usecases.writing import CHECKOUTS, ROBOT_FILES, is_same_file, refuse_symlinks, remove_previous, save
 
 if TYPE_CHECKING:
-    from grader.grading.report import Report
+    from grader.grading.report import Fix, Report
     from grader.grading.rubric import Rubric
     from grader.report.locations import Base
+    from grader.submission.submission import Submission
 
 _DEFAULT_RUBRIC = "lab6"  # of the command line
 _SHA256 = re.compile(r"[0-9a-fA-F]{64}")
@@ -41,6 +43,8 @@ class GradeRequest:
     max_size: int
     answers: bool = False
     arguments: tuple[str, ...] = ()  # of xacro, as NAME=VALUE
+    hints: Level | None = None  # the most that hints tell; None for what the rubric allows
+    fix: Path | None = None  # where to write the submission with the edits of all hints
 
     @property
     def threshold(self) -> tuple[Decimal, bool] | None:
@@ -61,6 +65,7 @@ class GradeResult(NamedTuple):
     report: "Report"
     base: "Base"
     exit_code: ExitCode
+    fix: "Fix | None" = None
 
     @property
     def reason(self) -> str:
@@ -95,6 +100,10 @@ def grade_and_save(request: GradeRequest, warn: Warn) -> GradeResult:
     modes = remove_reports(request)
     result = grade_submission(request, warn)
     save_reports(request, result, modes)
+    if request.fix is not None and result.fix is not None:
+        from grader.usecases.fix import write_fix  # late: few ask for it
+
+        warn(write_fix(request.fix, request.path, result.report, result.fix))
     return result
 
 
@@ -131,8 +140,24 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeResult:
     for result in report.results:
         if result.traceback:
             warn(printable(f"{result.criterion.id}: {result.traceback.strip().splitlines()[-1]}"))
+    report, fix = _with_hints(request, report, submission)
     base = _base_of(request.path, is_single=submission.is_single)
-    return GradeResult(report, base, exit_code(report, threshold))
+    return GradeResult(report, base, exit_code(report, threshold), fix)
+
+
+def _with_hints(request: GradeRequest, report: "Report", submission: "Submission") -> "tuple[Report, Fix | None]":
+    """Return the report with hints, and the edits of all of them if they are to be written. Raises InputError."""
+    allowed = report.rubric.hints
+    level = allowed if request.hints is None else min(allowed, request.hints, key=LEVELS.index)
+    if request.fix is not None and level != "edit":
+        cause = f"the rubric {report.rubric.id} allows" if level == allowed else "--hints asks for"
+        raise InputError(f"--fix needs hints of the level edit; {cause} {level}")
+    if level == "none" or not (report.has_failures or request.fix is not None):
+        return report, None
+    from grader.grading.hints.hinting import fixed, hinted  # late: many submissions lose nothing
+
+    found = hinted(report, submission, level)
+    return found.report, fixed(found, submission) if request.fix is not None else None
 
 
 def remove_reports(request: GradeRequest) -> dict[Path, int]:

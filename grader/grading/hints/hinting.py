@@ -4,15 +4,16 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from grader.errors import InputError
-from grader.grading.grade import open_reference
+from grader.grading.grade import grade, open_reference
 from grader.grading.hints.search import Found, Search
-from grader.grading.hints.trials import Edits, Trials, is_lost
+from grader.grading.hints.trials import Edits, Trials
 from grader.grading.hints.words import message
-from grader.grading.keys import Level
-from grader.grading.report import Hint, Report
+from grader.grading.levels import Level
+from grader.grading.report import Fix, Hint, Report
 from grader.grading.rubric import Rubric
 from grader.robot.edits.draft import Draft
 from grader.source import Location
+from grader.submission.editing import edited_files, with_files
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 
@@ -27,8 +28,6 @@ class Hinted(NamedTuple):
 def hinted(report: Report, submission: Submission, level: Level) -> Hinted:
     """Return a report with proven hints for the criteria that failed."""
     results = {result.criterion.id: result for result in report.results}
-    if level == "none" or not any(map(is_lost, report.results)):
-        return Hinted(report, ())
     search = Search(Trials(report.rubric, submission, results), _reference(report.rubric)).run()
     hints = {
         name: hint
@@ -41,6 +40,16 @@ def hinted(report: Report, submission: Submission, level: Level) -> Hinted:
         for result in report.results
     ]
     return Hinted(replace(report, results=tuple(with_hints)), search.final.edits)
+
+
+def fixed(found: Hinted, submission: Submission) -> Fix:
+    """Return the files with the edits of all hints that fit together, graded again."""
+    files = edited_files(submission, found.edits) or {}
+    report = found.report
+    return Fix(
+        files,
+        grade(report.rubric, with_files(submission, files), report.parts, is_one_of_class=not submission.is_single),
+    )
 
 
 def _hint(found: Found, level: Level, submission: Submission) -> Hint:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from grader.edits import REWRITTEN, TRIED, Proposal, composed
 from grader.grading.hints.targets import targets_of
-from grader.grading.hints.trials import Edits, OutOfBudget, Results, State, Trials, gained, loses_nothing
+from grader.grading.hints.trials import Edits, OutOfBudget, Results, State, Trials, gained
 from grader.grading.rubric import Criterion
 from grader.robot.edits.candidates import proposals
 from grader.robot.edits.draft import Draft
@@ -70,7 +70,7 @@ class Search:
         wanted = self._by_cost(state.results)
         if not wanted:
             return False
-        options = self._known.get(state.edits) or self._options(state, wanted)
+        options = self._known.get(state.edits) or self._tried(state, wanted)
         self._known = {state.edits: options}
         taken: Edits = ()
         current = state
@@ -80,8 +80,8 @@ class Search:
             best = self._best_of(state, name, options, ranks)
             if best is None or not self._prove(state, best, name):
                 continue
-            together = self.trials.applied(state, (*taken, *best.edits))
-            if together is not None and loses_nothing(current.results, together.results):
+            together = self.trials.applied(state, (*taken, *best.edits), current.results)
+            if together is not None and not together.lost:
                 taken, current = together.edits, together
         if taken:
             self.final = current._replace(edits=_joined(self.trials.start.submission, state.edits, taken))
@@ -115,13 +115,18 @@ class Search:
             found += proposals(draft, reference, shown, moved, anchors, places)
         return found
 
-    def _options(self, state: State, wanted: Sequence[str]) -> list[Option]:
-        """Return the edits of a state that make a wanted criterion pass, or may be one half of a pair."""
-        options: list[Option] = []
+    def _options(self, state: State, wanted: Sequence[str]) -> Iterator[Option]:
+        """Yield the edits of a state, each with the wanted criteria that it makes pass."""
         for proposal in self._proposals(state, wanted):
-            passes = frozenset(self.trials.passing(state, proposal.edits, wanted))
-            options.append(Option(proposal, passes))
-            if len(passes) == len(wanted) and proposal.rank <= TRIED and self._proven(state, proposal, wanted[0]):
+            yield Option(proposal, self.trials.passing(state, proposal.edits, wanted))
+
+    def _tried(self, state: State, wanted: Sequence[str]) -> list[Option]:
+        """Return the edits of a state, up to one that makes all wanted criteria pass: no other can gain more."""
+        options: list[Option] = []
+        for option in self._options(state, wanted):
+            options.append(option)
+            is_enough = len(option.passes) == len(wanted) and option.proposal.rank <= TRIED
+            if is_enough and self._proven(state, option.proposal, wanted[0]):
                 break
         return options
 
@@ -149,9 +154,7 @@ class Search:
 
     def _proven(self, state: State, proposal: Proposal, name: str) -> "_Proven | None":
         after = self.trials.applied(state, proposal.edits)
-        if after is None or after.results[name].outcome.status != "passed":
-            return None
-        if not loses_nothing(state.results, after.results):
+        if after is None or after.lost or after.results[name].outcome.status != "passed":
             return None
         return _Proven(proposal, _score(after.results) - _score(state.results))
 
@@ -161,9 +164,9 @@ class Search:
         for option in sorted(likely, key=lambda option: _promise(state.results, option))[:_MAX_REPAIRED]:
             first = option.proposal
             middle = self.trials.applied(state, first.edits)
-            broken = _worse(state.results, middle.results) if middle is not None else []
+            broken = [middle.lost] if middle is not None and middle.lost else []
             for second in self._options(middle, broken) if middle is not None and broken else ():
-                if len(second.passes) == len(broken) and second.proposal.rank <= TRIED:
+                if second.passes and second.proposal.rank <= TRIED:
                     edits = _joined(state.submission, first.edits, second.proposal.edits)
                     proven = self._proven(state, _pair_of(first, second.proposal, edits), name)
                     if proven is not None:
@@ -206,7 +209,7 @@ class Search:
     def _add(self, proposal: Proposal, edits: Edits, name: str, after: tuple[Found, ...]) -> bool:
         start = self.trials.start
         state = self.trials.applied(start, edits, whole=True)
-        if state is None or not loses_nothing(start.results, state.results):
+        if state is None or state.lost:
             return False
         gains = gained(start.results, state.results)
         if name in gains:
@@ -248,14 +251,6 @@ def _promise(results: Results, option: Option) -> tuple[Decimal, int, int]:
 
 def _score(results: Results) -> Decimal:
     return sum((result.points for result in results.values()), Decimal(0))
-
-
-def _worse(before: Results, after: Results) -> list[str]:
-    return [
-        name
-        for name, result in before.items()
-        if result.outcome.status == "passed" and after[name].outcome.status != "passed"
-    ]
 
 
 def _pair_of(first: Proposal, second: Proposal, edits: Edits) -> Proposal:

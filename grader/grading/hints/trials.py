@@ -25,16 +25,15 @@ class OutOfBudget(Exception):
 
 
 class State(NamedTuple):
-    """A submission with the edits that made it, and the results of its criteria."""
+    """A submission with the edits that made it, and the results of its criteria.
+
+    `lost` is the first criterion that the edits make worse; those after it are not decided then.
+    """
 
     submission: Submission
     edits: Edits
     results: Results
-
-    @property
-    def failed(self) -> list[str]:
-        """The criteria that failed or are skipped, and have no points because of that."""
-        return [name for name, result in self.results.items() if is_lost(result)]
+    lost: str = ""
 
 
 class Trials:
@@ -47,22 +46,31 @@ class Trials:
         self.start = State(submission, (), own)
         self.left = _MAX_STEPS
 
-    def passing(self, state: State, edits: Edits, wanted: Collection[str]) -> set[str]:
+    def passing(self, state: State, edits: Edits, wanted: Collection[str]) -> frozenset[str]:
         """Return those of the wanted criteria that pass with edits, as far as a quick look tells. Raises OutOfBudget."""
         edited = self._quick(state, edits)
-        if edited is None:
-            return set()
-        return {
-            name for name, result in decide(self.rubric, edited, wanted).items() if result.outcome.status == "passed"
-        }
+        results = decide(self.rubric, edited, wanted) if edited is not None else ()
+        return frozenset(result.criterion.id for result in results if result.outcome.status == "passed")
 
-    def applied(self, state: State, edits: Edits, *, whole: bool = False) -> State | None:
-        """Return the state after edits of this one; `whole` reads the submission from scratch. Raises OutOfBudget."""
+    def applied(
+        self, state: State, edits: Edits, against: Results | None = None, *, whole: bool = False
+    ) -> State | None:
+        """Return the state after edits of this one, None if they do not fit; `whole` reads the submission from scratch.
+
+        Raises OutOfBudget.
+        """
         edited = self._from_scratch(state, edits) if whole else self._quick(state, edits)
         if edited is None:
             return None
         self._spend(edited)
-        return State(edited, edits, decide(self.rubric, edited, self.start.results))
+        before = state.results if against is None else against
+        results: dict[str, Result] = {}
+        for result in decide(self.rubric, edited, before):
+            name = result.criterion.id
+            results[name] = result
+            if is_worse(before[name], result):
+                return State(edited, edits, results, name)
+        return State(edited, edits, results)
 
     def _quick(self, state: State, edits: Edits) -> Submission | None:
         self._spend(state.submission)
@@ -93,22 +101,12 @@ def _is_of_package(path: str) -> bool:
     return path.lower().endswith((".py", ".rviz", ".cfg", ".toml", ".yaml", "package.xml", ".launch", ".launch.xml"))
 
 
-def is_lost(result: Result) -> bool:
-    """Return whether a criterion has no points because of a mistake."""
-    return result.outcome.status in ("failed", "skipped") and not result.carried
-
-
-def loses_nothing(before: Results, after: Results) -> bool:
-    """Return whether everything that passed still passes, and no criterion has fewer points or is undecided now."""
-    for name, result in before.items():
-        now = after[name]
-        if result.outcome.status != now.outcome.status and (
-            result.outcome.status == "passed" or now.outcome.status in ("pending", "errored")
-        ):
-            return False
-        if now.points < result.points:
-            return False
-    return True
+def is_worse(before: Result, after: Result) -> bool:
+    """Return whether a criterion passed and does not any more, has fewer points, or is undecided now."""
+    status = after.outcome.status
+    if before.outcome.status != status and (before.outcome.status == "passed" or status in ("pending", "errored")):
+        return True
+    return after.points < before.points
 
 
 def gained(before: Results, after: Results) -> dict[str, Decimal]:

@@ -2,21 +2,14 @@
 
 from collections.abc import Mapping
 from decimal import Decimal
-from typing import get_args
 
 from grader.grading.hints.search import Found
-from grader.grading.keys import Level
+from grader.grading.levels import Level
 from grader.source import Edit
 from grader.text import counted_points, enumerated
 
-LEVELS: tuple[Level, ...] = get_args(Level)
 _MAX_NAMED = 4  # criteria and edits that are named
 _MAX_TEXT = 240  # characters of a changed text
-
-
-def lower(one: Level, other: Level) -> Level:
-    """Return the level that tells less."""
-    return min(one, other, key=LEVELS.index)
 
 
 def message(found: Found, level: Level, main: str | None) -> str:
