@@ -8,7 +8,7 @@ from typing import NamedTuple
 from grader.errors import MissingElement, NotDecided
 from grader.grading.grade import grade, open_reference
 from grader.grading.hints.search import Found, Search
-from grader.grading.hints.trials import State, Trials, is_lost
+from grader.grading.hints.trials import State, Trials
 from grader.grading.rubric import Rubric, load_rubric
 from grader.robot.edits.draft import Draft
 from grader.robot.frames import placed_by
@@ -53,7 +53,7 @@ def hints_for(submission: Submission, rubric: Rubric = LAB6) -> Hints:
     results = {result.criterion.id: result for result in grade(rubric, submission).results}
     trials = Trials(rubric, submission, results)
     budget = trials.left
-    lost = tuple(name for name, result in results.items() if is_lost(result))
+    lost = tuple(name for name, result in results.items() if result.is_lost)
     search = Search(trials, reference_draft(rubric.id))
     if lost:
         search.run()
