@@ -99,12 +99,12 @@ class Source:
         """Return the text that the element with this index was written in, and the offset of its start tag."""
         return self, self._tags[tag]
 
-    def rewrites(self, tag: int, name: str, attribute: str, old: str, new: str) -> "list[tuple[Edit, ...]] | None":
+    def rewrites(self, tag: int, attribute: str, old: str, new: str) -> "list[tuple[Edit, ...]] | None":
         """Return the ways to give an attribute of an expanded element another value; None where its text is what is read.
 
-        `name` is the tag, and `old` and `new` are the values that the reader sees.
+        `old` and `new` are the values that the reader sees.
         """
-        del tag, name, attribute, old, new
+        del tag, attribute, old, new
         return None
 
 

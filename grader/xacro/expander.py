@@ -11,8 +11,8 @@ from grader.xacro import catalogue
 from grader.xacro.files import FileFails, Files, XmlFails
 from grader.xacro.functions import document_functions
 from grader.xacro.macros import MacroError
-from grader.xacro.nodes import Node, Place
-from grader.xacro.scopes import Reported, Scope
+from grader.xacro.nodes import Node
+from grader.xacro.scopes import Place, Reported, Scope
 from grader.xacro.texts import Texts
 from grader.xacro.yaml_values import read_yaml_values
 
@@ -106,7 +106,7 @@ class Expander:
 
     def start(self, source: Node, scopes: Scopes) -> Node:
         """Return an element with its attributes expanded, without its children."""
-        out = Node(source.tag, self._placed(source.place))
+        out = Node(source.tag, self._placed(source.place, scopes.symbols))
         out.moved, out.unresolved = source.moved, dict(source.unresolved)
         for name, text in source.attributes.items():
             is_plain = "$" not in text or name in out.unresolved
@@ -146,8 +146,8 @@ class Expander:
             self._listed.add((message, place.source.path, place.tag, attribute))
         return len(self._listed) > known
 
-    def _placed(self, place: Place) -> Place:
-        return place if place.calls is not None else Place(place.source, place.tag, self.calls)
+    def _placed(self, place: Place, scope: Scope | None = None) -> Place:
+        return place if place.calls is not None else Place(place.source, place.tag, self.calls, scope)
 
     def _element(self, node: Node, out: Node, scopes: Scopes) -> None:
         self.budget.spend()

@@ -115,7 +115,9 @@ def bind_defaults(macro: Macro, left: list[Parameter], caller: Scope, inner: Sco
         if parameter.is_block or parameter.name in missing:
             continue
         if parameter.is_forwarded and texts.is_bound(parameter.name, caller):
-            inner.bind(parameter.name, texts.find(parameter.name, caller))
+            holder = caller.holder(parameter.name)
+            definition = holder.properties[parameter.name].definition if holder is not None else None
+            inner.bind(parameter.name, texts.find(parameter.name, caller), definition=definition)
         elif parameter.default is not None:
             texts.bind(inner, parameter.name, parameter.default, caller, macro.body.place, "params")
         else:

@@ -67,7 +67,7 @@ class Draft:
     def set(self, element: Element, attribute: str, value: str) -> list[Edits]:
         """Return the ways to give an attribute another value."""
         old, tag = element.get(attribute) or "", self._tags[element]
-        ways = self.source.rewrites(tag, str(element.tag), attribute, old, escaped(value))
+        ways = self.source.rewrites(tag, attribute, old, escaped(value))
         if ways is not None:
             return ways
         source, start = self.source.element(tag)

@@ -1,0 +1,75 @@
+"""Small changes of the text of an expression, as in mistakes: a sign, an operator, a name, a half, a number."""
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+EXPRESSION = re.compile(r"\$\{([^}]*)\}")
+NAME = re.compile(r"(?<![\w.])[^\W\d]\w*(?![\w.(])")
+_PLAIN = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*")
+_NUMBER = re.compile(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])")
+_OPERATOR = re.compile(r"(?<=[\w.)\s])(?<!\*)[-+*/](?![*/])")
+_OTHER = {"+": "-", "-": "+", "*": "/", "/": "*"}
+_TERM = re.compile(r"[\w.]+")
+_MAX_VARIANTS = 60  # of one text
+
+
+class Slot(NamedTuple):
+    """A number in a text: its offsets, and its value."""
+
+    start: int
+    end: int
+    value: float
+
+
+def numbers(text: str) -> list[Slot]:
+    """Return the numbers in the expressions of a text; the text itself, if it is one."""
+    plain = _PLAIN.fullmatch(text)
+    if plain is not None:
+        return [Slot(plain.start(1), plain.end(1), float(plain[1]))]
+    inside = ((found.start(1), found.end(1)) for found in EXPRESSION.finditer(text))
+    slots = (number for start, end in inside for number in _NUMBER.finditer(text, start, end))
+    return [Slot(number.start(), number.end(), float(number[0])) for number in slots]
+
+
+def with_number(text: str, slot: Slot, number: str) -> str:
+    """Return a text with another number, in parentheses where its sign would follow another one."""
+    before = text[: slot.start].rstrip()[-1:]
+    shown = f"({number})" if number.startswith("-") and before in ("-", "+", "*") else number
+    return f"{text[: slot.start]}{shown}{text[slot.end :]}"
+
+
+def variants(text: str, names: Sequence[str], signs: Sequence[str]) -> Iterator[str]:
+    """Yield texts with one change of an expression. `names` are known at this place; those in `signs` have the value 1 or -1."""
+    for found in EXPRESSION.finditer(text):
+        start, end = found.span(1)
+        for _, inner in zip(range(_MAX_VARIANTS), _of_expression(found[1], names, signs), strict=False):
+            yield f"{text[:start]}{inner}{text[end:]}"
+    if _PLAIN.fullmatch(text):
+        number = text.strip()
+        for sign in signs:
+            for magnitude in (number.lstrip("+-"), number):
+                yield f"${{{sign}*{magnitude}}}"
+
+
+def _of_expression(text: str, names: Sequence[str], signs: Sequence[str]) -> Iterator[str]:
+    stripped = text.strip()
+    whole = stripped if _TERM.fullmatch(stripped) else f"({stripped})"
+    if stripped.startswith("-"):
+        yield stripped[1:].lstrip()
+    yield f"-{stripped.removeprefix('+')}"
+    yield f"-{whole}"
+    for found in _OPERATOR.finditer(text):
+        yield f"{text[: found.start()]}{_OTHER[found[0]]}{text[found.end() :]}"
+    for sign in signs:
+        yield f"{sign}*{whole}"
+        yield from (text[: found.start()] + text[found.end() :] for found in re.finditer(rf"\b{sign}\s*\*\s*", text))
+    yield f"{stripped}/2"
+    yield f"{whole}/2"
+    for found in re.finditer(r"\s*/\s*2(?![\w.])", text):
+        yield text[: found.start()] + text[found.end() :]
+    yield f"2*{whole}"
+    for found in NAME.finditer(text):
+        for name in names:
+            if name != found[0]:
+                yield f"{text[: found.start()]}{name}{text[found.end() :]}"
