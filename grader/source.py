@@ -107,6 +107,10 @@ class Source:
         del tag, attribute, old, new
         return None
 
+    def corrections(self) -> "list[tuple[Edit, ...]]":
+        """Return the edits that may correct names of xacro which are not defined."""
+        return []
+
 
 class LazyLocation(NamedTuple):
     """The place of an element or of one of its attributes, which is computed on demand: most never are.

@@ -42,12 +42,15 @@ class Rewriter:
     def ways(self, place: Place, attribute: str, old: str, new: str) -> list[tuple[Edit, ...]]:
         """Return the ways to change an attribute at a place that the reader sees as `old`, the most plausible first."""
         text = written(place, attribute, place.scope or Scope())
-        found = list(map(edits_of, islice(self._ways(text, old, new, 0), _MAX_WAYS))) if text is not None else []
+        ways = islice(self._ways(text, old, new, 0), _MAX_WAYS) if text is not None else ()
+        found = [edits for edits in map(edits_of, ways) if edits is not None]
+        if found and text is not None and self._evaluator.value(text.text, text.scope) is None:
+            return found  # a name is misspelt
         source, start = place.source.element(place.tag)
         current = markup.attribute(source.text, start, attribute)
         raw = source.text[current.value_start : current.value_end] if current is not None else ""
         found.append((with_attribute(source, start, attribute, merged(raw, new)),))
-        return list(dict.fromkeys(way for way in found if way is not None))
+        return list(dict.fromkeys(found))
 
     def _ways(self, text: Written, old: str, new: str, depth: int) -> "list[Way]":
         """Return the ways to make a text another one after expansion."""

@@ -12,7 +12,7 @@ from grader.xacro.files import FileFails, Files, XmlFails
 from grader.xacro.functions import document_functions
 from grader.xacro.macros import MacroError
 from grader.xacro.nodes import Node
-from grader.xacro.scopes import Place, Reported, Scope
+from grader.xacro.scopes import Place, Reported, Scope, UnknownName, XacroFails
 from grader.xacro.texts import Texts
 from grader.xacro.yaml_values import read_yaml_values
 
@@ -62,6 +62,9 @@ class Expander:
         self.texts = Texts(dict(arguments), self.budget, self.report, own, files.has_package)
         self.problems: list[Problem] = []
         self.undetermined: list[Open] = []
+        self.unknown: list[
+            tuple[UnknownName, Place, str | None]
+        ] = []  # names that are not defined, and where they are used
         self.calls: tuple[tuple[str, Place], ...] = ()
         self._listed: set[tuple[str, str, int, str | None]] = set()
         self._handlers = handlers
@@ -118,16 +121,18 @@ class Expander:
     def refuse(self, error: ExpressionFails, place: Place, attribute: str | None = None) -> None:
         """List that xacro refuses something, unless it is listed already."""
         if not isinstance(error, Reported):
-            self.report(str(error), place, attribute, _KINDS.get(type(error), catalogue.XACRO_EXPRESSION))
+            self.report(error, place, attribute)
 
-    def report(
-        self, message: str, place: Place, attribute: str | None, kind: Kind = catalogue.XACRO_EXPRESSION
-    ) -> None:
+    def report(self, error: ExpressionFails, place: Place, attribute: str | None) -> None:
         """List a problem at a place."""
+        message = str(error)
         if self._is_new(message, place, attribute):
             location = self._placed(place).at(attribute)
             joint = " " if message.endswith("?") else "; "
+            kind = _KINDS.get(type(error), catalogue.XACRO_EXPRESSION)
             self.problems.append(Problem(kind, f"{message}{joint}{STOPS}", location))
+            if isinstance(error, XacroFails) and error.unknown is not None:
+                self.unknown.append((error.unknown, place, attribute))
 
     def leave_open(self, out: Node, error: Undetermined, place: Place) -> None:
         """Note that an expanded element may have more content than is known."""

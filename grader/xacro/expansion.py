@@ -16,6 +16,7 @@ from grader.xacro.edits import Rewriter
 from grader.xacro.expander import STOPS, Expander, Open
 from grader.xacro.files import Files, Workspace
 from grader.xacro.nodes import Node, read_nodes
+from grader.xacro.spelling import corrections
 from grader.xacro.tags import CALL, HANDLERS
 from grader.xml.parsing import Element, Unresolved, XmlDocument, XMLSyntaxError, make_element
 
@@ -72,6 +73,10 @@ class ExpandedSource(Source):
         if moved is not None:
             return self._rewriter.ways(moved, "value", old, new)
         return self._rewriter.ways(node.place, attribute, old, new)
+
+    def corrections(self) -> list[tuple[Edit, ...]]:
+        """Return the edits that may correct names which are not defined."""
+        return corrections(self._expander.unknown)
 
     @cached_property
     def _rewriter(self) -> "Rewriter":

@@ -1,6 +1,6 @@
 """The names that xacro binds: properties, evaluated when they are first used, and macros, in nested scopes."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -9,7 +9,7 @@ from grader.static_python.closed_values import ExpressionFails, Undetermined, Va
 
 # What a scope needs to evaluate a text in it, and to report that xacro refuses one.
 Evaluate = Callable[[str, "Scope"], Value]
-Report = Callable[[str, "Place", str], None]
+Report = Callable[[ExpressionFails, "Place", str], None]
 
 
 BOOLEANS = {"true": True, "True": True, "false": False, "False": False}
@@ -47,6 +47,21 @@ class Definition(NamedTuple):
     def key(self) -> Key:
         """What identifies the text in the source, however often it is evaluated."""
         return self.place.source.path, self.place.tag, self.attribute, self.name
+
+
+class UnknownName(NamedTuple):
+    """A name that is not defined, and those that are, each with the place and attribute that define it where they are known."""
+
+    name: str
+    known: "Mapping[str, tuple[Place, str] | None]"
+
+
+class XacroFails(ExpressionFails):
+    """Something that xacro refuses, perhaps for a name that it does not know."""
+
+    def __init__(self, message: str, unknown: UnknownName | None = None) -> None:
+        super().__init__(message)
+        self.unknown = unknown
 
 
 class Reported(ExpressionFails):
@@ -95,6 +110,15 @@ class Scope:
         own = [name for name in self.properties if name.isidentifier()]
         return own + (self.parent.names() if self.parent is not None else [])
 
+    def definitions(self) -> dict[str, tuple[Place, str] | None]:
+        """Return the names that are known here, each with the tag and attribute that define it; a parameter has none."""
+        found = self.parent.definitions() if self.parent is not None else {}
+        for name, definition in ((name, bound.definition) for name, bound in self.properties.items()):
+            if name.isidentifier():
+                is_tag = definition is not None and definition.attribute in ("name", "value", "default")
+                found[name] = (definition.place, "name") if definition is not None and is_tag else None
+        return found
+
     def bind(self, name: str, value: Value, *, is_lazy: bool = False, definition: Definition | None = None) -> None:
         """Give a name a value, or a text that is evaluated lazily."""
         self.properties[name] = Property(value, is_lazy=is_lazy, definition=definition)
@@ -120,7 +144,7 @@ class Scope:
             found.value, found.is_lazy = literal(evaluate(found.value, self)), False
         except ExpressionFails as error:
             if found.definition is not None and not isinstance(error, Reported):
-                report(str(error), found.definition.place, "value")
+                report(error, found.definition.place, "value")
             found.failure = Reported(str(error))
             raise found.failure from None
         except Undetermined as error:

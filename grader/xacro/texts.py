@@ -10,7 +10,7 @@ from grader.names import did_you_mean
 from grader.static_python.closed import Budget, OutOfSteps, evaluate
 from grader.static_python.closed_values import ExpressionFails, Namespace, Undetermined, Value, check_size, text_of
 from grader.xacro.functions import GLOBALS, argument_value
-from grader.xacro.scopes import Definition, Key, Place, Report, Reported, Scope, literal
+from grader.xacro.scopes import Definition, Key, Place, Report, Reported, Scope, UnknownName, XacroFails, literal
 
 PIECE = re.compile(
     r"(?P<escape>\$\$+[{(])|\$\{(?P<expression>[^}]*)\}|\$\((?P<substitution>[^)]*)\)|(?P<text>[^$]+|\$[^{($]+|\$\Z)"
@@ -82,8 +82,9 @@ class Texts:
             return self._globals[name]
         if self.names_open is not None:
             raise self.names_open
-        known = (*scope.names(), *self._globals)
-        raise ExpressionFails(f"there is no property {name} at this place{did_you_mean(name, known)}")
+        known = {**dict.fromkeys(self._globals), **scope.definitions()}
+        message = f"there is no property {name} at this place{did_you_mean(name, known)}"
+        raise XacroFails(message, UnknownName(name, known))
 
     def _again(self, definition: Definition) -> Value:
         """Return the value of a definition with the supposed texts."""
@@ -105,7 +106,7 @@ class Texts:
         except Reported as error:
             failure = error
         except ExpressionFails as error:
-            self._report(str(error), place, attribute)
+            self._report(error, place, attribute)
             failure = Reported(str(error))
         except Undetermined as error:
             failure = error
