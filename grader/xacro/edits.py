@@ -12,7 +12,7 @@ from grader.static_python.closed_values import text_of
 from grader.xacro.scopes import Place, Scope, literal
 from grader.xacro.solving import ComputedNumber, Evaluator, Ranked, as_number, definitions
 from grader.xacro.texts import PIECE, Texts
-from grader.xacro.variants import EXPRESSION, NAME
+from grader.xacro.variants import EXPRESSION, NAME, variants
 from grader.xacro.written import Change, Written, defined, edits_of, written
 
 _TOKEN = re.compile(r"(?:\$\{[^}]*\}|\$\([^)]*\)|[^\s$]|\$)+")
@@ -60,7 +60,7 @@ class Rewriter:
             return []
         value = self._evaluator.value(text.text, text.scope)
         if value is None:
-            return self._respelled(text)
+            return [*self._respelled(text), *self._repaired(text, new)]
         if text_of(value) != old and not _same(text_of(value), old):
             return []  # a name has another value by now
         are_numbers = all(as_number(word) is not None for word in (*old.split(), *new.split()))
@@ -78,6 +78,14 @@ class Rewriter:
                     start = expression.start(1) + name.start()
                     ways.append((Change(text.part(start, start + len(name[0])), near),))
         return ways
+
+    def _repaired(self, text: Written, new: str) -> list[Way]:
+        """Return the changes of an expression that fails which give the wanted value, as ${side} for ${-side}."""
+        names, signs = self._evaluator.names(text.scope)
+        values = ((other, self._evaluator.value(other, text.scope)) for _, other in variants(text.text, names, signs))
+        return [
+            (Change(text, other),) for other, value in values if text_of(value) == new or _same(text_of(value), new)
+        ]
 
     def _of_numbers(self, text: Written, old: list[str], new: list[str], depth: int) -> list[Way]:
         choices: list[list[Way]] = []

@@ -94,7 +94,7 @@ def insert_block(expander: Expander, node: Node, out: Node, scopes: Scopes) -> N
     else:
         if expander.texts.names_open is not None:
             raise expander.texts.names_open
-        raise MacroError(f"there is no block {name} at this place")
+        raise MacroError(f"there is no block {name} at this place", UnknownName(name, scopes.symbols.blocks()))
     if key.startswith("**"):
         expander.start(block, scopes)
         expander.insert(block, out, scopes)

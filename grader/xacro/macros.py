@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from grader.static_python.closed_values import Undetermined
 from grader.xacro.nodes import Node
-from grader.xacro.scopes import Scope, UnknownName, XacroFails
+from grader.xacro.scopes import Definition, Scope, UnknownName, XacroFails
 from grader.xacro.texts import Texts
 
 # A parameter with a default, as xacro reads it: name, := or =, perhaps ^ or ^|, and the default's text up to a space.
@@ -104,7 +104,8 @@ def bind_blocks(macro: Macro, blocks: list[Node], left: list[Parameter], inner: 
         if parameter.is_block:
             if not waiting:
                 raise MacroError(f"this call of the macro {macro.name} has no element for {parameter.name}")
-            inner.bind(parameter.name, waiting.pop(0))
+            definition = Definition(parameter.name, "", macro.body.place, "params", inner)
+            inner.bind(parameter.name, waiting.pop(0), definition=definition)
     if waiting:
         raise MacroError(f"the macro {macro.name} takes no element <{waiting[0].tag}> here")
 

@@ -119,6 +119,11 @@ class Scope:
                 found[name] = (definition.place, "name") if definition is not None and is_tag else None
         return found
 
+    def blocks(self) -> dict[str, tuple[Place, str] | None]:
+        """Return the names of the blocks of this macro, with its own tag."""
+        bound = {name.lstrip("*"): it.definition for name, it in self.properties.items() if name.startswith("*")}
+        return {name: (it.place, it.attribute) if it is not None else None for name, it in bound.items()}
+
     def bind(self, name: str, value: Value, *, is_lazy: bool = False, definition: Definition | None = None) -> None:
         """Give a name a value, or a text that is evaluated lazily."""
         self.properties[name] = Property(value, is_lazy=is_lazy, definition=definition)

@@ -9,7 +9,7 @@ from grader.static_python.closed import Budget
 from grader.static_python.closed_values import ExpressionFails, Undetermined, Value
 from grader.xacro.scopes import Definition, Key, Scope
 from grader.xacro.texts import Texts
-from grader.xacro.variants import EXPRESSION, NAME, Slot, numbers, variants, with_number
+from grader.xacro.variants import EXPRESSION, NAME, NUMBER, Slot, numbers, variants, with_number
 from grader.xacro.written import Change, Written, defined
 
 _ARGUMENT = re.compile(r"\$\(arg\s+([^\s()]+)\s*\)")
@@ -123,10 +123,11 @@ class ComputedNumber:
         return self._memo[site.key, text]
 
     def _varied(self, site: Site, wanted: float) -> Iterator[Ranked]:
-        names, signs = self._evaluator.names(site.written.scope)
-        for text in variants(site.written.text, names, signs):
-            if is_near(self._with(site, text), wanted):
-                yield Ranked((site.rank, 0), Change(site.written, text))
+        kinds: set[int] = set()
+        for kind, text in variants(site.written.text, *self._evaluator.names(site.written.scope)):
+            if kind not in kinds and is_near(self._with(site, text), wanted):
+                kinds.add(kind)
+                yield Ranked((kind + 2 * site.rank, 0), Change(site.written, text))
 
     def _solved(self, site: Site, wanted: float) -> Iterator[Ranked]:
         for slot in numbers(site.written.text):
@@ -134,7 +135,7 @@ class ComputedNumber:
             is_plain = slot.end - slot.start == len(site.written.text.strip())
             if solution is not None and (is_plain or solution[1] <= _NICE_DIGITS):
                 text, digits = solution
-                yield Ranked((site.rank + (not is_plain), digits), Change(site.written, text))
+                yield Ranked((NUMBER + 2 * site.rank + (not is_plain), digits), Change(site.written, text))
 
     def _solution(self, site: Site, slot: Slot, wanted: float) -> tuple[str, int] | None:
         """Return the text with the number in a slot that gives the wanted one, and how many digits it has."""

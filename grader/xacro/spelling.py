@@ -32,20 +32,20 @@ def corrections(unknown: Iterable[tuple[UnknownName, Place, str | None]]) -> lis
 
 
 def _renamed(place: Place, attribute: str | None, old: str, new: str) -> Edits:
-    """Return the edit of an attribute's value; without an attribute, of the name of the tag or of one of its attributes."""
+    """Return the edit of an attribute's value; without an attribute, of the name of one, of the tag, or of any value."""
     source, start = place.source.element(place.tag)
-    if attribute is not None:
-        found = markup.attribute(source.text, start, attribute)
-        if found is None:
-            return ()
-        text = source.text[found.start : found.value_start]
-        value = source.text[found.value_start : found.value_end]
+    text = source.text
+    for found in markup.attributes(text, start):
+        if attribute is None and found.name == old:
+            return (source.edit(found.start, found.end, new + text[found.start + len(old) : found.end]),)
+    tags = tuple(_tags(place, old, new)) if attribute is None else ()
+    for found in () if tags else markup.attributes(text, start):
+        value = text[found.value_start : found.value_end]
         changed = re.sub(rf"(?<![\w.]){re.escape(old)}(?!\w)", new, value, count=0 if "$" in value else 1)
-        return (source.edit(found.start, found.end, f"{text}{changed}{source.text[found.value_end : found.end]}"),)
-    named = markup.attribute(source.text, start, old)
-    if named is not None:
-        return (source.edit(named.start, named.end, new + source.text[named.start + len(old) : named.end]),)
-    return tuple(_tags(place, old, new))
+        if attribute in (None, found.name) and changed != value:
+            head, tail = text[found.start : found.value_start], text[found.value_end : found.end]
+            return (source.edit(found.start, found.end, f"{head}{changed}{tail}"),)
+    return tags
 
 
 def _tags(place: Place, old: str, new: str) -> Iterator[Edit]:

@@ -12,6 +12,7 @@ _OPERATOR = re.compile(r"(?<=[\w.)\s])(?<!\*)[-+*/](?![*/])")
 _OTHER = {"+": "-", "-": "+", "*": "/", "/": "*"}
 _TERM = re.compile(r"[\w.]+")
 _MAX_VARIANTS = 60  # of one text
+SIGN, NUMBER, OPERATOR, HALF, FACTOR, OTHER_NAME = range(6)  # kinds of changes, the most plausible first
 
 
 class Slot(NamedTuple):
@@ -39,37 +40,45 @@ def with_number(text: str, slot: Slot, number: str) -> str:
     return f"{text[: slot.start]}{shown}{text[slot.end :]}"
 
 
-def variants(text: str, names: Sequence[str], signs: Sequence[str]) -> Iterator[str]:
-    """Yield texts with one change of an expression. `names` are known at this place; those in `signs` have the value 1 or -1."""
+def variants(text: str, names: Sequence[str], signs: Sequence[str]) -> Iterator[tuple[int, str]]:
+    """Yield texts with one change of an expression, each with its rank: the smaller, the more plausible.
+
+    `names` are known at this place; those in `signs` have the value 1 or -1.
+    """
     for found in EXPRESSION.finditer(text):
         start, end = found.span(1)
-        for _, inner in zip(range(_MAX_VARIANTS), _of_expression(found[1], names, signs), strict=False):
-            yield f"{text[:start]}{inner}{text[end:]}"
+        for _, (rank, inner) in zip(range(_MAX_VARIANTS), _of_expression(found[1], names, signs), strict=False):
+            yield rank, f"{text[:start]}{inner}{text[end:]}"
     if _PLAIN.fullmatch(text):
         number = text.strip()
         for sign in signs:
             for magnitude in (number.lstrip("+-"), number):
-                yield f"${{{sign}*{magnitude}}}"
+                yield FACTOR, f"${{{sign}*{magnitude}}}"
 
 
-def _of_expression(text: str, names: Sequence[str], signs: Sequence[str]) -> Iterator[str]:
+def _of_expression(text: str, names: Sequence[str], signs: Sequence[str]) -> Iterator[tuple[int, str]]:
     stripped = text.strip()
     whole = stripped if _TERM.fullmatch(stripped) else f"({stripped})"
     if stripped.startswith("-"):
-        yield stripped[1:].lstrip()
-    yield f"-{stripped.removeprefix('+')}"
-    yield f"-{whole}"
+        yield SIGN, stripped[1:].lstrip()
+    yield SIGN, f"-{stripped.removeprefix('+')}"
+    yield SIGN, f"-{whole}"
     for found in _OPERATOR.finditer(text):
-        yield f"{text[: found.start()]}{_OTHER[found[0]]}{text[found.end() :]}"
+        yield OPERATOR, f"{text[: found.start()]}{_OTHER[found[0]]}{text[found.end() :]}"
     for sign in signs:
-        yield f"{sign}*{whole}"
-        yield from (text[: found.start()] + text[found.end() :] for found in re.finditer(rf"\b{sign}\s*\*\s*", text))
-    yield f"{stripped}/2"
-    yield f"{whole}/2"
-    for found in re.finditer(r"\s*/\s*2(?![\w.])", text):
-        yield text[: found.start()] + text[found.end() :]
-    yield f"2*{whole}"
+        yield FACTOR, f"{sign}*{whole}"
+        yield from ((FACTOR, without) for without in _without(rf"\b{sign}\s*\*\s*", text))
+    yield HALF, f"{stripped}/2"
+    yield HALF, f"{whole}/2"
+    yield from ((HALF, without) for without in _without(r"\s*/\s*2(?![\w.])", text))
+    yield HALF, f"2*{whole}"
     for found in NAME.finditer(text):
         for name in names:
             if name != found[0]:
-                yield f"{text[: found.start()]}{name}{text[found.end() :]}"
+                yield OTHER_NAME, f"{text[: found.start()]}{name}{text[found.end() :]}"
+
+
+def _without(pattern: str, text: str) -> Iterator[str]:
+    """Yield a text without each of the parts that match."""
+    for found in re.finditer(pattern, text):
+        yield text[: found.start()] + text[found.end() :]
