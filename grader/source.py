@@ -107,6 +107,16 @@ class Source:
         del tag, attribute, old, new
         return None
 
+    def calls(self, edit: Edit) -> tuple[tuple[str, Location], ...]:
+        """Return the calls of the macro of xacro that an edit is in, each with the macro's name; nothing outside of macros."""
+        del edit
+        return ()
+
+    def adapted(self, tag: int, xml: str) -> str:
+        """Return the text of an element as it is inserted in or instead of the one with this index."""
+        del tag
+        return xml
+
     def corrections(self) -> "list[tuple[Edit, ...]]":
         """Return the edits that may correct names of xacro which are not defined."""
         return []

@@ -66,6 +66,9 @@ class Expander:
             tuple[UnknownName, Place, str | None]
         ] = []  # names that are not defined, and where they are used
         self.calls: tuple[tuple[str, Place], ...] = ()
+        self.uses: dict[
+            tuple[str, int], tuple[str, Place, dict[tuple[str, int], Place]]
+        ] = {}  # of macros, each with its calls
         self._listed: set[tuple[str, str, int, str | None]] = set()
         self._handlers = handlers
         self._other = other
@@ -133,6 +136,11 @@ class Expander:
             self.problems.append(Problem(kind, f"{message}{joint}{STOPS}", location))
             if isinstance(error, XacroFails) and error.unknown is not None:
                 self.unknown.append((error.unknown, place, attribute))
+
+    def use(self, name: str, body: Place, call: Place) -> None:
+        """Note that a macro is called."""
+        _, _, calls = self.uses.setdefault((body.source.path, body.tag), (name, body, {}))
+        calls[call.source.path, call.tag] = call
 
     def leave_open(self, out: Node, error: Undetermined, place: Place) -> None:
         """Note that an expanded element may have more content than is known."""

@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from functools import cached_property
 from typing import NamedTuple
 
+from grader.markup import element_end
 from grader.problems import Problem
 from grader.source import Edit, Location, Source
 from grader.static_python.closed_values import ExpressionFails, Undetermined
@@ -18,6 +19,7 @@ from grader.xacro.files import Files, Workspace
 from grader.xacro.nodes import Node, read_nodes
 from grader.xacro.spelling import corrections
 from grader.xacro.tags import CALL, HANDLERS
+from grader.xacro.written import with_parameters
 from grader.xml.parsing import Element, Unresolved, XmlDocument, XMLSyntaxError, make_element
 
 __all__ = ("Expansion", "Open", "Workspace", "expand")
@@ -77,6 +79,22 @@ class ExpandedSource(Source):
     def corrections(self) -> list[tuple[Edit, ...]]:
         """Return the edits that may correct names which are not defined."""
         return corrections(self._expander.unknown)
+
+    def calls(self, edit: Edit) -> tuple[tuple[str, Location], ...]:
+        """Return the calls of the macro that an edit is in, each with the macro's name; nothing outside of macros."""
+        found: tuple[int, tuple[tuple[str, Location], ...]] = (-1, ())
+        for name, body, calls in self._expander.uses.values():
+            source, start = body.source.element(body.tag)
+            if source.path == edit.path and start <= source.offset(edit.line, edit.column) < element_end(
+                source.text, start
+            ):
+                found = max(found, (start, tuple((name, call.at()) for call in calls.values())), key=lambda it: it[0])
+        return found[1]
+
+    def adapted(self, tag: int, xml: str) -> str:
+        """Return the text of an element that is inserted in the one with this index: in a macro, with its parameters in names."""
+        scope = self._nodes[tag].place.scope
+        return with_parameters(xml, scope) if scope is not None else xml
 
     @cached_property
     def _rewriter(self) -> "Rewriter":

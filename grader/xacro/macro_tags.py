@@ -74,6 +74,7 @@ def _call_named(expander: Expander, name: str, node: Node, out: Node, scopes: Sc
         raise Undetermined(given.open)
     bind_blocks(macro, given.elements, left, inner.symbols)
     bind_defaults(macro, left, scopes.symbols, inner.symbols, expander.texts)
+    expander.use(name, macro.body.place, node.place)
     before = expander.calls
     expander.calls = (*before, (name, node.place))
     try:

@@ -8,6 +8,8 @@ from grader import markup
 from grader.source import Edit, Source
 from grader.xacro.scopes import Definition, Place, Scope
 
+_VALUE = re.compile(r'("[^"$]*")')
+
 
 class Written(NamedTuple):
     """A text that stands at an offset of a file, the scope in which it is evaluated, and the attribute that it is in."""
@@ -61,6 +63,17 @@ def written(place: Place, attribute: str, scope: Scope) -> Written | None:
     if found is None or "&" in text:
         return None
     return Written(source, found.value_start, text, scope, (found.start, found.end))
+
+
+def with_parameters(xml: str, scope: Scope) -> str:
+    """Return elements in whose attributes the texts that a macro's parameters have are the parameters: ${side}_wheel."""
+    for name, bound in scope.properties.items() if scope.parent is not None else ():
+        if isinstance(bound.value, str) and bound.value.isidentifier() and name.isidentifier():
+            word = re.compile(rf"(?<![^\W_]){re.escape(bound.value)}(?![^\W_])")
+            pieces = _VALUE.split(xml)  # every other one is a value
+            pieces[1::2] = [word.sub(f"${{{name}}}", piece) for piece in pieces[1::2]]
+            xml = "".join(pieces)
+    return xml
 
 
 def defined(definition: Definition) -> Written | None:
