@@ -54,8 +54,6 @@ class Rewriter:
 
     def _ways(self, text: Written, old: str, new: str, depth: int) -> "list[Way]":
         """Return the ways to make a text another one after expansion."""
-        if "$" not in text.text:
-            return [(Change(text, merged(text.text, new)),)]
         if depth > _MAX_DEPTH:
             return []
         value = self._evaluator.value(text.text, text.scope)

@@ -18,7 +18,7 @@ _MAX_SITES = 10  # texts that one number is computed from
 _MAX_NAMES = 24  # that are tried in place of another one
 _MAX_DIGITS = 6
 _NICE_DIGITS = 3  # more are no number that a student would write into an expression
-_ROUNDS = 4  # of the secant method
+_ROUNDS = 8  # of the secant method
 _TOLERANCE = 1e-3  # relative: -1.57 is -pi/2
 
 

@@ -10,6 +10,7 @@ _PLAIN = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*")
 _NUMBER = re.compile(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?(?![\w.])")
 _OPERATOR = re.compile(r"(?<=[\w.)\s])(?<!\*)[-+*/](?![*/])")
 _OTHER = {"+": "-", "-": "+", "*": "/", "/": "*"}
+_DIVIDED = re.compile(r"/\s*[\d.]+\Z")
 _TERM = re.compile(r"[\w.]+")
 _MAX_VARIANTS = 60  # of one text
 SIGN, NUMBER, OPERATOR, HALF, FACTOR, OTHER_NAME = range(6)  # kinds of changes, the most plausible first
@@ -68,8 +69,9 @@ def _of_expression(text: str, names: Sequence[str], signs: Sequence[str]) -> Ite
     for sign in signs:
         yield FACTOR, f"{sign}*{whole}"
         yield from ((FACTOR, without) for without in _without(rf"\b{sign}\s*\*\s*", text))
-    yield HALF, f"{stripped}/2"
-    yield HALF, f"{whole}/2"
+    if not _DIVIDED.search(stripped):
+        yield HALF, f"{stripped}/2"
+        yield HALF, f"{whole}/2"
     yield from ((HALF, without) for without in _without(r"\s*/\s*2(?![\w.])", text))
     yield HALF, f"2*{whole}"
     for found in NAME.finditer(text):
