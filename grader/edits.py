@@ -93,7 +93,8 @@ def merged(old: str, new: str) -> str:
     before, after = _PIECE.findall(old), new.split()
     if len(before) != len(after):
         return new
-    return "".join(space + _merged(piece, other) for (space, piece), other in zip(before, after, strict=True))
+    pieces = zip(before, after, strict=True)
+    return "".join((" " if space.strip(" ") else space) + _merged(piece, other) for (space, piece), other in pieces)
 
 
 def _merged(old: str, new: str) -> str:

@@ -6,7 +6,7 @@ from grader.text import quoted
 from grader.xml.parsing import Element
 
 # What urdfdom reads: the attributes of each element, and the elements that may be in it.
-_ATTRIBUTES: dict[str, set[str] | frozenset[str]] = {
+ATTRIBUTES: dict[str, set[str] | frozenset[str]] = {
     "robot": {"name", "version"},
     **dict.fromkeys(("link", "material", "visual", "collision"), frozenset({"name"})),
     "joint": {"name", "type"},
@@ -28,7 +28,7 @@ _ATTRIBUTES: dict[str, set[str] | frozenset[str]] = {
     "safety_controller": {"soft_lower_limit", "soft_upper_limit", "k_position", "k_velocity"},
     "calibration": {"rising", "falling"},
 }
-_CHILDREN: dict[str, tuple[str, ...]] = {
+CHILDREN: dict[str, tuple[str, ...]] = {
     "robot": ("link", "joint", "material"),
     "link": ("inertial", "visual", "collision"),
     "visual": ("origin", "geometry", "material"),
@@ -46,25 +46,25 @@ _EXTENSIONS = frozenset(
 _SINGLE = frozenset(
     {"origin", "geometry", "parent", "child", "axis", "limit", "inertial", "mass", "inertia", "mimic", "dynamics"}
 )
-_SWAPPED = {("cylinder", "height"): "length", ("color", "rgb"): "rgba", ("origin", "pos"): "xyz"}
+SWAPPED = {("cylinder", "height"): "length", ("color", "rgb"): "rgba", ("origin", "pos"): "xyz"}
 
 
 def check_spelling(root: Element, problems: Problems) -> None:
     """Report misspelt names and repeated elements in what urdfdom reads; extensions of other tools are skipped."""
-    if not _ATTRIBUTES["robot"].issuperset(root.keys()):
+    if not ATTRIBUTES["robot"].issuperset(root.keys()):
         _check_attributes(root, problems)
     waiting = [root]
     while waiting:
         element = waiting.pop()
-        allowed = _CHILDREN[element.tag]
+        allowed = CHILDREN[element.tag]
         tags = []
         for child in element:
             tag = child.tag
             tags.append(tag)
             if tag in allowed:
-                if not _ATTRIBUTES[tag].issuperset(child.keys()):
+                if not ATTRIBUTES[tag].issuperset(child.keys()):
                     _check_attributes(child, problems)
-                if tag in _CHILDREN and len(child):
+                if tag in CHILDREN and len(child):
                     waiting.append(child)
             elif tag not in _EXTENSIONS:
                 _check_tag(child, element.tag, allowed, problems)
@@ -73,12 +73,12 @@ def check_spelling(root: Element, problems: Problems) -> None:
 
 
 def _check_attributes(element: Element, problems: Problems) -> None:
-    known, given = _ATTRIBUTES[element.tag], list(map(str, element.keys()))
+    known, given = ATTRIBUTES[element.tag], list(map(str, element.keys()))
     missing = known - set(given)
     for name in given:
         if name in known or name.startswith("{"):
             continue
-        meant = _SWAPPED.get((element.tag, name)) or problems.closest(name, missing)
+        meant = SWAPPED.get((element.tag, name)) or problems.closest(name, missing)
         if meant:
             message = f"ROS 2 ignores the unknown attribute {quoted(name)} of <{element.tag}>"
             problems.add(catalogue.MISSPELT, f"{message}; did you mean {quoted(meant)}?", element, name)
@@ -88,7 +88,7 @@ def _check_tag(child: Element, parent: str, allowed: tuple[str, ...], problems: 
     meant = problems.closest(child.tag, allowed)
     if meant:
         message = f"ROS 2 ignores <{child.tag}> in <{parent}>; did you mean <{meant}>?"
-    elif child.tag in _ATTRIBUTES:
+    elif child.tag in ATTRIBUTES:
         message = f"ROS 2 ignores <{child.tag}> in <{parent}>: it does not belong there"
     else:
         return

@@ -6,6 +6,7 @@ from itertools import combinations
 from typing import NamedTuple
 
 from grader.edits import Proposal, composed
+from grader.grading.hints.loading import chained, grouped, steps
 from grader.grading.hints.targets import links_of
 from grader.grading.hints.trials import Edits, OutOfBudget, Results, State, Trials, gained, loses_nothing
 from grader.grading.rubric import Criterion
@@ -51,6 +52,7 @@ class Search:
     def run(self) -> "Search":
         """Search until nothing more is found, or the budget is spent."""
         try:
+            self._load()
             for _ in range(_MAX_ROUNDS):
                 if not self._round(self.final):
                     break
@@ -83,6 +85,30 @@ class Search:
         if taken:
             self.final = current._replace(edits=_joined(self.trials.start.submission, state.edits, taken))
         return bool(taken)
+
+    def _load(self) -> None:
+        """Repair a URDF that ROS 2 rejects, or drops content of; what each step gains alone is a hint of its own."""
+        start = self.trials.start
+        if not start.failed:
+            return
+        taken: list[Proposal] = []
+        for step in steps(self.trials, start, self.reference):
+            edits = _joined(start.submission, self.final.edits, step.proposal.edits)
+            taken.append(step.proposal._replace(edits=_alone(edits, self.final.edits)))
+            self.final = step.after._replace(edits=edits)
+        gains = gained(start.results, self.final.results)
+        groups = grouped(taken)
+        for proposal in groups if len(groups) > 1 else ():
+            alone = self.trials.applied(start, proposal.edits, whole=True) if proposal.edits else None
+            if alone is not None and loses_nothing(start.results, alone.results):
+                own = gained(start.results, alone.results)
+                if own:
+                    self.found.append(Found(proposal, proposal.edits, tuple(own), alone.results))
+        known = {name for found in self.found for name in found.gains}
+        whole = self.trials.applied(start, self.final.edits, whole=True) if set(gains) - known else None
+        if whole is not None and loses_nothing(start.results, whole.results):
+            own = gained(start.results, whole.results)
+            self.found.append(Found(chained(groups, self.final.edits), self.final.edits, tuple(own), whole.results))
 
     def _by_cost(self, results: Results) -> list[str]:
         """Return the failed criteria, those with which most points are lost first."""
@@ -228,6 +254,16 @@ def _worse(before: Results, after: Results) -> list[str]:
 
 def _pair_of(first: Proposal, second: Proposal, edits: Edits) -> Proposal:
     return Proposal(edits, f"{first.cause} and {second.cause}", f"{first.said} and {second.said}", "", first.link)
+
+
+def _alone(together: Edits, before: Edits) -> Edits:
+    """Return the edits that were added; none where they change what earlier ones wrote."""
+    added = tuple(edit for edit in together if edit not in before)
+    if len(added) + len(before) == len(together):
+        return added
+    (last,) = added if len(added) == 1 else (None,)
+    same = next((edit for edit in before if last and edit[:4] == last[:4] and last.new.startswith(edit.new)), None)
+    return (last._replace(new=last.new.removeprefix(same.new)),) if last and same and not last.old else ()
 
 
 def _joined(submission: Submission, first: Sequence[Edit], second: Sequence[Edit]) -> Edits:

@@ -48,7 +48,7 @@ class Trials:
 
     def passing(self, state: State, edits: Edits, wanted: Collection[str]) -> set[str]:
         """Return those of the wanted criteria that pass with edits, as far as a quick look tells. Raises OutOfBudget."""
-        edited = self._quick(state, edits)
+        edited = self.edited(state, edits)
         if edited is None:
             return set()
         return {
@@ -57,13 +57,14 @@ class Trials:
 
     def applied(self, state: State, edits: Edits, *, whole: bool = False) -> State | None:
         """Return the state after edits of this one; `whole` reads the submission from scratch. Raises OutOfBudget."""
-        edited = self._from_scratch(state, edits) if whole else self._quick(state, edits)
+        edited = self._from_scratch(state, edits) if whole else self.edited(state, edits)
         if edited is None:
             return None
         self._spend(edited)
         return State(edited, edits, decide(self.rubric, edited, self.start.results))
 
-    def _quick(self, state: State, edits: Edits) -> Submission | None:
+    def edited(self, state: State, edits: Edits) -> Submission | None:
+        """Return the submission with edits of a state, not graded; None where they do not fit. Raises OutOfBudget."""
         self._spend(state.submission)
         files = edited_files(state.submission, edits)
         if files is None:

@@ -1,0 +1,224 @@
+"""Repairs of names and of the tree: duplicates, unknown links, links that are not connected, loops."""
+
+from collections.abc import Iterator
+
+from grader.edits import Proposal
+from grader.names import closest
+from grader.robot.edits.draft import child_of, end_of
+from grader.robot.edits.structure import loose, renamed
+from grader.robot.joints import JOINT_TYPES
+from grader.robot.repairs.elements import child_repairs
+from grader.robot.repairs.site import Site
+from grader.xml.parsing import Element
+
+_MAX_NAMES = 4
+_ENDS = ("parent", "child")
+_NEEDS_LIMIT = ("revolute", "prismatic")
+
+
+def duplicate_repairs(site: Site) -> Iterator[Proposal]:
+    """Remove or rename one of two elements with one name: pasted twice, or pasted and not renamed."""
+    element, tag = site.element, str(site.element.tag)
+    name = element.get("name")
+    same = [other for other in site.draft.root.iterchildren(tag) if other.get("name") == name]
+    names = _other_names(site, tag)
+    first = next((other for other in same if other is not element), element)
+    is_copy = _content(first) == _content(element)
+    removals = [_removed(site, other) for other in (element, first)]
+    renames = [
+        site.propose(edits, f"a {tag} name that is there twice", _copy("rename", tag))
+        for other, names_of in ((element, names), (first, names[:1]))
+        for new in names_of
+        for edits in site.draft.set(other, "name", new)
+    ]
+    yield from (*removals, *renames) if is_copy else (*renames, *removals)
+
+
+def _removed(site: Site, element: Element) -> Proposal:
+    cause = f"a {element.tag} that is there twice"
+    return site.propose(site.draft.remove(element), cause, _copy("remove", str(element.tag)))
+
+
+def _copy(verb: str, tag: str) -> str:
+    return f"{verb} one copy" if tag != "material" else f"{verb} one copy of the material"
+
+
+def _other_names(site: Site, tag: str) -> list[str]:
+    if tag == "link":
+        return site.robots.unused_links()[:_MAX_NAMES]
+    if tag == "joint":
+        return [site.robots.unused_joint(site.element)]
+    known = {material.get("name") for material in site.draft.root.iterchildren("material")}
+    used = dict.fromkeys(found.get("name") or "" for found in site.draft.root.iter("material"))
+    return [name for name in used if name and name not in known][:_MAX_NAMES]
+
+
+def _content(element: Element) -> list[tuple[str, dict[str, str]]]:
+    return [(str(inner.tag), {str(key): str(value) for key, value in inner.attrib.items()}) for inner in element.iter()]
+
+
+def name_repairs(site: Site) -> Iterator[Proposal]:
+    """Give a robot, link, joint or material the name that it needs."""
+    element, tag = site.element, str(site.element.tag)
+    match tag:
+        case "robot":
+            names = [site.robots.reference.root.get("name") or "robot"]
+        case "link":
+            names = site.robots.unused_links()[:_MAX_NAMES]
+        case "joint":
+            names = [site.robots.unused_joint(element)]
+        case _:
+            names = _other_names(site, "material") or ["material"]
+    for name in names:
+        edits = site.draft.add_attributes(element, {"name": name})
+        yield site.propose(edits, f"the name of the {tag}, which is missing", f"name the {tag}")
+
+
+def type_repairs(site: Site) -> Iterator[Proposal]:
+    """Correct the type of a joint, or give it one."""
+    element = site.element
+    own = (element.get("type") or "").strip()
+    like = site.like.get("type") if site.like is not None else None
+    near = own.lower() if own.lower() in JOINT_TYPES else closest(own, JOINT_TYPES)
+    for wanted in dict.fromkeys(found for found in (near, like, "fixed") if found):
+        yield from site.set(element, "type", wanted, "the type of the joint", f"set the type to {wanted}")
+
+
+def limit_repairs(site: Site) -> Iterator[Proposal]:
+    """Make a joint without limits one that needs none, or give it limits."""
+    like = site.like.get("type") if site.like is not None else None
+    yield from (
+        child_repairs(site, "limit")
+        if any(child.tag not in ("origin", "parent", "child", "axis") for child in site.element)
+        else ()
+    )
+    for wanted in dict.fromkeys(found for found in (like, "continuous") if found and found not in _NEEDS_LIMIT):
+        yield from site.set(site.element, "type", wanted, "the type of the joint", f"set the type to {wanted}")
+    yield from child_repairs(site, "limit")
+
+
+def end_repairs(site: Site) -> Iterator[Proposal]:
+    """Name the link that a joint's parent or child is: a misspelt name, none at all, <Child>, <child name=...>."""
+    joint = site.owner
+    own = Site(site.robots, joint, None)
+    links = [link.get("name") or "" for link in site.draft.links()]
+    for role in _ENDS:
+        end = child_of(joint, role)
+        if end is None:
+            yield from child_repairs(own, role)
+            for name in _plausible(own, role):
+                edits = site.draft.insert(joint, f'<{role} link="{name}"/>')
+                yield own.propose(edits, f"the {role}, which is missing", f"name the {role}")
+            continue
+        given = end.get("link")
+        if given in links:
+            continue
+        for attribute in map(str, end.keys()):
+            if attribute != "link":
+                edits = site.draft.rename_attribute(end, attribute, "link")
+                yield own.propose(edits, "the name of the link", "correct the attribute link")
+        near = closest(given or "", links)
+        names = dict.fromkeys([*([near] if near else []), *_plausible(own, role)])
+        for name in names:
+            ways = (
+                site.draft.set(end, "link", name)
+                if given is not None
+                else [site.draft.add_attributes(end, {"link": name})]
+            )
+            for edits in ways:
+                yield own.propose(edits, f"the name of the {role}", f"correct the name of the {role}")
+        if given:
+            yield from _link_repairs(site, given)
+
+
+def _plausible(site: Site, role: str) -> list[str]:
+    """Return the links that may be the parent or child of a joint."""
+    like = end_of(site.like, role) if site.like is not None else ""
+    links = [like] if like and site.draft.link(like) is not None else []
+    if role == "child":
+        other = end_of(site.element, "parent")
+        links += [name for name in site.robots.loose_links() if name != other][:_MAX_NAMES]
+    return list(dict.fromkeys(links))
+
+
+def _link_repairs(site: Site, wanted: str) -> Iterator[Proposal]:
+    """Rename a link, or add it, for a joint that names it."""
+    names = [link.get("name") or "" for link in site.draft.links()]
+    near = closest(wanted, [name for name in names if site.robots.reference.link(name) is None])
+    if near:
+        edits = renamed(site.draft, near, wanted)
+        yield site.propose(edits, "the name of a link", "correct the name of the link")
+    like = site.robots.reference.link(wanted)
+    if like is not None:
+        edits = site.draft.append(site.robots.reference.text(like))
+        yield Proposal(edits, f"the link {wanted!r}, which is missing", f"add the link {wanted!r}", "", wanted)
+
+
+def root_repairs(site: Site) -> Iterator[Proposal]:
+    """Connect the links that are not connected: as the reference does, by a joint that names another link, by a new joint."""
+    draft, roots = site.draft, site.robots.loose_links()
+    wanted = {
+        link.get("name"): site.robots.reference.joint_of(link.get("name") or "")
+        for link in site.robots.reference.links()
+    }
+    for joint in draft.joints():
+        rivals = [other for other in draft.joints() if end_of(other, "child") == end_of(joint, "child")]
+        end = child_of(joint, "child")
+        for root in roots if len(rivals) > 1 and end is not None else ():
+            for edits in draft.set(end, "link", root) if end is not None else ():
+                yield Proposal(
+                    edits,
+                    "the child of a joint",
+                    "correct the child",
+                    f"the joint of {root!r}" if wanted.get(root) is not None else "",
+                )
+    for root in roots:
+        if wanted.get(root) is not None:
+            yield from loose(draft, site.robots.reference, root)
+    yield from loop_repairs(site)
+    known = [root for root in roots if site.robots.reference.link(root) is not None] or roots
+    for root in roots:
+        if root not in known[:1] and site.robots.reference.link(root) is None:
+            edits = draft.append(
+                f'<joint name="{root}_joint" type="fixed">\n  <parent link="{known[0]}"/>\n  <child link="{root}"/>\n</joint>'
+            )
+            yield Proposal(edits, "a link that is not connected", "connect the link with a joint")
+            own = draft.link(root)
+            if own is not None:
+                yield Proposal(draft.remove(own), "a link that is not connected", "remove the link")
+
+
+def loop_repairs(site: Site) -> Iterator[Proposal]:
+    """Exchange parent and child of a joint, name another parent or child, or remove it."""
+    draft = site.draft
+    for joint in draft.joints():
+        own, ends = Site(site.robots, joint, None), _ends(joint)
+        names = [end.get("link") or "" for _, end in ends]
+        if len(names) < len(_ENDS) or not all(names):
+            continue
+        for role, end in ends:
+            yield from _as_reference(own, role, end)
+        if names[0] != names[1]:
+            edits = (draft.set(end, "link", name)[0] for (_, end), name in zip(ends, names[::-1], strict=True))
+            yield own.propose(sum(edits, ()), "parent and child, which are exchanged", "exchange parent and child")
+            continue
+        for name in site.robots.loose_links():
+            for role, end in ends:
+                yield from own.set(end, "link", name, f"the {role}", f"correct the {role}")
+    if site.owner.tag == "joint":
+        yield site.propose(draft.remove(site.owner), "a joint that closes a loop", "remove the joint")
+
+
+def _ends(joint: Element) -> list[tuple[str, Element]]:
+    """Return the elements that name the parent and the child of a joint."""
+    ends = ((role, child_of(joint, role)) for role in _ENDS)
+    return [(role, end) for role, end in ends if end is not None]
+
+
+def _as_reference(site: Site, role: str, end: Element) -> Iterator[Proposal]:
+    """Name the link that the reference has as parent or child of the joint of this name, or with this child."""
+    joints = site.robots.reference.joints()
+    named = next((other for other in joints if other.get("name") == site.element.get("name")), None)
+    for name in dict.fromkeys(end_of(like, role) for like in (named, site.like) if like is not None):
+        if name and name != end.get("link") and site.draft.link(name) is not None:
+            yield from site.set(end, "link", name, f"the {role}", f"make {name!r} the {role}")
