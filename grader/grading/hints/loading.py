@@ -14,7 +14,7 @@ from grader.robot.reader import Reading
 from grader.robot.repairs.pieces import remaining
 from grader.robot.repairs.repairs import repairable, repairs_of
 from grader.robot.repairs.site import Robots
-from grader.robot.repairs.texts import fallback_proposals, text_proposals
+from grader.robot.repairs.texts import fallback_proposals, lost_brackets, text_proposals
 from grader.submission.urdf import Read
 from grader.xml.catalogue import IGNORED_REST, SEVERAL_ROOTS
 
@@ -35,12 +35,12 @@ class Step(NamedTuple):
 
 
 def defects(reading: Reading) -> Defects:
-    """Return how much ROS 2 does not read, rejects, leaves unconnected, drops and ignores: less is better."""
+    """Return how much ROS 2 does not read, rejects, leaves unconnected, and drops or ignores: less is better."""
     effects = [problem.kind.effect for problem in reading.problems]
     unread = remaining(reading.source.text) if reading.root is None else -1
-    silent = sum(problem.kind in _SILENT for problem in reading.problems)
+    silent = sum(problem.kind in _SILENT for problem in reading.problems) + len(lost_brackets(reading.source.text))
     rejected = effects.count("rejects") or int(reading.verdict == "rejected")
-    return unread, rejected, _loose(reading.robot), effects.count("drops"), silent
+    return unread, rejected, _loose(reading.robot), effects.count("drops") + silent
 
 
 def _loose(robot: Robot | None) -> int:
@@ -53,7 +53,7 @@ def steps(trials: Trials, start: State, reference: Draft | None) -> Iterator[Ste
     state = start
     for _ in range(_MAX_STEPS):
         reading = _reading(state)
-        if reading is None or (not any(defects(reading)[3:]) and reading.verdict == "clean"):
+        if reading is None or (reading.verdict == "clean" and not defects(reading)[-1]):
             return
         step = next(filter(None, (_best(trials, state, group) for group in _groups(reading, reference))), None)
         if step is None:

@@ -52,6 +52,9 @@ def _not_closed(source: Source, tree: Tree, top: Piece, closing: Piece) -> Itera
     """Yield edits of the tag that is open where an outer one is closed."""
     text = source.text
     if top.name in LEAVES:
+        alike = [piece for piece in tree.pieces if _is_unclosed_leaf(text, piece)]
+        edits = tuple(edit for piece in alike for edit in _self_closed(source, piece).edits)
+        yield _self_closed(source, top)._replace(edits=edits)
         yield _self_closed(source, top)
     if not top.has_attributes and top.name in {piece.name for piece in tree.open_tags[:-1]}:
         edit = source.edit(top.start, top.end, f"</{top.name}>")
@@ -66,6 +69,12 @@ def _not_closed(source: Source, tree: Tree, top: Piece, closing: Piece) -> Itera
         yield _self_closed(source, top)
     yield Proposal((source.edit(closing.start, closing.end, ""),), "a closing tag too much", "remove the closing tag")
     yield Proposal((source.edit(top.start, top.end, ""),), "a tag that is not closed", "remove the tag")
+
+
+def _is_unclosed_leaf(text: str, piece: Piece) -> bool:
+    """Return whether a tag that contains nothing is open, and the next one does not close it."""
+    following = text.find("<", piece.end)
+    return piece.form == "open" and piece.name in LEAVES and not text.startswith(f"</{piece.name}", following)
 
 
 def _self_closed(source: Source, piece: Piece) -> Proposal:
@@ -99,19 +108,19 @@ def _closes_nothing(source: Source, tree: Tree, top: Piece, closing: Piece) -> I
         head = piece.text_in(text)[:-1].rstrip().removesuffix("/").rstrip()
         edit = source.edit(piece.start, piece.end, f"{head}>")
         yield Proposal((edit,), "the / of a tag with content, which is too much", "remove the /")
-    yield Proposal((_without(source, closing),), "a closing tag too much", "remove the closing tag")
-    allowed = CHILDREN.get(closing.name, ())
+    allowed, inner = CHILDREN.get(closing.name, ()), _descendants(closing.name)
     tags = [piece for piece in between if piece.form != "other"]
     for piece in tags:
-        if piece.name in allowed and all(_is_inside(other, allowed) for other in tags if other.start >= piece.start):
+        if piece.name in allowed and all(other.name in inner for other in tags if other.start >= piece.start):
             edit = source.edit(piece.start, piece.start, f"<{closing.name}>")
             yield Proposal((edit,), "a tag, which is missing", "add the tag")
             break
+    yield Proposal((_without(source, closing),), "a closing tag too much", "remove the closing tag")
 
 
-def _is_inside(piece: Piece, allowed: tuple[str, ...]) -> bool:
-    inner = {name for child in allowed for name in (child, *CHILDREN.get(child, ()))}
-    return piece.name in inner
+def _descendants(tag: str) -> set[str]:
+    children = CHILDREN.get(tag, ())
+    return set(children).union(*map(_descendants, children))
 
 
 def _without(source: Source, piece: Piece) -> Edit:
@@ -160,6 +169,9 @@ def _unclosed(source: Source, tree: Tree) -> Iterator[Proposal]:
         (source.edit(end, end, "".join(lines)),), "the end of the file, which is missing", "close what is open"
     )
     last = tree.open_tags[-1]
+    for piece in tree.pieces:
+        if piece.name == tree.open_tags[0].name and piece.form == "open" and piece is not tree.open_tags[0]:
+            yield Proposal((_without(source, piece),), "a tag that is there twice", "remove one copy of the tag")
     if not last.has_attributes:
         edit = source.edit(last.start, last.end, f"</{last.name}>")
         yield Proposal((edit,), "the / of a closing tag, which is missing", "add the /")

@@ -1,10 +1,11 @@
 """Repairs of names and of the tree: duplicates, unknown links, links that are not connected, loops."""
 
 from collections.abc import Iterator
+from itertools import islice
 
 from grader.edits import Proposal
 from grader.names import closest
-from grader.robot.edits.draft import child_of, end_of
+from grader.robot.edits.draft import child_of, end_of, escaped
 from grader.robot.edits.structure import loose, renamed
 from grader.robot.joints import JOINT_TYPES
 from grader.robot.repairs.elements import child_repairs
@@ -47,7 +48,7 @@ def _other_names(site: Site, tag: str) -> list[str]:
     if tag == "link":
         return site.robots.unused_links()[:_MAX_NAMES]
     if tag == "joint":
-        return [site.robots.unused_joint(site.element)]
+        return site.robots.unused_joints(site.element)
     known = {material.get("name") for material in site.draft.root.iterchildren("material")}
     used = dict.fromkeys(found.get("name") or "" for found in site.draft.root.iter("material"))
     return [name for name in used if name and name not in known][:_MAX_NAMES]
@@ -66,7 +67,7 @@ def name_repairs(site: Site) -> Iterator[Proposal]:
         case "link":
             names = site.robots.unused_links()[:_MAX_NAMES]
         case "joint":
-            names = [site.robots.unused_joint(element)]
+            names = site.robots.unused_joints(element)
         case _:
             names = _other_names(site, "material") or ["material"]
     for name in names:
@@ -116,7 +117,7 @@ def end_repairs(site: Site) -> Iterator[Proposal]:
         for attribute in map(str, end.keys()):
             if attribute != "link":
                 edits = site.draft.rename_attribute(end, attribute, "link")
-                yield own.propose(edits, "the name of the link", "correct the attribute link")
+                yield own.propose(edits, "the name of the attribute link", "correct the name of the attribute link")
         near = closest(given or "", links)
         names = dict.fromkeys([*([near] if near else []), *_plausible(own, role)])
         for name in names:
@@ -144,14 +145,19 @@ def _plausible(site: Site, role: str) -> list[str]:
 def _link_repairs(site: Site, wanted: str) -> Iterator[Proposal]:
     """Rename a link, or add it, for a joint that names it."""
     names = [link.get("name") or "" for link in site.draft.links()]
-    near = closest(wanted, [name for name in names if site.robots.reference.link(name) is None])
-    if near:
-        edits = renamed(site.draft, near, wanted)
+    unknown = [name for name in names if site.robots.reference.link(name) is None]
+    near = closest(wanted, unknown)
+    others = (name for name in site.robots.loose_links() if name in unknown)
+    for name in dict.fromkeys([*([near] if near else []), *islice(others, _MAX_NAMES)]):
+        edits = renamed(site.draft, name, wanted)
         yield site.propose(edits, "the name of a link", "correct the name of the link")
     like = site.robots.reference.link(wanted)
     if like is not None:
         edits = site.draft.append(site.robots.reference.text(like))
         yield Proposal(edits, f"the link {wanted!r}, which is missing", f"add the link {wanted!r}", "", wanted)
+    else:
+        edits = site.draft.append(f'<link name="{escaped(wanted)}"/>')
+        yield Proposal(edits, "the link of a joint, which is missing", "add the link that the joint names")
 
 
 def root_repairs(site: Site) -> Iterator[Proposal]:
@@ -191,6 +197,10 @@ def root_repairs(site: Site) -> Iterator[Proposal]:
 def loop_repairs(site: Site) -> Iterator[Proposal]:
     """Exchange parent and child of a joint, name another parent or child, or remove it."""
     draft = site.draft
+    known = {joint.get("name") for joint in site.robots.reference.joints()}
+    unknown = (joint for joint in draft.joints() if joint.get("name") not in known)
+    for joint in islice(unknown, _MAX_NAMES):
+        yield Proposal(draft.remove(joint), "a joint that closes a loop", "remove the joint")
     for joint in draft.joints():
         own, ends = Site(site.robots, joint, None), _ends(joint)
         names = [end.get("link") or "" for _, end in ends]

@@ -94,13 +94,15 @@ def attribute_repairs(site: Site) -> Iterator[Proposal]:
     for name in unknown:
         meant = SWAPPED.get((tag, name)) or _ALIASES.get((tag, name)) or closest(name, missing)
         for wanted in [meant] if meant in missing else missing:
-            yield site.propose(site.draft.rename_attribute(element, name, wanted), *_misspelt(wanted))
+            yield site.propose(site.draft.rename_attribute(element, name, wanted), *_misspelt(f"attribute {wanted}"))
     given = {name: _given(site, name) for name in missing}
     values = {name: value for name, value in given.items() if value is not None}
     if values:
         names = " and ".join(values)
         yield site.propose(
-            site.draft.add_attributes(element, values), f"the {names} of <{tag}>, missing", f"add {names}"
+            site.draft.add_attributes(element, values),
+            f"{names} of <{tag}>, which is missing",
+            f"add {names} to <{tag}>",
         )
 
 
@@ -176,7 +178,7 @@ def spelling_repairs(site: Site) -> Iterator[Proposal]:
         missing = [name for name in known if element.get(name) is None]
         meant = SWAPPED.get((tag, attribute)) or closest(attribute, missing)
         if attribute not in known and meant:
-            yield site.propose(site.draft.rename_attribute(element, attribute, meant), *_misspelt(meant))
+            yield site.propose(site.draft.rename_attribute(element, attribute, meant), *_misspelt(f"attribute {meant}"))
         return
     parent = element.getparent()
     near = closest(tag, CHILDREN.get(str(parent.tag), ())) if parent is not None else None

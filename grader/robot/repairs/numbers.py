@@ -136,16 +136,16 @@ def _with_opacity(text: str, attribute: str) -> str:
 
 _STEPS: tuple[tuple[Step, str, str], ...] = (
     (_replaced("[\u2010-\u2015\u2212\ufe63\uff0d]", "-"), "a minus sign that is not ASCII", "write - for the minus"),
-    (_replaced("""["'\u201c\u201d\u2018\u2019\\[\\](){}](?<!\\{)(?<!\\})""", ""), "quotes or brackets around numbers", "remove them"),
-    (_evaluated, "an expression, which ROS 2 does not evaluate", "write its value"),
+    (_replaced("""["'\u201c\u201d\u2018\u2019\\[\\](){}](?<!\\{)(?<!\\})""", ""), "quotes or brackets around numbers", "remove the quotes or brackets"),
+    (_evaluated, "an expression, which ROS 2 does not evaluate", "write the value of the expression"),
     (_replaced(r"[\s\u00a0\u2000-\u200b\u202f\ufeff]+", " "), "white space that is not a space", "separate the numbers by spaces"),
     (_without_units, "a unit after a number", "write the number without the unit"),
     (_replaced(r"(?<=[0-9.])[oO]|[oO](?=[0-9.])|(?<![\\w.])[oO](?![\\w.])", "0"), "a letter in a number", "write a zero for the letter O"),
     (_replaced(r"(?<![\w.])[lI](?=[.0-9])|(?<=[0-9.])[lI](?![a-z])", "1"), "a letter in a number", "write a one for the letter"),
-    (_replaced(r"\.{2,}", "."), "a decimal point too much", "remove one"),
+    (_replaced(r"\.{2,}", "."), "a decimal point too much", "remove one decimal point"),
     (_replaced(r"([+-])\s+(?=[0-9.])", r"\1"), "a space after a sign", "remove the space"),
-    (_replaced(r"--+", "-"), "a sign that is there twice", "remove one"),
-    (_replaced(r"\+-", "-"), "two signs", "remove one"),
+    (_replaced(r"--+", "-"), "a sign that is there twice", "remove one sign"),
+    (_replaced(r"\+-", "-"), "two signs", "remove one sign"),
     (_replaced(r"(?<=[0-9.])(?=[+-])(?<![eE])", " "), "the space between two numbers, which is missing", "separate the numbers by spaces"),
 )  # fmt: skip
 _COMMAS: tuple[tuple[Step, str, str], ...] = (
@@ -166,7 +166,7 @@ _COMMAS: tuple[tuple[Step, str, str], ...] = (
     (_replaced(r"(?<=[0-9])\s*:\s*(?=[0-9.+-])", " "), "colons between numbers", "separate the numbers by spaces"),
 )
 _LAST: tuple[tuple[Step, str, str], ...] = (
-    (lambda text, _: re.sub(r"[^0-9]+$", "", text) if text.endswith(("/", ",", ";")) else text, "a character after the numbers", "remove it"),
+    (lambda text, _: re.sub(r"[^0-9]+$", "", text) if text.endswith(("/", ",", ";")) else text, "a character after the numbers", "remove the last character"),
     (lambda text, _: text.strip(), "a space after the number", "remove the space"),
     (_in_range, "the range of the colour: 0..255, not 0..1", "write the colour in 0..1"),
     (_with_opacity, "the opacity, which is missing", "add the opacity"),

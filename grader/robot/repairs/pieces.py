@@ -59,6 +59,8 @@ def _tag(text: str, start: int) -> Piece:
 def _extent(text: str, start: int) -> int:
     """Return the offset after a malformed tag."""
     position = start + 1
+    while text[position : position + 1] in ("<", " "):
+        position += 1
     while (comment := text.find("<!--", position)) >= 0 and ">" not in text[position:comment]:
         end = text.find("-->", comment)
         if end < 0 or text.find("<", position) < comment:

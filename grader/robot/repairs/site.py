@@ -10,6 +10,8 @@ from grader.robot.edits.draft import Draft, Edits, child_of, end_of
 from grader.source import Location
 from grader.xml.parsing import Element
 
+_MAX_NAMES = 3
+
 
 @dataclass(frozen=True)
 class Robots:
@@ -43,13 +45,15 @@ class Robots:
         names = [link.get("name") or "" for link in self.draft.links()]
         return [name for name in names if name and name not in children]
 
-    def unused_joint(self, joint: Element) -> str:
-        """Return the name that a joint has in the reference, else one after its child; a name that no other joint has."""
+    def unused_joints(self, joint: Element) -> list[str]:
+        """Return names that no other joint has: that of the reference, those of links without a joint, one after its child."""
         child = end_of(joint, "child")
-        like = self.reference.joint_of(child)
-        name = (like.get("name") if like is not None else None) or f"{child or 'new'}_joint"
+        likes = (self.reference.joint_of(name) for name in (child, *self.loose_links()))
+        names = [like.get("name") or "" for like in likes if like is not None]
         taken = {other.get("name") for other in self.draft.joints()}
-        return name if name not in taken else f"{name}_2"
+        own = f"{child or 'new'}_joint"
+        names += [own, f"{own}_2"]
+        return [name for name in dict.fromkeys(names) if name and name not in taken][:_MAX_NAMES]
 
 
 @dataclass(frozen=True)

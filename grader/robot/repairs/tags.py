@@ -28,6 +28,7 @@ _FIRST = {
 }
 # What is wrong with a tag, and what to do: the first whose pattern is found in it.
 _CAUSES = (
+    (re.compile(r"^<\s*(?:/\s|<|\s|/?\s*/\s*/)"), "the start of a tag", "correct the start of the tag"),
     (_CURLY, "typographic quotes", "write straight quotes"),
     (re.compile(r"<!--"), "a comment inside a tag", "remove the comment from the tag"),
     (re.compile(r"[^/?]\s*$(?<!>)"), "a tag without its >", "end the tag with >"),
@@ -38,7 +39,6 @@ _CAUSES = (
     (re.compile(r"""^[^"']*(?:(?:"[^"]*"|'[^']*')[^"']*)*["'][^"']*$"""), "a quote, which is missing", "add the quote"),
     (re.compile(r"""=\s*[^\s"'=]"""), "the quotes, which are missing", "put the value in quotes"),
     (re.compile(r"""^[^=]*$|["']\s+[a-z]+\s*["']|^<\w+\s+\w+\s*["']"""), "the equals sign, which is missing", "write = before the value"),
-    (re.compile(r"^<\s*(?:/\s|<|/?\s*/\s*/)"), "the start of a tag", "correct the start of the tag"),
 )  # fmt: skip
 
 
@@ -89,11 +89,15 @@ def rewrites(text: str, piece: Piece) -> Iterator[Rewrite]:
         yield Rewrite(f"</{name[2]}>", cause, action)
         return
     if name[2].lower() == "xml":
-        yield Rewrite('<?xml version="1.0"?>', "the XML declaration", "begin it with <? and end it with ?>")
+        yield Rewrite(
+            '<?xml version="1.0"?>', "the XML declaration", "begin the XML declaration with <? and end it with ?>"
+        )
         return
+    if (joined := re.sub(r"\s", "", f"{name[2]}{rest}")) in ATTRIBUTES and rest:
+        yield Rewrite(f"<{joined}{end.strip() or '>'}", "a space in the name of a tag", "remove the space")
     is_empty = "/" in end or "\\" in end or (not body.endswith(">") and _is_leaf(text, piece, name[2]))
     closing = ("/>" if is_empty else ">") if not end.startswith((" ", "\t")) else (" />" if is_empty else ">")
-    quote = "'" if text.count("'") > text.count('"') else '"'
+    quote = "'" if text.count("='") > text.count('="') else '"'
     for attributes in _attributes(name[2], rest):
         if len(dict(attributes)) == len(attributes):
             values = "".join(f" {key}={quote}{value}{quote}" for key, value in attributes)
@@ -115,7 +119,9 @@ def _without_repetition(tag: str, attributes: list[tuple[str, str]], closing: st
         if len(dict(found)) == len(found):
             values = "".join(f" {key}={quote}{value}{quote}" for key, value in found)
             yield Rewrite(
-                f"<{tag}{values}{closing}", "an attribute that is there twice", "rename or remove one of the two"
+                f"<{tag}{values}{closing}",
+                "an attribute that is there twice",
+                "rename or remove one of the two attributes",
             )
 
 

@@ -10,7 +10,7 @@ from grader.problems import Kind
 from grader.robot import catalogue
 from grader.robot.reader import Reading
 from grader.robot.repairs.closing import closing_proposals, early_end_proposals
-from grader.robot.repairs.pieces import Piece, Tree
+from grader.robot.repairs.pieces import Piece, Tree, pieces_of
 from grader.robot.repairs.tags import tag_proposals
 from grader.robot.spelling import ATTRIBUTES
 from grader.source import Edit, Source
@@ -35,7 +35,7 @@ def text_proposals(reading: Reading, name: str) -> Iterator[Proposal]:
         yield from _declarations(source, tree.pieces)
     if xml_catalogue.UNTERMINATED in kinds or reading.root is None:
         yield from _comments(source, tree.pieces)
-    yield from _lost_brackets(source, tree.pieces)
+    yield from _with_brackets(source)
     if reading.root is None:
         yield from tag_proposals(source)
         yield from closing_proposals(source, tree)
@@ -94,6 +94,9 @@ def _declarations(source: Source, pieces: list[Piece]) -> Iterator[Proposal]:
     kept = next((piece for piece in found if not text[: piece.start].strip("\ufeff \t\r\n")), None)
     edits = tuple(_without_line(source, piece) for piece in found if piece is not kept)
     start = int(text.startswith("\ufeff"))
+    if kept is None and found and found[0] is pieces[0]:
+        before = source.edit(start, found[0].start, "")
+        yield Proposal((before, *edits[1:]), "text before the XML declaration", "remove the text")
     if kept is None and found:
         top = source.edit(start, start, f"{found[0].text_in(text)}\n")
         yield Proposal((top, *edits), "the place of the XML declaration", "move the XML declaration to the top")
@@ -126,20 +129,27 @@ def _comments(source: Source, pieces: list[Piece]) -> Iterator[Proposal]:
         near = (_NEARLY_CLOSED if piece.name == "<!--" else re.compile(r"\s*[/?]?>")).search(
             text, piece.start + 4, limit
         )
-        cause, action = f"{what}, which is missing", f"write {closing}"
+        cause, action = f"{what}, which is missing", f"write {closing} at {what}"
         if near is not None:
             yield Proposal((source.edit(*near.span(), closing),), cause, action)
         end = len(text[: min(limit, text.find("\n", piece.start) % (len(text) + 1))].rstrip())
         yield Proposal((source.edit(end, end, f" {closing}" if piece.name == "<!--" else closing),), cause, action)
 
 
-def _lost_brackets(source: Source, pieces: list[Piece]) -> Iterator[Proposal]:
-    """Write the < of what looks like a tag in the text between tags."""
+def lost_brackets(text: str) -> list[int]:
+    """Return the offsets of what looks like a tag without its < in the text between tags."""
+    if text.count(">") <= text.count("<"):
+        return []
+    pieces = list(pieces_of(text))
     ends = [0, *(piece.end for piece in pieces)]
-    starts = [*(piece.start for piece in pieces), len(source.text)]
-    found = [match.start() for gap in zip(ends, starts, strict=True) for match in _LOST.finditer(source.text, *gap)]
-    if found:
-        edits = tuple(source.edit(at, at, "<") for at in found)
+    starts = [*(piece.start for piece in pieces), len(text)]
+    return [match.start() for gap in zip(ends, starts, strict=True) for match in _LOST.finditer(text, *gap)]
+
+
+def _with_brackets(source: Source) -> Iterator[Proposal]:
+    """Write the < of what looks like a tag in the text between tags."""
+    edits = tuple(source.edit(at, at, "<") for at in lost_brackets(source.text))
+    if edits:
         yield Proposal(edits, "the < of a tag, which is missing", "begin the tag with <")
 
 
