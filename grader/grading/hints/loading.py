@@ -72,8 +72,7 @@ def _reading(state: State) -> Reading | None:
 
 def _groups(reading: Reading, reference: Draft | None) -> Iterator[Iterable[Proposal]]:
     """Yield edits that may be the next step, one group for each problem."""
-    name = (reference.root.get("name") if reference is not None else None) or "robot"
-    yield text_proposals(reading, name)
+    yield text_proposals(reading, reference)
     draft = Draft.of(reading)
     if draft is not None:
         robots = Robots(draft, reference or draft, reading.problems)

@@ -1,6 +1,7 @@
 """Tags that are not closed, closed twice, or closed by another tag."""
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Sequence
 
 from grader import markup
 from grader.edits import Proposal
@@ -12,17 +13,17 @@ from grader.source import Edit, Source
 _MISSING = ("a closing tag, which is missing", "add the closing tag")
 
 
-def closing_proposals(source: Source, tree: Tree) -> Iterator[Proposal]:
-    """Yield edits that give each tag its closing tag, the most plausible first."""
+def closing_proposals(source: Source, tree: Tree, links: Sequence[str] = ()) -> Iterator[Proposal]:
+    """Yield edits that give each tag its closing tag, the most plausible first; `links` are names that a link may get."""
     if tree.mismatch is not None:
-        yield from _mismatch(source, tree, tree.mismatch)
+        yield from _mismatch(source, tree, tree.mismatch, links)
     if tree.open_tags:
         yield from _misplaced(source, tree)
         if tree.mismatch is None:
             yield from _unclosed(source, tree)
 
 
-def _mismatch(source: Source, tree: Tree, closing: Piece) -> Iterator[Proposal]:
+def _mismatch(source: Source, tree: Tree, closing: Piece, links: Sequence[str]) -> Iterator[Proposal]:
     *above, top = tree.open_tags
     outer = {piece.name for piece in above}
     is_known, top_is_known = closing.name in ATTRIBUTES, top.name in ATTRIBUTES
@@ -34,7 +35,7 @@ def _mismatch(source: Source, tree: Tree, closing: Piece) -> Iterator[Proposal]:
     if closing.name in outer:
         yield from _not_closed(source, tree, top, closing)
     else:
-        yield from _closes_nothing(source, tree, top, closing)
+        yield from _closes_nothing(source, tree, top, closing, links)
     yield _renamed_closing(source, top, closing)
 
 
@@ -99,7 +100,7 @@ def _inside(tree: Tree, top: Piece) -> list[Piece]:
     return [piece for piece in tree.open_tags if piece.start > top.start]
 
 
-def _closes_nothing(source: Source, tree: Tree, top: Piece, closing: Piece) -> Iterator[Proposal]:
+def _closes_nothing(source: Source, tree: Tree, top: Piece, closing: Piece, links: Sequence[str]) -> Iterator[Proposal]:
     """Yield edits of a closing tag without an opening one."""
     text = source.text
     between = [piece for piece in tree.pieces if top.end <= piece.start < closing.start]
@@ -112,7 +113,13 @@ def _closes_nothing(source: Source, tree: Tree, top: Piece, closing: Piece) -> I
     tags = [piece for piece in between if piece.form != "other"]
     for piece in tags:
         if piece.name in allowed and all(other.name in inner for other in tags if other.start >= piece.start):
-            edit = source.edit(piece.start, piece.start, f"<{closing.name}>")
+            unused = [
+                name
+                for name in links
+                if closing.name == "link" and not re.search(rf"<link\s[^>]*\b{re.escape(name)}\b", text)
+            ]
+            named = f' name="{unused[0]}"' if unused else ""
+            edit = source.edit(piece.start, piece.start, f"<{closing.name}{named}>")
             yield Proposal((edit,), "a tag, which is missing", "add the tag")
             break
     yield Proposal((_without(source, closing),), "a closing tag too much", "remove the closing tag")

@@ -8,6 +8,7 @@ from grader.edits import Proposal
 from grader.names import closest
 from grader.problems import Kind
 from grader.robot import catalogue
+from grader.robot.edits.draft import Draft
 from grader.robot.reader import Reading
 from grader.robot.repairs.closing import closing_proposals, early_end_proposals
 from grader.robot.repairs.pieces import Piece, Tree, pieces_of
@@ -22,13 +23,13 @@ _INSERTED = ('"', ">", "/>", "<", "=", "/", "'", " ")
 _MAX_PLACES = 6
 
 
-def text_proposals(reading: Reading, name: str) -> Iterator[Proposal]:
-    """Yield edits of a text that ROS 2 cannot read; `name` is the name that a robot may get."""
+def text_proposals(reading: Reading, reference: Draft | None) -> Iterator[Proposal]:
+    """Yield edits of a text that ROS 2 cannot read; what has no name may get one of the reference."""
     source = reading.source
     tree = Tree.of(source.text)
     kinds = {problem.kind for problem in reading.problems}
     if not kinds.isdisjoint((catalogue.NO_ROBOT, catalogue.NO_LINKS)):
-        yield from _robot(source, tree, name)
+        yield from _robot(source, tree, (reference.root.get("name") if reference is not None else None) or "robot")
     if not kinds.isdisjoint((xml_catalogue.SEVERAL_ROOTS, xml_catalogue.IGNORED_REST, catalogue.NO_LINKS)):
         yield from early_end_proposals(source)
     if xml_catalogue.MISPLACED_DECLARATION in kinds:
@@ -38,7 +39,8 @@ def text_proposals(reading: Reading, name: str) -> Iterator[Proposal]:
     yield from _with_brackets(source)
     if reading.root is None:
         yield from tag_proposals(source)
-        yield from closing_proposals(source, tree)
+        links = [link.name for link in reference.robot.links] if reference is not None else []
+        yield from closing_proposals(source, tree, links)
         yield from _stray(source, tree, kinds)
 
 
