@@ -16,7 +16,7 @@ from grader.robot.repairs.repairs import repairable, repairs_of
 from grader.robot.repairs.site import Robots
 from grader.robot.repairs.texts import fallback_proposals, lost_brackets, text_proposals
 from grader.submission.urdf import Read
-from grader.xml.catalogue import IGNORED_REST, SEVERAL_ROOTS
+from grader.xml.catalogue import IGNORED_REST, NOT_UTF8, SEVERAL_ROOTS
 
 _MAX_STEPS = 20  # of one chain
 _MAX_GRADED = 4  # edits of one step that are graded, to choose the best
@@ -78,7 +78,7 @@ def _groups(reading: Reading, reference: Draft | None) -> Iterator[Iterable[Prop
         robots = Robots(draft, reference or draft, reading.problems)
         for problem in repairable(reading.problems):
             yield repairs_of(robots, problem)
-    elif reading.source.text.strip():
+    elif reading.source.text.strip() and not any(problem.kind is NOT_UTF8 for problem in reading.problems):
         yield islice(fallback_proposals(reading.source), _MAX_FALLBACKS)
 
 

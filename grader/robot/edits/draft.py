@@ -66,13 +66,17 @@ class Draft:
         return self.source.tag(self._tags[element]).line
 
     def set(self, element: Element, attribute: str, value: str) -> list[Edits]:
-        """Return the ways to give an attribute another value."""
+        """Return the ways to give an attribute other numbers; those that stay the same stay as they are written."""
+        return self.write(element, attribute, merged(element.get(attribute) or "", value))
+
+    def write(self, element: Element, attribute: str, value: str) -> list[Edits]:
+        """Return the ways to give an attribute another text."""
         old, tag = element.get(attribute) or "", self._tags[element]
         ways = self.source.rewrites(tag, str(element.tag), attribute, old, escaped(value))
         if ways is not None:
             return ways
         source, start = self.source.element(tag)
-        return [(with_attribute(source, start, attribute, merged(old, escaped(value))),)]
+        return [(with_attribute(source, start, attribute, escaped(value)),)]
 
     def rename_attribute(self, element: Element, old: str, new: str) -> Edits:
         """Return the edit that gives an attribute another name."""

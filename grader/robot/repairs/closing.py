@@ -189,14 +189,18 @@ def early_end_proposals(source: Source) -> Iterator[Proposal]:
     pieces = list(pieces_of(source.text))
     robots = [piece for piece in pieces if piece.name == "robot"]
     last = max((piece.start for piece in pieces if piece.name in ("link", "joint", "material")), default=-1)
+    opened, closed = ([piece for piece in robots if piece.form == form] for form in ("open", "close"))
+    if len(opened) > 1 and len(closed) > 1 and opened[1].start < closed[0].start:
+        edits = (_without(source, opened[1]), _without(source, closed[-1]))
+        yield Proposal(edits, "a tag that is there twice", "remove one copy of the tag")
     for piece in robots:
         if piece.form == "empty":
             head = piece.text_in(source.text)[:-1].rstrip().removesuffix("/").rstrip()
             edit = source.edit(piece.start, piece.end, f"{head}>")
             yield Proposal((edit,), "the / of a tag with content, which is too much", "remove the /")
         elif piece.form == "close" and piece.start < last:
-            edits: tuple[Edit, ...] = (_without(source, piece),)
+            moved: tuple[Edit, ...] = (_without(source, piece),)
             if not any(other.form == "close" and other.start > last for other in robots):
                 end = len(source.text.rstrip())
-                edits = (*edits, source.edit(end, end, "\n</robot>"))
-            yield Proposal(edits, "a </robot> before the end of the robot", "move </robot> to the end")
+                moved = (*moved, source.edit(end, end, "\n</robot>"))
+            yield Proposal(moved, "a </robot> before the end of the robot", "move </robot> to the end")

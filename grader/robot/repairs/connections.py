@@ -130,15 +130,16 @@ def end_repairs(site: Site) -> Iterator[Proposal]:
                 yield own.propose(edits, f"the name of the {role}", f"correct the name of the {role}")
         if given:
             yield from _link_repairs(site, given)
+    yield own.propose(site.draft.remove(joint), "a joint that connects nothing", "remove the joint")
 
 
 def _plausible(site: Site, role: str) -> list[str]:
     """Return the links that may be the parent or child of a joint."""
     like = end_of(site.like, role) if site.like is not None else ""
     links = [like] if like and site.draft.link(like) is not None else []
-    if role == "child":
-        other = end_of(site.element, "parent")
-        links += [name for name in site.robots.loose_links() if name != other][:_MAX_NAMES]
+    other = end_of(site.element, "parent" if role == "child" else "child")
+    loose_links = [name for name in site.robots.loose_links() if name != other]
+    links += loose_links[: _MAX_NAMES if role == "child" else 1]
     return list(dict.fromkeys(links))
 
 
@@ -208,6 +209,8 @@ def loop_repairs(site: Site) -> Iterator[Proposal]:
             continue
         for role, end in ends:
             yield from _as_reference(own, role, end)
+        for name in site.robots.loose_links() if site.owner is joint else ():
+            yield from own.set(ends[0][1], "link", name, "the parent", "correct the parent")
         if names[0] != names[1]:
             edits = (draft.set(end, "link", name)[0] for (_, end), name in zip(ends, names[::-1], strict=True))
             yield own.propose(sum(edits, ()), "parent and child, which are exchanged", "exchange parent and child")

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from grader.edits import Proposal
 from grader.names import closest
 from grader.robot.edits.draft import Edits, child_of
-from grader.robot.repairs.numbers import is_readable, readable
+from grader.robot.repairs.numbers import COUNTS, is_readable, readable, with_count
 from grader.robot.repairs.site import Robots, Site
 from grader.robot.spelling import ATTRIBUTES, CHILDREN, SWAPPED
 from grader.xml.parsing import Element
@@ -33,7 +33,8 @@ _DEFAULTS = {
     "effort": "10",
     "velocity": "1",
     "k_velocity": "1",
-    "damping": "0",
+    "lower": "-1.57",
+    "upper": "1.57",
     "value": "1",
     **dict.fromkeys(("ixx", "iyy", "izz"), "0.001"),
     **dict.fromkeys(("ixy", "ixz", "iyz"), "0"),
@@ -59,14 +60,23 @@ def value_repairs(site: Site) -> Iterator[Proposal]:
         return
     for found in readable(attribute, site.element.get(attribute) or ""):
         edits = _everywhere(site.robots, found.cause)
-        own = site.draft.set(site.element, attribute, found.text)[0]
+        own = site.draft.write(site.element, attribute, found.text)[0]
         if len(edits) > 1 and set(own) <= set(edits):
             yield Proposal(edits, found.cause, found.action)
         yield site.propose(own, found.cause, f"{found.action} in {attribute}")
-    wanted = site.like.get(attribute) if site.like is not None else None
+    wanted = _given(site, attribute)
     if wanted is not None:
         yield from site.set(
             site.element, attribute, wanted, f"the numbers of {attribute}", f"set {attribute} to {wanted}"
+        )
+    for text in with_count(attribute, site.element.get(attribute) or ""):
+        count = COUNTS.get(attribute, 1)
+        yield from site.set(
+            site.element,
+            attribute,
+            text,
+            f"the count of numbers in {attribute}",
+            f"write {count} numbers in {attribute}",
         )
 
 
@@ -80,7 +90,7 @@ def _everywhere(robots: Robots, cause: str) -> Edits:
                 continue
             found = next(iter(readable(attribute, text)), None)
             if found is not None and found.cause == cause:
-                edits |= dict.fromkeys(robots.draft.set(element, attribute, found.text)[0])
+                edits |= dict.fromkeys(robots.draft.write(element, attribute, found.text)[0])
     return tuple(edits)  # type: ignore[arg-type]
 
 

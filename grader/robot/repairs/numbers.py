@@ -59,6 +59,19 @@ def readable(attribute: str, text: str) -> Iterator[Written]:
     yield from found.values()
 
 
+def with_count(attribute: str, text: str) -> Iterator[str]:
+    """Yield numbers in the count that an attribute needs: with zeros for those that are missing, or without those at the end."""
+    pieces = [piece for piece in text.split() if _is_number(piece)]
+    count = COUNTS.get(attribute, 1)
+    if len(pieces) > count:
+        yield " ".join(pieces[:count])
+    elif attribute == "scale" and len(pieces) == 1:
+        yield " ".join(pieces * count)
+    elif attribute in ("xyz", "rpy"):
+        missing = ["0"] * (count - len(pieces))
+        yield from dict.fromkeys(" ".join(found) for found in ((*pieces, *missing), (*missing, *pieces)))
+
+
 def _replaced(pattern: str, new: str) -> Step:
     compiled = re.compile(pattern)
     return lambda text, _: compiled.sub(new, text)

@@ -60,7 +60,7 @@ _REPAIRS: dict[Kind, tuple[Repair, ...]] = {
     catalogue.DUPLICATE_MATERIAL: (duplicate_repairs,),
     catalogue.JOINT_WITHOUT_NAME: (attribute_repairs, name_repairs),
     catalogue.BAD_INERTIAL: (value_repairs, attribute_repairs, _children("mass", "inertia"), _removed("inertial")),
-    catalogue.BAD_VISUAL: (*_SHAPE, name_repairs, _removed("material")),
+    catalogue.BAD_VISUAL: (*_SHAPE, name_repairs, _removed("material"), _removed("visual")),
     catalogue.BAD_COLLISION: (*_SHAPE, _removed("collision")),
     catalogue.FORMAT_DIRECTIVE: (value_repairs,),
     catalogue.UNNAMED_MATERIAL: (attribute_repairs, name_repairs, _removed("material")),

@@ -131,5 +131,5 @@ class Site:
 
     def set(self, element: Element, attribute: str, value: str, cause: str, action: str) -> Iterator[Proposal]:
         """Yield the ways to give an attribute another value."""
-        for edits in self.draft.set(element, attribute, value):
+        for edits in self.draft.write(element, attribute, value):
             yield self.propose(edits, cause, action)

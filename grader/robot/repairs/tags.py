@@ -93,17 +93,23 @@ def rewrites(text: str, piece: Piece) -> Iterator[Rewrite]:
             '<?xml version="1.0"?>', "the XML declaration", "begin the XML declaration with <? and end it with ?>"
         )
         return
+    glued = next((tag for tag in ATTRIBUTES if name[2].removeprefix(tag) in ATTRIBUTES[tag]), "")
+    if name[2] not in ATTRIBUTES and glued:
+        rest, name_of = f"{name[2].removeprefix(glued)}{rest}", glued
+        cause, action = "the space after the name of a tag, which is missing", "add the space"
+    else:
+        name_of = name[2]
     if (joined := re.sub(r"\s", "", f"{name[2]}{rest}")) in ATTRIBUTES and rest:
         yield Rewrite(f"<{joined}{end.strip() or '>'}", "a space in the name of a tag", "remove the space")
-    is_empty = "/" in end or "\\" in end or (not body.endswith(">") and _is_leaf(text, piece, name[2]))
+    is_empty = "/" in end or "\\" in end or (not body.endswith(">") and _is_leaf(text, piece, name_of))
     closing = ("/>" if is_empty else ">") if not end.startswith((" ", "\t")) else (" />" if is_empty else ">")
     quote = "'" if text.count("='") > text.count('="') else '"'
-    for attributes in _attributes(name[2], rest):
+    for attributes in _attributes(name_of, rest):
         if len(dict(attributes)) == len(attributes):
             values = "".join(f" {key}={quote}{value}{quote}" for key, value in attributes)
-            yield Rewrite(f"<{name[2]}{values}{closing}", cause, action)
+            yield Rewrite(f"<{name_of}{values}{closing}", cause, action)
         else:
-            yield from _without_repetition(name[2], attributes, closing, quote)
+            yield from _without_repetition(name_of, attributes, closing, quote)
 
 
 def _without_repetition(tag: str, attributes: list[tuple[str, str]], closing: str, quote: str) -> Iterator[Rewrite]:
