@@ -6,7 +6,7 @@ from itertools import islice
 from typing import NamedTuple
 
 from grader.edits import Proposal
-from grader.grading.hints.trials import Edits, State, Trials, loses_nothing
+from grader.grading.hints.trials import Edits, Results, State, Trials, gained, joined, loses_nothing
 from grader.robot.catalogue import COLOUR_COUNT, MISSPELT
 from grader.robot.edits.draft import Draft
 from grader.robot.model import Robot
@@ -34,6 +34,22 @@ class Step(NamedTuple):
     after: State
 
 
+class Hint(NamedTuple):
+    """A repair that is proven, and the criteria that pass with it."""
+
+    proposal: Proposal
+    edits: Edits
+    gains: tuple[str, ...]
+    results: Results
+
+
+class Repair(NamedTuple):
+    """The proven repairs of a URDF, and the state after all."""
+
+    hints: list[Hint]
+    final: State
+
+
 def defects(reading: Reading) -> Defects:
     """Return how much ROS 2 does not read, rejects, leaves unconnected, and drops or ignores: less is better."""
     effects = [problem.kind.effect for problem in reading.problems]
@@ -48,14 +64,47 @@ def _loose(robot: Robot | None) -> int:
     return len(robot.links) - len({joint.child for joint in robot.joints}) if robot is not None else 0
 
 
-def steps(trials: Trials, start: State, reference: Draft | None) -> Iterator[Step]:
-    """Yield the steps from a state towards a URDF of which ROS 2 drops nothing. Raises OutOfBudget."""
-    state = start
+def repaired(trials: Trials, reference: Draft | None) -> Repair:
+    """Return the hints of the steps, each alone if it gains something alone, and all together. Raises OutOfBudget."""
+    start = final = trials.start
+    taken: list[Proposal] = []
+    for step in _steps(trials, reference):
+        edits = joined(start.submission, final.edits, step.proposal.edits)
+        taken.append(step.proposal._replace(edits=_alone(edits, final.edits)))
+        final = step.after._replace(edits=edits)
+    groups = _grouped(taken)
+    hints = [_proven(trials, proposal) for proposal in groups if proposal.edits] if len(groups) > 1 else []
+    known = {name for hint in hints if hint is not None for name in hint.gains}
+    if set(gained(start.results, final.results)) - known:
+        hints.append(_proven(trials, _chained(groups, final.edits)))
+    return Repair([hint for hint in hints if hint is not None], final)
+
+
+def _proven(trials: Trials, proposal: Proposal) -> Hint | None:
+    """Return a repair that gains something, graded from scratch."""
+    before = trials.start.results
+    after = trials.applied(trials.start, proposal.edits, whole=True)
+    if after is None or not loses_nothing(before, after.results):
+        return None
+    gains = tuple(gained(before, after.results))
+    return Hint(proposal, proposal.edits, gains, after.results) if gains else None
+
+
+def _steps(trials: Trials, reference: Draft | None) -> Iterator[Step]:
+    """Yield the steps towards a URDF of which ROS 2 drops nothing, with at most half of the budget. Raises OutOfBudget."""
+    state, reserve = trials.start, trials.left // 2
+    given_up: set[str] = set()
     for _ in range(_MAX_STEPS):
         reading = _reading(state)
-        if reading is None or (reading.verdict == "clean" and not defects(reading)[-1]):
+        if reading is None or not state.failed or (reading.verdict == "clean" and not defects(reading)[-1]):
             return
-        step = next(filter(None, (_best(trials, state, group) for group in _groups(reading, reference))), None)
+        step = None
+        for cause, proposals in _groups(reading, reference):
+            if cause in given_up:
+                continue
+            if step := _best(trials, state, proposals) if trials.left > reserve else None:
+                break
+            given_up.add(cause)
         if step is None:
             return
         yield step
@@ -70,16 +119,17 @@ def _reading(state: State) -> Reading | None:
     return urdf.loaded
 
 
-def _groups(reading: Reading, reference: Draft | None) -> Iterator[Iterable[Proposal]]:
-    """Yield edits that may be the next step, one group for each problem."""
-    yield text_proposals(reading, reference)
+def _groups(reading: Reading, reference: Draft | None) -> Iterator[tuple[str, Iterable[Proposal]]]:
+    """Yield edits that may be the next step, one group for each problem, with what they are to undo."""
+    at = str(remaining(reading.source.text))
+    yield f"text {at}", text_proposals(reading, reference)
     draft = Draft.of(reading)
     if draft is not None:
         robots = Robots(draft, reference or draft, reading.problems)
         for problem in repairable(reading.problems):
-            yield repairs_of(robots, problem)
+            yield f"{problem.code} {problem.message}", repairs_of(robots, problem)
     elif reading.source.text.strip() and not any(problem.kind is NOT_UTF8 for problem in reading.problems):
-        yield islice(fallback_proposals(reading.source), _MAX_FALLBACKS)
+        yield f"token {at}", islice(fallback_proposals(reading.source), _MAX_FALLBACKS)
 
 
 def _best(trials: Trials, state: State, proposals: Iterable[Proposal]) -> Step | None:
@@ -110,7 +160,7 @@ def _score(state: State) -> Decimal:
     return sum((result.points for result in state.results.values()), Decimal(0))
 
 
-def grouped(proposals: Iterable[Proposal]) -> list[Proposal]:
+def _grouped(proposals: Iterable[Proposal]) -> list[Proposal]:
     """Return steps with those that do the same as one."""
     groups: dict[tuple[str, str], list[Proposal]] = {}
     for proposal in proposals:
@@ -128,9 +178,19 @@ def _together(group: list[Proposal]) -> Proposal:
     )
 
 
-def chained(proposals: list[Proposal], edits: Edits) -> Proposal:
+def _chained(proposals: list[Proposal], edits: Edits) -> Proposal:
     """Return several steps as one proposal."""
     causes = dict.fromkeys(proposal.cause for proposal in proposals)
     actions = dict.fromkeys(proposal.said for proposal in proposals)
     links = {proposal.link for proposal in proposals}
     return Proposal(edits, " and ".join(causes), " and ".join(actions), "", links.pop() if len(links) == 1 else "")
+
+
+def _alone(together: Edits, before: Edits) -> Edits:
+    """Return the edits that were added; none where they change what earlier ones wrote."""
+    added = tuple(edit for edit in together if edit not in before)
+    if len(added) + len(before) == len(together):
+        return added
+    (last,) = added if len(added) == 1 else (None,)
+    same = next((edit for edit in before if last and edit[:4] == last[:4] and last.new.startswith(edit.new)), None)
+    return (last._replace(new=last.new.removeprefix(same.new)),) if last and same and not last.old else ()

@@ -5,16 +5,13 @@ from decimal import Decimal
 from itertools import combinations
 from typing import NamedTuple
 
-from grader.edits import Proposal, composed
-from grader.grading.hints.loading import chained, grouped, steps
+from grader.edits import Proposal
+from grader.grading.hints.loading import repaired
 from grader.grading.hints.targets import links_of
-from grader.grading.hints.trials import Edits, OutOfBudget, Results, State, Trials, gained, loses_nothing
+from grader.grading.hints.trials import Edits, OutOfBudget, Results, State, Trials, gained, joined, loses_nothing
 from grader.grading.rubric import Criterion
 from grader.robot.edits.candidates import proposals
 from grader.robot.edits.draft import Draft
-from grader.source import Edit
-from grader.submission.editing import content
-from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 
 _MAX_ROUNDS = 4
@@ -83,32 +80,14 @@ class Search:
             if together is not None and loses_nothing(current.results, together.results):
                 taken, current = together.edits, together
         if taken:
-            self.final = current._replace(edits=_joined(self.trials.start.submission, state.edits, taken))
+            self.final = current._replace(edits=joined(self.trials.start.submission, state.edits, taken))
         return bool(taken)
 
     def _load(self) -> None:
-        """Repair a URDF that ROS 2 rejects, or drops content of; what each step gains alone is a hint of its own."""
-        start = self.trials.start
-        if not start.failed:
-            return
-        taken: list[Proposal] = []
-        for step in steps(self.trials, start, self.reference):
-            edits = _joined(start.submission, self.final.edits, step.proposal.edits)
-            taken.append(step.proposal._replace(edits=_alone(edits, self.final.edits)))
-            self.final = step.after._replace(edits=edits)
-        gains = gained(start.results, self.final.results)
-        groups = grouped(taken)
-        for proposal in groups if len(groups) > 1 else ():
-            alone = self.trials.applied(start, proposal.edits, whole=True) if proposal.edits else None
-            if alone is not None and loses_nothing(start.results, alone.results):
-                own = gained(start.results, alone.results)
-                if own:
-                    self.found.append(Found(proposal, proposal.edits, tuple(own), alone.results))
-        known = {name for found in self.found for name in found.gains}
-        whole = self.trials.applied(start, self.final.edits, whole=True) if set(gains) - known else None
-        if whole is not None and loses_nothing(start.results, whole.results):
-            own = gained(start.results, whole.results)
-            self.found.append(Found(chained(groups, self.final.edits), self.final.edits, tuple(own), whole.results))
+        """Repair a URDF that ROS 2 rejects, or drops content of: the rest of the search goes on from there."""
+        repair = repaired(self.trials, self.reference)
+        self.found += [Found(*hint) for hint in repair.hints]
+        self.final = repair.final
 
     def _by_cost(self, results: Results) -> list[str]:
         """Return the failed criteria, those with which most points are lost first."""
@@ -186,7 +165,7 @@ class Search:
             broken = [other for other in _worse(state.results, middle.results) if other in middle.results]
             for second in self._options(middle, broken) if broken else ():
                 if len(second.passes) == len(broken):
-                    edits = _joined(state.submission, first.edits, second.proposal.edits)
+                    edits = joined(state.submission, first.edits, second.proposal.edits)
                     if self._proven(state, edits, name):
                         return _pair_of(first, second.proposal, edits)
         return None
@@ -211,7 +190,7 @@ class Search:
     def _prove(self, state: State, proposal: Proposal, name: str) -> bool:
         """Add a proven edit of the submission as it is: the edit alone, else together with those before it."""
         start = self.trials.start
-        together = _joined(start.submission, state.edits, proposal.edits)
+        together = joined(start.submission, state.edits, proposal.edits)
         alone = tuple(edit for edit in together if edit not in state.edits)
         is_apart = len(alone) + len(state.edits) == len(together)
         for edits in ((alone,) if is_apart else ()) + (together,):
@@ -254,23 +233,3 @@ def _worse(before: Results, after: Results) -> list[str]:
 
 def _pair_of(first: Proposal, second: Proposal, edits: Edits) -> Proposal:
     return Proposal(edits, f"{first.cause} and {second.cause}", f"{first.said} and {second.said}", "", first.link)
-
-
-def _alone(together: Edits, before: Edits) -> Edits:
-    """Return the edits that were added; none where they change what earlier ones wrote."""
-    added = tuple(edit for edit in together if edit not in before)
-    if len(added) + len(before) == len(together):
-        return added
-    (last,) = added if len(added) == 1 else (None,)
-    same = next((edit for edit in before if last and edit[:4] == last[:4] and last.new.startswith(edit.new)), None)
-    return (last._replace(new=last.new.removeprefix(same.new)),) if last and same and not last.old else ()
-
-
-def _joined(submission: Submission, first: Sequence[Edit], second: Sequence[Edit]) -> Edits:
-    """Return the edits of a submission that do what `first` does, and then `second`."""
-    joined: list[Edit] = []
-    for path in dict.fromkeys(edit.path for edit in (*first, *second)):
-        text = (content(submission, path) or b"").decode("utf-8", "surrogateescape")
-        halves = ([edit for edit in edits if edit.path == path] for edits in (first, second))
-        joined += composed(text, path, *halves)
-    return tuple(joined)

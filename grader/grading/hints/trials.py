@@ -1,14 +1,15 @@
 """Try edits of a submission: which criteria pass with them, and whether the whole proves it."""
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
+from grader.edits import composed
 from grader.errors import InputError
 from grader.grading.grade import decide
 from grader.grading.report import Result
 from grader.grading.rubric import Rubric
 from grader.source import Edit
-from grader.submission.editing import edited_files, with_files, with_urdf
+from grader.submission.editing import content, edited_files, with_files, with_urdf
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
 
@@ -123,3 +124,13 @@ def gained(before: Results, after: Results) -> list[str]:
 def points_of(results: Results, names: Iterable[str]) -> object:
     """Return the points that these criteria do not have yet."""
     return sum(results[name].criterion.points - results[name].points for name in names)
+
+
+def joined(submission: Submission, first: Sequence[Edit], second: Sequence[Edit]) -> Edits:
+    """Return the edits of a submission that do what `first` does, and then `second`."""
+    joined: list[Edit] = []
+    for path in dict.fromkeys(edit.path for edit in (*first, *second)):
+        text = (content(submission, path) or b"").decode("utf-8", "surrogateescape")
+        halves = ([edit for edit in edits if edit.path == path] for edits in (first, second))
+        joined += composed(text, path, *halves)
+    return tuple(joined)

@@ -6,15 +6,7 @@ from itertools import chain, islice
 from grader.edits import Proposal
 from grader.problems import Kind, Problem
 from grader.robot import catalogue
-from grader.robot.repairs.connections import (
-    duplicate_repairs,
-    end_repairs,
-    limit_repairs,
-    loop_repairs,
-    name_repairs,
-    root_repairs,
-    type_repairs,
-)
+from grader.robot.repairs.connections import end_repairs, loop_repairs, root_repairs
 from grader.robot.repairs.elements import (
     attribute_repairs,
     child_repairs,
@@ -24,6 +16,7 @@ from grader.robot.repairs.elements import (
     value_repairs,
 )
 from grader.robot.repairs.materials import colour_repairs, material_repairs
+from grader.robot.repairs.names import duplicate_repairs, limit_repairs, name_repairs, type_repairs
 from grader.robot.repairs.site import Robots, Site
 
 _MAX_PROPOSALS = 16  # of one problem
