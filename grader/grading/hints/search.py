@@ -9,6 +9,8 @@ from grader.edits import Proposal, composed
 from grader.grading.hints.targets import links_of
 from grader.grading.hints.trials import Edits, OutOfBudget, Results, State, Trials, gained, loses_nothing
 from grader.grading.rubric import Criterion
+from grader.package.edits.candidates import package_proposals
+from grader.package.package import Package
 from grader.robot.edits.candidates import proposals
 from grader.robot.edits.draft import Draft
 from grader.source import Edit
@@ -41,9 +43,11 @@ class Option(NamedTuple):
 class Search:
     """The search for one submission; `found` are proven edits, `final` the submission with those that fit together."""
 
-    def __init__(self, trials: Trials, reference: Draft | None) -> None:
+    def __init__(self, trials: Trials, reference: Draft | None, package: Package | None = None) -> None:
+        """`reference` and `package` are those of the rubric's reference solution."""
         self.trials = trials
         self.reference = reference
+        self.package = package
         self.found: list[Found] = []
         self.final = trials.start
         self._criteria = {criterion.id: criterion for criterion in trials.rubric.criteria}
@@ -97,7 +101,8 @@ class Search:
     def _proposals(self, state: State, names: Iterable[str]) -> list[Proposal]:
         """Return edits for criteria."""
         criteria = [self._criteria[name] for name in names]
-        found: list[Proposal] = []
+        wanted = [(criterion.check.name, criterion.arguments) for criterion in criteria]
+        found = package_proposals(state.submission.package, self.package, wanted)
         urdf = state.submission.urdf
         draft = Draft.of(urdf.reading) if isinstance(urdf, Read) else None
         if draft is not None:
@@ -232,9 +237,12 @@ def _pair_of(first: Proposal, second: Proposal, edits: Edits) -> Proposal:
 
 def _joined(submission: Submission, first: Sequence[Edit], second: Sequence[Edit]) -> Edits:
     """Return the edits of a submission that do what `first` does, and then `second`."""
+    renamed = {edit.renamed: edit.path for edit in first if edit.renamed}
+    second = [edit._replace(path=renamed.get(edit.path, edit.path)) for edit in second]
     joined: list[Edit] = []
     for path in dict.fromkeys(edit.path for edit in (*first, *second)):
         text = (content(submission, path) or b"").decode("utf-8", "surrogateescape")
-        halves = ([edit for edit in edits if edit.path == path] for edits in (first, second))
-        joined += composed(text, path, *halves)
+        halves = ([edit for edit in edits if edit.path == path and not edit.renamed] for edits in (first, second))
+        renames = [edit for edit in (*first, *second) if edit.path == path and edit.renamed]
+        joined += (*composed(text, path, *halves), *renames[-1:])
     return tuple(joined)

@@ -68,7 +68,7 @@ class Trials:
         files = edited_files(state.submission, edits)
         if files is None:
             return None
-        if isinstance(state.submission.urdf, Read) and not any(_is_of_package(path) for path in files):
+        if isinstance(state.submission.urdf, Read) and all(_is_of_robot(path, state.submission) for path in files):
             return with_urdf(state.submission, files)
         return self._from_scratch(state, edits)
 
@@ -87,9 +87,10 @@ class Trials:
             raise OutOfBudget
 
 
-def _is_of_package(path: str) -> bool:
-    """Return whether a file is one that the package's checks read, not only the URDF."""
-    return path.lower().endswith((".py", ".rviz", ".cfg", ".toml", ".yaml", "package.xml", ".launch", ".launch.xml"))
+def _is_of_robot(path: str, submission: Submission) -> bool:
+    """Return whether a file is the URDF or one that its xacro reads, and not one that the package's checks read."""
+    is_robot = path.lower().endswith((".urdf", ".xacro")) and path in submission.everything.files
+    return is_robot or path == submission.path
 
 
 def is_lost(result: Result) -> bool:
