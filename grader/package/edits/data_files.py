@@ -50,7 +50,7 @@ def entries(
 def _stops(task: Task, file: PythonFile, setup: Setup) -> Iterator[Proposal]:
     """Yield edits of what stops the build: a folder, a file that does not exist, a text instead of a list."""
     for stop in setup.stops:
-        if stop.path in task.package.tree.folders:
+        if stop.path.rstrip("/") in task.package.tree.folders:
             for edit in _narrower(task, file, stop.path, stop.at.line):
                 yield proposal(
                     [edit],
@@ -72,6 +72,9 @@ def _stops(task: Task, file: PythonFile, setup: Setup) -> Iterator[Proposal]:
             similar = closest(stop.path, task.files) or _same_name(task, stop.path)
             for edit in moved(file.source, stop.path, similar, stop.at.line)[:_MAX_EDITS] if similar else ():
                 yield proposal([edit], f"a path in {_WHAT} without a file", f"name the file in {_WHAT} that exists")
+                if posixpath.dirname(stop.path) == posixpath.dirname(similar or ""):
+                    edits = [task.renamed(similar or "", stop.path)]
+                    yield proposal(edits, f"a misspelt file name that {_WHAT} names", "rename the file")
             if stop.path == f"resource/{task.package.name}":
                 edits = [Edit(task.package.path(stop.path), 1, 1, "", "")]
                 yield proposal(
@@ -90,7 +93,9 @@ def _narrower(task: Task, file: PythonFile, folder: str, line: int) -> list[Edit
     beside = [posixpath.splitext(path)[1] for path in task.files if posixpath.dirname(path) == above]
     endings = [ending for ending, _ in Counter(filter(None, beside)).most_common(1)]
     pattern = posixpath.join(above, "*")
-    return [edit for ending in endings for edit in moved(file.source, pattern, pattern + ending, line)][:_MAX_EDITS]
+    edits = moved(file.source, folder, posixpath.join(folder, "*"), line)  # the folder itself is the pattern
+    edits += [edit for ending in endings for edit in moved(file.source, pattern, pattern + ending, line)]
+    return edits[:_MAX_EDITS]
 
 
 def _patterns(task: Task, file: PythonFile, setup: Setup, files: Sequence[str]) -> Iterator[Proposal]:

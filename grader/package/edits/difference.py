@@ -25,8 +25,11 @@ def restored(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
     matcher = SequenceMatcher(None, [line.text for line in own], [line.text for line in right], autojunk=False)
     found: list[tuple[Edit, ...]] = []
     for tag, first, last, start, end in matcher.get_opcodes():
-        if tag != "equal" and max(last - first, end - start) <= _MAX_LINES:
+        if tag == "equal":
+            found += _indented(source, own, right, (first, last, start, end))
+        elif max(last - first, end - start) <= _MAX_LINES:
             found += _undone(source, own, right, (first, last, start, end))
+    what = what.removeprefix("the ")
     for edits in found[:_MAX_DIFFERENCES]:
         yield proposal(edits, f"a line that differs from the lab's {what}", f"write the line as in the lab's {what}")
     if 1 < len(found) <= _MAX_DIFFERENCES:
@@ -50,8 +53,9 @@ def _undone(
     """Yield the edits for one difference: of each line where they correspond, else of all."""
     first, last, start, end = span
     if last - first == end - start:
-        for here, there in zip(range(first, last), range(start, end), strict=True):
-            yield (_changed_line(source, here, own[here], right[there].text),)
+        more, less = _shift(own, right, first, start)
+        for here, line in zip(range(first, last), right[start:end], strict=True):
+            yield (_changed_line(source, here, own[here], more + line.indent.removeprefix(less) + line.text),)
         return
     if not any(line.text for line in (*own[first:last], *right[start:end])):
         return
@@ -64,6 +68,20 @@ def _undone(
     if at == len(source.text) and not source.text.endswith("\n"):
         new = newline + new.removesuffix(newline)
     yield (source.edit(at, until, new),)
+
+
+def _indented(
+    source: Source, own: list[_Line], right: list[_Line], span: tuple[int, int, int, int]
+) -> Iterator[tuple[Edit, ...]]:
+    """Yield the edits of lines that are indented otherwise than the line before them, in comparison with the reference."""
+    first, last, start, _ = span
+    for index in range(1, last - first):
+        here, there = first + index, start + index
+        more, less = _shift(own, right, here, there)
+        indent = more + right[there].indent.removeprefix(less)
+        if own[here].text and own[here].indent != indent:
+            at = _start(source, here)
+            yield (source.edit(at, at + len(own[here].indent), indent),)
 
 
 def _shift(own: list[_Line], right: list[_Line], first: int, start: int) -> tuple[str, str]:
@@ -81,10 +99,10 @@ def _start(source: Source, line: int) -> int:
 
 def _changed_line(source: Source, number: int, line: _Line, new: str) -> Edit:
     """Return the edit of the words of a line that differ, the smallest that makes it the new one."""
-    old_words, new_words = _WORD.findall(line.text), _WORD.findall(new)
+    old_words, new_words = _WORD.findall(line.indent + line.text), _WORD.findall(new)
     head = _common(old_words, new_words)
     tail = _common(old_words[head:][::-1], new_words[head:][::-1])
-    start = _start(source, number) + (number == 0 and source.text.startswith("\ufeff")) + len(line.indent)
+    start = _start(source, number) + (number == 0 and source.text.startswith("\ufeff"))
     start += len("".join(old_words[:head]))
     old = "".join(old_words[head : len(old_words) - tail])
     return source.edit(start, start + len(old), "".join(new_words[head : len(new_words) - tail]))

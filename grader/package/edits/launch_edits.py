@@ -13,9 +13,13 @@ from grader.package.edits.python_names import defined
 from grader.package.edits.spelling import respelt
 from grader.package.edits.syntax import repaired
 from grader.package.edits.task import Task, proposal
+from grader.package.edits.xml_syntax import repaired as repaired_xml
 from grader.source import Edit, Source
 
 _WHAT = "the launch file"
+# The words of launch files in XML and YAML.
+_FRONTEND = """launch node pkg exec name args output if unless arg default description value param from include file let group
+find-pkg-share find-pkg-prefix var env eval command dirname true false screen xacro robot_description ros_args remap"""
 
 
 def named(task: Task, arguments: Mapping[str, Any]) -> Iterator[Proposal]:
@@ -75,11 +79,14 @@ def _edits(task: Task, name: str, nodes: list[str] | tuple[()]) -> Iterator[Prop
     ]
     file = PythonFile(source)
     if launch.syntax is not None:
-        yield from repaired(file, _WHAT)
+        yield from (
+            repaired(file, _WHAT) if not path.endswith((".xml", ".yaml", ".yml")) else repaired_xml(source, _WHAT)
+        )
     else:
         yield from defined(file, faults, _WHAT)
         yield from started(launch, source, nodes, like) if nodes else found(task, launch, source, like)
-    yield from respelt(source, [wanted or "", *nodes, *task.package.installed], (place.line for place in faults), _WHAT)
+    words = [wanted or ("" if path.endswith(".py") else _FRONTEND), *nodes]
+    yield from respelt(source, [*words, *task.package.installed], (place.line for place in faults), _WHAT)
     if wanted:
         yield from restored(source, wanted, _WHAT)
         if faults:

@@ -9,6 +9,7 @@ from grader.package.edits.difference import restored
 from grader.package.edits.setup_edits import new_setup
 from grader.package.edits.spelling import respelt
 from grader.package.edits.task import Task, proposal
+from grader.package.edits.xml_syntax import repaired
 from grader.package.package import MANIFEST, SETUP
 from grader.source import Edit, Location, Source
 
@@ -91,6 +92,7 @@ def readable(task: Task) -> Iterator[Proposal]:
         yield proposal(edits, "a missing package.xml", "create package.xml as ros2 pkg create does")
         return
     manifest = task.package.manifest
+    yield from repaired(source, MANIFEST)
     lines = [problem.location.line for problem in manifest.problems] if manifest is not None else []
     yield from respelt(source, [wanted], lines, MANIFEST)
     yield from restored(source, wanted, MANIFEST)

@@ -12,7 +12,8 @@ from grader.source import Edit, Source
 from grader.static_python.parse import SyntaxFault
 
 _CLOSING = {"(": ")", "[": "]", "{": "}"}
-_MAX_TRIES = 60  # edits that are parsed
+_MAX_TRIES = 100  # edits that are parsed
+_MAX_ENDS = 12  # lines that may lack a bracket
 _MAX_FOUND = 6
 _MAX_DEPTH = 3  # errors in one file
 _QUOTES = str.maketrans("“”„‘’‚", "\"\"\"'''")
@@ -32,6 +33,9 @@ _KEYWORDS = (
     "class",
     "lambda",
 )
+_FUNCTIONS = ("glob", "join", "open", "str", "find_packages", "Node", "setup", "LaunchDescription")
+_CALLED = re.compile(r"(\w+)(?=[(\[])")
+_WORD = re.compile(r"\w+")
 _BLOCK = re.compile(r"\s*(def|with|if|elif|else|for|while|class|try|except|finally)\b")
 _LINE_END = re.compile(r"[\s,;:)\]}+]*(#.*)?$")
 
@@ -75,10 +79,19 @@ def _edits(file: PythonFile, fault: SyntaxFault) -> Iterator[Edit]:
     line = fault.location.line
     yield from _keywords(file, line)
     yield from _colons(file, (line, line - 1))
-    yield from _quotes(file, line)
+    odd = next((number for number in range(1, line) if _is_odd(file.source.line(number))), line)
+    for number in dict.fromkeys((line, odd)):
+        yield from _quotes(file, number)
     yield from missing_commas(file)
     yield from _brackets(file)
     yield from _indents(file, line)
+    for number in (line, line - 1):
+        yield from _characters(file, number)
+
+
+def _is_odd(text: str) -> bool:
+    """Return whether a line has a quote that is not closed."""
+    return not text.lstrip().startswith("#") and any(text.count(quote) % 2 for quote in "'\"")
 
 
 def _plain_quotes(file: PythonFile, plain: str) -> Iterator[Edit]:
@@ -107,20 +120,39 @@ def _colons(file: PythonFile, lines: tuple[int, ...]) -> Iterator[Edit]:
 
 
 def _quotes(file: PythonFile, line: int) -> Iterator[Edit]:
-    """Yield edits that add the quote that is missing at the start or the end of a string."""
+    """Yield edits that add the quote that is missing at the start or the end of a string, first next to a word."""
     text = file.source.line(line)
     for quote in "'\"":
         if text.count(quote) % 2:
+            beside = rf"(?<=[\s(\[,{{=])(?=[\w./*-]+{quote})|(?<={quote})[\w./*-]+(?=[,)\]}}:])"
             end = _LINE_END.search(text)
-            start = end.start() if end is not None else len(text)
-            places = [
-                start,
-                *range(start + 1, len(text) + 1),
-                *(it.start() for it in re.finditer(r"(?<=[\s=(\[,{])\w|(?<=\w)(?=[,)\]}])", text)),
-            ]
-            for place in places:
+            ends = range(end.start() if end is not None else len(text), len(text) + 1)
+            words = re.finditer(r"(?<=[\s=(\[,{])(?=\w)|(?<=\w)(?=[,)\]}])", text)
+            near = [match.end() for match in re.finditer(beside, text)]
+            for place in dict.fromkeys([*near, *ends, *(match.end() for match in words)]):
                 at = file.source.offset(line, place + 1)
                 yield file.source.edit(at, at, quote)
+
+
+def _characters(file: PythonFile, line: int) -> Iterator[Edit]:
+    """Yield edits that add the one character which the brackets of a line, or two words without an operator, ask for."""
+    start, text = file.source.offset(line, 1), file.source.line(line).partition("#")[0]
+    balance = sum((char in "([{") - (char in ")]}") for char in text)
+    words = [*_WORD.finditer(text)]
+    if balance < 0:
+        known = {*_FUNCTIONS, *_CALLED.findall(file.text)}
+        inside = [word.start() + size for word in words for size in range(2, len(word[0])) if word[0][:size] in known]
+        for place in [*(word.end() for word in words), *inside, *(word.start() for word in words)]:
+            for char in "([{" if place == 0 or not text[place - 1].isalnum() else "(":
+                yield file.source.edit(start + place, start + place, char)
+    elif balance > 0:
+        ends = [match.end() for match in re.finditer(r"['\"\w)\]}](?=[\s,)\]}]|$)", text)]
+        for place in ends:
+            for char in ")]":
+                yield file.source.edit(start + place, start + place, char)
+    for match in re.finditer(r"(?<=[\w'\")\]])\s*(?=['\"(\[\w])", text):
+        for char in (",", "=", ".", "(") if match.start() else ():
+            yield file.source.edit(start + match.start(), start + match.start(), char)
 
 
 def missing_commas(file: PythonFile) -> Iterator[Edit]:
@@ -170,10 +202,19 @@ def _closed(file: PythonFile, opening: Token, end: int) -> Iterator[Edit]:
         one for one, other in zip(tokens, [*tokens[1:], None], strict=False)
         if other is None or "\n" in file.text[one.end : other.start] or other.start >= end
     ]  # fmt: skip
-    for token in ends[:0:-1][:12] + ends[:1]:
+    unbalanced = [token for token in ends if _is_open(file, token)]
+    for token in dict.fromkeys(unbalanced[::-1] + ends[:0:-1][:_MAX_ENDS] + ends[:1]):
         for place in (token.start, token.end) if token.text in (",", ":") else (token.end, token.start):
             if opening.end <= place:
                 yield file.source.edit(place, place, _CLOSING[opening.text])
+
+
+def _is_open(file: PythonFile, last: Token) -> bool:
+    """Return whether the line of a token opens a bracket that it does not close, and the next line is not deeper."""
+    number = file.source.at(last.start).line
+    line, after = file.source.line(number), file.source.line(number + 1)
+    balance = sum((char in _CLOSING) - (char in _CLOSING.values()) for char in line.partition("#")[0])
+    return balance > 0 and len(after) - len(after.lstrip()) <= len(line) - len(line.lstrip())
 
 
 def _indents(file: PythonFile, line: int) -> Iterator[Edit]:
