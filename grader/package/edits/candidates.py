@@ -1,7 +1,6 @@
 """The edits of a package that may make criteria pass, by the check that decides each."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from itertools import islice
 from typing import Any
 
 from grader.edits import Proposal
@@ -29,14 +28,14 @@ _BY_CHECK: Mapping[str, Callable[[Task, Mapping[str, Any]], Iterator[Proposal]]]
 def package_proposals(
     package: Package | None, reference: Package | None, wanted: Iterable[tuple[str, Mapping[str, Any]]]
 ) -> list[Proposal]:
-    """Return edits of a package for checks with their arguments, each edit once; the first are the most plausible."""
+    """Return edits of a package for checks with their arguments, each edit once; of each check the smallest are first."""
     if package is None:
         return []
     task = Task(package, reference)
     found: dict[tuple[object, ...], Proposal] = {}
     for check, arguments in wanted:
         family = _BY_CHECK.get(check)
-        for proposal in islice(family(task, arguments), _MAX_PROPOSALS) if family is not None else ():
-            if proposal.edits:
-                found.setdefault(proposal.edits, proposal)
+        own = [it for it in family(task, arguments) if it.edits] if family is not None else []
+        for proposal in sorted(own, key=lambda it: it.size)[:_MAX_PROPOSALS]:
+            found.setdefault(proposal.edits, proposal)
     return list(found.values())

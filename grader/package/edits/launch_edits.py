@@ -4,7 +4,7 @@ import posixpath
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from grader.edits import Proposal, edited
+from grader.edits import Proposal
 from grader.package.edits.difference import restored
 from grader.package.edits.launch_files import found
 from grader.package.edits.launch_nodes import started
@@ -14,6 +14,7 @@ from grader.package.edits.spelling import respelt
 from grader.package.edits.syntax import repaired
 from grader.package.edits.task import Task, proposal
 from grader.package.edits.xml_syntax import repaired as repaired_xml
+from grader.package.launch.model import Launch
 from grader.source import Edit, Source
 
 _WHAT = "the launch file"
@@ -72,29 +73,27 @@ def _edits(task: Task, name: str, nodes: list[str] | tuple[()]) -> Iterator[Prop
     wanted = _reference_text(task, path, name)
     like = PythonFile(Source("", wanted)) if wanted else None
     launch = task.package.launch(path)
-    faults = [
-        fault.location
-        for fault in (*filter(None, [launch.syntax]), *launch.faults)
-        if fault.location.path == source.path
-    ]
-    file = PythonFile(source)
-    if launch.syntax is not None:
-        yield from (
-            repaired(file, _WHAT) if not path.endswith((".xml", ".yaml", ".yml")) else repaired_xml(source, _WHAT)
-        )
-    else:
-        yield from defined(file, faults, _WHAT)
+    if launch.syntax is None:
         yield from started(launch, source, nodes, like) if nodes else found(task, launch, source, like)
-    words = [wanted or ("" if path.endswith(".py") else _FRONTEND), *nodes]
-    yield from respelt(source, [*words, *task.package.installed], (place.line for place in faults), _WHAT)
+    yield from task.once(path, lambda: _readable(task, launch, source, wanted))
+
+
+def _readable(task: Task, launch: Launch, source: Source, wanted: str | None) -> Iterator[Proposal]:
+    """Yield edits after which the launch file is read, and starts; the last is the file of the reference."""
+    faults = [fault.location for fault in (*filter(None, [launch.syntax]), *launch.faults)]
+    faults = [place for place in faults if place.path == source.path]
+    is_python = not source.path.endswith((".xml", ".yaml", ".yml"))
+    if launch.syntax is not None:
+        yield from repaired(PythonFile(source), _WHAT) if is_python else repaired_xml(source, _WHAT)
+    elif is_python:
+        yield from defined(PythonFile(source), faults, _WHAT)
+    words = [wanted or ("" if is_python else _FRONTEND), *task.package.installed]
+    yield from respelt(source, words, (place.line for place in faults), _WHAT)
     if wanted:
         yield from restored(source, wanted, _WHAT)
         if faults:
             whole = source.edit(0, len(source.text), wanted)
-            if edited(source.text, source.path, [whole]) is not None:
-                yield proposal(
-                    [whole], "a launch file that does not start", "use the lab's launch file", is_rewrite=True
-                )
+            yield proposal([whole], "a launch file that does not start", "use the lab's launch file", is_rewrite=True)
 
 
 def _reference_text(task: Task, path: str, name: str) -> str | None:

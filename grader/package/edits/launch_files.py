@@ -120,16 +120,23 @@ def _as_reference(file: PythonFile, like: PythonFile | None, named: Reference) -
         wanted = keyword(other, name)
         if like is None or call is None or wanted is None or _program(other) != program:
             continue
-        code, names = fitting(file, like, wanted.value)
-        own = keyword(call, name)
-        if own is not None:
-            return [[*file.with_imports(names), file.replaced(own.value, code)]]
-        last = file.span(call.keywords[-1])[1] if call.keywords else file.span(call)[1] - 1
-        start = file.span(call.keywords[-1])[0] if call.keywords else last
-        line = file.text[file.text.rfind("\n", 0, start) + 1 : start]
-        space = f"{file.newline}{line}" if not line.strip() else " "
-        return [[*file.with_imports(names), file.source.edit(last, last, f",{space}{name}={code}")]]
+        codes = [fitting(like, wanted.value, bound) for bound in (file.bound, ())]
+        return [[*file.with_imports(names), _with_keyword(file, call, name, code)] for code, names in codes]
     return []
+
+
+def _with_keyword(file: PythonFile, call: ast.Call, name: str, code: str) -> Edit:
+    """Return the edit that sets a keyword argument of a call, or adds it."""
+    own = keyword(call, name)
+    if own is not None:
+        return file.replaced(own.value, code)
+    if not call.keywords:
+        end = file.span(call)[1] - 1
+        return file.source.edit(end, end, f"{name}={code}")
+    start, end = file.span(call.keywords[-1])
+    line = file.text[file.text.rfind("\n", 0, start) + 1 : start]
+    space = f"{file.newline}{line}" if not line.strip() else " "
+    return file.source.edit(end, end, f",{space}{name}={code}")
 
 
 def _node_around(file: PythonFile, named: Reference) -> ast.Call | None:

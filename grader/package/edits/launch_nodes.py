@@ -1,7 +1,7 @@
 """Nodes that a launch file does not start: misspelt, forgotten, prevented by a condition, or missing."""
 
 import ast
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 
 from grader.edits import Proposal
 from grader.names import closest
@@ -18,6 +18,7 @@ _MAX_DEPTH = 4  # of names that are replaced by their values
 
 def started(launch: Launch, source: Source, nodes: Sequence[str], like: PythonFile | None) -> Iterator[Proposal]:
     """Yield edits with which a launch file starts nodes, each written `package/executable` or "a or b"."""
+    wanted = {name for node in nodes for name in node.split(" or ")}
     running = {_name(node) for node in launch.nodes if node.when}
     missing = [choice for choice in (node.split(" or ") for node in nodes) if running.isdisjoint(choice)]
     file = PythonFile(source)
@@ -25,7 +26,7 @@ def started(launch: Launch, source: Source, nodes: Sequence[str], like: PythonFi
     for choice in missing:
         found = [
             *_forgotten(launch, file, choice),
-            *_misspelt(launch, source, choice),
+            *_misspelt(launch, source, choice, wanted),
             *_prevented(launch, file, choice),
         ]
         if not found and like is not None:
@@ -71,10 +72,10 @@ def _forgotten(launch: Launch, file: PythonFile, choice: Sequence[str]) -> Itera
             yield edits
 
 
-def _misspelt(launch: Launch, source: Source, choice: Sequence[str]) -> Iterator[list[Edit]]:
+def _misspelt(launch: Launch, source: Source, choice: Sequence[str], wanted: set[str]) -> Iterator[list[Edit]]:
     """Yield the edits of the package and the executable of a node that is named almost like one of these."""
     for node in launch.nodes:
-        for package, executable in map(_parts, choice):
+        for package, executable in map(_parts, choice if _name(node) not in wanted else ()):
             if package in (node.package, closest(node.package, [package])) and executable in (
                 node.executable,
                 closest(node.executable, [executable]),
@@ -157,14 +158,14 @@ def _restored(file: PythonFile, like: PythonFile, wanted: str) -> list[Edit]:
         given = [keyword(call, name) for name in ("package", "executable")]
         texts = tuple(it.value.value for it in given if it is not None and isinstance(it.value, ast.Constant))
         if texts == _parts(wanted):
-            code, names = fitting(file, like, call)
+            code, names = fitting(like, call, file.bound)
             edits = added(file, code)
             return [*file.with_imports(names), *edits] if edits else []
     return []
 
 
-def fitting(file: PythonFile, like: PythonFile, node: ast.expr) -> tuple[str, list[str]]:
-    """Return an expression of the reference with only names that a file binds, or imports; and those that it needs to import."""
+def fitting(like: PythonFile, node: ast.expr, bound: Container[str]) -> tuple[str, list[str]]:
+    """Return an expression of the reference with only names that a file binds, or can import; and those that it needs to import."""
     values = _values(like)
     needed: dict[str, None] = {}
 
@@ -173,7 +174,7 @@ def fitting(file: PythonFile, like: PythonFile, node: ast.expr) -> tuple[str, li
         text = like.segment(expression)
         names = [it for it in ast.walk(expression) if isinstance(it, ast.Name)]
         for name in sorted(names, key=lambda it: like.span(it)[0], reverse=True):
-            if name.id in file.bound:
+            if name.id in bound:
                 continue
             if name.id in values and depth:
                 at, end = (offset - start for offset in like.span(name))

@@ -23,12 +23,11 @@ def named(task: Task, arguments: Mapping[str, Any]) -> Iterator[Proposal]:
     manifest, source = task.package.manifest, task.source(MANIFEST)
     if manifest is not None and source is not None and manifest.name is not None:
         old, new = manifest.name, arguments["name"]
-        edits = [_text(source, manifest.name_location, new)]
-        yield proposal([*edits, *_elsewhere(task, old, new)], "the name of the package", f"rename the package to {new}")
-        yield proposal(edits, "the name of the package in package.xml", f"rename the package in package.xml to {new}")
+        edits = [_text(source, manifest.name_location, new), *_elsewhere(task, old, new)]
+        yield proposal(edits, "the name of the package", f"rename the package to {new}")
         modules = [task.renamed(path, path.replace(old, new, 1)) for path in task.files if path.startswith(f"{old}/")]
         if modules:
-            edits = [*edits, *_elsewhere(task, old, new), *modules]
+            edits = [*edits, *modules]
             yield proposal(
                 edits, "the name of the package", f"rename the package to {new}, with its folder of Python files"
             )

@@ -55,6 +55,10 @@ def _missing(task: Task, files: Sequence[str]) -> dict[str, Sequence[str]]:
 def readable(task: Task, arguments: Mapping[str, Any]) -> Iterator[Proposal]:
     """Yield edits after which Python reads setup.py, and every name in it is defined."""
     del arguments
+    yield from task.once(SETUP, lambda: _readable(task))
+
+
+def _readable(task: Task) -> Iterator[Proposal]:
     file, setup = task.setup, task.package.setup
     if file is None or setup is None:
         yield from created_setup(task)

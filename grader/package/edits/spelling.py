@@ -3,16 +3,22 @@
 import keyword
 import re
 from collections.abc import Iterable, Iterator
+from difflib import SequenceMatcher
+from itertools import islice
 
 from grader.edits import Proposal
-from grader.names import closest
 from grader.package.edits.task import proposal
-from grader.source import Edit, Source
+from grader.source import Source
 from grader.static_python.imports import USUAL_NAMES
 
 _WORD = re.compile(r"[^\W\d]\w*")
 _MIN_LENGTH = 2
 _MAX_WORDS = 8
+_MAX_SUSPECTS = 60
+_MAX_MORE = 2  # letters that one word has more than the other
+_LONG = 8
+_LIKENESS, _LIKENESS_OF_LONG = 0.75, 0.88
+_ROS = {"rviz2", "xacro", "robot_state_publisher", "joint_state_publisher", "joint_state_publisher_gui"}
 _PYTHON = {*keyword.kwlist, *USUAL_NAMES, "launch", "launch_ros", "path", "join", "package_name", "open", "read"} - {
     "?"
 }
@@ -27,6 +33,7 @@ def respelt(source: Source, known: Iterable[str], lines: Iterable[int], what: st
     for match in _WORD.finditer(source.text):
         places.setdefault(match[0], []).append(match)
     right = {word for text in known for word in _WORD.findall(text)}
+    right |= {word for word in places if len(places[word]) > 1} | _ROS
     right |= _PYTHON if source.path.endswith(".py") else set()
     suspects = [word for word in places if word not in right and len(word) >= _MIN_LENGTH]
     near = set(lines)
@@ -35,17 +42,22 @@ def respelt(source: Source, known: Iterable[str], lines: Iterable[int], what: st
         first = places[word][0].start()
         return source.at(first).line not in near, len(places[word]), first
 
-    found = 0
-    for word in sorted(suspects, key=order):
-        guess = closest(word, right) or closest(word, [other for other in places if len(places[other]) > 1])
-        if guess is not None:
-            yield proposal(
-                _replaced(source, places[word], guess), f"a misspelt name in {what}", f"correct the spelling in {what}"
-            )
-            found += 1
-        if found == _MAX_WORDS:
-            return
+    guesses = ((word, _nearest(word, right)) for word in sorted(suspects, key=order)[:_MAX_SUSPECTS])
+    for word, guess in islice(((word, guess) for word, guess in guesses if guess), _MAX_WORDS):
+        edits = [source.edit(*place.span(), guess) for place in places[word]]
+        yield proposal(edits, f"a misspelt name in {what}", f"correct the spelling in {what}")
 
 
-def _replaced(source: Source, places: Iterable[re.Match[str]], new: str) -> list[Edit]:
-    return [source.edit(place.start(), place.end(), new) for place in places]
+def _nearest(word: str, known: Iterable[str]) -> str | None:
+    """Return the known word that a slip of the hand makes this one: a letter more, less or other, two that are swapped."""
+    lower, best = word.lower(), (_LIKENESS if len(word) < _LONG else _LIKENESS_OF_LONG, "")
+    matcher = SequenceMatcher(None, "", lower, autojunk=False)
+    for other in sorted(known):
+        same_end = other[:1].lower() == lower[:1] or other[-2:].lower() == lower[-2:]
+        if not same_end or abs(len(other) - len(word)) > _MAX_MORE:
+            continue
+        matcher.set_seq1(other.lower())
+        if matcher.quick_ratio() >= best[0]:
+            swapped = sorted(other.lower()) == sorted(lower)
+            best = max(best, (matcher.ratio() + 0.1 * swapped + 0.01 * (other[:1] == word[:1]), other))
+    return best[1] or None

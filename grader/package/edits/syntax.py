@@ -11,8 +11,9 @@ from grader.package.edits.task import proposal
 from grader.source import Edit, Source
 from grader.static_python.parse import SyntaxFault
 
+_NAMES = {",": "comma", ":": "colon", "'": "quote", '"': "quote", "=": "equals sign", ".": "dot"}
 _CLOSING = {"(": ")", "[": "]", "{": "}"}
-_MAX_TRIES = 100  # edits that are parsed
+_MAX_TRIES = 120  # edits that are parsed
 _MAX_ENDS = 12  # lines that may lack a bracket
 _MAX_FOUND = 6
 _MAX_DEPTH = 3  # errors in one file
@@ -49,7 +50,7 @@ def repaired(file: PythonFile, what: str) -> Iterator[Proposal]:
 def _action(edits: tuple[Edit, ...], what: str) -> str:
     first = edits[0]
     if len(edits) == 1 and not first.old.strip() and len(first.new.strip()) == 1:
-        name = {",": "comma", ":": "colon", "'": "quote", '"': "quote"}.get(first.new.strip(), "bracket")
+        name = _NAMES.get(first.new.strip(), "bracket")
         return f"add the missing {name} in {what}"
     return f"correct the syntax of {what}"
 
@@ -82,11 +83,13 @@ def _edits(file: PythonFile, fault: SyntaxFault) -> Iterator[Edit]:
     odd = next((number for number in range(1, line) if _is_odd(file.source.line(number))), line)
     for number in dict.fromkeys((line, odd)):
         yield from _quotes(file, number)
+    for number in (line, line - 1):
+        yield from _unbalanced(file, number)
     yield from missing_commas(file)
     yield from _brackets(file)
     yield from _indents(file, line)
     for number in (line, line - 1):
-        yield from _characters(file, number)
+        yield from _operators(file, number)
 
 
 def _is_odd(text: str) -> bool:
@@ -134,24 +137,35 @@ def _quotes(file: PythonFile, line: int) -> Iterator[Edit]:
                 yield file.source.edit(at, at, quote)
 
 
-def _characters(file: PythonFile, line: int) -> Iterator[Edit]:
-    """Yield edits that add the one character which the brackets of a line, or two words without an operator, ask for."""
+def _unbalanced(file: PythonFile, line: int) -> Iterator[Edit]:
+    """Yield edits that add the bracket that a line lacks: one that is closed and not opened, or the reverse."""
     start, text = file.source.offset(line, 1), file.source.line(line).partition("#")[0]
-    balance = sum((char in "([{") - (char in ")]}") for char in text)
+    balance = sum((char in _CLOSING) - (char in _CLOSING.values()) for char in text)
     words = [*_WORD.finditer(text)]
     if balance < 0:
         known = {*_FUNCTIONS, *_CALLED.findall(file.text)}
-        inside = [word.start() + size for word in words for size in range(2, len(word[0])) if word[0][:size] in known]
-        for place in [*(word.end() for word in words), *inside, *(word.start() for word in words)]:
+        others = {*_WORD.findall(file.text)}
+        inside = [
+            word.start() + size
+            for word in words
+            for size in range(2, len(word[0]))
+            if word[0][:size] in known or {word[0][:size], word[0][size:]} <= others
+        ]
+        quotes = [match.start() for match in re.finditer(r"(?<=[=(\[, ])['\"]", text)]
+        for place in [*(word.end() for word in words), *inside, *(word.start() for word in words), *quotes]:
             for char in "([{" if place == 0 or not text[place - 1].isalnum() else "(":
                 yield file.source.edit(start + place, start + place, char)
     elif balance > 0:
-        ends = [match.end() for match in re.finditer(r"['\"\w)\]}](?=[\s,)\]}]|$)", text)]
-        for place in ends:
+        for match in re.finditer(r"['\"\w)\]}](?=[\s,)\]}]|$)", text):
             for char in ")]":
-                yield file.source.edit(start + place, start + place, char)
+                yield file.source.edit(start + match.end(), start + match.end(), char)
+
+
+def _operators(file: PythonFile, line: int) -> Iterator[Edit]:
+    """Yield edits that add what is missing between two words of a line: a comma, an equals sign, a dot, a bracket."""
+    start, text = file.source.offset(line, 1), file.source.line(line).partition("#")[0]
     for match in re.finditer(r"(?<=[\w'\")\]])\s*(?=['\"(\[\w])", text):
-        for char in (",", "=", ".", "(") if match.start() else ():
+        for char in ",=.(":
             yield file.source.edit(start + match.start(), start + match.start(), char)
 
 

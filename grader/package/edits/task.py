@@ -1,8 +1,8 @@
 """A package whose edits are searched, beside the package of the rubric's reference solution."""
 
 import re
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
 from functools import cached_property
 
 from grader.edits import Proposal
@@ -20,6 +20,13 @@ class Task:
 
     package: Package
     reference: Package | None = None
+    _found: dict[str, list[Proposal]] = field(default_factory=dict, repr=False)
+
+    def once(self, name: str, make: Callable[[], Iterable[Proposal]]) -> list[Proposal]:
+        """Return proposals that several criteria need, made only once."""
+        if name not in self._found:
+            self._found[name] = list(make())
+        return self._found[name]
 
     def source(self, path: str) -> Source | None:
         """Return the text of a file of the package as it is; None where there is none that can be read."""
