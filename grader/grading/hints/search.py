@@ -68,7 +68,7 @@ class Search:
         wanted = self._by_cost(state.results)
         if not wanted:
             return False
-        options = self._options(state, wanted)
+        options = self._options(state, wanted, state.failed)
         taken: Edits = ()
         current = state
         for name in wanted:
@@ -116,13 +116,13 @@ class Search:
             found += proposals(draft, reference, links, places)
         return found
 
-    def _options(self, state: State, wanted: Sequence[str]) -> list[Option]:
+    def _options(self, state: State, wanted: Sequence[str], tried: Sequence[str] = ()) -> list[Option]:
         """Return the edits of a state that make a wanted criterion pass, or may be one half of a pair."""
         options: list[Option] = []
         for proposal in self._proposals(state, wanted):
-            passes = frozenset(self.trials.passing(state, proposal.edits, wanted))
+            passes = frozenset(self.trials.passing(state, proposal.edits, tried or wanted))
             options.append(Option(proposal, passes))
-            if len(passes) == len(wanted):
+            if len(passes) == len(tried or wanted):
                 break
         return options
 

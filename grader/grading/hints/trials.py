@@ -16,6 +16,7 @@ Results = Mapping[str, Result]
 Edits = tuple[Edit, ...]
 
 _MAX_STEPS = 600  # of one submission
+_PACKAGE_STEPS = 4  # that it costs more to evaluate a package than to read a URDF
 _BYTES_PER_STEP = 8192  # a larger file costs more to read
 
 
@@ -70,6 +71,7 @@ class Trials:
             return None
         if isinstance(state.submission.urdf, Read) and all(_is_of_robot(path, state.submission) for path in files):
             return with_urdf(state.submission, files)
+        self.left -= _PACKAGE_STEPS
         return self._from_scratch(state, edits)
 
     def _from_scratch(self, state: State, edits: Edits) -> Submission | None:

@@ -8,7 +8,7 @@ from grader.package.edits import launch_edits, manifest_edits, rviz_edits, setup
 from grader.package.edits.task import Task
 from grader.package.package import Package
 
-_MAX_PROPOSALS = 16  # for one criterion
+_MAX_PROPOSALS = 14  # for one criterion
 _BY_CHECK: Mapping[str, Callable[[Task, Mapping[str, Any]], Iterator[Proposal]]] = {
     "package_found": manifest_edits.named,
     "package_type": manifest_edits.typed,

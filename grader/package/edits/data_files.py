@@ -1,6 +1,5 @@
 """Entries of data_files in setup.py: those that are missing, and those that install nothing, stop the build or install elsewhere."""
 
-import ast
 import posixpath
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -8,16 +7,15 @@ from fnmatch import fnmatch
 
 from grader.edits import Proposal
 from grader.names import closest
+from grader.package.edits.new_entries import below_share, data_files, new_entries
 from grader.package.edits.paths import moved
-from grader.package.edits.python_file import PythonFile, keyword
+from grader.package.edits.python_file import PythonFile
 from grader.package.edits.task import Task, proposal
-from grader.package.launch.places import SHARE
 from grader.package.setup_py import Setup
 from grader.source import Edit
 
 _WHAT = "setup.py"
 _ENDINGS = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",)}
-_LAUNCH_PATTERN = "*launch.[pxy][yma]*"
 _MAX_EDITS = 3  # of one entry
 
 
@@ -39,7 +37,7 @@ def entries(
     yield from _targets(task, file, setup, files)
     yield from _second_entries(file, setup, files)
     for several in (missing, {kind: paths for kind, paths in missing.items() if list(paths) == list(files)}):
-        edits = _added(task, file, several)
+        edits = new_entries(task, file, several)
         count = "entries" if len(several) > 1 else "entry"
         if edits:
             yield proposal(
@@ -104,6 +102,7 @@ def _patterns(task: Task, file: PythonFile, setup: Setup, files: Sequence[str]) 
     endings = list(dict.fromkeys(_ending(path) for path in files))
     for empty in setup.empty:
         folder, _, name = empty.pattern.replace("\\", "/").rpartition("/")
+        yield from _renamed_folders(task, folder, folders)
         near = [closest(folder, task.package.tree.folders)] if folder else []
         wanted = [f"{it}/{name}" for it in dict.fromkeys([*near, *folders]) if it]
         wanted += [posixpath.join(it, f"*{ending}") for it in folders for ending in endings]
@@ -113,6 +112,17 @@ def _patterns(task: Task, file: PythonFile, setup: Setup, files: Sequence[str]) 
                 yield proposal(
                     [edit], f"a pattern in {_WHAT} that matches no file", f"let the pattern in {_WHAT} match the files"
                 )
+
+
+def _renamed_folders(task: Task, folder: str, others: Sequence[str]) -> Iterator[Proposal]:
+    """Yield edits that rename a misspelt folder to the one that setup.py names, if the reference has it as well."""
+    if task.reference is None or folder not in task.reference.tree.folders or folder in task.package.tree.folders:
+        return
+    for other in others:
+        if other.lower() != folder.lower() and closest(other, [folder]):
+            paths = [path for path in task.files if posixpath.dirname(path) == other]
+            edits = [task.renamed(path, f"{folder}/{posixpath.basename(path)}") for path in paths]
+            yield proposal(edits, f"a misspelt folder {folder}", f"rename the folder to {folder}")
 
 
 def _ending(path: str) -> str:
@@ -125,7 +135,7 @@ def _targets(task: Task, file: PythonFile, setup: Setup, files: Sequence[str]) -
     share = f"share/{task.package.name}"
     for copy in setup.copies:
         if copy.source in files and not copy.target.startswith(f"{share}/"):
-            wanted = posixpath.join(share, _below_share(task, copy.source), posixpath.basename(copy.source))
+            wanted = posixpath.join(share, below_share(task, copy.source), posixpath.basename(copy.source))
             for edit in moved(file.source, copy.target, wanted, copy.at.line)[:_MAX_EDITS]:
                 yield proposal(
                     [edit],
@@ -137,7 +147,7 @@ def _targets(task: Task, file: PythonFile, setup: Setup, files: Sequence[str]) -
 def _second_entries(file: PythonFile, setup: Setup, files: Sequence[str]) -> Iterator[Proposal]:
     """Yield edits that remove one of several entries that install the same file."""
     lines = [copy.at.line for copy in setup.copies if copy.source in files]
-    listed = _data_files(file)
+    listed = data_files(file)
     if listed is None or len(lines) < 2:
         return
     for item in reversed(listed.elts):
@@ -151,98 +161,3 @@ def _second_entries(file: PythonFile, setup: Setup, files: Sequence[str]) -> Ite
                 f"two entries of data_files in {_WHAT} for one file",
                 f"remove one of the two entries in {_WHAT}",
             )
-
-
-def _added(task: Task, file: PythonFile, missing: dict[str, Sequence[str]]) -> list[Edit]:
-    """Return the edits that add entries for files, and the imports that they need."""
-    new = [_entry(task, file, kind, paths[0]) for kind, paths in missing.items() if paths]
-    if not new:
-        return []
-    listed = _data_files(file)
-    if listed is None:
-        inserted = _new_list(file, new)
-    elif listed.elts:
-        last = listed.elts[-1]
-        start, end = file.span(last)
-        indent = file.text[file.text.rfind("\n", 0, start) + 1 : start]
-        indent = indent if not indent.strip() else " " * 8
-        text = "".join(f",{file.newline}{indent}{entry}" for entry in new)
-        inserted = [file.source.edit(end, end, text)]
-    else:
-        inserted = [file.replaced(listed, _list_of(file, new))]
-    return [*file.with_imports(["os", "glob"]), *inserted] if inserted else []
-
-
-def _list_of(file: PythonFile, new: Sequence[str]) -> str:
-    return "".join(["[", *(f"{file.newline}        {entry}," for entry in new), f"{file.newline}    ]"])
-
-
-def _new_list(file: PythonFile, new: Sequence[str]) -> list[Edit]:
-    for call in file.calls("setup"):
-        for argument in [keyword(call, "packages"), *call.keywords[-1:]]:
-            if argument is not None:
-                end = file.span(argument)[1]
-                return [file.source.edit(end, end, f",{file.newline}    data_files={_list_of(file, new)}")]
-    return []
-
-
-def _data_files(file: PythonFile) -> ast.List | None:
-    """Return the list of data_files, also where it is assigned to a name."""
-    for call in file.calls("setup"):
-        given = keyword(call, "data_files")
-        value = given.value if given is not None else None
-        if isinstance(value, ast.Name):
-            assigned = (node for node in file.nodes if isinstance(node, ast.Assign))
-            value = next(
-                (it.value for it in assigned if any(getattr(target, "id", "") == value.id for target in it.targets)),
-                None,
-            )
-        if isinstance(value, ast.List):
-            return value
-    return None
-
-
-def _entry(task: Task, file: PythonFile, kind: str, path: str) -> str:
-    """Return the entry for a file as the lab's handout writes it: for all files of its folder."""
-    name = "package_name" if "package_name" in file.bound else repr(task.package.name)
-    inside = _below_share(task, path)
-    target = "".join(f", {part!r}" for part in inside.split("/") if part)
-    folder, base = posixpath.split(path)
-    function = (
-        "glob.glob"
-        if any(isinstance(node, ast.Import) and node.names[0].name == "glob" for node in file.imports)
-        else "glob"
-    )
-    if not folder:
-        source = f"[{path!r}]"
-    elif kind == "launch" and fnmatch(base, _LAUNCH_PATTERN):
-        source = f"{function}(os.path.join({folder!r}, {_LAUNCH_PATTERN!r}))"
-    else:
-        has_folders = any(posixpath.dirname(it) == folder for it in task.package.tree.folders)
-        pattern = f"{folder}/*{posixpath.splitext(base)[1] if has_folders else ''}"
-        source = f"{function}({pattern!r})"
-    return f"(os.path.join('share', {name}{target}), {source})"
-
-
-def _below_share(task: Task, path: str) -> str:
-    """Return the folder below share/<package> that a file belongs in: where the launch file looks for it, else as in the reference."""
-    package, name = task.package, posixpath.basename(path)
-    share = f"{SHARE}/{package.name}/"
-    for launch in map(package.launch, package.launch_files[:1]):
-        for named in launch.references:
-            if named.path is not None and named.path.startswith(share) and posixpath.basename(named.path) == name:
-                return posixpath.dirname(named.path.removeprefix(share))
-    installed = task.reference.installed if task.reference is not None else {}
-    ending = posixpath.splitext(name)[1]
-    like = next(
-        (
-            target
-            for target, source in installed.items()
-            if target.startswith("share/") and source.endswith(ending) and source.count("/") == 1
-        ),
-        None,
-    )
-    is_launch = path in package.launch_files
-    if is_launch or like is None:
-        return "launch" if is_launch else ""
-    return "/".join(posixpath.dirname(like).split("/")[2:])

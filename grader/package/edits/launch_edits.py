@@ -87,6 +87,12 @@ def _readable(task: Task, launch: Launch, source: Source, wanted: str | None) ->
         yield from repaired(PythonFile(source), _WHAT) if is_python else repaired_xml(source, _WHAT)
     elif is_python:
         yield from defined(PythonFile(source), faults, _WHAT)
+    for literal in PythonFile(source).literals if is_python else ():
+        if literal.text in ("xacro", "cat"):
+            edits = [source.edit(literal.start, literal.end, f"{literal.text} ")]
+            yield proposal(
+                edits, "a missing space in a command", "add the space that separates the program from the path"
+            )
     words = [wanted or ("" if is_python else _FRONTEND), *task.package.installed]
     yield from respelt(source, words, (place.line for place in faults), _WHAT)
     if wanted:

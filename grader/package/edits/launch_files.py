@@ -56,8 +56,9 @@ def _found_at(task: Task, file: PythonFile, named: Reference) -> list[list[Edit]
         return []
     share = f"{SHARE}/{task.package.name}"
     source, wanted = file.source, f"{share}/{target}"
+    first = [*_renamed(task, named, target), *_installed_elsewhere(task, actual, target)]
     if actual.startswith(PREFIX):
-        return [[edit] for edit in moved(source, actual, wanted, named.location.line)]
+        return [*first, *([edit] for edit in moved(source, actual, wanted, named.location.line))]
     absolute = [[edit] for edit in moved(source, actual, target, named.location.line)] if actual.startswith("/") else []
     if not source.path.endswith(".py"):
         root = f"$(find-pkg-share {task.package.name})/"
@@ -69,6 +70,27 @@ def _found_at(task: Task, file: PythonFile, named: Reference) -> list[list[Edit]
             ),
         ]
     return [*_of_one_machine(task, file, actual, target), *absolute]
+
+
+def _renamed(task: Task, named: Reference, target: str) -> list[list[Edit]]:
+    """Return the edit that gives a file the name by which the launch file looks for it, if the reference has a file of this name."""
+    name = posixpath.basename(named.path or "")
+    path = task.package.installed.get(f"share/{task.package.name}/{target}", "")
+    names = {posixpath.basename(it) for it in task.reference.tree.files} if task.reference is not None else set()
+    is_meant = name in names and name not in map(posixpath.basename, task.files) and path
+    return [[task.renamed(path, posixpath.join(posixpath.dirname(path), name))]] if is_meant else []
+
+
+def _installed_elsewhere(task: Task, actual: str, target: str) -> list[list[Edit]]:
+    """Return the edits of setup.py that install a file where the launch file looks: in a folder of the name that it has in the package."""
+    share = f"share/{task.package.name}/"
+    source = task.package.installed.get(share + target, "")
+    looked, installed = actual.removeprefix(f"{PREFIX}/"), share + target
+    folder = posixpath.dirname(source)
+    is_misspelt = posixpath.dirname(target) and posixpath.dirname(looked) == share + folder != posixpath.dirname(
+        installed
+    )
+    return [[edit] for edit in moved(task.setup.source, installed, looked)] if is_misspelt and task.setup else []
 
 
 def _target(task: Task, named: Reference) -> str | None:

@@ -8,6 +8,8 @@ from grader.source import Edit, Source
 
 _PIECE = re.compile(r"[^\s\"'<>=(){},\[\]$;|]+")
 _NAME = re.compile(r"\{[^{}]*\}")
+_PACKAGE_ARGUMENT = re.compile(r"(?:package_share_\w+|package_prefix|FindPackage\w*|find-pkg-\w+)[\s(]*['\"]?$")
+_MAX_CALL = 80  # characters before an argument that are looked at
 _REST_OF_ARGUMENT = re.compile(r"\s*,\s*")
 
 
@@ -30,7 +32,10 @@ def moved(source: Source, actual: str, wanted: str, line: int = 1) -> list[Edit]
     for start, end in pieces(source):
         piece = source.text[start:end]
         if piece.strip("./") and piece in actual:
+            is_package = _PACKAGE_ARGUMENT.search(source.text, max(start - _MAX_CALL, 0), start) is not None
             for new in _replacements(piece, actual, wanted):
+                if is_package and ("/" in new or not new):
+                    continue  # the name of a package has no folders
                 edit = source.edit(start, end, new) if new else _without(source, start, end)
                 found.setdefault(edit, abs(edit.line - line))
     return sorted(found, key=lambda edit: (found[edit], -edit.line))

@@ -6,6 +6,7 @@ from itertools import islice
 
 from grader.edits import Proposal, composed, edited
 from grader.names import closest
+from grader.package.edits.brackets import unbalanced, unmatched
 from grader.package.edits.python_file import PythonFile, Token
 from grader.package.edits.task import proposal
 from grader.source import Edit, Source
@@ -14,7 +15,6 @@ from grader.static_python.parse import SyntaxFault
 _NAMES = {",": "comma", ":": "colon", "'": "quote", '"': "quote", "=": "equals sign", ".": "dot"}
 _CLOSING = {"(": ")", "[": "]", "{": "}"}
 _MAX_TRIES = 120  # edits that are parsed
-_MAX_ENDS = 12  # lines that may lack a bracket
 _MAX_FOUND = 6
 _MAX_DEPTH = 3  # errors in one file
 _QUOTES = str.maketrans("“”„‘’‚", "\"\"\"'''")
@@ -34,9 +34,6 @@ _KEYWORDS = (
     "class",
     "lambda",
 )
-_FUNCTIONS = ("glob", "join", "open", "str", "find_packages", "Node", "setup", "LaunchDescription")
-_CALLED = re.compile(r"(\w+)(?=[(\[])")
-_WORD = re.compile(r"\w+")
 _BLOCK = re.compile(r"\s*(def|with|if|elif|else|for|while|class|try|except|finally)\b")
 _LINE_END = re.compile(r"[\s,;:)\]}+]*(#.*)?$")
 
@@ -84,9 +81,9 @@ def _edits(file: PythonFile, fault: SyntaxFault) -> Iterator[Edit]:
     for number in dict.fromkeys((line, odd)):
         yield from _quotes(file, number)
     for number in (line, line - 1):
-        yield from _unbalanced(file, number)
+        yield from unbalanced(file, number)
     yield from missing_commas(file)
-    yield from _brackets(file)
+    yield from unmatched(file)
     yield from _indents(file, line)
     for number in (line, line - 1):
         yield from _operators(file, number)
@@ -137,30 +134,6 @@ def _quotes(file: PythonFile, line: int) -> Iterator[Edit]:
                 yield file.source.edit(at, at, quote)
 
 
-def _unbalanced(file: PythonFile, line: int) -> Iterator[Edit]:
-    """Yield edits that add the bracket that a line lacks: one that is closed and not opened, or the reverse."""
-    start, text = file.source.offset(line, 1), file.source.line(line).partition("#")[0]
-    balance = sum((char in _CLOSING) - (char in _CLOSING.values()) for char in text)
-    words = [*_WORD.finditer(text)]
-    if balance < 0:
-        known = {*_FUNCTIONS, *_CALLED.findall(file.text)}
-        others = {*_WORD.findall(file.text)}
-        inside = [
-            word.start() + size
-            for word in words
-            for size in range(2, len(word[0]))
-            if word[0][:size] in known or {word[0][:size], word[0][size:]} <= others
-        ]
-        quotes = [match.start() for match in re.finditer(r"(?<=[=(\[, ])['\"]", text)]
-        for place in [*(word.end() for word in words), *inside, *(word.start() for word in words), *quotes]:
-            for char in "([{" if place == 0 or not text[place - 1].isalnum() else "(":
-                yield file.source.edit(start + place, start + place, char)
-    elif balance > 0:
-        for match in re.finditer(r"['\"\w)\]}](?=[\s,)\]}]|$)", text):
-            for char in ")]":
-                yield file.source.edit(start + match.end(), start + match.end(), char)
-
-
 def _operators(file: PythonFile, line: int) -> Iterator[Edit]:
     """Yield edits that add what is missing between two words of a line: a comma, an equals sign, a dot, a bracket."""
     start, text = file.source.offset(line, 1), file.source.line(line).partition("#")[0]
@@ -188,47 +161,6 @@ def _ends(token: Token) -> bool:
 def _starts(token: Token) -> bool:
     words = ("if", "else", "for", "in", "and", "or", "not", "is", "as")
     return token.kind == "string" or token.text in _CLOSING or (token.kind == "name" and token.text not in words)
-
-
-def _brackets(file: PythonFile) -> Iterator[Edit]:
-    """Yield edits that close a bracket that is open where another one is closed, or remove or change the other one."""
-    opened: list[Token] = []
-    for token in file.tokens:
-        if token.text in _CLOSING:
-            opened.append(token)
-        elif token.text in _CLOSING.values():
-            if opened and _CLOSING[opened[-1].text] == token.text:
-                opened.pop()
-                continue
-            if opened:
-                yield from _closed(file, opened[-1], token.start)
-                yield file.source.edit(token.start, token.end, _CLOSING[opened[-1].text])
-            yield file.source.edit(token.start, token.end, "")
-            return
-    if opened:
-        yield from _closed(file, opened[-1], len(file.text))
-
-
-def _closed(file: PythonFile, opening: Token, end: int) -> Iterator[Edit]:
-    """Yield edits that close a bracket at the end of a line before an offset, before the comma there; the last lines first."""
-    tokens = [token for token in file.tokens if opening.end <= token.end <= end]
-    ends = [
-        one for one, other in zip(tokens, [*tokens[1:], None], strict=False)
-        if other is None or "\n" in file.text[one.end : other.start] or other.start >= end
-    ]  # fmt: skip
-    unbalanced = [token for token in ends if _is_open(file, token)]
-    for token in dict.fromkeys(unbalanced[::-1] + ends[:0:-1][:_MAX_ENDS] + ends[:1]):
-        for place in (token.start, token.end) if token.text in (",", ":") else (token.end, token.start):
-            if opening.end <= place:
-                yield file.source.edit(place, place, _CLOSING[opening.text])
-
-
-def _is_open(file: PythonFile, last: Token) -> bool:
-    """Return whether the line of a token opens a bracket that it does not close, and the next line is not deeper."""
-    number = file.source.at(last.start).line
-    line, after = file.source.line(number), file.source.line(number + 1)
-    balance = sum((char in _CLOSING) - (char in _CLOSING.values()) for char in line.partition("#")[0])
-    return balance > 0 and len(after) - len(after.lstrip()) <= len(line) - len(line.lstrip())
 
 
 def _indents(file: PythonFile, line: int) -> Iterator[Edit]:
