@@ -1,4 +1,4 @@
-"""Measure the hints: python -m tests.hints.measure [--share 0.1] [--seed 1] [--bad] [BASE...] or --samples.
+"""Measure the hints: python -m tests.hints.measure [--share 0.1] [--seed 1] [--bad] [BASE...], or --samples, or --students.
 
 Every mutant of the correct robots that loses points is searched. For each family it prints how many have a verified hint
 (`hint`), how many get full marks with all edits (`full`), how many are then the same robot (`same`) or the same text (`undo`).
@@ -11,7 +11,9 @@ from statistics import mean
 from time import perf_counter
 from typing import NamedTuple
 
+from grader.grading.hints.words import message
 from tests.hints.mutants import mutants
+from tests.hints.students import MISTAKES
 from tests.hints.trials import Base, Hints, bases, behaviour, differences, hints_for, text_after
 from tests.samples import SAMPLES
 
@@ -37,9 +39,9 @@ class Verdict(NamedTuple):
         """The hints in lines."""
         lines = [f"{self.family} | {self.label} | lost {len(self.hints.lost)}: {' '.join(self.hints.lost[:4])}"]
         for found in self.hints.found:
-            edits = "; ".join(f"{edit.line}: {_flat(edit.old)} -> {_flat(edit.new)}" for edit in found.edits[:4])
-            lines.append(f"     + {found.proposal.said} [{found.proposal.named}] {edits} ({len(found.gains)})")
-        left = f"     left: {' '.join(self.hints.final.failed[:6])}" if not self.hints.is_full else ""
+            lines.append(f"     + {message(found, 'edit', self.hints.fixed.path)}")
+            lines.append(f"       {found.proposal.said} [{found.proposal.named}]")
+        left = f"     left: {' '.join(self.hints.left[:6])}" if not self.hints.is_full else ""
         return "\n".join([*lines, left or f"     differs: {', '.join(self.differs)}"])
 
 
@@ -54,7 +56,7 @@ def verdicts(base: Base, share: float, random: Random) -> Iterator[Verdict]:
         hints = hints_for(submission)
         milliseconds = (perf_counter() - start) * 1e3
         if hints.lost:
-            differs = differences(expected, behaviour(hints.final.submission))
+            differs = differences(expected, behaviour(hints.fixed))
             is_undo = hints.is_full and text_after(base, hints) == base.text
             yield Verdict(mutant.family, f"{base.name} {mutant.change}", hints, is_undo, tuple(differs), milliseconds)
 
@@ -67,6 +69,20 @@ def of_samples() -> Iterator[Verdict]:
         hints = hints_for(submission, sample.rubric)
         if hints.lost:
             yield Verdict("sample", sample.name, hints, False, (), (perf_counter() - start) * 1e3)
+
+
+def of_students() -> Iterator[Verdict]:
+    """Yield the verdict on every mistake of students; its label says what a teacher would say."""
+    for mistake in MISTAKES.values():
+        if "xacro" in mistake.name:
+            continue  # TODO
+        submission = mistake.base.changed(mistake.text)
+        start = perf_counter()
+        hints = hints_for(submission)
+        milliseconds = (perf_counter() - start) * 1e3
+        differs = differences(behaviour(mistake.base.submission), behaviour(hints.fixed))
+        is_undo = hints.is_full and text_after(mistake.base, hints) == mistake.base.text
+        yield Verdict("student", f"{mistake.name} | {mistake.teacher}", hints, is_undo, tuple(differs), milliseconds)
 
 
 def table(found: Iterable[Verdict]) -> Iterator[str]:
@@ -85,16 +101,12 @@ def table(found: Iterable[Verdict]) -> Iterator[str]:
         yield f"{family:22}{len(those):7}{shares}{steps:8.0f}{time:8.1f}"
 
 
-def _flat(text: str) -> str:
-    flat = " ".join(text.split())
-    return flat if len(flat) <= 70 else f"{flat[:67]}..."
-
-
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("names", nargs="*")
     parser.add_argument("--samples", action="store_true")
+    parser.add_argument("--students", action="store_true")
     parser.add_argument("--share", type=float, default=1.0)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--bad", action="store_true", help="show those without full marks or another robot")
@@ -102,11 +114,8 @@ def main() -> None:
     options = parser.parse_args()
     random = Random(options.seed)
     chosen = (base for base in bases() if not options.names or base.name in options.names)
-    found = (
-        list(of_samples())
-        if options.samples
-        else [verdict for base in chosen for verdict in verdicts(base, options.share, random)]
-    )
+    mutated = (verdict for base in chosen for verdict in verdicts(base, options.share, random))
+    found = list(of_samples() if options.samples else of_students() if options.students else mutated)
     for verdict in found:
         if options.all or (options.bad and not (verdict.marks[1] and not verdict.differs)):
             print(verdict.told)

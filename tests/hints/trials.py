@@ -1,22 +1,24 @@
 """Search hints for submissions, and judge what was found."""
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from typing import NamedTuple
 
 from grader.errors import MissingElement, NotDecided
 from grader.grading.grade import grade, open_reference
 from grader.grading.hints.search import Found, Search
-from grader.grading.hints.trials import State, Trials, is_lost
+from grader.grading.hints.trials import Trials
+from grader.grading.report import Result
 from grader.grading.rubric import Rubric, load_rubric
 from grader.robot.edits.draft import Draft
 from grader.robot.frames import placed_by
 from grader.robot.kinematics import Configuration
 from grader.robot.model import Box, Cylinder, Sphere, Visual
 from grader.robot.shapes import half_width, is_empty
-from grader.robot.transforms import Vector
-from grader.submission.editing import with_files
+from grader.robot.transforms import Vector, unit
+from grader.source import Edit
+from grader.submission.editing import content, with_files
 from grader.submission.opening import read_submission
 from grader.submission.submission import Submission
 from grader.submission.urdf import Read
@@ -27,17 +29,21 @@ _SAME = 4e-3  # metres, components of directions and channels of colours: what t
 
 
 class Hints(NamedTuple):
-    """What a search found for a submission: the criteria that lost points, the proven edits, and all of them together."""
+    """What a search found for a submission: the criteria that lost points, the proven edits, and all of them together.
+
+    `fixed` is the submission with all edits, `left` are the criteria that still lose points then.
+    """
 
     lost: tuple[str, ...]
     found: list[Found]
-    final: State
+    fixed: Submission
+    left: tuple[str, ...]
     steps: int
 
     @property
     def is_full(self) -> bool:
         """Whether nothing is lost any more with all edits."""
-        return not self.final.failed
+        return not self.left
 
 
 @cache
@@ -50,14 +56,51 @@ def reference_draft(name: str) -> Draft | None:
 
 def hints_for(submission: Submission, rubric: Rubric = LAB6) -> Hints:
     """Return the hints for a submission; it is searched only if it lost points."""
-    results = {result.criterion.id: result for result in grade(rubric, submission).results}
+    results = graded(submission, rubric)
     trials = Trials(rubric, submission, results)
     budget = trials.left
-    lost = tuple(name for name, result in results.items() if is_lost(result))
     search = Search(trials, reference_draft(rubric.id))
-    if lost:
+    if any(result.is_lost for result in results.values()):
         search.run()
-    return Hints(lost, search.found, search.final, budget - trials.left)
+    fixed = with_edits(submission, search.final.edits)
+    return Hints(_lost(results), search.found, fixed, _lost(graded(fixed, rubric)), budget - trials.left)
+
+
+def graded(submission: Submission, rubric: Rubric = LAB6) -> dict[str, Result]:
+    """Return the results of a submission by criterion."""
+    return {result.criterion.id: result for result in grade(rubric, submission).results}
+
+
+def _lost(results: Mapping[str, Result]) -> tuple[str, ...]:
+    return tuple(name for name, result in results.items() if result.is_lost)
+
+
+def with_edits(submission: Submission, edits: Iterable[Edit]) -> Submission:
+    """Return a submission with edits, which are applied here: nothing of the search is trusted."""
+    files: dict[str, bytes | None] = {}
+    for path in {edit.path for edit in edits}:
+        own = [edit for edit in edits if edit.path == path]
+        files[path] = applied(content(submission, path) or b"", [edit for edit in own if not edit.renamed])
+        for edit in own:
+            if edit.renamed:
+                files[edit.renamed] = files[path]
+                files[path] = None
+    return with_files(submission, files) if files else submission
+
+
+def applied(data: bytes, edits: Iterable[Edit]) -> bytes:
+    """Return bytes after edits, each of which must find the old text where it says."""
+    lines = data.decode("utf-8", "surrogateescape").split("\n")
+    if lines[0].startswith("\ufeff"):
+        mark, lines[0] = "\ufeff", lines[0][1:]
+    else:
+        mark = ""
+    text = "\n".join(lines)
+    starts = [sum(len(line) + 1 for line in lines[: edit.line - 1]) + edit.column - 1 for edit in edits]
+    for start, edit in sorted(zip(starts, edits, strict=True), key=lambda pair: -pair[0]):
+        assert text[start : start + len(edit.old)] == edit.old, edit
+        text = text[:start] + edit.new + text[start + len(edit.old) :]
+    return (mark + text).encode("utf-8", "surrogateescape")
 
 
 class Base(NamedTuple):
@@ -121,8 +164,8 @@ def behaviour(submission: Submission) -> Behaviour:
                 found[f"{link.name} {index}"] = (*placed.translation, *extent, *_colour(visual))
         joint = robot.parent_joints.get(link.name)
         if joint is not None and joint.type in ("continuous", "revolute", "prismatic", "planar", "floating"):
-            axis = pose.rotate(joint.axis) if joint.axis is not None else ()
-            found[f"joint of {link.name}"] = (joint.type, *axis)
+            axis = unit(pose.rotate(joint.axis)) if joint.axis is not None else ()
+            found[f"joint of {link.name}"] = (joint.type, *(axis or ()))
         if link.name in ("lidar", "base_footprint"):
             found[f"frame of {link.name}"] = pose.translation
     return found
@@ -147,8 +190,4 @@ def _is_same(one: tuple[object, ...], other: tuple[object, ...]) -> bool:
 
 def text_after(base: Base, hints: Hints) -> str:
     """Return the text of a base's file after all edits."""
-    submission = hints.final.submission
-    if isinstance(submission.urdf, Read) and submission.urdf.path == base.path:
-        return submission.urdf.data.decode("utf-8", "surrogateescape")
-    file = submission.everything.files.get(base.path)
-    return file.read(1 << 20).decode("utf-8", "surrogateescape") if file is not None else ""
+    return (content(hints.fixed, base.path) or b"").decode("utf-8", "surrogateescape")
