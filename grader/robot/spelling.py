@@ -1,5 +1,8 @@
 """Unknown names that look like misspelt ones, which ROS 2 silently ignores, and repeated elements."""
 
+from collections.abc import Callable, Iterable
+
+from grader.names import closest
 from grader.robot import catalogue
 from grader.robot.diagnostics import Problems
 from grader.text import quoted
@@ -49,6 +52,9 @@ _SINGLE = frozenset(
 _SWAPPED = {("cylinder", "height"): "length", ("color", "rgb"): "rgba", ("origin", "pos"): "xyz"}
 
 
+Closest = Callable[[str, Iterable[str]], str | None]
+
+
 def check_spelling(root: Element, problems: Problems) -> None:
     """Report misspelt names and repeated elements in what urdfdom reads; extensions of other tools are skipped."""
     if not _ATTRIBUTES["robot"].issuperset(root.keys()):
@@ -73,15 +79,31 @@ def check_spelling(root: Element, problems: Problems) -> None:
 
 
 def _check_attributes(element: Element, problems: Problems) -> None:
-    known, given = _ATTRIBUTES[element.tag], list(map(str, element.keys()))
-    missing = known - set(given)
-    for name in given:
-        if name in known or name.startswith("{"):
-            continue
-        meant = _SWAPPED.get((element.tag, name)) or problems.closest(name, missing)
+    for name in unknown_attributes(element):
+        meant = meant_attribute(element, name, problems.closest)
         if meant:
             message = f"ROS 2 ignores the unknown attribute {quoted(name)} of <{element.tag}>"
             problems.add(catalogue.MISSPELT, f"{message}; did you mean {quoted(meant)}?", element, name)
+
+
+def unknown_attributes(element: Element) -> list[str]:
+    """Return the attributes of an element that urdfdom does not read."""
+    known = _ATTRIBUTES.get(str(element.tag))
+    return [name for name in map(str, element.keys()) if known is not None and name not in known and name[0] != "{"]
+
+
+def meant_attribute(element: Element, name: str, closest: Closest = closest) -> str | None:
+    """Return the attribute that an unknown one of an element is probably meant to be."""
+    missing = _ATTRIBUTES[str(element.tag)] - set(map(str, element.keys()))
+    return _SWAPPED.get((str(element.tag), name)) or closest(name, missing)
+
+
+def meant_tag(element: Element, closest: Closest = closest) -> str | None:
+    """Return the tag that an unknown one is probably meant to be."""
+    parent = element.getparent()
+    allowed = _CHILDREN.get(str(parent.tag), ()) if parent is not None else ()
+    tag = str(element.tag)
+    return closest(tag, allowed) if allowed and tag not in allowed and tag not in _EXTENSIONS else None
 
 
 def _check_tag(child: Element, parent: str, allowed: tuple[str, ...], problems: Problems) -> None:

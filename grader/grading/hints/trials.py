@@ -35,6 +35,11 @@ class State(NamedTuple):
     results: Results
     lost: str = ""
 
+    @property
+    def failed(self) -> list[str]:
+        """The criteria that have no points because of a mistake."""
+        return [name for name, result in self.results.items() if result.is_lost]
+
 
 class Trials:
     """Edited submissions are read and graded here. The budget counts readings, so that it is the same on every machine."""

@@ -1,6 +1,7 @@
 """The edits of a robot that may undo a mistake, the most plausible first."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import islice
 
 from grader.edits import REWRITTEN, Proposal
 from grader.robot.edits.draft import Draft, Edits, child_of
@@ -8,8 +9,10 @@ from grader.robot.edits.families import written
 from grader.robot.edits.poses import Poses
 from grader.robot.edits.structure import structure_proposals
 from grader.robot.edits.values import joint_values, together, values_of, visual_values, with_values
+from grader.robot.spelling import meant_attribute, meant_tag, unknown_attributes
 from grader.source import Location
 
+_MAX_ELEMENTS = 2000  # whose names are looked at
 _LARGE = 3.0  # metres: no shape of a robot for a desk is as large
 
 
@@ -27,7 +30,7 @@ def proposals(
     """
     poses = Poses(draft.robot, reference.robot, anchors)
     found: dict[frozenset[object], Proposal] = {}
-    for proposal in other_units(draft):
+    for proposal in (*misspelt(draft), *other_units(draft)):
         found.setdefault(frozenset(proposal.edits), proposal)
     for link in dict.fromkeys((*moved, *shown)):
         for proposal in _of_link(draft, reference, poses, link, is_moved=link in moved, is_shown=link in shown):
@@ -52,6 +55,26 @@ def _of_link(
     if is_moved:
         yield from together(draft, reference, poses, link)
         yield from as_in_reference(draft, reference, link)
+
+
+def misspelt(draft: Draft) -> Iterator[Proposal]:
+    """Correct the names of attributes and elements that ROS 2 ignores: height= of a cylinder, xzy=, <vizual>."""
+    for element in islice(draft.root.iter(), _MAX_ELEMENTS):
+        for name in unknown_attributes(element):
+            meant = meant_attribute(element, name)
+            if meant is not None:
+                of = f"<{element.tag}>"
+                edits = draft.rename_attribute(element, name, meant)
+                yield Proposal(
+                    edits, f"the name of the attribute {meant}", f"correct the name of the attribute {meant}{{}}", of
+                )
+        tag = meant_tag(element)
+        if tag is not None:
+            yield Proposal(
+                draft.rename_tag(element, tag),
+                f"the name of the element <{tag}>",
+                f"correct the name of the element <{tag}>",
+            )
 
 
 def other_units(draft: Draft) -> Iterator[Proposal]:

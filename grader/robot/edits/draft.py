@@ -3,7 +3,17 @@
 import re
 from collections.abc import Iterator
 
-from grader.edits import merged, text_of, with_attribute, with_child, with_element, with_sibling, without_element
+from grader.edits import (
+    merged,
+    text_of,
+    with_attribute,
+    with_attribute_name,
+    with_child,
+    with_element,
+    with_sibling,
+    with_tag_name,
+    without_element,
+)
 from grader.robot.model import Joint, Robot
 from grader.robot.reader import Reading
 from grader.robot.tree import parent_joints
@@ -54,8 +64,9 @@ class Draft:
 
     def material(self, name: str) -> Element | None:
         """Return the first definition of a material that counts: under the robot, else in a visual."""
-        everywhere = (*self.root.iterchildren("material"), *self.root.iter("material"))
-        return next((found for found in everywhere if found.get("name") == name and len(found)), None)
+        own = [found for found in self.root.iterchildren("material") if found.get("name") == name]
+        inside = (found for found in self.root.iter("material") if found.get("name") == name and len(found))
+        return next((found for found in own if len(found)), next(inside, next(iter(own), None)))
 
     def text(self, element: Element) -> str:
         """Return an element as it is written in the file, without comments."""
@@ -74,6 +85,17 @@ class Draft:
             return ways
         source, start = self.source.element(tag)
         return [(with_attribute(source, start, attribute, merged(old, escaped(value))),)]
+
+    def rename_attribute(self, element: Element, old: str, new: str) -> Edits:
+        """Return the edit that renames an attribute; none where xacro gives it its name."""
+        source, start = self.source.element(self._tags[element])
+        edit = with_attribute_name(source, start, old, new)
+        return (edit,) if edit is not None else ()
+
+    def rename_tag(self, element: Element, new: str) -> Edits:
+        """Return the edits that give an element another tag."""
+        source, start = self.source.element(self._tags[element])
+        return with_tag_name(source, start, str(element.tag), new)
 
     def insert(self, parent: Element, xml: str) -> Edits:
         """Return the edit that inserts an element as the first child of another one."""

@@ -6,6 +6,7 @@ from itertools import islice
 from grader.edits import KNOWN, REWRITTEN, Proposal
 from grader.names import closest
 from grader.robot.edits.draft import Draft, Edits, child_of, end_of
+from grader.robot.edits.values import values_of
 from grader.robot.model import Material
 from grader.xml.parsing import Element
 
@@ -39,7 +40,7 @@ def missing_link(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal
                 Proposal(edits, "the name", "correct the name{}", of, link) for edits in draft.set(own, "name", link)
             )
     twice = [other for other in draft.links() if others.count(other.get("name") or "") > 1]
-    for second in twice[-1:]:
+    for second in twice:
         for edits in draft.set(second, "name", link):
             yield Proposal(
                 edits,
@@ -260,6 +261,10 @@ def material(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
                 for edits in draft.set(used, "name", known.name)
             )
     name = (used.get("name") if used is not None else None) or wanted.name
+    for found in draft.root.iterchildren("material"):
+        if found.get("name") != name and _is_alike_text(found, wanted):
+            for edits in draft.set(found, "name", name):
+                yield Proposal(edits, "the name of the material's definition", f"call the material {name!r}", "", link)
     colour = " ".join(f"{channel:g}" for channel in wanted.rgba)
     definition = f'<material name="{name}">\n  <color rgba="{colour}"/>\n</material>'
     defined = draft.material(name)
@@ -294,6 +299,12 @@ def material(draft: Draft, reference: Draft, link: str) -> Iterator[Proposal]:
                 Proposal(edits, "the colour", f"set the colour{{}} to {colour}", of, link)
                 for edits in draft.set(inside, "rgba", colour)
             )
+
+
+def _is_alike_text(definition: Element, wanted: Material) -> bool:
+    colour = child_of(definition, "color")
+    values = values_of(colour.get("rgba") or "") if colour is not None else ()
+    return len(values) == 4 and all(abs(a - b) < 0.01 for a, b in zip(values, wanted.rgba, strict=True))
 
 
 def _is_alike(one: Material, other: Material) -> bool:
