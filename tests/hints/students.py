@@ -5,10 +5,9 @@ import tomllib
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from tests.hints.trials import Base, bases
+from tests.hints.trials import BASES, Base
 
 _LENGTH = re.compile(r'\b(xyz|size|radius|length)="([^"]*)"')
-BASES = {base.name: base for base in reversed(list(bases()))}  # the first file of each
 
 
 class Mistake(NamedTuple):

@@ -57,13 +57,16 @@ def reference_draft(name: str) -> Draft | None:
 def hints_for(submission: Submission, rubric: Rubric = LAB6) -> Hints:
     """Return the hints for a submission; it is searched only if it lost points."""
     results = graded(submission, rubric)
-    trials = Trials(rubric, submission, results)
-    budget = trials.left
-    search = Search(trials, reference_draft(rubric.id))
-    if any(result.is_lost for result in results.values()):
-        search.run()
+    search = search_for(submission, results, rubric)
+    budget = Trials(rubric, submission, results).left
     fixed = with_edits(submission, search.final.edits)
-    return Hints(_lost(results), search.found, fixed, _lost(graded(fixed, rubric)), budget - trials.left)
+    return Hints(_lost(results), search.found, fixed, _lost(graded(fixed, rubric)), budget - search.trials.left)
+
+
+def search_for(submission: Submission, results: Mapping[str, Result], rubric: Rubric = LAB6) -> Search:
+    """Return the search for a submission with these results."""
+    search = Search(Trials(rubric, submission, results), reference_draft(rubric.id))
+    return search.run() if _lost(results) else search
 
 
 def graded(submission: Submission, rubric: Rubric = LAB6) -> dict[str, Result]:
@@ -111,6 +114,11 @@ class Base(NamedTuple):
     path: str
     text: str
 
+    @property
+    def is_xacro(self) -> bool:
+        """Whether xacro is run on it."""
+        return isinstance(self.submission.urdf, Read) and self.submission.urdf.is_expanded
+
     def changed(self, text: str) -> Submission:
         """Return the submission with another text of the file."""
         data = text.encode("utf-8", "surrogateescape")
@@ -119,7 +127,12 @@ class Base(NamedTuple):
         return with_files(self.submission, {self.path: data})
 
 
-def bases() -> Iterator[Base]:
+def _alone(submission: Submission, urdf: Read) -> Submission:
+    """Return the URDF without its package where that makes no difference: it is read faster."""
+    return submission if urdf.is_expanded else read_submission(urdf.data, identity=submission.id, path=urdf.path)
+
+
+def _bases() -> Iterator[Base]:
     """Yield the reference and every different text of the equivalents, the files that xacro includes as well."""
     texts: Counter[bytes] = Counter()
     for sample in [SAMPLES["reference"], *(SAMPLES[name] for name in SAMPLES if name.startswith("equivalent-"))]:
@@ -133,13 +146,11 @@ def bases() -> Iterator[Base]:
             data = urdf.data if path == urdf.path else submission.everything.files[path].read(1 << 20)
             texts[data] += 1
             if texts[data] == 1:
-                yield Base(sample.name, _alone(submission, urdf), path, data.decode("utf-8", "surrogateescape"))
+                name = sample.name if path == urdf.path else f"{sample.name}/{path}"
+                yield Base(name, _alone(submission, urdf), path, data.decode("utf-8", "surrogateescape"))
 
 
-def _alone(submission: Submission, urdf: Read) -> Submission:
-    """Return the URDF without its package where that makes no difference: it is read faster."""
-    return submission if urdf.is_expanded else read_submission(urdf.data, identity=submission.id, path=urdf.path)
-
+BASES = {base.name: base for base in _bases()}
 
 Behaviour = dict[str, tuple[object, ...]]
 
